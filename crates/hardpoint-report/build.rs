@@ -1,4 +1,4 @@
-//! Deflates what every report carries: the page's code, and the engine that solves in it.
+//! Deflates the contents of every report: the page's code, and the engine that solves in it.
 
 use std::{env, error::Error, fs, io::Write, path::Path};
 

@@ -281,7 +281,7 @@ impl Run {
                 change: &self.changes,
                 today: &today,
                 exact: &self.solution,
-                foreseen: None,
+                prediction: None,
             });
             let request = Request { changed, ..Request::of(file, analysis, &course, &summary) };
             report(&request, &|page| page).expect("a payload is plain data")

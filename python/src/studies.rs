@@ -159,7 +159,7 @@ impl Model {
             tolerance(&file.model, motions, &numbers, &asked, threads(workers), &mut on, &|| watch.more())
         })?;
         let found = found.map_err(|failure| match failure {
-            ToleranceError::Drawn(rejection) => {
+            ToleranceError::Nominal(rejection) => {
                 let case = &self.cases[rejection.motion];
                 Failure::of_model(Kind::Stopped, case, &diagnose::stop(case, &rejection.stop, 0, None))
             }

@@ -108,7 +108,7 @@ fn compare_in(
                 change: &change,
                 today: &today,
                 exact: &exact,
-                foreseen: None,
+                prediction: None,
             };
             let request =
                 Request { changed: Some(changed), ..Request::of(&file, &analysis, &course, &summary) };

@@ -80,7 +80,7 @@ pub fn page(
         change: found.design,
         today: &today,
         exact,
-        foreseen: None,
+        prediction: None,
     });
     let request = Request { changed, ..Request::of(&file, analysis, &course, &summary) };
     Some(report(&request, &|page| finish(page, &today)).expect("a payload is plain data"))

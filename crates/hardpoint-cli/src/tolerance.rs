@@ -130,11 +130,11 @@ pub fn examine(
     let more = || session.go_on().is_continue();
     let found = tolerance(&file.model, motions, numbers, asked, threads(most_threads), &mut tell, &more);
     found.map_err(|failure| match failure {
-        ToleranceError::Drawn(rejection) if rejection.interrupted() => {
+        ToleranceError::Nominal(rejection) if rejection.interrupted() => {
             session.misunderstood("interrupted before the nominal design was solved");
             Outcome::Interrupted
         }
-        ToleranceError::Drawn(rejection) => {
+        ToleranceError::Nominal(rejection) => {
             let mut one = file.clone();
             one.model = Model::clone(motions.model(rejection.motion));
             let mut diagnostic = diagnose::stop(&one, &rejection.stop, 0, None);

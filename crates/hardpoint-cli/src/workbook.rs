@@ -153,7 +153,7 @@ impl Contents<'_> {
                 value.into(),
                 unit.into(),
                 v.change.as_str().into(),
-                v.answer_text().into(),
+                v.admissibility_text().into(),
             ]
         };
         page.table(

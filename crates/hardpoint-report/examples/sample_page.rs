@@ -1,5 +1,5 @@
 //! Writes a report of a slider-crank whose motion and sensitivities come from its closed form, so that
-//! the page can be tried without a solver: `cargo run --example sample_page -- sample.html`.
+//! the page can be tried without the solver: `cargo run --example sample_page -- sample.html`.
 //!
 //! With `--partial` the motion stops at 60 % of its steps, as when a mechanism fails to assemble.
 
@@ -8,7 +8,7 @@ use num_dual::{Dual2, Dual64, DualNum};
 use std::{env, error::Error, f64::consts::TAU, fs};
 
 const STEPS: usize = 241;
-/// Differences are drawn at every that many steps.
+/// Stride of the steps with differences.
 const MARKED: usize = 7;
 const DURATION: f64 = 2.0;
 const CRANK: f64 = 50.0;

@@ -17,60 +17,60 @@ pub struct AssemblyFact {
     pub gaps: Vec<GapFact>,
     /// The bodies that moved.
     pub moved: Vec<MovedFact>,
-    /// Number of assemblies found around the drawing, where the path from it leads to none; the nearest was taken. 0
-    /// where the gaps were closed along the path.
+    /// Number of assemblies found around the design configuration if the direct path leads to none; the nearest was
+    /// used. 0 if the gaps were closed along the path.
     pub found_nearby: usize,
 }
 
-/// Something that is open.
+/// Open constraint of the design configuration.
 #[derive(Clone, Debug, Serialize)]
 pub struct GapFact {
     /// `joint`, `driver` or `coupler`.
     pub kind: &'static str,
-    /// Name.
+    /// Name of the joint, driver or coupler.
     pub name: String,
-    /// By how much it is open.
+    /// Size of the gap, in `unit`.
     pub size: f64,
-    /// The unit of that.
+    /// Unit of `size`.
     pub unit: &'static str,
 }
 
 /// Displacement of a body by the assembly.
 #[derive(Clone, Debug, Serialize)]
 pub struct MovedFact {
-    /// The body.
+    /// Name of the body.
     pub body: String,
-    /// Displacement of its origin.
+    /// Displacement of its origin, in `distance_unit`.
     pub distance: f64,
-    /// The unit of that.
+    /// Unit of `distance`.
     pub distance_unit: &'static str,
-    /// Angle of its rotation.
+    /// Angle of its rotation, in `angle_unit`.
     pub angle: f64,
-    /// The unit of that.
+    /// Unit of `angle`.
     pub angle_unit: &'static str,
 }
 
 impl GapFact {
-    /// A gap in the user's units.
+    /// Converts a gap to the user's units.
     pub fn new(model: &Model, units: Units, gap: &Gap) -> Self {
         let (kind, name) = match gap.of {
             Closing::Joint(j) => ("joint", &model.joints[j.0].name),
             Closing::Driver(d) => ("driver", &model.drivers[d.0].name),
             Closing::Coupler(c) => ("coupler", &model.couplers[c].name),
         };
-        // The gap of a direction is a cosine that is 0 when closed: to first order an angle.
+        // The gap of a direction is a cosine that is 0 when closed. To first order it is an angle.
         let of = gap.quantity;
         Self { kind, name: name.clone(), size: units.from_si(of, gap.size), unit: symbol(units, of) }
     }
 
-    /// `133.8 mm`.
+    /// Formatted size with its unit: `133.8 mm`.
     pub fn size_text(&self) -> String {
         with_unit(self.size, self.unit)
     }
 }
 
 impl AssemblyFact {
-    /// An assembly in the user's units.
+    /// Converts an assembly to the user's units.
     pub fn new(model: &Model, units: Units, assembly: &Assembly) -> Self {
         let (length, angle) = (Quantity::Length, Quantity::Angle);
         let moved = assembly.moved.iter().map(|m| MovedFact {
@@ -95,22 +95,22 @@ impl AssemblyFact {
         };
         let title = match self.found_nearby {
             0 => "Moved by the assembly".to_owned(),
-            1 => "Moved by the assembly, the only one found near the drawing, which is a singular position"
+            1 => "Moved by the assembly, the only one found near the design configuration, which is a singular position"
                 .to_owned(),
             n => format!(
-                "Moved by the assembly, the nearest of {n} found near the drawing, which is a singular position"
+                "Moved by the assembly, the nearest of {n} found near the design configuration, which is a singular position"
             ),
         };
         [
             table(
                 "Assembled",
-                "These were open in the drawing and are closed before the motion starts, with every driver at zero.",
-                ["what", "open in the design configuration by"],
+                "These constraints are open in the design configuration and closed before the motion starts, with every driver at zero.",
+                ["constraint", "gap in the design configuration"],
                 self.gaps.iter().map(gap),
             ),
             table(
                 &title,
-                "From where the bodies were drawn.",
+                "Displacements from the design configuration.",
                 ["body", "origin moved by", "turned by"],
                 self.moved.iter().map(moved),
             ),

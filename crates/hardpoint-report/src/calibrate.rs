@@ -17,156 +17,156 @@ use crate::figures::{count, number, rounded, seconds, some_of, symbol, unit, wit
 use crate::optimize::{Evaluations, MovedHardpoint, moved};
 use crate::page::{Curve, Fact, Payload, SweepAxis, SweepPlot, Table};
 
-/// A residual of more standard deviations than this is reported: of a thousand normal ones three are.
+/// Residuals of more standard deviations than this are reported; about three of a thousand normal residuals are.
 const FAR: f64 = 3.0;
-/// That many of them are listed.
+/// Maximum number of listed residuals.
 const LISTED: usize = 10;
-/// Variables that go together by more than this are reported as a pair.
+/// Correlation above which two variables are reported as a pair.
 const TOGETHER: f64 = 0.95;
-/// The scatter of residuals fits what was given where it is within that many standard deviations of 1.
+/// Number of standard errors within which the scatter of residuals agrees with the given standard deviations.
 const FITS: f64 = 4.0;
-/// A part of an untold direction that is less than this is not shown.
+/// Components of an unidentifiable direction below this fraction are not shown.
 const SLIGHT: f64 = 1e-4;
 
-/// A calibration, in the model's units. As JSON it is `summary.json` of `hardpoint calibrate`.
+/// Result of a calibration, in the model's units. Serialised as `summary.json` of `hardpoint calibrate`.
 #[derive(Clone, Debug, Serialize)]
 pub struct CalibrateFacts {
     /// Program and version.
     pub generator: String,
-    /// The kind of study.
+    /// Kind of study.
     pub study: &'static str,
-    /// The model's name.
+    /// Name of the model.
     pub model: String,
-    /// The model file.
+    /// Name of the model file.
     pub file: String,
-    /// The file of what was measured.
+    /// Name of the measurement file.
     pub data: String,
-    /// Status at the end: `found`, `not_told` (found, but not all variables are determined), `iteration_limit` or
-    /// `interrupted`.
+    /// Status at the end: `found`, `not_told` (found, but the readings do not determine all variables),
+    /// `iteration_limit` or `interrupted`.
     pub status: &'static str,
-    /// The same in words, and what to do.
+    /// Status in words, with an instruction.
     pub message: String,
-    /// The sum of squared residuals, or of the loss, in standard deviations: in the design configuration, and of the
-    /// design found.
+    /// Objective of the nominal and the fitted design: sum of squared residuals, or of the loss, in standard
+    /// deviations.
     pub objective: [f64; 2],
     /// Cost of the search.
     pub evaluations: Evaluations,
-    /// Readings that were compared.
+    /// Number of compared readings.
     pub readings: usize,
-    /// Postures that they are of.
+    /// Number of postures of these readings.
     pub postures: usize,
-    /// Readings less what they tell.
+    /// Degrees of freedom: readings minus determined directions.
     pub freedom: usize,
-    /// Standard deviation of the residuals: in those that were given, 1 where all is as it says; else in
-    /// `scatter_unit`.
+    /// Standard deviation of the residuals: relative to the given standard deviations, where 1 is expected, otherwise
+    /// in `scatter_unit`.
     pub scatter: Option<f64>,
-    /// The unit of that; empty where standard deviations were given.
+    /// Unit of `scatter`; empty if standard deviations are given.
     pub scatter_unit: String,
-    /// The variables that were sought.
+    /// Fitted variables.
     pub variables: Vec<CalibratedVariable>,
-    /// Pairs of variables that these readings hardly distinguishes, with their correlation.
+    /// Pairs of variables that the readings hardly distinguish, with their correlation.
     pub together: Vec<(String, String, f64)>,
     /// Changes that the readings do not determine.
-    pub untold: Vec<UntoldFact>,
-    /// Variables that the mechanism cannot follow, and that stay.
+    pub untold: Vec<UnidentifiableFact>,
+    /// Variables that the mechanism cannot follow. They keep their design values.
     pub left_out: Vec<String>,
-    /// Drivers that the file does not name: they stand in the design configuration.
+    /// Drivers without a column in the measurement file. They stay in the design configuration.
     pub as_drawn: Vec<String>,
-    /// Hardpoints that the design found has elsewhere.
+    /// Hardpoints that the fitted design moves.
     pub hardpoints: Vec<MovedHardpoint>,
-    /// Readings that are far off, the farthest first.
-    pub far_off: Vec<FarOff>,
-    /// Total number.
+    /// Readings with large residuals, the largest first.
+    pub far_off: Vec<LargeResidual>,
+    /// Number of readings with large residuals.
     pub far_off_count: usize,
-    /// Postures that the mechanism in the design configuration does not reach: their readings are left out.
+    /// Postures that the nominal design does not reach. Their readings are left out.
     pub not_reached: Vec<NotReachedFact>,
-    /// Further readings with the most information, the best first.
+    /// Proposed further readings, the most informative first.
     pub next: Vec<NextFact>,
-    /// The files that were written.
+    /// Written files.
     pub files: Vec<String>,
     /// Duration, s.
     pub seconds: f64,
 }
 
-/// A variable that was sought.
+/// Fitted variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct CalibratedVariable {
     /// Name.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// In the design configuration; of a parameter its value, of all others the change, 0.
+    /// Nominal value: the value of a parameter, 0 for all other variables.
     pub start: f64,
-    /// In the design found.
+    /// Fitted value: the value of a parameter, the change of all other variables.
     pub end: f64,
-    /// Standard deviation; `null` where the readings do not tell it.
+    /// Standard deviation; `null` if the readings do not determine it.
     pub sigma: Option<f64>,
 }
 
 /// A change that the readings do not determine.
 #[derive(Clone, Debug, Serialize)]
-pub struct UntoldFact {
-    /// The variables that go together, by how much, and their units: the largest part is 1.
+pub struct UnidentifiableFact {
+    /// Changed variables with their changes and units; the largest change is 1.
     pub variables: Vec<(String, f64, String)>,
-    /// The standard deviation of that, as a multiple; `null` where the readings tell nothing of it.
+    /// Standard deviation as a multiple of that change; `null` if the readings do not determine it at all.
     pub sigma: Option<f64>,
 }
 
-/// A reading far from what the design found gives.
+/// Reading with a large residual.
 #[derive(Clone, Debug, Serialize)]
-pub struct FarOff {
-    /// The line of the file.
+pub struct LargeResidual {
+    /// Line of the measurement file.
     pub line: u64,
     /// Column of the reading.
     pub column: String,
-    /// That, and what the design found gives.
+    /// Measured and fitted value, in `unit`.
     pub values: [f64; 2],
-    /// Their unit.
+    /// Unit of the values.
     pub unit: String,
-    /// The difference in standard deviations.
+    /// Fitted minus measured value, in standard deviations.
     pub residual: f64,
     /// Weight in the fit, from 0 to 1.
     pub weight: f64,
 }
 
-/// A posture that is not reached.
+/// Posture that is not reached.
 #[derive(Clone, Debug, Serialize)]
 pub struct NotReachedFact {
-    /// The line of the file.
+    /// Line of the measurement file.
     pub line: u64,
     /// Description of the event.
     pub why: String,
 }
 
-/// A further reading.
+/// Proposed reading.
 #[derive(Clone, Debug, Serialize)]
 pub struct NextFact {
     /// Reading to take.
     pub measure: String,
-    /// The standard deviation that is assumed, with `unit`.
+    /// Assumed standard deviation, in `unit`.
     pub sigma: f64,
-    /// Unit.
+    /// Unit of `sigma`.
     pub unit: String,
     /// Values of the drivers: name, value, unit.
     pub drivers: Vec<(String, f64, String)>,
-    /// The number of what is not reported, from 1, that it would tell.
+    /// Number of the unidentifiable change, from 1, that the reading would determine.
     pub tells: Option<usize>,
-    /// The variable that it makes surest.
+    /// Variable whose standard deviation it reduces most.
     pub variable: Option<String>,
-    /// Standard deviation now, and with the reading.
+    /// Standard deviation of that variable without and with the reading, in `variable_unit`.
     pub sigmas: Option<[f64; 2]>,
-    /// The variable's unit.
+    /// Unit of the variable.
     pub variable_unit: Option<String>,
 }
 
-/// Inputs of the facts.
+/// Inputs of [`CalibrateFacts`].
 #[derive(Clone, Copy, Debug)]
 pub struct CalibrationInputs<'a> {
-    /// The model file.
+    /// Model file.
     pub file: &'a ModelFile,
-    /// Measurements, and the name of their file.
+    /// Measurements.
     pub measured: &'a MeasuredData,
-    /// The file of what was measured.
+    /// Name of the measurement file.
     pub data: &'a str,
     /// Loss function of the residuals.
     pub loss: Loss,
@@ -199,14 +199,14 @@ impl CalibrationInputs<'_> {
         self.measured.measurements.readings.iter().all(|r| r.sigma.is_some())
     }
 
-    /// Readings that were compared, with what they are beside.
+    /// Compared readings with their fitted values.
     fn compared(&self) -> impl Iterator<Item = (&Reading, &FittedReading)> {
         let readings = &self.measured.measurements.readings;
         readings.iter().zip(&self.found.fitted).filter_map(|(r, f)| Some((r, f.as_ref()?)))
     }
 
     /// Values of the drivers in a posture: name, value, unit.
-    fn stands(&self, places: &[f64]) -> Vec<(String, f64, String)> {
+    fn driver_values(&self, places: &[f64]) -> Vec<(String, f64, String)> {
         let model = self.model();
         let of = |(driver, place): (&hardpoint::model::Driver, &f64)| {
             let quantity = model.driven(driver).quantity;
@@ -216,7 +216,7 @@ impl CalibrationInputs<'_> {
         model.drivers.iter().zip(places).map(of).collect()
     }
 
-    /// Residuals as points over where the drivers stood.
+    /// Plot of the residuals over the driver positions.
     pub fn plot(&self) -> SweepPlot {
         let (model, units) = (self.model(), self.units());
         let postures = &self.measured.measurements.postures;
@@ -251,7 +251,7 @@ impl CalibrationInputs<'_> {
                 values[reading.posture] = self.shown(m, fitted.value - reading.value);
             }
             axes.push(SweepAxis {
-                name: format!("{} found less measured", self.output(m).name),
+                name: format!("{} fitted minus measured", self.output(m).name),
                 unit: self.unit_of(m),
                 metric: true,
                 values: values.into_iter().collect(),
@@ -260,15 +260,16 @@ impl CalibrationInputs<'_> {
         SweepPlot { what: "posture".into(), designs: postures.len(), step: 1, axes, indices: Vec::new() }
     }
 
-    /// A row for each reading: the line, where the drivers stood, what was read and found, the difference, its weight.
+    /// Writes a row for each reading: line, driver positions, measured and fitted value, residual, weight.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// If `out` cannot be written.
     pub fn write_residuals(&self, out: impl Write) -> csv::Result<()> {
         let drivers = &self.model().drivers;
-        let mut header = vec!["line".to_owned(), "measured what".into()];
-        header
-            .extend(self.stands(&vec![0.0; drivers.len()]).into_iter().map(|(n, _, u)| format!("{n} [{u}]")));
+        let mut header = vec!["line".to_owned(), "measurement".into()];
+        header.extend(
+            self.driver_values(&vec![0.0; drivers.len()]).into_iter().map(|(n, _, u)| format!("{n} [{u}]")),
+        );
         header.extend(
             [
                 "unit",
@@ -290,7 +291,7 @@ impl CalibrationInputs<'_> {
                 |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(String::new(), |x| format!("{x:?}"));
             let mut row = vec![self.measured.lines[reading.posture].to_string(), self.output(m).name.clone()];
             let places = &self.measured.measurements.postures[reading.posture];
-            row.extend(self.stands(places).into_iter().map(|(_, place, _)| text(Some(place))));
+            row.extend(self.driver_values(places).into_iter().map(|(_, place, _)| text(Some(place))));
             row.push(self.unit_of(m));
             row.push(text(Some(self.shown(m, reading.value))));
             row.push(text(fitted.map(|f| self.shown(m, f.before))));
@@ -304,10 +305,11 @@ impl CalibrationInputs<'_> {
         Ok(())
     }
 
-    /// The covariance of the variables, over what is reported: a row and a column for each, in products of their units.
+    /// Writes the covariance of the variables over the determined directions: a row and a column for each, in products
+    /// of their units.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// If `out` cannot be written.
     pub fn write_covariance(&self, out: impl Write) -> csv::Result<()> {
         let (model, units) = (self.model(), self.units());
         let name = |v: &hardpoint::model::VariableId| {
@@ -333,7 +335,7 @@ impl CalibrationInputs<'_> {
 }
 
 impl CalibrateFacts {
-    /// Those of a calibration.
+    /// Collects the facts of a calibration.
     pub fn of(of: &CalibrationInputs<'_>) -> Self {
         let (model, units, found) = (of.model(), of.units(), of.found);
         let certainty = &found.certainty;
@@ -352,10 +354,10 @@ impl CalibrateFacts {
         };
         let variables: Vec<CalibratedVariable> = (0..found.variables.len()).map(variable).collect();
         let line = |posture: usize| of.measured.lines[posture];
-        let mut far_off: Vec<FarOff> = of
+        let mut far_off: Vec<LargeResidual> = of
             .compared()
             .filter(|(_, f)| f.residual.abs() > FAR)
-            .map(|(r, f)| FarOff {
+            .map(|(r, f)| LargeResidual {
                 line: line(r.posture),
                 column: of.output(r.output).name.clone(),
                 values: [r.value, f.value].map(|x| of.shown(r.output, x)),
@@ -381,7 +383,7 @@ impl CalibrateFacts {
             file: of.file.file_name().into(),
             data: of.data.into(),
             status: match found.status {
-                FitStatus::Found if certainty.untold.is_empty() => "found",
+                FitStatus::Found if certainty.unidentifiable.is_empty() => "found",
                 FitStatus::Found => "not_told",
                 FitStatus::IterationLimit => "iteration_limit",
                 FitStatus::Interrupted => "interrupted",
@@ -399,7 +401,7 @@ impl CalibrateFacts {
             scatter: certainty.scatter.map(|s| scatter_of.map_or(s, |m| of.shown(m, s))),
             scatter_unit: scatter_of.map_or(String::new(), |m| of.unit_of(m)),
             together: together(&certainty.covariance, &variables),
-            untold: certainty.untold.iter().map(|u| untold(of, u)).collect(),
+            untold: certainty.unidentifiable.iter().map(|u| untold(of, u)).collect(),
             left_out: names(&found.left_out),
             as_drawn: of.measured.as_drawn.iter().map(|d| model.drivers[d.0].name.clone()).collect(),
             hardpoints: moved(model, units, &found.design),
@@ -421,32 +423,29 @@ impl CalibrateFacts {
 
     fn sentence(&self, of: &CalibrationInputs<'_>) -> String {
         let fit = match self.scatter.filter(|_| of.has_sigmas()) {
-            // A chi square of n degrees of freedom, as a standard deviation: 1 within 1 / sqrt(2 n).
+            // The standard deviation from a chi square of n degrees of freedom is 1 within 1 / sqrt(2 n).
             Some(s) if (s - 1.0).abs() * (2.0 * self.freedom as f64).sqrt() > FITS => {
                 let than = if s > 1.0 {
-                    "larger: something else is off, or they were measured less exactly"
+                    "larger: the model is incomplete, or the measurements are less accurate"
                 } else {
-                    "smaller: they were measured more exactly"
+                    "smaller: the measurements are more accurate"
                 };
-                format!(
-                    "; the residuals are {} times what the standard deviations say, {than}",
-                    rounded(s, 3)
-                )
+                format!("; the residuals are {} times the given standard deviations, {than}", rounded(s, 3))
             }
-            Some(_) => "; the residuals are as large as the standard deviations say".into(),
+            Some(_) => "; the residuals agree with the given standard deviations".into(),
             None => String::new(),
         };
         match self.status {
-            "found" => format!("found: all {} are reported{fit}", count(self.variables.len(), "variable")),
+            "found" => {
+                format!("found: the readings determine all {}{fit}", count(self.variables.len(), "variable"))
+            }
             "not_told" => format!(
-                "found, but {} of the design {} not reported by these readings{fit}",
+                "found, but {} of the design {} not determined by the readings{fit}",
                 count(self.untold.len(), "direction"),
                 if self.untold.len() == 1 { "is" } else { "are" }
             ),
             "interrupted" => "interrupted: the best design so far".into(),
-            _ => {
-                "the iterations are used up before the best fit was reached: give more `--iterations`".into()
-            }
+            _ => "the iteration limit was reached before the best fit: increase `--iterations`".into(),
         }
     }
 
@@ -460,7 +459,7 @@ impl CalibrateFacts {
         if let Some(scatter) = self.scatter {
             let (unit, free) = (&self.scatter_unit, self.freedom);
             let said = if unit.is_empty() {
-                format!("{} of the standard deviations given", rounded(scatter, 3))
+                format!("{} of the given standard deviations", rounded(scatter, 3))
             } else {
                 with_unit(scatter, unit)
             };
@@ -486,14 +485,14 @@ impl CalibrateFacts {
             rows.push(("not reached", format!("line {}: {}", n.line, n.why)));
         }
         rows.push((
-            "looked at",
+            "evaluated",
             format!("{}, {} postures", count(self.evaluations.designs, "design"), self.evaluations.motions),
         ));
         rows.push(("time taken", seconds(self.seconds)));
         rows
     }
 
-    /// Further tables: variables, unidentifiable changes, readings far off, readings to add.
+    /// Further tables: variables, unidentifiable changes, large residuals, proposed readings.
     pub fn tables(&self) -> Vec<Table> {
         let header = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
         let table = |title: &str, note: &str, names: &[&str], rows: Vec<Vec<String>>| {
@@ -501,19 +500,19 @@ impl CalibrateFacts {
             (!rows.is_empty()).then(|| Table { title, note, header: header(names), rows })
         };
         let variable = |v: &CalibratedVariable| {
-            let sigma = v.sigma.map_or("not reported".into(), |s| format!("± {}", with_unit(s, &v.unit)));
+            let sigma = v.sigma.map_or("undetermined".into(), |s| format!("± {}", with_unit(s, &v.unit)));
             let change = v.end - v.start;
             let sure = v.sigma.filter(|s| *s > 0.0).map_or(String::new(), |s| rounded(change / s, 3));
             vec![v.name.clone(), with_unit(v.start, &v.unit), with_unit(v.end, &v.unit), sigma, sure]
         };
         let together = |(a, b, r): &(String, String, f64)| vec![a.clone(), b.clone(), rounded(*r, 4)];
-        let untold = |(k, u): (usize, &UntoldFact)| {
+        let untold = |(k, u): (usize, &UnidentifiableFact)| {
             let parts: Vec<String> =
                 u.variables.iter().map(|(name, by, unit)| format!("{name} {}", signed(*by, unit))).collect();
-            let sigma = u.sigma.map_or("nothing".into(), |s| format!("± {} times that", rounded(s, 3)));
+            let sigma = u.sigma.map_or("none".into(), |s| format!("± {} times that", rounded(s, 3)));
             vec![(k + 1).to_string(), parts.join(", "), sigma]
         };
-        let far = |f: &FarOff| {
+        let far = |f: &LargeResidual| {
             let [measured, found] = f.values.map(|x| with_unit(x, &f.unit));
             let weight = if f.weight < 1.0 { rounded(f.weight, 2) } else { "1".into() };
             vec![f.line.to_string(), f.column.clone(), measured, found, rounded(f.residual, 3), weight]
@@ -525,7 +524,7 @@ impl CalibrateFacts {
                 .map(|(name, place, unit)| format!("{name} {}", with_unit(*place, unit)))
                 .collect();
             let does = match (n.tells, &n.variable, n.sigmas, &n.variable_unit) {
-                (Some(k), ..) => format!("indicates {k}, which is not reported"),
+                (Some(k), ..) => format!("determines change {k}"),
                 (None, Some(variable), Some([before, after]), Some(unit)) => {
                     format!("{variable}: from ± {} to ± {}", number(before), with_unit(after, unit))
                 }
@@ -541,32 +540,32 @@ impl CalibrateFacts {
             table(
                 "Design",
                 "",
-                &["variable", "nominal", "found", "standard deviation", "change in these"],
+                &["variable", "nominal", "fitted", "standard deviation", "change / sigma"],
                 self.variables.iter().map(variable).collect(),
             ),
             table(
-                "Hardly distinguished",
-                "Variables whose errors go together; what they do together is reported better than each.",
+                "Hardly distinguishable",
+                "Variables with correlated errors: their combination is determined better than each of them.",
                 &["variable", "and", "correlation"],
                 self.together.iter().map(together).collect(),
             ),
             table(
-                "Not reported",
-                "Changes of the design that change nothing that was read, or too little. The design found has none of them.",
-                &["", "a change by", "information of the readings"],
+                "Not determined",
+                "Changes of the design that affect no reading, or too little. The fitted design contains none of them.",
+                &["", "change by", "standard deviation"],
                 self.untold.iter().enumerate().map(untold).collect(),
             ),
-            table("Hardpoints that move", "", &["hardpoint", "nominal", "optimised"], self.hardpoints.iter().map(moved).collect()),
+            table("Moved hardpoints", "", &["hardpoint", "nominal", "fitted"], self.hardpoints.iter().map(moved).collect()),
             table(
-                "Readings far off",
-                "By more than three standard deviations.",
-                &["line", "measured what", "measured", "found", "standard deviations", "counted"],
+                "Large residuals",
+                "Residuals of more than three standard deviations.",
+                &["line", "measurement", "measured", "fitted", "residual / sigma", "weight"],
                 self.far_off.iter().map(far).collect(),
             ),
             table(
-                "What to measure next",
-                "One more reading each, the best of its kind.",
-                &["measure", "where", "read to", "what that does"],
+                "Proposed readings",
+                "Most informative further reading of each measure.",
+                &["measure", "where", "standard deviation", "effect"],
                 self.next.iter().map(next).collect(),
             ),
         ]
@@ -575,8 +574,8 @@ impl CalibrateFacts {
         .collect()
     }
 
-    /// The page of the design found becomes that of the calibration: residuals as points, and what is reported here
-    /// first among its checks.
+    /// Turns the page of the fitted design into that of the calibration: residuals as points, and the result first
+    /// among the checks.
     pub fn page(&self, of: &CalibrationInputs<'_>, mut page: Payload, outputs: &[Output]) -> Payload {
         let first = of.compared().next().map(|(r, _)| &of.output(r.output).name);
         page.first = first.and_then(|name| outputs.iter().position(|o| o.name == *name)).or(page.first);
@@ -611,7 +610,7 @@ fn together(covariance: &[Vec<f64>], variables: &[CalibratedVariable]) -> Vec<(S
     found
 }
 
-fn untold(of: &CalibrationInputs<'_>, untold: &UnidentifiableChange) -> UntoldFact {
+fn untold(of: &CalibrationInputs<'_>, untold: &UnidentifiableChange) -> UnidentifiableFact {
     let (model, units) = (of.model(), of.units());
     let shown = |k: usize| {
         let variable = &model.variables[of.found.variables[k].0];
@@ -624,7 +623,7 @@ fn untold(of: &CalibrationInputs<'_>, untold: &UnidentifiableChange) -> UntoldFa
         (variable.name.clone(), by / most, variable_unit(model, units, variable))
     };
     let variables = all.map(part).filter(|(_, by, _)| by.abs() > SLIGHT).collect();
-    UntoldFact { variables, sigma: untold.sigma.map(|s| s * most) }
+    UnidentifiableFact { variables, sigma: untold.sigma.map(|s| s * most) }
 }
 
 fn next(of: &CalibrationInputs<'_>, next: &NextReading, variables: &[CalibratedVariable]) -> NextFact {
@@ -638,8 +637,8 @@ fn next(of: &CalibrationInputs<'_>, next: &NextReading, variables: &[CalibratedV
         measure: of.output(next.output).name.clone(),
         sigma: of.shown(next.output, next.sigma),
         unit: of.unit_of(next.output),
-        drivers: of.stands(&next.drivers),
-        tells: next.tells.map(|k| k + 1),
+        drivers: of.driver_values(&next.drivers),
+        tells: next.determines.map(|k| k + 1),
         variable: variable.map(|v| v.name.clone()),
         sigmas: improves.map(in_units),
         variable_unit: variable.map(|v| v.unit.clone()),

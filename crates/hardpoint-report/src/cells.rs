@@ -1,18 +1,18 @@
-//! The cells of long tables, which whoever writes them takes as they come.
+//! Columns of long tables, independent of the output format.
 
-/// The cells of a column, in some rows that follow each other.
+/// Cells of a column in consecutive rows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cells {
     /// Whole numbers.
     Whole(Vec<i64>),
-    /// Numbers; NaN where there is none.
+    /// Numbers; NaN for an empty cell.
     Numbers(Vec<f64>),
-    /// Texts; empty where there is none.
+    /// Texts; empty for an empty cell.
     Texts(Vec<String>),
 }
 
 impl Cells {
-    /// Total number.
+    /// Number of cells.
     pub fn len(&self) -> usize {
         match self {
             Self::Whole(cells) => cells.len(),
@@ -21,10 +21,10 @@ impl Cells {
         }
     }
 
-    /// More of the same kind.
+    /// Appends cells of the same kind.
     ///
     /// # Panics
-    /// Where they are of another kind.
+    /// If the kinds differ.
     pub fn append(&mut self, more: Self) {
         match (self, more) {
             (Self::Whole(cells), Self::Whole(more)) => cells.extend(more),
@@ -34,7 +34,7 @@ impl Cells {
         }
     }
 
-    /// One of them as text; empty where there is none.
+    /// Cell as text; empty for an empty cell.
     pub fn text(&self, row: usize) -> String {
         match self {
             Self::Whole(cells) => cells[row].to_string(),
@@ -44,15 +44,15 @@ impl Cells {
         }
     }
 
-    /// True if there is none.
+    /// True if there are no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Keeps some of them.
+    /// Keeps the cells with a true flag.
     ///
     /// # Panics
-    /// Where `kept` does not say that of each.
+    /// If the number of flags differs from the number of cells.
     pub fn retain(&mut self, kept: &[bool]) {
         fn keep<T>(cells: &mut Vec<T>, kept: &[bool]) {
             assert_eq!(cells.len(), kept.len(), "each is kept or not");
@@ -66,7 +66,7 @@ impl Cells {
         }
     }
 
-    /// Cells beyond that number, split off.
+    /// Splits off the cells from an index on.
     pub fn split_off(&mut self, at: usize) -> Self {
         match self {
             Self::Whole(cells) => Self::Whole(cells.split_off(at.min(cells.len()))),

@@ -1,8 +1,7 @@
-//! Columns of the result files: one rule for all of them (`docs/results.md`).
+//! Columns of the result files, which all follow one rule (`docs/results.md`).
 //!
-//! A component of a vector is called after its order: `wheel.x`, `wheel.vx`, `wheel.ax`, `wheel.jx`; of an angular
-//! vector `wheel.omega_x`, `wheel.alpha_x`. What is a number by itself has the order in words: `toe`, `toe rate`,
-//! `toe acceleration`.
+//! Components of a vector are named by their order: `wheel.x`, `wheel.vx`, `wheel.ax`, `wheel.jx`; those of an angular
+//! vector `wheel.omega_x`, `wheel.alpha_x`. Scalars have the order in words: `toe`, `toe rate`, `toe acceleration`.
 
 use hardpoint::Solution;
 use hardpoint::joint::Quantity::{self, Angle, Length};
@@ -15,7 +14,7 @@ use serde::Serialize;
 
 use crate::figures::order_unit;
 
-/// A column.
+/// Column of a result file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Column {
     /// Name of the column.
@@ -29,22 +28,22 @@ impl Column {
         Self { name, unit: unit.into() }
     }
 
-    /// As a header of a CSV file: `wheel.vx [mm/s]`.
+    /// Header in a CSV file: `wheel.vx [mm/s]`.
     pub fn header(&self) -> String {
         if self.unit == "1" { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
     }
 }
 
-/// The columns of a model's results, and their numbers.
+/// Columns of a model's results, with their values.
 #[derive(Clone, Copy, Debug)]
 pub struct Columns<'m> {
     /// The model.
     pub model: &'m Model,
     /// Units.
     pub units: Units,
-    /// True if bodies are among them.
+    /// True if bodies are included.
     pub bodies: bool,
-    /// The angles that the motion of bodies has beside their quaternions, if it has any.
+    /// Angles of bodies in addition to their quaternions, if requested.
     pub angles: Option<Angles>,
 }
 
@@ -52,7 +51,7 @@ pub struct Columns<'m> {
 const LETTERS: [&str; 4] = ["", "v", "a", "j"];
 
 impl Columns<'_> {
-    /// Those of the motion, after the time.
+    /// Columns of the motion, without time.
     pub fn of_motion(&self) -> Vec<Column> {
         let mut columns = Vec::new();
         for body in self.bodies() {
@@ -73,7 +72,7 @@ impl Columns<'_> {
         columns
     }
 
-    /// Those of the sensitivities by one variable, after time, variable and its unit; the unit is that of the
+    /// Columns of the sensitivities by one variable, without time, variable and its unit. Units are those of the
     /// numerator.
     pub fn of_sensitivities(&self) -> Vec<Column> {
         let mut columns = Vec::new();
@@ -89,7 +88,7 @@ impl Columns<'_> {
         columns.into_iter().map(|c| Column { name: format!("d {}", c.name), ..c }).collect()
     }
 
-    /// Those of the third time derivatives, of all bodies.
+    /// Columns of the third time derivatives of all bodies.
     pub fn of_jerk(&self) -> Vec<Column> {
         let of_body = |body: &hardpoint::model::Body| {
             let place = self.components(&body.name, LETTERS[3], Length, 3);
@@ -98,7 +97,7 @@ impl Columns<'_> {
         self.model.bodies[1..].iter().flat_map(of_body).collect()
     }
 
-    /// The numbers of the motion at output time k of a solution.
+    /// Appends the values of the motion at output time k of a solution.
     pub fn motion(&self, solution: &Solution, k: usize, row: &mut Vec<f64>) {
         let units = self.units;
         if self.bodies {
@@ -120,7 +119,7 @@ impl Columns<'_> {
         }
     }
 
-    /// The sensitivities by variable b at output time k; `None` where the mechanism cannot follow it.
+    /// Appends the sensitivities by variable b at output time k; `None` if the mechanism cannot follow the variable.
     pub fn sensitivities(&self, solution: &Solution, k: usize, b: usize, row: &mut Vec<f64>) -> Option<()> {
         let bodies = solution.sensitivities.at(k, b)?;
         let (units, by) = (self.units, self.model.variables[b].quantity);
@@ -144,7 +143,7 @@ impl Columns<'_> {
         Some(())
     }
 
-    /// The third time derivatives at output time k.
+    /// Appends the third time derivatives at output time k.
     pub fn jerk(&self, jerks: &Jerks, k: usize, row: &mut Vec<f64>) {
         for body in &jerks.at(k)[1..] {
             push(row, |x| self.units.from_si(Length, x), body.jerk);

@@ -1,5 +1,4 @@
-//! `compare.json`, `compare.csv` and `compare.html`: two model files beside each other, what differs and what that
-//! does.
+//! `compare.json`, `compare.csv` and `compare.html`: comparison of two model files and their motions.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -17,30 +16,29 @@ use crate::course::{RoundOff, settled};
 use crate::figures::{number, rounded, unit, with_unit};
 use crate::page::{Payload, Table};
 
-/// Hardpoints nearer to each other than this, m, are at the same place: numbers in different units agree to round-off
-/// only.
+/// Hardpoints with a smaller distance than this, m, coincide: numbers in different units agree only to round-off.
 const SAME_PLACE: f64 = 1e-12;
 
-/// Two designs beside each other. Figures are in the units of the first file, times in s.
+/// Comparison of two designs. Values are in the units of the first file, times in s.
 #[derive(Clone, Debug, Serialize)]
 pub struct CompareFacts {
     /// Program and version.
     pub generator: &'static str,
-    /// Both model files, as they were given.
+    /// Names of both model files, as given.
     pub files: [String; 2],
-    /// The names of both mechanisms.
+    /// Names of both mechanisms.
     pub names: [String; 2],
-    /// The coordinates of hardpoints that differ.
+    /// Coordinates of hardpoints that differ.
     pub hardpoints: Vec<Difference>,
-    /// The parameters that differ.
+    /// Parameters that differ.
     pub parameters: Vec<Difference>,
-    /// Per measure (and component of a point) that both have, how its curves differ.
+    /// Differences of the curves of each measure (and component of a point) in both files.
     pub measures: Vec<CurveDifference>,
-    /// The metrics that both have.
+    /// Metrics in both files.
     pub metrics: Vec<Difference>,
     /// Entries of the first file only, and of the second file only.
     pub only_in: [Vec<String>; 2],
-    /// Number of output times each was solved for.
+    /// Number of solved output times of each design.
     pub steps: [usize; 2],
     /// Output times, s.
     pub times: Vec<f64>,
@@ -48,43 +46,43 @@ pub struct CompareFacts {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// A number of both files.
+/// Number in both files.
 #[derive(Clone, Debug, Serialize)]
 pub struct Difference {
     /// Name.
     pub name: String,
     /// Unit; `1` for a plain number.
     pub unit: String,
-    /// In the first file, and in the second; `null` where a motion does not reach it.
+    /// Values in the first and the second file; `null` if a motion does not reach it.
     pub values: [Option<f64>; 2],
 }
 
-/// Two curves of one name.
+/// Curves of the same name in both files.
 #[derive(Clone, Debug, Serialize)]
 pub struct CurveDifference {
-    /// The measure's name.
+    /// Name of the measure.
     pub measure: String,
     /// Unit.
     pub unit: String,
-    /// The largest difference, second less first, with its sign.
+    /// Largest difference, second minus first, with its sign.
     pub difference: Option<f64>,
-    /// Time of that, s; none where they are the same.
+    /// Time of the largest difference, s; `null` if the curves are equal.
     pub time: Option<f64>,
-    /// Over the output times that both were solved for: the first file's curve, and the second's.
+    /// Curves of the first and the second file over the output times that both solved.
     pub curves: [Vec<f64>; 2],
 }
 
-/// A model file, and its motion.
+/// Model file with its solution.
 #[derive(Clone, Copy, Debug)]
 pub struct SolvedModel<'a> {
-    /// The model, and where it is.
+    /// Model file.
     pub file: &'a ModelFile,
     /// Solution.
     pub solution: &'a Solution,
 }
 
 impl CompareFacts {
-    /// Those of two models, solved over the same output times.
+    /// Compares two models that were solved over the same output times.
     pub fn of(both: [SolvedModel<'_>; 2]) -> Self {
         let [a, b] = both;
         let units = a.file.units;
@@ -105,7 +103,7 @@ impl CompareFacts {
         }
     }
 
-    /// True if nothing that both have differs.
+    /// True if nothing that both files contain differs.
     pub fn is_same(&self) -> bool {
         self.hardpoints.is_empty() && self.parameters.is_empty() && self.only_in.iter().all(Vec::is_empty)
     }
@@ -159,7 +157,8 @@ impl CompareFacts {
         differ.into_iter().chain(lacking).flatten().collect()
     }
 
-    /// The page of the first design, with the second one beside it: what differs comes first among its checks.
+    /// Turns the page of the first design into the comparison: the second design is shown alongside, and the
+    /// differences come first among the checks.
     pub fn page(&self, mut page: Payload, asked: &[String], wanted: &dyn Fn(&str) -> bool) -> Payload {
         let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
         page.first = asked.first().and_then(|name| quantity(name)).or(page.first);
@@ -168,10 +167,10 @@ impl CompareFacts {
         Payload { checks, ..page }
     }
 
-    /// The curves that both have, one row per output time.
+    /// Writes the curves of both files, one row per output time.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// If `out` cannot be written.
     pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
         let mut header = vec!["t [s]".to_owned()];
         for c in &self.measures {
@@ -202,14 +201,13 @@ impl Difference {
     }
 }
 
-/// A difference, to four digits.
+/// Formatted difference, to four digits.
 fn shown_difference(by: Option<f64>, unit: &str) -> String {
     let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
     by.map_or("-".into(), |by| format!("{}{unit}", rounded(by, 4)))
 }
 
-/// True if two mechanisms have the same bodies and outputs in the same order, so that they can be drawn beside each
-/// other.
+/// True if two mechanisms have the same bodies and outputs in the same order, so that one drawing can show both.
 pub fn are_alike(both: [SolvedModel<'_>; 2]) -> bool {
     let bodies = both.map(|s| s.file.model.bodies.iter().map(|b| &b.name).collect::<Vec<_>>());
     let outputs =
@@ -292,7 +290,7 @@ fn of_metrics([a, b]: [SolvedModel<'_>; 2], units: Units) -> Vec<Difference> {
     a.file.model.metrics.iter().enumerate().filter_map(compare).collect()
 }
 
-/// Entries of a model that another one lacks, by name.
+/// Names of entries of a model that another one lacks.
 fn only_in(model: &Model, other: &Model) -> Vec<String> {
     let names = |m: &Model| -> BTreeSet<(&'static str, String)> {
         let hardpoints = m.hardpoints.iter().filter(|h| !h.unnamed).map(|h| ("hardpoint", h.name.clone()));

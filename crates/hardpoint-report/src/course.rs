@@ -1,4 +1,4 @@
-//! Facts of a whole run, gathered window by window, so that the run itself need not fit into memory.
+//! Facts of a whole run, gathered in windows of output times, so that the run need not fit into memory.
 
 use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint::motion::{Margin, Motion};
@@ -10,15 +10,15 @@ use hardpoint::{Footprint, SampledResults, Sampling, Solution};
 use crate::shifts::Shifts;
 
 /// Memory limit of the results that are stored for the page and for comparisons, in bytes.
-const KEPT_BYTES: usize = 64 << 20;
-/// Sensitivities of bodies are kept where that many output times of them fit.
+const STORED_BYTES: usize = 64 << 20;
+/// Minimum number of output times that must fit for sensitivities of bodies to be stored.
 const ENOUGH_ROWS: usize = 512;
-/// Curves that metrics are taken from may have that many bytes.
+/// Memory limit of the curves that metrics use, in bytes.
 const METRIC_BYTES: usize = 256 << 20;
-/// The first time of a largest value is the first that comes this near to it: of the periods of a motion the first,
-/// whatever its last digits.
+/// Relative difference within which a value counts as the largest, so that the first of several equal periods is
+/// reported, independent of round-off.
 const AS_LARGE: f64 = 1e-9;
-/// A value that exceeds the largest so far by less than this part is not reported from it.
+/// A value replaces the largest so far only if it exceeds it by this fraction.
 const SAME: f64 = 1e-12;
 
 /// Collector of the facts of a run.
@@ -36,17 +36,17 @@ pub struct Gathering {
 /// Facts of a whole run.
 #[derive(Clone, Debug, Default)]
 pub struct Course {
-    /// Output times solved.
+    /// Number of solved output times.
     pub steps: usize,
-    /// The last of them, s.
+    /// Last solved output time, s.
     pub last_time: Option<f64>,
-    /// Margins from singular positions.
+    /// Margins to singular positions.
     pub margins: MarginCourse,
-    /// Some of the output times, with the facts of all.
+    /// Stored output times, with the facts of all.
     pub kept: Solution,
     /// Interval of stored output times.
     pub stride: usize,
-    /// The curves of the metrics, where they are not taken from what is kept.
+    /// Curves of the metrics, if stored separately.
     curves: Option<Solution>,
     /// Motion of bodies by the variables, if it is stored separately.
     shifts: Option<Shifts>,
@@ -54,7 +54,7 @@ pub struct Course {
     pub metric_stride: usize,
     /// Magnitude of the motion.
     magnitude: Magnitude,
-    /// `peaks[(m * 3 + order) * variables + b]`: of the derivative of order of measure m by variable b.
+    /// `peaks[(m * 3 + order) * variables + b]`: largest derivative of an order of measure m by variable b.
     peaks: Vec<Peak>,
     variables: usize,
 }
@@ -62,26 +62,26 @@ pub struct Course {
 /// Margins over all output times.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MarginCourse {
-    /// The first, where there is any.
+    /// Margin at the first output time, if any.
     pub start: Option<Margin>,
-    /// The least, and its time, s.
+    /// Minimum margin and its time, s.
     pub least: Option<(Margin, f64)>,
-    /// The first and the last output time, s.
+    /// First and last output time, s.
     pub span: [f64; 2],
 }
 
 /// Time and value of the largest derivative.
 #[derive(Clone, Debug, Default)]
 struct Peak {
-    /// Values and times of those that come near to the largest, each larger than the one before.
+    /// Values close to the largest, with their times, in ascending order of the values.
     near: Vec<(f64, f64)>,
 }
 
 impl Gathering {
-    /// Nothing as yet.
+    /// Empty collection.
     pub fn new(model: &Model) -> Self {
         let footprint = Footprint::of(model, true);
-        let rows = |bytes: usize| KEPT_BYTES / bytes.max(1);
+        let rows = |bytes: usize| STORED_BYTES / bytes.max(1);
         let times = model.times.len();
         let all = rows(footprint.bytes());
         let bodies = all >= usize::min(times, ENOUGH_ROWS);
@@ -104,11 +104,11 @@ impl Gathering {
             variables,
             ..Course::default()
         };
-        let shifts = (!bodies && variables > 0).then(|| Shifts::new(KEPT_BYTES));
+        let shifts = (!bodies && variables > 0).then(|| Shifts::new(STORED_BYTES));
         Self { course, orders, kept: SampledResults::new(keep(rows, true, None)), curves, shifts }
     }
 
-    /// Takes a window that begins with output time `first`.
+    /// Adds a window that begins with output time `first`.
     pub fn add(&mut self, first: usize, window: &Solution) {
         let course = &mut self.course;
         course.steps += window.motion.len();
@@ -141,7 +141,7 @@ impl Gathering {
         }
     }
 
-    /// Everything, with the facts of the whole run.
+    /// Completes the facts with those of the whole run.
     pub fn end(self, whole: &Solution) -> Course {
         let mut course = self.course;
         course.stride = self.kept.stride();
@@ -154,7 +154,7 @@ impl Gathering {
 }
 
 impl Course {
-    /// That of a solution that is there as a whole.
+    /// Facts of a complete solution.
     pub fn of(model: &Model, solution: &Solution) -> Self {
         let mut gathering = Gathering::new(model);
         gathering.add(0, solution);
@@ -166,8 +166,7 @@ impl Course {
         self.curves.as_ref().unwrap_or(&self.kept)
     }
 
-    /// Interval, among the stored output times, of those with the motion of bodies by the variables; `None` if it was
-    /// not stored.
+    /// Stride, among the stored output times, of the motion of bodies by the variables; `None` if it was not stored.
     pub(crate) fn shift_stride(&self) -> Option<usize> {
         if self.has_bodies() {
             return Some(1);
@@ -175,11 +174,11 @@ impl Course {
         Some(self.shifts.as_ref()?.stride(self.steps)? / self.stride)
     }
 
-    /// Place and turn of body i by variable b, to first order, SI, at an output time of those that are kept; `None`
-    /// where the mechanism cannot follow.
+    /// First-order translation and rotation of body i by variable b at a stored output time, SI; `None` if the
+    /// mechanism cannot follow the variable.
     ///
     /// # Panics
-    /// Where that was not kept ([`shift_stride`](Self::shift_stride)).
+    /// If it was not stored at that time ([`shift_stride`](Self::shift_stride)).
     pub(crate) fn shift(&self, k: usize, b: usize, i: usize) -> Option<[f64; 6]> {
         match &self.shifts {
             Some(shifts) => self.follows(b).then(|| shifts.at(k * self.stride, b, i)),
@@ -191,31 +190,31 @@ impl Course {
         }
     }
 
-    /// True if sensitivities of bodies were kept.
+    /// True if sensitivities of bodies are stored.
     pub fn has_bodies(&self) -> bool {
         let sensitivities = &self.kept.sensitivities;
         sensitivities.variables == 0 || sensitivities.bodies > 0
     }
 
-    /// True if the mechanism can follow a variable, as far as it was solved.
+    /// True if the mechanism can follow a variable over the solved motion.
     pub fn follows(&self, b: usize) -> bool {
         let answers = &self.kept.sensitivities.admissibility;
         self.steps > 0 && answers.get(b).is_some_and(|a| !matches!(a, Admissibility::CannotFollow { .. }))
     }
 
-    /// The largest derivative of an order of measure m by variable b, with its sign, and its time.
+    /// Largest derivative of an order of measure m by variable b, with its sign, and its time.
     pub(crate) fn largest(&self, m: usize, order: usize, b: usize) -> Option<(f64, f64)> {
         self.peaks[(m * 3 + order) * self.variables + b].near.first().copied()
     }
 
-    /// The levels below which values and sensitivities are round-off.
+    /// Thresholds of round-off for values and sensitivities.
     pub(crate) fn round_off(&self, model: &Model) -> RoundOff {
         RoundOff::new(model, self.magnitude)
     }
 }
 
 impl MarginCourse {
-    /// Those of a motion that is there as a whole.
+    /// Margins of a complete motion.
     pub fn of(motion: &Motion) -> Self {
         let mut course = Self::default();
         course.add(motion);
@@ -227,8 +226,7 @@ impl MarginCourse {
             if self.start.is_none() {
                 (self.start, self.span[0]) = (Some(margin), t);
             }
-            // Of the periods of a motion the first has the least, whatever the last digits. Written so that NaN is the
-            // least of all.
+            // Of equal periods the first has the minimum, independent of round-off. Written so that NaN is the minimum.
             if self.least.is_none_or(|(least, _)| !(margin.value >= least.value * (1.0 - AS_LARGE))) {
                 self.least = Some((margin, t));
             }
@@ -247,30 +245,30 @@ impl Peak {
     }
 }
 
-/// The levels below which what is found is round-off and is shown as 0.
+/// Thresholds below which results are round-off and shown as 0.
 pub(crate) struct RoundOff {
     magnitude: Magnitude,
     natural: Vec<f64>,
 }
 
-/// A number without round-off: 0 if it is no more than that.
+/// Returns a number, or 0 if it is round-off.
 pub(crate) fn settled(x: f64, round_off: f64) -> f64 {
     if x.abs() <= round_off { 0.0 } else { x }
 }
 
 impl RoundOff {
-    /// Those of a motion of that magnitude.
+    /// Thresholds for a motion of a magnitude.
     pub fn new(model: &Model, magnitude: Magnitude) -> Self {
         let natural = (0..model.variables.len()).map(|b| model.natural_step(VariableId(b))).collect();
         Self { magnitude, natural }
     }
 
-    /// For a quantity's derivative by variable b, SI.
+    /// Threshold for the derivative of a quantity by variable b, SI.
     pub fn of(&self, b: usize, of: Dimension, order: usize) -> f64 {
         self.value(of, order) / self.natural[b]
     }
 
-    /// For a quantity or its time derivative itself, and for what they differ by between two designs, SI.
+    /// Threshold for a quantity or its time derivative, and for the difference between two designs, SI.
     pub fn value(&self, of: Dimension, order: usize) -> f64 {
         self.magnitude.round_off(of, order)
     }

@@ -1,8 +1,8 @@
-//! `motion.csv`, `sensitivity.csv` and `jerk.csv`: solved numbers in the user's units, with all their digits.
+//! `motion.csv`, `sensitivity.csv` and `jerk.csv`: results in the user's units with full precision.
 //!
-//! Numbers are the shortest decimals that read back as the same double; where there is no number, the field is empty. A
-//! column's unit is in its header. In `sensitivity.csv` that is the unit of the numerator; that of the denominator is
-//! in column `per`. What each column is: `docs/results.md`.
+//! Numbers are the shortest decimals that read back as the same double; a missing number is an empty field. The header
+//! contains the unit of a column. In `sensitivity.csv` it is the unit of the numerator; column `per` contains the unit
+//! of the denominator. See `docs/results.md` for all columns.
 
 use std::borrow::Cow;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -15,7 +15,7 @@ use hardpoint_file::csv_table::{CsvWriter, neutral};
 use crate::columns::{Column, Columns};
 use crate::facts::variable_unit;
 
-/// `motion.csv`, window by window.
+/// Writer of `motion.csv`, window by window.
 pub struct MotionCsv<'m, W: Write> {
     columns: Columns<'m>,
     writer: CsvWriter<W>,
@@ -23,10 +23,11 @@ pub struct MotionCsv<'m, W: Write> {
 }
 
 impl<'m, W: Write> MotionCsv<'m, W> {
-    /// With its header: time, state of every body but ground, then value, rate and acceleration of every output.
+    /// Starts the file with its header: time, state of every body except ground, then value, rate and acceleration of
+    /// every output.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// If `out` cannot be written.
     pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
         let writer = with_header(&["t [s]"], &columns.of_motion(), out)?;
         Ok(Self { columns, writer, row: Vec::new() })
@@ -35,7 +36,7 @@ impl<'m, W: Write> MotionCsv<'m, W> {
     /// Writes the rows of a window.
     ///
     /// # Errors
-    /// Where they cannot be written.
+    /// If the rows cannot be written.
     pub fn add(&mut self, window: &Solution) -> csv::Result<()> {
         for (k, &t) in window.motion.times.iter().enumerate() {
             self.row.clear();
@@ -47,30 +48,30 @@ impl<'m, W: Write> MotionCsv<'m, W> {
         Ok(())
     }
 
-    /// Hands back what was written to.
+    /// Finishes the file and returns the underlying writer.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn end(self) -> io::Result<W> {
         self.writer.end()
     }
 }
 
-/// `sensitivity.csv`, window by window.
+/// Writer of `sensitivity.csv`, window by window.
 pub struct SensitivityCsv<'m, W: Write> {
     columns: Columns<'m>,
-    /// Per variable, its unit.
+    /// Units of the variables.
     units: Vec<String>,
     writer: CsvWriter<W>,
     row: Vec<f64>,
 }
 
 impl<'m, W: Write> SensitivityCsv<'m, W> {
-    /// With its header. There is one row per output time and variable: derivatives of what is in `motion.csv` by that
-    /// variable, orientation as a rotation vector `pi`.
+    /// Starts the file with its header. There is one row per output time and variable: derivatives of the columns of
+    /// `motion.csv` by that variable, orientation as a rotation vector `pi`.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// If `out` cannot be written.
     pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
         let writer = with_header(&["t [s]", "variable", "per"], &columns.of_sensitivities(), out)?;
         let variables = columns.model.variables.iter();
@@ -78,10 +79,10 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
         Ok(Self { columns, units, writer, row: Vec::new() })
     }
 
-    /// Writes the rows of a window, by the variables that it has sensitivities for.
+    /// Writes the rows of a window for the variables that have sensitivities.
     ///
     /// # Errors
-    /// Where they cannot be written.
+    /// If the rows cannot be written.
     pub fn add(&mut self, window: &Solution) -> csv::Result<()> {
         for (k, &t) in window.motion.times.iter().enumerate() {
             for (b, variable) in self.columns.model.variables.iter().enumerate() {
@@ -98,20 +99,20 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
         Ok(())
     }
 
-    /// Hands back what was written to.
+    /// Finishes the file and returns the underlying writer.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn end(self) -> io::Result<W> {
         self.writer.end()
     }
 }
 
-/// Copies a `sensitivity.csv` without the rows of these variables, which are among its first `rows`: that the mechanism
-/// cannot follow them was not known when they were written. False where it was not to go on.
+/// Copies a `sensitivity.csv` without the rows of variables that turned out later not to be followed by the mechanism.
+/// These rows are among the first `rows`. Returns false if `more` ended the copy.
 ///
 /// # Errors
-/// Where either cannot be read or written.
+/// If a file cannot be read or written.
 pub fn without_variables(
     mut file: impl Read + Seek,
     names: &[&str],
@@ -119,7 +120,7 @@ pub fn without_variables(
     out: &mut impl Write,
     mut go_on: impl FnMut() -> bool,
 ) -> csv::Result<bool> {
-    /// Number of rows, and that many bytes, are copied between two questions whether to go on.
+    /// Number of rows, and number of bytes, between two calls of `more`.
     const ROWS: u64 = 1 << 16;
     const BYTES: u64 = 1 << 24;
     let mut reader = Reader::from_reader(&mut file);
@@ -147,7 +148,7 @@ pub fn without_variables(
     Ok(false)
 }
 
-/// `jerk.csv`, part by part.
+/// Writer of `jerk.csv`, window by window.
 pub struct JerkCsv<'m, W: Write> {
     columns: Columns<'m>,
     writer: CsvWriter<W>,
@@ -155,11 +156,11 @@ pub struct JerkCsv<'m, W: Write> {
 }
 
 impl<'m, W: Write> JerkCsv<'m, W> {
-    /// With its header: time, and the third time derivatives of every body but ground, of its origin and of its
-    /// orientation.
+    /// Starts the file with its header: time, and the third time derivatives of position and orientation of every body
+    /// except ground.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// If `out` cannot be written.
     pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
         let writer = with_header(&["t [s]"], &columns.of_jerk(), out)?;
         Ok(Self { columns, writer, row: Vec::new() })
@@ -168,7 +169,7 @@ impl<'m, W: Write> JerkCsv<'m, W> {
     /// Writes some rows.
     ///
     /// # Errors
-    /// Where they cannot be written.
+    /// If the rows cannot be written.
     pub fn add(&mut self, jerks: &Jerks) -> csv::Result<()> {
         for (k, &t) in jerks.times.iter().enumerate() {
             self.row.clear();
@@ -180,10 +181,10 @@ impl<'m, W: Write> JerkCsv<'m, W> {
         Ok(())
     }
 
-    /// Hands back what was written to.
+    /// Finishes the file and returns the underlying writer.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn end(self) -> io::Result<W> {
         self.writer.end()
     }
@@ -203,7 +204,7 @@ mod tests {
     #[test]
     fn rows_of_a_variable_are_taken_out() {
         let file = "t [s],variable,per,d x\n0,a,mm,1\n0,\"'=b,c\",mm,2\n1,a,mm,3\n1,\"'=b,c\",mm,4\n2,a,mm,5\n3,a,mm,6\n";
-        // Behind the last of its rows, all rows stay as they are.
+        // All rows after the removed ones stay unchanged.
         for rows in 4..=6 {
             let mut out = Vec::new();
             let whole = without_variables(io::Cursor::new(file), &["=b,c"], rows, &mut out, || true).unwrap();
@@ -211,7 +212,7 @@ mod tests {
             assert_eq!(left, "t [s],variable,per,d x\n0,a,mm,1\n1,a,mm,3\n2,a,mm,5\n3,a,mm,6\n");
             assert!(whole);
         }
-        // It can be ended in either part.
+        // The copy can be ended in either part.
         for patience in 0..3 {
             let (mut asked, mut out) = (0, Vec::new());
             let go_on = || {

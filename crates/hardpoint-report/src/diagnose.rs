@@ -1,5 +1,5 @@
-//! Reasons why a mechanism cannot be driven, a run ended early, or a variable has no sensitivity, as diagnostics of the
-//! model file in the user's names and units.
+//! Diagnostics of a run: why a mechanism cannot be driven, a run ended early, or a variable has no sensitivity. Names
+//! and units are those of the model file.
 
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
@@ -15,21 +15,21 @@ use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
 use crate::assembly::GapFact;
 use crate::course::Course;
-use crate::facts::{Answer, Facts, variable_unit};
+use crate::facts::{Facts, VariableAdmissibility, variable_unit};
 use crate::figures::{names, number, quoted, rounded, some_in_words, some_of, symbol, with_unit};
 use crate::margin::MarginFact;
 use crate::summary::Summary;
 
-/// Number of gaps that stay open are reported one by one.
+/// Maximum number of remaining gaps that are reported one by one.
 const MOST_GAPS: usize = 5;
 
-/// Everything to tell of a run, warnings first; `outputs` names what was written of a motion that stopped.
+/// All diagnostics of a run, warnings first; `outputs` names the files written of a motion that stopped.
 pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option<&str>) -> Vec<Diagnostic> {
     let ended = &course.kept.stop;
     let mut list = file.remarks.clone();
     list.extend(rigid(file, &summary.model));
     list.extend(variables(file, &summary.model));
-    // Before a limit the margin falls to zero, and the stop says so.
+    // Before a limit position the margin falls to zero, which the stop reports already.
     if ended.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
         list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
     }
@@ -39,10 +39,10 @@ pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option
     list
 }
 
-/// The mechanism cannot be driven as it is written.
+/// Diagnostic of a mechanism that cannot be driven as defined.
 pub fn topology_fault(file: &ModelFile, fault: &TopologyError) -> Diagnostic {
     let place = match fault {
-        // Where drivers meet, one of them has to go.
+        // If drivers conflict, remove one of them.
         TopologyError::OverDriven { drivers, .. } if drivers.len() > 1 => {
             Some((Section::Drivers, drivers[0].0))
         }
@@ -52,18 +52,18 @@ pub fn topology_fault(file: &ModelFile, fault: &TopologyError) -> Diagnostic {
     fault.notes().into_iter().fold(d, Diagnostic::note).help(fault.help())
 }
 
-/// A run ended before its last output time; `outputs` names what was written of the solved part.
+/// Diagnostic of a run that ended before its last output time; `outputs` names the files of the solved part.
 pub fn stop(file: &ModelFile, stop: &Stop, solved: usize, outputs: Option<&str>) -> Diagnostic {
     let asked = file.model.times.len();
     let left = match outputs {
-        _ if solved == 0 => "nothing was solved, so there is nothing to write".into(),
+        _ if solved == 0 => "no output time was solved, so no files were written".into(),
         Some(outputs) => format!("{outputs} hold the part that was solved: {solved} of {asked} steps"),
         None => format!("{solved} of {asked} steps were solved"),
     };
     ended(file, stop, "", left)
 }
 
-/// The motion of a changed design ended before its last output time.
+/// Diagnostic of a changed design whose motion ended before its last output time.
 pub fn stop_of_changed(file: &ModelFile, stop: &Stop, solved: usize) -> Diagnostic {
     let asked = file.model.times.len();
     ended(
@@ -102,7 +102,7 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
             Some(t) => format!("the last solved time is t = {} s{values}", rounded(t, 7)),
             None if values.is_empty() => "not even the first output time was solved".into(),
             None => format!(
-                "not even the first output time was solved: the way there from the design configuration ends{}",
+                "not even the first output time was solved: the path there from the design configuration ends{}",
                 values.trim_start_matches(',')
             ),
         });
@@ -131,7 +131,7 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
 fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
     let gaps: Vec<GapFact> = stop.remains.iter().map(|g| GapFact::new(&file.model, file.units, g)).collect();
     let at_best = |g: &GapFact| format!("{} `{}` stays open by {} at best", g.kind, g.name, g.size_text());
-    // The headline has the largest already.
+    // The headline already contains the largest gap.
     let told = usize::from(stop.kind == StopKind::DoesNotAssemble);
     let mut notes: Vec<String> = gaps.iter().take(MOST_GAPS).skip(told).map(at_best).collect();
     if gaps.len() > MOST_GAPS {
@@ -149,13 +149,13 @@ fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
     notes
 }
 
-/// The names of joints that a person wrote.
+/// Names of joints that are written in the model file.
 pub(crate) fn named(model: &Model, joints: &[JointId]) -> Vec<String> {
     let joints = joints.iter().map(|j| &model.joints[j.0]);
     joints.filter(|j| !j.unnamed).map(|j| j.name.clone()).collect()
 }
 
-/// The joints of a loop, and the drivers that act in it on something else than a joint.
+/// Joints of a loop, and drivers in it that act on a point or orientation instead of a joint.
 fn parts(model: &Model, joints: &[JointId]) -> String {
     let unnamed = joints.iter().map(|j| &model.joints[j.0]).filter(|j| j.unnamed);
     let drivers: Vec<String> = unnamed.map(|j| j.name.clone()).collect();
@@ -164,7 +164,7 @@ fn parts(model: &Model, joints: &[JointId]) -> String {
     some_in_words(&parts.collect::<Vec<_>>())
 }
 
-/// `, with \`rack\` at 12.3 mm and ...`.
+/// Driver positions at a stop: `, with \`rack\` at 12.3 mm and ...`.
 pub(crate) fn driver_values(file: &ModelFile, stop: &Stop) -> String {
     let (model, units) = (&file.model, file.units);
     let values: Vec<String> = model
@@ -180,13 +180,13 @@ pub(crate) fn driver_values(file: &ModelFile, stop: &Stop) -> String {
     if values.is_empty() { String::new() } else { format!(", with {}", some_of(&values, ", ")) }
 }
 
-/// A residual above this part of the shortest distance between joints is visible in the motion: no number is to be
-/// relied on.
+/// A residual above this fraction of the shortest distance between joints is visible in the motion: results are
+/// unreliable.
 const VISIBLE: f64 = 1e-3;
-/// Residuals of directions count as closed up to this, rad: below it a residual says nothing about lengths.
+/// Residuals of directions up to this, rad, count as closed: they do not affect lengths noticeably.
 const LEAST_VISIBLE: f64 = 1e-5;
 
-/// The joints with redundant constraints, each once.
+/// Joints with redundant constraints, each once.
 fn redundant_joints(facts: &Facts) -> Vec<&str> {
     let mut list: Vec<&str> = Vec::new();
     for name in facts.redundancy.iter().flat_map(|r| &r.joints) {
@@ -197,7 +197,7 @@ fn redundant_joints(facts: &Facts) -> Vec<&str> {
     list
 }
 
-/// A warning where the joints leave no degree of freedom: all that a run can show is the assembled position.
+/// Warning if the joints leave no degree of freedom: the run shows only the assembled position.
 fn rigid(file: &ModelFile, facts: &Facts) -> Option<Diagnostic> {
     if facts.counts.mobility > 0 || facts.counts.joints == 0 {
         return None;
@@ -212,7 +212,7 @@ fn rigid(file: &ModelFile, facts: &Facts) -> Option<Diagnostic> {
             .help("if it is meant to move, give a joint more freedom, and add a driver on that joint")
     } else {
         d.note(format!(
-            "{} have redundant constraints: where axes are not exactly parallel, or do not exactly meet, these hold what would move otherwise",
+            "{} have redundant constraints: if axes are not exactly parallel, or do not exactly intersect, these constraints prevent the motion",
             names(redundant.into_iter())
         ))
         .help(
@@ -221,30 +221,29 @@ fn rigid(file: &ModelFile, facts: &Facts) -> Option<Diagnostic> {
     })
 }
 
-/// A warning where constraints fail by more than the dimensions of the mechanism allow.
+/// Warning if constraint residuals are too large for the dimensions of the mechanism.
 fn residual(file: &ModelFile, facts: &Facts, residual: f64) -> Option<Diagnostic> {
     let model = &file.model;
     let (shortest, size) = (model.shortest(), model.size());
-    // Written so that NaN is too much.
+    // Written so that NaN is reported.
     if residual <= (VISIBLE * shortest).max(LEAST_VISIBLE) {
         return None;
     }
     let length =
         |x: f64| with_unit(file.units.from_si(Quantity::Length, x), symbol(file.units, Quantity::Length));
-    let message =
-        format!("the joints stay open by up to {}: the results are not to be relied on", length(residual));
+    let message = format!("the joints stay open by up to {}: the results are unreliable", length(residual));
     let d = file.diagnostic(Severity::Warning, "HP0410", message, None).note(format!(
-        "the shortest distance between joints is {}, the mechanism as a whole measures {}",
+        "the shortest distance between joints is {}, the size of the mechanism is {}",
         length(shortest),
         length(size)
     ));
     let redundant = redundant_joints(facts);
     Some(if redundant.is_empty() {
-        d.note("16 digits do not hold both")
-            .help("draw the joints nearer together: a place along an axis may be moved along it")
+        d.note("16 digits do not resolve both")
+            .help("move the joints closer together: a point on an axis may be moved along it")
     } else {
         d.note(format!(
-            "redundant constraints of {} agree to within {} of the whole only, which is much for the shortest distance",
+            "redundant constraints of {} agree to within {} of the mechanism's size only, which is large for the shortest distance",
             names(redundant.into_iter()),
             rounded(residual / size, 2)
         ))
@@ -252,11 +251,11 @@ fn residual(file: &ModelFile, facts: &Facts, residual: f64) -> Option<Diagnostic
     })
 }
 
-/// A warning for each load that has no number at some output time.
+/// Warning for each load without a value at some output time.
 fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
     let (model, found) = (&file.model, &course.kept);
     let has_none = |m: usize| (0..found.measured.len()).find(|k| found.measured.value(*k, m)[0].is_nan());
-    // What redundant constraints share of friction is requested once, where it is wanted at all.
+    // Computed only once, and only if needed.
     let mut shared = None;
     let mut list = Vec::new();
     for (m, measure) in model.measures.iter().enumerate() {
@@ -267,7 +266,7 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
         let output = found.measured.outputs.iter().position(|o| o.source == OutputSource::Measure(m));
         let Some(k) = output.and_then(has_none) else { continue };
         let t = number(found.motion.times[k]);
-        let message = format!("`{}` has no number at t = {t} s", measure.name);
+        let message = format!("`{}` has no value at t = {t} s", measure.name);
         let d = file.diagnostic(Severity::Warning, "HP0409", message, Some((Section::Measures, m)));
         let without_length =
             model.elements.iter().filter(|e| has_no_length(model, &found.motion, k, &e.kind));
@@ -282,13 +281,13 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
             d.note("the mechanism is at a change point there, where its equilibrium is singular")
                 .help("read it at output times away from this one, or drive another joint of the loop")
         } else if !without_length.is_empty() {
-            d.note(format!("both ends of {} are at one place there: a spring of zero length has no direction", names_of(&without_length)))
+            d.note(format!("both ends of {} coincide there: a spring of zero length has no direction", names_of(&without_length)))
                 .help("move one of its ends, or use a `bushing`")
         } else if is_compliance {
             d.note("compliant elements need a support, and redundant constraints support one another")
-                .help("release no driver that nothing else holds, and remove redundant constraints: `check` names them")
+                .help("release only drivers that something else supports, and remove redundant constraints: `check` names them")
         } else if !rubs {
-            d.note("redundant constraints share it, by how stiff they are")
+            d.note("redundant constraints share it, depending on their stiffness")
                 .help("measure what is not shared (in a plane `radial`, or components in it), or remove a redundant constraint: `check` names them")
         } else {
             let shared = shared.get_or_insert_with(|| {
@@ -299,22 +298,22 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
             let [shared, ambiguous] = &*shared;
             if !ambiguous.is_empty() {
                 let of = names(&|e| ambiguous.iter().any(|s| s.0 == e));
-                d.note(format!("the friction of {} has two solutions there: it is so large that it makes the forces that it needs", names_of(&of)))
-                    .help("give less friction, thinner pins or longer guides")
+                d.note(format!("the friction of {} has two solutions there: it is so large that it generates the normal forces it needs", names_of(&of)))
+                    .help("reduce the friction, or use thinner pins or longer guides")
             } else if shared.is_empty() {
-                d.note(format!("{} jams there: so much friction is against the motion that no forces move it", names_of(&names(&|_| true))))
-                    .help("give less friction, thinner pins or longer guides")
+                d.note(format!("{} jams there: friction is so large that no force moves it", names_of(&names(&|_| true))))
+                    .help("reduce the friction, or use thinner pins or longer guides")
             } else {
                 let of = names(&|e| shared.iter().any(|s| s.0 == e));
-                d.note(format!("redundant constraints share what presses where {} has friction, by how stiff they are", names_of(&of)))
-                    .help("remove a redundant constraint: `check` names them; or the friction")
+                d.note(format!("redundant constraints share the normal force of {}, depending on their stiffness", names_of(&of)))
+                    .help("remove a redundant constraint: `check` names them, or remove the friction")
             }
         });
     }
     list
 }
 
-/// True if a spring or a damper has both ends at one place at an output time.
+/// True if both ends of a spring or damper coincide at an output time.
 fn has_no_length(model: &Model, motion: &Motion, k: usize, kind: &ElementKind) -> bool {
     let ElementKind::Spring { from, to, .. } = kind else { return false };
     let [p, q] = [from, to].map(|p| {
@@ -327,12 +326,12 @@ fn has_no_length(model: &Model, motion: &Motion, k: usize, kind: &ElementKind) -
     (q - p).norm() <= ENDS_MEET * model.size()
 }
 
-/// Names in quotes.
+/// Names in backticks.
 fn names_of(list: &[String]) -> String {
     names(list.iter().map(String::as_str))
 }
 
-/// A warning where the motion comes so close to a singular position that its velocities are not to be relied on.
+/// Warning if the motion comes so close to a singular position that its velocities are unreliable.
 pub fn margin(file: &ModelFile, margin: &MarginFact) -> Option<Diagnostic> {
     if !margin.is_thin() {
         return None;
@@ -358,7 +357,7 @@ pub fn margin(file: &ModelFile, margin: &MarginFact) -> Option<Diagnostic> {
     }))
 }
 
-/// A warning for each design variable that a change takes out of its bounds.
+/// Warning for each design variable that a change moves out of its bounds.
 pub fn out_of_bounds(file: &ModelFile, change: &[f64]) -> Vec<Diagnostic> {
     let warn = |(k, (v, by)): (usize, (&DesignVariable, &f64))| {
         let [low, high] = v.bounds.filter(|[low, high]| !(low <= by && by <= high))?;
@@ -376,7 +375,7 @@ pub fn out_of_bounds(file: &ModelFile, change: &[f64]) -> Vec<Diagnostic> {
     file.model.variables.iter().zip(change).enumerate().filter_map(warn).collect()
 }
 
-/// One warning for each design variable that the mechanism cannot follow, or that changes nothing.
+/// Warning for each design variable that the mechanism cannot follow, or that has no effect.
 pub fn variables(file: &ModelFile, facts: &Facts) -> Vec<Diagnostic> {
     let warn = |(k, v): (usize, &crate::facts::VariableFact)| {
         let message = format!("the mechanism cannot follow design variable `{}`", v.name);
@@ -393,11 +392,12 @@ pub fn variables(file: &ModelFile, facts: &Facts) -> Vec<Diagnostic> {
         }
         d.help("give a joint of this loop more freedom, or change the design so that the loop stays closed")
     };
-    let resisted = facts.variables.iter().enumerate().filter(|(_, v)| v.answer == Answer::CannotFollow);
+    let resisted =
+        facts.variables.iter().enumerate().filter(|(_, v)| v.answer == VariableAdmissibility::CannotFollow);
     let idle = file.model.without_effect().into_iter().map(|v| {
         let message = format!("design variable `{}` changes nothing", file.model.variables[v.0].name);
         let d = file.diagnostic(Severity::Warning, "HP0502", message, Some((Section::Design, v.0)));
-        let d = d.note("no joint, point, measure or law follows it: its sensitivities are zero");
+        let d = d.note("no joint, point, measure or law depends on it: its sensitivities are zero");
         d.help("use it, remove it, or write `design = false` if it is a parameter")
     });
     resisted.map(warn).chain(idle).collect()

@@ -1,22 +1,22 @@
-//! Encoding of a page's data: its JSON and all its curves as one deflated block in base64.
+//! Encoding of a page's data: JSON and all curves as one deflated block in base64.
 //!
-//! A curve is one or more *tracks*: a curve that holds several numbers per step, such as the seven of a pose, has a
-//! track for each. What the page computes with is kept to the last bit of its `f32`; what it only draws and ranks, the
-//! sensitivities, to [`ERROR`] of the track's own range. Either way a track is a list of whole numbers. Curves are
-//! smooth, so of their differences of first to fourth order one has small numbers; these are written byte by byte (all
-//! lowest bytes first), which deflate takes to about half a byte per value. Zeros stay zeros and gaps stay gaps; a
-//! constant takes no values; equal tracks are written once.
+//! A curve is one or more *tracks*: a curve with several numbers per step, such as the seven of a pose, has a track for
+//! each. Curves that the page computes with keep every bit of their `f32`. Curves that it only draws and ranks, the
+//! sensitivities, are accurate to [`ERROR`] of the track's own range. In both cases a track is a list of integers.
+//! Curves are smooth, so differences of first to fourth order are small. The order with the smallest differences is
+//! written byte by byte (all lowest bytes first), which deflate compresses to about half a byte per value. Zeros and
+//! gaps are exact; a constant takes no values; equal tracks are written once.
 //!
-//! The inflated block, little-endian:
+//! Layout of the inflated block, little-endian:
 //!
-//! | what | type | number |
+//! | content | type | number |
 //! |---|---|---|
 //! | bytes of the JSON, tracks `t`, gaps `g`, residuals `r` | u32 | 4 |
 //! | JSON | UTF-8 | |
 //! | form: 0 constant, 8 + order for numbers times the scale, 16 + order for bits of `f32` | u8 | t |
-//! | length, gaps and all | u32 | t |
+//! | length, including gaps | u32 | t |
 //! | scale, or the constant | f32 | t |
-//! | how many gaps it has | u32 | t |
+//! | number of gaps | u32 | t |
 //! | first step and length of each gap | u32 | 2 g |
 //! | residuals: signs folded in (0, -1, 1, -2, ...), lowest bytes of all first | u8 | 4 r |
 
@@ -32,14 +32,14 @@ use crate::page::{Curve, Design, Payload};
 
 /// Maximum error of a value that is only drawn, relative to the range of its track.
 pub const ERROR: f64 = 1e-5;
-/// Steps of the grid within the range: half a step is 0.83e-5 of it, which leaves some of [`ERROR`] for the rounding to
-/// `f32`.
+/// Number of grid steps within the range: half a step is 0.83e-5 of it, which leaves a part of [`ERROR`] for the
+/// rounding to `f32`.
 const STEPS: f64 = 60_000.0;
-/// Maximum size of values in ranges: above it the rounding to `f32` would use the rest of [`ERROR`].
+/// Maximum size of values, in ranges: above it the rounding to `f32` would use up the rest of [`ERROR`].
 const LARGEST: f64 = 25.0;
-/// Highest order of differences: beyond it the rounding grows faster than the curve's own part shrinks.
+/// Maximum order of differences: beyond it rounding grows faster than the differences of the curve decrease.
 const MOST_DIFFERENCES: u8 = 4;
-/// Whole numbers below this are exact as `f32`.
+/// Integers below this are exact as `f32`.
 const WHOLE: f32 = 16_777_216.0;
 const CONSTANT: u8 = 0;
 const SCALED: u8 = 8;
@@ -48,16 +48,16 @@ const BITS: u8 = 16;
 /// Precision of a curve's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Precision {
-    /// To the last bit of their `f32`.
+    /// Every bit of the `f32`.
     Full,
-    /// To [`ERROR`].
-    Drawn,
+    /// Within [`ERROR`] of the range.
+    Approximate,
 }
 
-/// The payload, deflated.
+/// Packs the payload: encodes and deflates it.
 ///
 /// # Errors
-/// When the payload does not serialise, which plain numbers and strings always do.
+/// If the payload cannot be serialised, which does not happen with plain numbers and strings.
 pub(crate) fn packed(payload: &Payload) -> Result<Vec<u8>, serde_json::Error> {
     Ok(deflated(&block(payload)?))
 }
@@ -67,12 +67,12 @@ pub(crate) fn size_in_page(packed: &[u8]) -> usize {
     packed.len().div_ceil(3) * 4
 }
 
-/// As it is in the page.
+/// Base64 text of bytes, as in the page.
 pub(crate) fn base64(bytes: &[u8]) -> String {
     BASE64_STANDARD.encode(bytes)
 }
 
-/// A page is 0.6 % larger than at the usual level 6, and packed in less than half the time.
+/// A page is 0.6 % larger than at the default level 6, and is packed in less than half the time.
 const LEVEL: u32 = 3;
 
 fn deflated(bytes: &[u8]) -> Vec<u8> {
@@ -80,7 +80,7 @@ fn deflated(bytes: &[u8]) -> Vec<u8> {
     deflated.write_all(bytes).and_then(|()| deflated.finish()).expect("a vector takes all that is written")
 }
 
-/// The payload before it is deflated.
+/// Encoded payload before deflation.
 fn block(payload: &Payload) -> Result<Vec<u8>, serde_json::Error> {
     let mut payload = payload.clone();
     let mut tracks = Tracks::default();
@@ -91,9 +91,9 @@ fn block(payload: &Payload) -> Result<Vec<u8>, serde_json::Error> {
     Ok(tracks.block(&serde_json::to_vec(&payload)?))
 }
 
-/// Every curve of the payload, with how well it is kept and how many numbers it holds per step.
+/// Visits every curve of the payload, with its precision and number of values per step.
 fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precision, usize)) {
-    use Precision::{Drawn, Full};
+    use Precision::{Approximate, Full};
     visit(&mut payload.times, Full, 1);
     for body in &mut payload.bodies {
         visit(&mut body.poses, Full, 7);
@@ -115,23 +115,25 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
     payload.designs.iter_mut().for_each(|design| each_curve_of(design, visit));
     for quantity in payload.maps.iter_mut().flat_map(|map| &mut map.quantities) {
         visit(&mut quantity.values, Full, 1);
-        quantity.sensitivities.iter_mut().for_each(|s| visit(&mut s.values, Drawn, 1));
+        quantity.sensitivities.iter_mut().for_each(|s| visit(&mut s.values, Approximate, 1));
     }
     for axis in payload.sweep.iter_mut().flat_map(|sweep| &mut sweep.axes) {
-        visit(&mut axis.values, Drawn, 1);
+        visit(&mut axis.values, Approximate, 1);
     }
     if let Some(margin) = &mut payload.margin {
-        // It is drawn over decades.
+        // The margin is drawn over decades.
         visit(&mut margin.value, Full, 1);
     }
     for variable in &mut payload.variables {
-        variable.shifts.iter_mut().for_each(|shifts| visit(shifts, Drawn, 6));
+        variable.shifts.iter_mut().for_each(|shifts| visit(shifts, Approximate, 6));
         for s in &mut variable.sensitivities {
-            [&mut s.value, &mut s.rate, &mut s.accel].into_iter().for_each(|curve| visit(curve, Drawn, 1));
+            [&mut s.value, &mut s.rate, &mut s.accel]
+                .into_iter()
+                .for_each(|curve| visit(curve, Approximate, 1));
             if let Some(d) = &mut s.fd {
                 [&mut d.value, &mut d.rate, &mut d.accel]
                     .into_iter()
-                    .for_each(|curve| visit(curve, Drawn, 1));
+                    .for_each(|curve| visit(curve, Approximate, 1));
             }
         }
     }
@@ -147,10 +149,10 @@ fn each_curve_of(design: &mut Design, visit: &mut impl FnMut(&mut Curve, Precisi
     design.margin.iter_mut().for_each(|margin| visit(margin, Full, 1));
 }
 
-/// A value with curves that can be handed on in plain layout, one number after the other: a curve is then the index of
-/// its first number and their count. For callers in the same program, where nothing has to be packed.
+/// Value with curves that can be passed on in plain layout, one number after the other: a curve is then the index of
+/// its first number and their count. For callers within the same program, which need no packing.
 pub trait Plain: Serialize + Sized {
-    /// Lays the curves out, and says in their place where they are.
+    /// Appends the curves to `numbers` and replaces them by their positions.
     fn lay_out(&mut self, numbers: &mut Vec<f32>);
 }
 
@@ -174,7 +176,7 @@ impl Plain for Design {
     }
 }
 
-/// The tracks of a block, each once.
+/// Distinct tracks of a block.
 #[derive(Default)]
 struct Tracks {
     list: Vec<Track>,
@@ -182,7 +184,7 @@ struct Tracks {
 }
 
 impl Tracks {
-    /// The tracks of a curve with that many numbers per step.
+    /// Adds the tracks of a curve with `parts` numbers per step.
     fn add(&mut self, values: &[f32], precision: Precision, parts: usize) -> Vec<u32> {
         if values.is_empty() {
             return Vec::new();
@@ -220,14 +222,14 @@ impl Tracks {
     }
 }
 
-/// One number per step, as it is written.
+/// Encoded track: one number per step.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct Track {
     form: u8,
     length: u32,
     /// Bits of the `f32`.
     scale: u32,
-    /// First step and length of each.
+    /// First step and length of each gap.
     gaps: Vec<[u32; 2]>,
     residuals: Vec<u32>,
 }
@@ -262,7 +264,7 @@ fn gaps(values: &[f32]) -> Vec<[u32; 2]> {
     gaps
 }
 
-/// Step of which the values are multiples, nearly; `None` if only their bits will do.
+/// Step of which all values are near multiples; `None` if the bits have to be stored.
 fn scale(values: &[f32], precision: Precision) -> Option<f32> {
     if values.iter().all(|v| v.fract() == 0.0 && v.abs() < WHOLE) {
         return Some(1.0);
@@ -272,25 +274,25 @@ fn scale(values: &[f32], precision: Precision) -> Option<f32> {
     let range = f64::from(most) - f64::from(least);
     let scale = (range / STEPS) as f32;
     let near = f64::from(most.max(-least)) <= LARGEST * range;
-    (precision == Precision::Drawn && near && scale.is_normal()).then_some(scale)
+    (precision == Precision::Approximate && near && scale.is_normal()).then_some(scale)
 }
 
 fn multiple(value: f32, scale: f32) -> i32 {
     (f64::from(value) / f64::from(scale)).round() as i32
 }
 
-/// The bits of a number as one that grows with it.
+/// Bits of a number, mapped to an integer that increases with it.
 fn in_order(value: f32) -> i32 {
     let bits = value.to_bits() as i32;
     if bits < 0 { -(bits & i32::MAX) } else { bits }
 }
 
-/// Differences of the order with the smallest numbers, signs folded in; the first are from zero.
+/// Differences of the order with the smallest numbers, with signs folded in; the first ones start from zero.
 fn differences(mut numbers: Vec<i32>) -> (u8, Vec<u32>) {
     let folded = |r: i32| ((r << 1) ^ (r >> 31)) as u32;
     let (mut least, mut best, mut residuals) = (u64::MAX, 0, Vec::new());
     for order in 0..=MOST_DIFFERENCES {
-        // The bits of a floating point number grow as its logarithm does.
+        // The bits of a floating-point number grow like its logarithm.
         let cost = numbers.iter().map(|r| (f64::from(folded(*r)) + 1.0).to_bits() >> 32).sum();
         if cost < least {
             (least, best) = (cost, order);
@@ -315,7 +317,7 @@ mod tests {
 
     use crate::page::{Margin, tests::payload};
 
-    /// Values that the page decodes from a track.
+    /// Decodes a track as the page does.
     fn read(track: &Track) -> Vec<f32> {
         let missing = |k: u32| track.gaps.iter().any(|[first, length]| (*first..first + length).contains(&k));
         let mut numbers: Vec<i32> =
@@ -365,7 +367,7 @@ mod tests {
 
         #[test]
         fn what_is_drawn_comes_back_within_its_error(values in any_values()) {
-            let back = read(&Track::of(&values, Precision::Drawn));
+            let back = read(&Track::of(&values, Precision::Approximate));
             let known = || values.iter().copied().filter(|v| !v.is_nan()).map(f64::from);
             let range = known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min);
             prop_assert_eq!(values.len(), back.len());
@@ -380,9 +382,9 @@ mod tests {
     #[test]
     fn a_smooth_curve_takes_a_byte_a_value_and_a_constant_none() {
         let wave: Vec<f32> = (0..400).map(|k| (k as f32 * 0.02).sin()).collect();
-        let track = Track::of(&wave, Precision::Drawn);
+        let track = Track::of(&wave, Precision::Approximate);
         assert!(track.residuals[4..].iter().all(|r| *r < 256), "{track:?}");
-        let constant = Track::of(&[f32::NAN, 2.5, 2.5], Precision::Drawn);
+        let constant = Track::of(&[f32::NAN, 2.5, 2.5], Precision::Approximate);
         assert!(constant.residuals.is_empty() && constant.gaps == [[0, 1]]);
     }
 
@@ -396,7 +398,7 @@ mod tests {
         assert!(tracks.add(&[], Precision::Full, 7).is_empty());
     }
 
-    /// A page with a curve of every form, whose block the tests of the page read.
+    /// Page with a curve of every form; the tests of the page read its packed block.
     fn sample() -> Payload {
         let mut sample = payload("packed");
         sample.times = (0..40).map(|k| 0.1 * f64::from(k)).collect();

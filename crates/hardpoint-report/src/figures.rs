@@ -1,10 +1,10 @@
-//! Numbers and units as text, for tables and messages. Files for machines carry full digits instead.
+//! Numbers and units as text, for tables and messages. Result files have full precision instead.
 
 use hardpoint::joint::Quantity;
 use hardpoint::model::Dimension;
 use hardpoint_file::Units;
 
-/// A number with five significant digits at most, without trailing zeros.
+/// Number with at most five significant digits, without trailing zeros.
 ///
 /// ```
 /// use hardpoint_report::figures::number;
@@ -16,7 +16,7 @@ pub fn number(value: f64) -> String {
     rounded(value, 5)
 }
 
-/// A number with that many significant digits at most, without trailing zeros; a dash where there is none.
+/// Number with at most `digits` significant digits, without trailing zeros; a dash for a missing number.
 pub fn rounded(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".into();
@@ -24,7 +24,7 @@ pub fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
     }
-    // Rounding first: 9.999999 has another power of ten than its five digits.
+    // Round first: 9.999999 has a different power of ten when rounded to five digits.
     let text = format!("{value:.*e}", digits - 1);
     let (_, power) = text.split_once('e').unwrap_or((&text, "0"));
     let power: i32 = power.parse().unwrap_or(0);
@@ -39,7 +39,7 @@ pub fn rounded(value: f64, digits: usize) -> String {
     }
 }
 
-/// A relative error: two digits; a dash where there is none.
+/// Relative error with two digits; a dash for a missing number.
 pub fn error(value: f64) -> String {
     match value {
         v if !v.is_finite() => "–".into(),
@@ -48,7 +48,7 @@ pub fn error(value: f64) -> String {
     }
 }
 
-/// A duration in the unit that suits it.
+/// Duration in a suitable unit.
 pub fn seconds(value: f64) -> String {
     match value {
         v if v < 1e-3 => format!("{} µs", rounded(v * 1e6, 3)),
@@ -57,7 +57,7 @@ pub fn seconds(value: f64) -> String {
     }
 }
 
-/// A size: `3.2 MB`.
+/// File size: `3.2 MB`.
 ///
 /// ```
 /// use hardpoint_report::figures::bytes;
@@ -73,12 +73,12 @@ pub fn bytes(size: u64) -> String {
     format!("{} {unit}", rounded(size, if size < 10.0 { 2 } else { 3 }))
 }
 
-/// A number with its unit; a plain number has none.
+/// Number with its unit; plain numbers have none.
 pub fn with_unit(value: f64, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { number(value) } else { format!("{} {unit}", number(value)) }
 }
 
-/// The symbol of a quantity's unit; `1` for a plain number.
+/// Symbol of a quantity's unit; `1` for a plain number.
 pub fn symbol(units: Units, quantity: Quantity) -> &'static str {
     match units.of(quantity).0 {
         "" => "1",
@@ -86,7 +86,7 @@ pub fn symbol(units: Units, quantity: Quantity) -> &'static str {
     }
 }
 
-/// The symbol of a unit: `mm`, `deg/mm`, `1/(mm*s)`; `1` for a plain number.
+/// Symbol of a unit: `mm`, `deg/mm`, `1/(mm*s)`; `1` for a plain number.
 ///
 /// ```
 /// use hardpoint::model::Dimension;
@@ -100,7 +100,7 @@ pub fn symbol(units: Units, quantity: Quantity) -> &'static str {
 pub fn unit(units: Units, of: impl Into<Dimension>) -> String {
     let of = of.into();
     let Dimension { length, angle, time, force } = of;
-    // Moments and energies are in N m, powers in W, whatever the unit of length.
+    // Moments and energies are in N m and powers in W, whatever the length unit.
     if of == Dimension::MOMENT.rate(1) {
         return "W".into();
     }
@@ -123,12 +123,12 @@ pub fn unit(units: Units, of: impl Into<Dimension>) -> String {
     }
 }
 
-/// The unit of the time derivative of order 0, 1 or 2: `mm`, `mm/s`, `mm/s^2`.
+/// Unit of the time derivative of order 0, 1 or 2: `mm`, `mm/s`, `mm/s^2`.
 pub fn order_unit(units: Units, of: impl Into<Dimension>, order: usize) -> String {
     unit(units, of.into().rate(order as i8))
 }
 
-/// The unit of a derivative: `deg/mm`, `mm/s per mm` as `mm/(s*mm)`.
+/// Unit of a derivative: `deg/mm`, `mm/s per mm` as `mm/(s*mm)`.
 ///
 /// ```
 /// use hardpoint_report::figures::per;
@@ -151,7 +151,7 @@ pub fn per(of: &str, by: &str) -> String {
     }
 }
 
-/// Names with separators: `` `a`, `b` and `c` ``.
+/// Names in backticks with separators: `` `a`, `b` and `c` ``.
 pub fn names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let quoted: Vec<String> = names.into_iter().map(|n| format!("`{n}`")).collect();
     in_words(&quoted)
@@ -166,32 +166,32 @@ fn in_words(items: &[String]) -> String {
     }
 }
 
-/// Items as in a sentence; of a long list the first few, and how many more there are.
+/// Items with separators; of a long list the first few and the number of the others.
 pub fn some_in_words(items: &[String]) -> String {
     if items.len() > SHOWN { some_of(items, ", ") } else { in_words(items) }
 }
 
-/// ``coupler `a` ``, ``coupler `b` ``.
+/// Quoted names with their kind: ``coupler `a` ``, ``coupler `b` ``.
 pub fn quoted<'a>(what: &'a str, names: &'a [String]) -> impl Iterator<Item = String> + 'a {
     names.iter().map(move |n| format!("{what} `{n}`"))
 }
 
-/// True if a character is not to be shown as it is: control characters, and those that turn the direction of writing or
-/// separate lines unseen.
+/// True if a character must not be displayed unchanged: control characters, and invisible ones that change the writing
+/// direction or separate lines.
 pub fn is_odd(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
 }
 
-/// `1 step`, `2 steps`.
+/// Number with a noun: `1 step`, `2 steps`.
 pub fn count(n: usize, one: &str) -> String {
     if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") }
 }
 
-/// Number of items of a long list are shown.
+/// Maximum number of items shown of a long list.
 const SHOWN: usize = 8;
 
-/// The items with commas between; of a long list the first few, and how many more there are.
+/// Items with a separator; of a long list the first few and the number of the others.
 pub fn some_of(items: &[impl AsRef<str>], separator: &str) -> String {
     hardpoint::draft::some_of(items, separator, SHOWN)
 }

@@ -1,10 +1,10 @@
-//! Pages without a mechanism: the gallery of models, and a model that cannot be shown.
+//! Pages without a mechanism: the gallery of models, and models that cannot be shown.
 
 use std::fmt::Write;
 
 use crate::page::{escape_text, fill};
 
-/// A model in the gallery.
+/// Entry of the gallery.
 pub struct Card {
     /// Name.
     pub title: String,
@@ -12,15 +12,15 @@ pub struct Card {
     pub description: Option<String>,
     /// Name of its file.
     pub file: String,
-    /// Reason why it cannot be shown, in a few words.
+    /// Reason why the model cannot be shown, in a few words.
     pub wrong: Option<String>,
-    /// Address of its page.
+    /// Address of the model's page.
     pub link: String,
-    /// Further pages of it, each with its name: its cases.
+    /// Further pages of the model, one per case: name and address.
     pub more: Vec<(String, String)>,
 }
 
-/// The page of all models; `lead` says what they are.
+/// Page of all models, with an introduction `lead`.
 ///
 /// ```
 /// use hardpoint_report::gallery::{Card, gallery};
@@ -61,7 +61,7 @@ impl Card {
     }
 }
 
-/// The page of a model that cannot be shown: why, and its text, with the lines marked where something is wrong.
+/// Page of a model that cannot be shown: the reason, and the text with the faulty lines marked.
 pub fn trouble(file: &str, why: &str, text: &str, lines: &[usize]) -> String {
     let mut body = format!(
         "<h1>{}</h1>\n<p class=\"lead\">This model cannot be shown as it is.</p>\n",

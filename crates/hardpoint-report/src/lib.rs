@@ -1,26 +1,26 @@
-//! Shows results to people and to other programs: tables, CSV, JSON and the self-contained HTML report.
+//! Output of results: tables, CSV, JSON and the self-contained HTML report.
 //!
-//! Nothing here computes: the core has solved, and this crate converts to the user's units and formats.
+//! This crate does no analysis: it converts the results of the core to the user's units and formats them.
 //!
-//! | module | what it makes |
+//! | module | contents |
 //! |---|---|
-//! | [`facts`] | what is known of the mechanism; shown alike by `check`, the summary and the page |
-//! | [`course`] | what a whole run comes to, gathered window by window |
-//! | [`summary`] | `summary.json`: the facts, how the run went, the largest sensitivities |
-//! | [`margin`] | how far the motion stays from singular positions |
-//! | [`assembly`] | what was open in the drawing, and how it closed |
-//! | [`verdict`] | `verify.json`: sensitivities against re-solved designs |
+//! | [`facts`] | facts of the mechanism, shown by `check`, the summary and the page |
+//! | [`course`] | facts of a whole run, gathered in windows |
+//! | [`summary`] | `summary.json`: facts, outcome of the run, largest sensitivities |
+//! | [`margin`] | margin of the motion to singular positions |
+//! | [`assembly`] | open constraints of the design configuration, and their assembly |
+//! | [`verdict`] | `verify.json`: sensitivities compared with re-solved designs |
 //! | [`whatif`] | `whatif.json`, `.csv` and `.html`: a changed design, predicted and exact |
-//! | [`compare`] | `compare.json`, `.csv` and `.html`: two model files beside each other |
-//! | [`optimize`] | what a search comes to: `summary.json` and tables |
-//! | [`tolerance`] | what tolerances come to: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
-//! | [`sweep`], [`cells`] | what a sweep comes to: `summary.json`, and the columns of `designs` and `curves` |
+//! | [`compare`] | `compare.json`, `.csv` and `.html`: comparison of two model files |
+//! | [`optimize`] | result of an optimisation: `summary.json` and tables |
+//! | [`tolerance`] | tolerance study: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
+//! | [`sweep`], [`cells`] | result of a sweep: `summary.json`, and the columns of `designs` and `curves` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
-//! | [`columns`] | what is in which column of the files of results |
+//! | [`columns`] | columns of the result files |
 //! | [`csv`], [`npy`] | `motion`, `sensitivity` and `jerk` as text, or as arrays |
 //! | [`payload`], [`page`], [`encoding`] | `report.html` |
-//! | [`gallery`] | the page of all models, and that of one that cannot be shown |
-//! | [`diagnose`] | why a run is impossible or ended early, as diagnostics of the model file |
+//! | [`gallery`] | pages of all models, and of a model that cannot be shown |
+//! | [`diagnose`] | diagnostics of runs that cannot start or ended early |
 //! | [`figures`] | numbers and units as text |
 
 pub mod assembly;
@@ -51,5 +51,5 @@ pub mod validity;
 pub mod verdict;
 pub mod whatif;
 
-/// Program and version, for everything that is written.
+/// Program and version, as entered in all output.
 pub const GENERATOR: &str = concat!("hardpoint ", env!("CARGO_PKG_VERSION"));

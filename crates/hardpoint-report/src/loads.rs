@@ -1,4 +1,4 @@
-//! `loads.csv`: what joints put on bodies, for whoever continues with finite elements; `drivers.csv`: what drives them.
+//! `loads.csv`: reactions of joints, for use in finite element models; `drivers.csv`: loads of drivers.
 
 use std::io::Write;
 
@@ -10,16 +10,16 @@ use hardpoint_file::csv_table::CsvWriter;
 
 use crate::figures::{order_unit, unit};
 
-/// A number, or nothing where there is none.
+/// Formatted number; empty for a missing one.
 fn shown(x: f64) -> String {
     if x.is_finite() { x.to_string() } else { String::new() }
 }
 
-/// Writes a row for every output time: of every driver its force or moment, the speed that it prescribes, its power,
-/// and the work that it has done since the first output time, by the trapezoidal rule.
+/// Writes a row for every output time: for every driver its force or moment, the prescribed speed, its power, and the
+/// work done since the first output time, by the trapezoidal rule.
 ///
 /// # Errors
-/// Where `out` cannot be written.
+/// If `out` cannot be written.
 pub fn write_drivers(model: &Model, units: Units, loads: &Loads, out: impl Write) -> csv::Result<()> {
     let mut writer = CsvWriter::new(out);
     let mut header = vec!["t [s]".to_owned()];
@@ -50,12 +50,12 @@ pub fn write_drivers(model: &Model, units: Units, loads: &Loads, out: impl Write
     Ok(())
 }
 
-/// Writes a row for every output time and joint: where it is on its second body, and the force and moment that it puts
-/// on that body, global and along the global axes in the design configuration, which have turned with the body. What
-/// redundant constraints leave open is empty.
+/// Writes a row for every output time and joint: its point on body j, and the reaction force and moment on that body,
+/// in global axes and in axes that coincide with the global ones in the design configuration and turn with body j.
+/// Undetermined components (redundant constraints) are empty.
 ///
 /// # Errors
-/// Where `out` cannot be written.
+/// If `out` cannot be written.
 pub fn write(model: &Model, units: Units, loads: &Loads, out: impl Write) -> csv::Result<()> {
     let mut writer = CsvWriter::new(out);
     let length = units.length.symbol();

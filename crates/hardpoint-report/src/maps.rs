@@ -1,5 +1,4 @@
-//! Maps: every measure over a grid of two drivers, with its sensitivities. `maps.csv`, `map_sensitivity.csv`,
-//! `maps.json`.
+//! Maps: measures over a grid of two drivers, with sensitivities. `maps.csv`, `map_sensitivity.csv`, `maps.json`.
 
 use std::io::Write;
 
@@ -14,68 +13,68 @@ use crate::facts::variable_unit;
 use crate::figures::{number, per, unit, with_unit};
 use crate::page::{Curve, GridDriver, GridMap as GridPage, GridQuantity, GridSensitivity, Payload, Table};
 
-/// Pages hold that many derivatives of a map: about 2 MB.
+/// Maximum number of derivatives of a map on a page: about 2 MB.
 const MOST_NUMBERS: usize = 1_000_000;
 
-/// A map, as `maps.json` has it. Figures are in the model's units; what has no number is `null`.
+/// Map as in `maps.json`. Values are in the model's units; a missing value is `null`.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapFact {
-    /// The case.
+    /// Name of the case.
     pub name: String,
-    /// The two drivers and where each of them is.
+    /// Drivers with their positions.
     pub drivers: [MapDriver; 2],
-    /// Number of positions that were reached.
+    /// Number of positions reached.
     pub solved: usize,
-    /// Total number.
+    /// Number of positions requested.
     pub asked: usize,
-    /// True if the user ended it before all were tried.
+    /// True if the user ended the map early.
     pub interrupted: bool,
-    /// Reasons why the others were not reached, row by row.
+    /// Reasons for unreached positions, row by row.
     pub gaps: Vec<MapGap>,
-    /// Per position, which of these ended its row before; `null` where it was reached or not tried.
+    /// Index of the reason for each unreached position; `null` if it was reached or not tried.
     pub gap: Vec<Vec<Option<usize>>>,
-    /// The measures that follow from positions, or depend on a driver; of a model without any measures, its points.
+    /// Measures that depend on positions, or on one driver; points if the model has no measures.
     pub measures: Vec<MapMeasure>,
 }
 
-/// A map, in `summary.json`.
+/// Map in `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapLine {
-    /// The case.
+    /// Name of the case.
     pub name: String,
-    /// The two drivers.
+    /// Names of the two drivers.
     pub drivers: [String; 2],
-    /// Number of positions that were reached.
+    /// Number of positions reached.
     pub solved: usize,
-    /// Total number.
+    /// Number of positions requested.
     pub asked: usize,
-    /// Reasons why the others were not reached.
+    /// Reasons for unreached positions.
     pub gaps: Vec<String>,
 }
 
-/// A driver of a map.
+/// Driver of a map.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapDriver {
     /// Name.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Positions of the driver, counted like its laws.
+    /// Positions of the driver, in the coordinate of its law.
     pub values: Vec<f64>,
 }
 
 /// End of a row of a map, with the reason.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapGap {
-    /// Positions of the two drivers when the mechanism could not move on.
+    /// Positions of the two drivers where the mechanism stopped.
     pub drivers: [f64; 2],
-    /// Stable code.
+    /// Diagnostic code.
     pub code: &'static str,
     /// Description of the stop.
     pub message: String,
 }
 
-/// A measure over a map. Tables have a row for each value of the second driver, with a number for each value of the
+/// Measure over a map. Tables have a row for each position of the second driver and a column for each position of the
 /// first.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapMeasure {
@@ -89,21 +88,21 @@ pub struct MapMeasure {
     pub sensitivities: Vec<MapSensitivity>,
 }
 
-/// The derivative of a measure by a design variable, over a map.
+/// Derivative of a measure by a design variable over a map.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapSensitivity {
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
-    /// Unit.
+    /// Unit of the variable.
     pub per: String,
-    /// The derivative's unit.
+    /// Unit of the derivative.
     pub unit: String,
-    /// The derivatives; `null` where the mechanism cannot follow the variable.
+    /// Derivatives; `null` if the mechanism cannot follow the variable.
     pub values: Vec<Vec<Option<f64>>>,
 }
 
 impl MapFact {
-    /// That of a solved grid.
+    /// Facts of a solved grid.
     pub fn of(model: &Model, units: Units, map: &GridMap) -> Self {
         let drivers = [0, 1].map(|k| {
             let driver = &model.drivers[map.grid.drivers[k].0];
@@ -117,7 +116,7 @@ impl MapFact {
         let gap = |stop: &GridStop| MapGap {
             drivers: [0, 1].map(|k| {
                 let driver = &model.drivers[map.grid.drivers[k].0];
-                units.from_si(model.driven(driver).quantity, stop.stood[k])
+                units.from_si(model.driven(driver).quantity, stop.drivers[k])
             }),
             code: stop.stop.code(),
             message: stop.stop.happened(model),
@@ -131,12 +130,12 @@ impl MapFact {
             asked: map.places().count(),
             interrupted: map.interrupted(),
             gaps: map.stops.iter().map(gap).collect(),
-            gap: table_of(map, &|place| map.why_not(place)),
+            gap: table_of(map, &|place| map.stop_index(place)),
             measures: outputs.map(|(m, o)| measure(model, units, map, m, o)).collect(),
         }
     }
 
-    /// Line of the map in `summary.json`.
+    /// Entry of the map in `summary.json`.
     pub fn line(&self) -> MapLine {
         MapLine {
             name: self.name.clone(),
@@ -152,7 +151,7 @@ impl MapFact {
         facts.iter().map(Self::own_table).collect()
     }
 
-    /// The page with these maps.
+    /// Adds the maps to a page.
     pub fn page(facts: &[Self], page: Payload) -> Payload {
         Payload { maps: facts.iter().map(Self::own_page).collect(), ..page }
     }
@@ -228,7 +227,7 @@ impl MapFact {
         Table {
             title: format!("Map `{}` over {} and {}", self.name, first.name, second.name),
             note: format!("{} of {} positions reached{ended}{some}", self.solved, self.asked),
-            header: ["measure", "least", "there", "most", "there"].map(String::from).to_vec(),
+            header: ["measure", "minimum", "at", "maximum", "at"].map(String::from).to_vec(),
             rows: self.measures.iter().map(row).collect(),
         }
     }
@@ -242,7 +241,7 @@ impl MapFact {
     }
 }
 
-/// Row by row what is known of each position.
+/// Values of all positions, row by row.
 fn table_of<T>(map: &GridMap, of: &dyn Fn([usize; 2]) -> Option<T>) -> Vec<Vec<Option<T>>> {
     let [columns, rows] = [0, 1].map(|k| map.grid.values[k].len());
     (0..rows).map(|j| (0..columns).map(|i| of([i, j])).collect()).collect()
@@ -268,11 +267,11 @@ fn measure(model: &Model, units: Units, map: &GridMap, m: usize, output: &Output
     }
 }
 
-/// `maps.csv`: one row per position of every map, with its measures; in a gap these fields are empty, and `gap` says
-/// why.
+/// Writes `maps.csv`: one row per position of every map, with its measures. At an unreached position they are empty,
+/// and `gap` contains the reason.
 ///
 /// # Errors
-/// Where `out` cannot be written.
+/// If `out` cannot be written.
 pub fn write_csv(facts: &[MapFact], out: impl Write) -> csv::Result<()> {
     let mut writer = CsvWriter::new(out);
     let Some(one) = facts.first() else { return Ok(()) };
@@ -292,15 +291,15 @@ pub fn write_csv(facts: &[MapFact], out: impl Write) -> csv::Result<()> {
     Ok(())
 }
 
-/// The header of a measure's column.
+/// Header of the column of a measure.
 fn column(name: &str, unit: &str) -> String {
     if unit == "1" { name.into() } else { format!("{name} [{unit}]") }
 }
 
-/// `map_sensitivity.csv`: one row per position and design variable, with the derivatives of the measures by that.
+/// Writes `map_sensitivity.csv`: one row per position and design variable, with the derivatives of the measures.
 ///
 /// # Errors
-/// Where `out` cannot be written.
+/// If `out` cannot be written.
 pub fn write_sensitivity_csv(facts: &[MapFact], out: impl Write) -> csv::Result<()> {
     let mut writer = CsvWriter::new(out);
     let Some(one) = facts.first() else { return Ok(()) };
@@ -331,18 +330,18 @@ pub fn write_sensitivity_csv(facts: &[MapFact], out: impl Write) -> csv::Result<
     Ok(())
 }
 
-/// The columns that say which position a row is of.
+/// Columns that identify the position of a row.
 const PLACES: [&str; 7] =
     ["case", "first driver", "first value", "first unit", "second driver", "second value", "second unit"];
 
 impl MapFact {
-    /// Row and column of all positions.
+    /// Row and column indices of all positions.
     fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let [columns, rows] = [0, 1].map(|k| self.drivers[k].values.len());
         (0..rows).flat_map(move |j| (0..columns).map(move |i| (j, i)))
     }
 
-    /// Writes which position a row is of.
+    /// Writes the columns that identify the position.
     fn write_place(&self, j: usize, i: usize, writer: &mut CsvWriter<impl Write>) -> csv::Result<()> {
         writer.text(&self.name)?;
         for (driver, k) in self.drivers.iter().zip([i, j]) {
@@ -353,7 +352,7 @@ impl MapFact {
         Ok(())
     }
 
-    /// Reason why a position was not reached: the stop of its row on that side.
+    /// Reason why a position was not reached.
     fn why(&self, j: usize, i: usize) -> String {
         self.gap[j][i].map_or(String::new(), |gap| self.gap_line(&self.gaps[gap]))
     }

@@ -1,4 +1,4 @@
-//! Margin of a motion from singular positions, in words.
+//! Margin of a motion to singular positions, in words.
 
 use hardpoint::model::{Driver, Model};
 use hardpoint::motion::{Motion, StopKind};
@@ -10,23 +10,23 @@ use crate::course::MarginCourse;
 use crate::diagnose::named;
 use crate::figures::{number, rounded, some_in_words, some_of, symbol};
 
-/// Above this, no more than three digits of the velocities are lost and there is nothing to say.
+/// Margin above which at most three digits of the velocities are lost, which needs no comment.
 const COMFORTABLE: f64 = 1e-3;
-/// Below this the user is warned.
+/// Margin below which the user is warned.
 const THIN: f64 = 1e-6;
-/// A singular position this near to the end, as part of the run, is reported.
+/// Time to a singular position beyond the end, as a fraction of the run, below which it is reported.
 const SOON: f64 = 0.1;
 
 /// Margins over the output times: 1 is best, 0 is a singular position.
 #[derive(Clone, Debug, Serialize)]
 pub struct MarginFact {
-    /// The least of all.
+    /// Minimum margin.
     pub least: f64,
-    /// Time, s.
+    /// Time of the minimum margin, s.
     pub time: f64,
-    /// The joints of the loop that has it.
+    /// Joints of the loop with the minimum margin.
     pub joints: Vec<String>,
-    /// Number of about 16 digits of the velocities are lost there.
+    /// Number of digits of the velocities, of about 16, that are lost there.
     pub digits_lost: f64,
     /// Margin at the start of the motion.
     pub start: f64,
@@ -35,11 +35,12 @@ pub struct MarginFact {
     pub singular_after: Option<f64>,
     /// Travel of the drivers until then.
     pub drivers_until: Vec<DriverTravel>,
-    /// Kind of the position: `limit`, beyond which the loop cannot be closed, or `two_motions`, which meet.
+    /// Kind of the singular position: `limit`, where the loop cannot be closed any further, or `two_motions`, where two
+    /// motions meet.
     pub singular_kind: Option<&'static str>,
-    /// The margin at every output time; of very many, at those that were kept (`steps.kept_every` of the summary).
+    /// Margin at every output time, or at the stored ones of a long run (`steps.kept_every` of the summary).
     pub series: Vec<f64>,
-    /// First to last output time, s.
+    /// Duration from the first to the last output time, s.
     #[serde(skip)]
     span: f64,
 }
@@ -49,15 +50,15 @@ pub struct MarginFact {
 pub struct DriverTravel {
     /// The driver.
     pub driver: String,
-    /// Travel, in its unit.
+    /// Travel, in `unit`.
     pub travel: f64,
-    /// That unit.
+    /// Unit of the travel.
     pub unit: String,
 }
 
 impl MarginFact {
-    /// The margins of a motion; `None` where nothing was solved, or nothing but single unknowns, one after the other:
-    /// a single equation's condition number is 1 however it is.
+    /// Margins of a motion; `None` if nothing was solved, or only single unknowns one after the other: the condition
+    /// number of a single equation is always 1.
     pub fn new(
         model: &Model,
         units: Units,
@@ -97,18 +98,18 @@ impl MarginFact {
         })
     }
 
-    /// True if velocities near the least margin are not to be relied on.
+    /// True if velocities near the minimum margin are unreliable.
     pub fn is_thin(&self) -> bool {
         !(self.least >= THIN)
     }
 
-    /// `0.12 at least, at t = 0.35 s (pin, guide)`.
+    /// Minimum margin in words: `0.12 at least, at t = 0.35 s (pin, guide)`.
     pub fn line(&self) -> String {
         let joints = few(&self.joints);
         format!("{} at least, at t = {} s ({joints})", rounded(self.least, 2), number(self.time))
     }
 
-    /// `0.12 at the start, 0.05 at least, at ...`.
+    /// Margins at the start and at the minimum: `0.12 at the start, 0.05 at least, at ...`.
     pub fn line_from_start(&self) -> String {
         format!("{} at the start, {}", rounded(self.start, 2), self.line())
     }
@@ -122,7 +123,7 @@ impl MarginFact {
             some_in_words(&self.joints.iter().map(|j| format!("`{j}`")).collect::<Vec<_>>()),
         );
         let lost = match self.digits_lost.round() {
-            _ if self.least <= 0.0 => "velocities mean nothing there".into(),
+            _ if self.least <= 0.0 => "velocities are meaningless there".into(),
             n if n < 1.0 => "hardly a digit of the velocities is lost there".into(),
             n if n < 2.0 => "about one of 16 digits of the velocities is lost there".into(),
             n => format!("about {n} of 16 digits of the velocities are lost there"),
@@ -139,11 +140,11 @@ impl MarginFact {
     pub fn ahead(&self) -> Option<String> {
         let after = self.singular_after.filter(|after| *after <= SOON * self.span)?;
         let drivers = self.drivers_until.iter();
-        // An estimate from the end of the motion: two digits are all that it has.
+        // This extrapolation from the end of the motion is accurate to about two digits.
         let travel = |d: &DriverTravel| format!("{} {}", rounded(d.travel, 2), d.unit).trim_end().to_owned();
         let drivers: Vec<String> = drivers.map(|d| format!("{} of `{}`", travel(d), d.driver)).collect();
         let what = match self.singular_kind {
-            Some("limit") => "its loop cannot be closed beyond",
+            Some("limit") => "its loop cannot be closed any further",
             _ => "two motions meet there",
         };
         let until =
@@ -153,7 +154,7 @@ impl MarginFact {
     }
 }
 
-/// The names on one line; of many the first, and how many more there are.
+/// Names on one line; of a long list the first few and the number of the others.
 fn few(joints: &[String]) -> String {
     hardpoint::draft::some_of(joints, ", ", 4)
 }

@@ -1,4 +1,4 @@
-//! Metrics: values, influences, and their changes in a changed design.
+//! Metrics: values, sensitivities, and their changes in a changed design.
 
 use hardpoint::Solution;
 use hardpoint::model::{Metric, Model, Reduction};
@@ -10,62 +10,63 @@ use crate::facts::variable_unit;
 use crate::figures::{number, per, rounded, unit, with_unit};
 use crate::page::Table;
 
-/// An interpolation error beyond this part of the curve's range (of a slope: of the slope) is reported: metrics are
-/// read to three digits.
+/// Interpolation error, as a fraction of the curve's range (for a slope: of the slope), above which it is reported,
+/// since metrics are read to three digits.
 const COARSE: f64 = 1e-3;
 
-/// The value of a metric, with its sensitivities. Figures are in the model's units.
+/// Value of a metric with its sensitivities, in the model's units.
 #[derive(Clone, Debug, Serialize)]
 pub struct MetricFact {
     /// Name.
     pub name: String,
     /// Description in words.
     pub what: String,
-    /// Value; `null` where the motion does not reach the request.
+    /// Value; `null` if the motion does not reach the required position.
     pub value: Option<f64>,
     /// Unit.
     pub unit: String,
-    /// When it is taken, s; `null` for what is taken of the whole curve.
+    /// Time at which the metric is evaluated, s; `null` if it uses the whole curve.
     pub time: Option<f64>,
-    /// Error of the interpolation between output times; `null` for a mean, and if there are too few output times to
-    /// estimate it.
+    /// Interpolation error between output times; `null` for a mean, and if there are too few output times to estimate
+    /// it.
     pub interpolation_error: Option<f64>,
-    /// True if that is more than a thousandth of the curve's range.
+    /// True if the interpolation error exceeds a thousandth of the curve's range.
     pub coarse: bool,
-    /// By every design variable that the mechanism can follow, the strongest first within each unit of variables.
+    /// Sensitivities to every design variable that the mechanism can follow, the largest first within each unit of
+    /// variables.
     pub sensitivities: Vec<MetricSensitivity>,
 }
 
 /// Sensitivity of a metric to a design variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct MetricSensitivity {
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
-    /// Unit.
+    /// Unit of the variable.
     pub per: String,
-    /// The derivative.
+    /// Derivative.
     pub value: f64,
-    /// The derivative's unit.
+    /// Unit of the derivative.
     pub unit: String,
 }
 
-/// A metric of a changed design.
+/// Metric of a changed design.
 #[derive(Clone, Debug, Serialize)]
 pub struct MetricChange {
     /// Name.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Today's value.
+    /// Nominal value.
     pub today: Option<f64>,
-    /// As predicted to first order.
+    /// First-order prediction.
     pub first: Option<f64>,
-    /// Re-solved.
+    /// Exact value of the changed design.
     pub exact: Option<f64>,
 }
 
 impl MetricFact {
-    /// Those of a solution.
+    /// Metrics of a solution.
     pub fn all(model: &Model, units: Units, solution: &Solution) -> Vec<Self> {
         let values = metrics(model, solution);
         model.metrics.iter().zip(values).map(|(m, value)| Self::new(model, units, m, value)).collect()
@@ -98,7 +99,7 @@ impl MetricFact {
         }
     }
 
-    /// All of them with what moves each most.
+    /// Table of the metrics with their most influential variables.
     pub fn table(facts: &[Self]) -> Option<Table> {
         const SHOWN: usize = 3;
         let row = |m: &Self| {
@@ -128,7 +129,7 @@ impl MetricFact {
                     true => "Between output times these curves are interpolated; the error is an estimate, and more output times make it smaller.".into(),
                     false => String::new(),
                 },
-                header: ["metric", "is", "value", "at t", "estimated error", "strongest variables"].map(String::from).to_vec(),
+                header: ["metric", "definition", "value", "at t", "estimated error", "most influential variables"].map(String::from).to_vec(),
                 rows: facts.iter().map(row).collect(),
             }
             .without_empty_columns()
@@ -137,7 +138,7 @@ impl MetricFact {
 }
 
 impl MetricChange {
-    /// Those of a changed design.
+    /// Metrics of a changed design.
     pub fn all(model: &Model, units: Units, what_if: &WhatIf) -> Vec<Self> {
         let (now, other) = (&what_if.today, &what_if.exact);
         let (today, exact) = (metrics(model, now), metrics_beside(model, now, other));
@@ -157,14 +158,14 @@ impl MetricChange {
         model.metrics.iter().enumerate().map(change).collect()
     }
 
-    /// All of them in a table.
+    /// Table of the changed metrics.
     pub fn table(changes: &[Self]) -> Option<Table> {
         let row = |m: &Self| {
             let shown = |x: Option<f64>| x.map_or("-".into(), |x| with_unit(x, &m.unit));
             let change = m.exact.zip(m.today).map(|(x, now)| x - now);
             vec![m.name.clone(), shown(m.today), shown(m.first), shown(m.exact), shown(change)]
         };
-        let header = ["metric", "today", "predicted, 1st order", "changed", "change"];
+        let header = ["metric", "nominal", "predicted, 1st order", "changed", "change"];
         (!changes.is_empty()).then(|| Table {
             title: "Metrics".into(),
             note: String::new(),
@@ -174,7 +175,7 @@ impl MetricChange {
     }
 }
 
-/// A metric in words: `slope of toe over wheel_travel at 0 mm`.
+/// Description of a metric: `slope of toe over wheel_travel at 0 mm`.
 fn what(model: &Model, units: Units, metric: &Metric) -> String {
     let name = |output| model.output_name(output);
     let x = model.abscissa(metric);

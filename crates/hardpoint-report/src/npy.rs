@@ -1,7 +1,6 @@
-//! `motion.npy` and `sensitivity.npy`: arrays of doubles as NumPy reads them, half as large as CSV and much faster to
-//! read.
+//! `motion.npy` and `sensitivity.npy`: NumPy arrays of doubles, half as large as CSV and much faster to read.
 //!
-//! What the columns are is in `columns.json` beside them. Where there is no number, there is NaN.
+//! `columns.json` next to them describes the columns. Missing numbers are NaN.
 
 use std::io::{self, Seek, SeekFrom, Write};
 
@@ -11,22 +10,22 @@ use serde::Serialize;
 use crate::columns::{Column, Columns};
 use crate::facts::variable_unit;
 
-/// Bytes before the numbers: room for any shape.
+/// Size of the header in bytes: enough for any shape.
 const HEADER: usize = 256;
 
-/// An array that grows by rows.
+/// Array file that grows by rows.
 pub struct Npy<W: Write + Seek> {
     out: W,
     rows: usize,
-    /// The shape of a row.
+    /// Shape of a row.
     shape: Vec<usize>,
 }
 
 impl<W: Write + Seek> Npy<W> {
-    /// An array of rows of this shape, none as yet.
+    /// Starts an array of rows of a shape.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// If `out` cannot be written.
     pub fn new(shape: &[usize], mut out: W) -> io::Result<Self> {
         out.write_all(&header(0, shape))?;
         Ok(Self { out, rows: 0, shape: shape.to_vec() })
@@ -35,10 +34,10 @@ impl<W: Write + Seek> Npy<W> {
     /// Appends a row.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If the row cannot be written.
     ///
     /// # Panics
-    /// If it is not of this array's shape.
+    /// If the row does not have this array's shape.
     pub fn row(&mut self, numbers: &[f64]) -> io::Result<()> {
         assert_eq!(numbers.len(), self.shape.iter().product::<usize>(), "a row of this array");
         numbers.iter().try_for_each(|x| {
@@ -49,10 +48,10 @@ impl<W: Write + Seek> Npy<W> {
         Ok(())
     }
 
-    /// In the first `rows`, that many numbers from `first` on are none.
+    /// Overwrites `count` numbers from `first` on by NaN in each of the first `rows`.
     ///
     /// # Errors
-    /// Where they cannot be written.
+    /// If they cannot be written.
     pub fn forget(&mut self, rows: usize, first: usize, count: usize) -> io::Result<()> {
         let row: usize = self.shape.iter().product();
         let none: Vec<u8> = std::iter::repeat_n(f64::NAN.to_le_bytes(), count).flatten().collect();
@@ -63,10 +62,10 @@ impl<W: Write + Seek> Npy<W> {
         Ok(())
     }
 
-    /// Writes how many rows there are, and hands back what was written to.
+    /// Writes the number of rows and returns the underlying writer.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn end(mut self) -> io::Result<W> {
         self.out.seek(SeekFrom::Start(0))?;
         self.out.write_all(&header(self.rows, &self.shape))?;
@@ -75,7 +74,7 @@ impl<W: Write + Seek> Npy<W> {
     }
 }
 
-/// Format version 1.0: magic, version, length of the text, text padded by blanks up to a newline.
+/// Format version 1.0: magic, version, length of the text, text padded with blanks up to a newline.
 fn header(rows: usize, shape: &[usize]) -> Vec<u8> {
     let shape: Vec<String> = std::iter::once(&rows).chain(shape).map(usize::to_string).collect();
     let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}), }}", shape.join(", "));
@@ -87,28 +86,28 @@ fn header(rows: usize, shape: &[usize]) -> Vec<u8> {
     bytes
 }
 
-/// `columns.json`: what the arrays hold.
+/// `columns.json`: description of the arrays.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sidecar {
     /// Program and version.
     pub generator: &'static str,
-    /// `motion.npy`: `[output time, column]`; the first column is time.
+    /// Columns of `motion.npy`, of shape `[output time, column]`; the first column is time.
     pub motion: Vec<Column>,
-    /// `sensitivity.npy`, where there is any.
+    /// Description of `sensitivity.npy`, if it was written.
     pub sensitivity: Option<SensitivitySidecar>,
 }
 
-/// Contents of `sensitivity.npy`: `[output time, variable, column]`, the output times of `motion.npy`.
+/// Description of `sensitivity.npy`, of shape `[output time, variable, column]`, with the output times of `motion.npy`.
 #[derive(Clone, Debug, Serialize)]
 pub struct SensitivitySidecar {
-    /// The variables, each with its unit; those that the mechanism cannot follow have NaN.
+    /// Variables with their units; values are NaN if the mechanism cannot follow the variable.
     pub variables: Vec<Column>,
-    /// The columns, each with the unit of its numerator.
+    /// Columns with the units of their numerators.
     pub columns: Vec<Column>,
 }
 
 impl Sidecar {
-    /// Sidecar of these columns.
+    /// Description of the columns.
     pub fn new(motion: &Columns<'_>, sensitivities: Option<&Columns<'_>>) -> Self {
         let time = Column { name: "t".into(), unit: "s".into() };
         let sensitivity = |c: &Columns<'_>| {
@@ -130,7 +129,7 @@ impl Sidecar {
 /// Writes the motion of a window.
 ///
 /// # Errors
-/// Where it cannot be written.
+/// If it cannot be written.
 pub fn add_motion<W: Write + Seek>(
     npy: &mut Npy<W>,
     columns: &Columns<'_>,
@@ -146,10 +145,10 @@ pub fn add_motion<W: Write + Seek>(
     Ok(())
 }
 
-/// Writes the sensitivities of a window; NaN by variables that it has none for.
+/// Writes the sensitivities of a window; NaN for variables without any.
 ///
 /// # Errors
-/// Where they cannot be written.
+/// If they cannot be written.
 pub fn add_sensitivities<W: Write + Seek>(
     npy: &mut Npy<W>,
     columns: &Columns<'_>,

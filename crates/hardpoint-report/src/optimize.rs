@@ -1,4 +1,4 @@
-//! Result of an optimisation: goals, limits and variables before and after, in the model's units.
+//! Result of an optimisation: nominal and optimised goals, limits and variables, in the model's units.
 
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
@@ -16,42 +16,41 @@ use crate::facts::variable_unit;
 use crate::figures::{error, number, seconds, some_of, symbol, unit, with_unit};
 use crate::page::{Payload, Table};
 
-/// Multiplier, as a fraction of the objective per whole range of a variable, below which an active constraint is not
+/// Multiplier, as a fraction of the objective per range of a variable, below which an active constraint is not
 /// reported.
 const SLIGHT: f64 = 1e-9;
-/// Number of designs that were refused are reported.
+/// Maximum number of failed designs that are reported.
 const REFUSED: usize = 20;
 
-/// An optimisation, in the model's units. As JSON it is `summary.json` of `hardpoint optimize`.
+/// Result of an optimisation, in the model's units. Serialised as `summary.json` of `hardpoint optimize`.
 #[derive(Clone, Debug, Serialize)]
 pub struct OptimizeFacts {
     /// Program and version.
     pub generator: String,
-    /// The kind of study.
+    /// Kind of study.
     pub study: &'static str,
-    /// The model's name.
+    /// Name of the model.
     pub model: String,
-    /// The model file.
+    /// Name of the model file.
     pub file: String,
     /// Outcome of the best search: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or
-    /// `no_start`; or `not_reproduced` where the saved design does not move as the optimum does, and `not_saved` where
-    /// it could not be saved.
+    /// `no_start`; or `not_reproduced` if the saved design does not move like the optimum, or `not_saved` if it could
+    /// not be saved.
     pub status: &'static str,
-    /// The same in words, and what to do.
+    /// Status in words, with an instruction.
     pub message: String,
-    /// Objective, a sum over the goals without a unit: of the nominal design, and of the best design.
+    /// Objective of the nominal and the optimised design: dimensionless sum over the goals.
     pub objective: BeforeAfter,
-    /// By how much the limit is exceeded that is exceeded most, as a part of what the bounds of the variables make of
-    /// it.
+    /// Largest violation of a limit, as a fraction of its change over the bounds of the most influential variable.
     pub violation: BeforeAfter,
-    /// The least margin to a singular position in any motion: in the design configuration, and of the best design.
+    /// Minimum margin to a singular position over all motions, of the nominal and the optimised design.
     pub margin: BeforeAfter,
-    /// The saved design, read from the file as written and solved once more; `null` where none was saved.
+    /// Saved design, read back from the file and solved again; `null` if none was saved.
     pub saved: Option<SavedFact>,
-    /// The part of the gradient that neither bounds nor limits balance, relative to the scale of the goals; 0 where all
-    /// misfits vanish.
+    /// Residual of the optimality (KKT) conditions: the part of the gradient that neither bounds nor limits balance,
+    /// relative to the scale of the goals; 0 if all misfits vanish.
     pub kkt: Option<f64>,
-    /// The start of the best search: 0 is the nominal design.
+    /// Number of the start of the best search; 0 is the nominal design.
     pub best_start: Option<usize>,
     /// Cost of the search.
     pub evaluations: Evaluations,
@@ -59,45 +58,45 @@ pub struct OptimizeFacts {
     pub goals: Vec<GoalFact>,
     /// Limits of the optimisation.
     pub limits: Vec<LimitFact>,
-    /// All variables that were searched.
+    /// Searched variables.
     pub variables: Vec<SearchedVariable>,
-    /// The hardpoints that the best design has elsewhere.
+    /// Hardpoints that the optimised design moves.
     pub hardpoints: Vec<MovedHardpoint>,
-    /// The iterations of the best search.
+    /// Iterations of the best search.
     pub iterations: Vec<IterationFact>,
     /// All searches.
     pub starts: Vec<StartFact>,
-    /// Designs that could not be judged, the first of them.
+    /// The first designs that could not be evaluated.
     pub refused: Vec<RefusedFact>,
-    /// Total number.
+    /// Number of designs that could not be evaluated.
     pub refused_count: usize,
-    /// Further notes.
+    /// Further diagnostics.
     pub diagnostics: Vec<Diagnostic>,
-    /// The files that were written.
+    /// Written files.
     pub files: Vec<String>,
     /// Duration, s.
     pub seconds: f64,
 }
 
-/// A number of the nominal design, and of the best one.
+/// Value of the nominal design and of the optimised one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BeforeAfter {
-    /// In the design configuration; `null` where it cannot be judged.
+    /// Nominal value; `null` if the nominal design cannot be evaluated.
     pub before: Option<f64>,
-    /// Value of the best design; `null` if none was found.
+    /// Optimised value; `null` if no design was found.
     pub after: Option<f64>,
 }
 
-/// A saved design, read from the file as written and solved once more.
+/// Saved design, read back from the file and solved again.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SavedFact {
-    /// The file.
+    /// Name of the file.
     pub file: String,
-    /// The objective.
+    /// Objective of the saved design.
     pub objective: Option<f64>,
-    /// As [`OptimizeFacts::violation`].
+    /// Violation of the saved design, as [`OptimizeFacts::violation`].
     pub violation: Option<f64>,
-    /// The least margin to a singular position in any motion.
+    /// Minimum margin to a singular position over all motions.
     pub margin: Option<f64>,
     /// Reason why the design is not the optimum; `null` if it is.
     pub why: Option<String>,
@@ -106,146 +105,146 @@ pub struct SavedFact {
 /// Cost of an optimisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Evaluations {
-    /// Designs that were looked at.
+    /// Number of evaluated designs.
     pub designs: usize,
-    /// Motions solved for them.
+    /// Number of solved motions.
     pub motions: usize,
-    /// Output times solved, each with its sensitivities.
+    /// Number of solved output times, each with its sensitivities.
     pub steps: usize,
 }
 
-/// A goal in one motion.
+/// Goal in one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct GoalFact {
     /// Name.
     pub name: String,
-    /// The metric that it is taken of.
+    /// Metric of the goal.
     pub metric: String,
-    /// In which case; `null` where there are none.
+    /// Name of the case; `null` if the model has no cases.
     pub case: Option<String>,
-    /// The metric's unit.
+    /// Unit of the metric.
     pub unit: String,
     /// Target; `null` if the metric is minimised.
     pub target: Option<f64>,
-    /// Weight of one unit.
+    /// Weight per unit.
     pub weight: f64,
-    /// Value before and after.
+    /// Nominal and optimised value.
     #[serde(flatten)]
     pub value: BeforeAfter,
 }
 
-/// A limit, in one motion where it is on a metric.
+/// Limit, in one motion if it is on a metric.
 #[derive(Clone, Debug, Serialize)]
 pub struct LimitFact {
     /// Name.
     pub name: String,
     /// Limited quantity.
     pub of: String,
-    /// In which case.
+    /// Name of the case; `null` if the limit is not on a metric, or the model has no cases.
     pub case: Option<String>,
     /// Unit.
     pub unit: String,
-    /// It must not be less.
+    /// Lower end.
     pub min: Option<f64>,
-    /// It must not be more.
+    /// Upper end.
     pub max: Option<f64>,
-    /// Value before and after.
+    /// Nominal and optimised value.
     #[serde(flatten)]
     pub value: BeforeAfter,
-    /// The end that binds: `min` or `max`.
+    /// Active end: `min` or `max`.
     pub binds: Option<&'static str>,
-    /// By how much the objective would get less if that end gave way by one unit.
+    /// Decrease of the objective per unit by which the active end is relaxed.
     pub worth: Option<f64>,
 }
 
-/// A variable that was searched.
+/// Searched variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct SearchedVariable {
     /// Name.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Start of the best search, as a change of the design configuration.
+    /// Start of the best search, as a change from the nominal design.
     pub start: f64,
-    /// End of the best search, likewise.
+    /// End of the best search, as a change from the nominal design.
     pub end: f64,
-    /// Between which changes it may lie.
+    /// Bounds of the change.
     pub bounds: [f64; 2],
-    /// The value that it changes, in the design configuration; `null` where it changes more than one number.
+    /// Nominal value of the number that the variable changes; `null` if it changes more than one number.
     pub nominal: Option<f64>,
-    /// The bound that binds: `lower` or `upper`.
+    /// Active bound: `lower` or `upper`.
     pub binds: Option<&'static str>,
-    /// By how much the objective would get less if that bound gave way by one unit.
+    /// Decrease of the objective per unit by which the active bound is relaxed.
     pub worth: Option<f64>,
-    /// Share of the change of the objective, along the path of the best search.
+    /// Contribution to the change of the objective along the path of the best search.
     pub work: f64,
 }
 
-/// A hardpoint that the best design has elsewhere, in the length unit.
+/// Hardpoint that the optimised design moves, in the length unit.
 #[derive(Clone, Debug, Serialize)]
 pub struct MovedHardpoint {
     /// Name.
     pub name: String,
-    /// In the design configuration.
+    /// Nominal coordinates.
     pub before: [f64; 3],
-    /// In the best design.
+    /// Optimised coordinates.
     pub after: [f64; 3],
 }
 
-/// An iteration.
+/// Iteration of a search.
 #[derive(Clone, Debug, Serialize)]
 pub struct IterationFact {
-    /// Number; 0 is the start.
+    /// Number of the iteration; 0 is the start.
     pub iteration: usize,
-    /// The objective.
+    /// Objective at the iteration.
     pub objective: f64,
-    /// As [`OptimizeFacts::violation`].
+    /// Violation at the iteration, as [`OptimizeFacts::violation`].
     pub violation: f64,
-    /// The step, as the largest part of a variable's bounds.
+    /// Step: largest change of a variable as a fraction of its bounds.
     pub step: f64,
-    /// The variable that moved most.
+    /// Variable with the largest change.
     pub moved: Option<String>,
-    /// By how much, in its unit.
+    /// Change of that variable, in `unit`.
     pub by: Option<f64>,
     /// Unit.
     pub unit: Option<String>,
-    /// Designs looked at so far.
+    /// Number of designs evaluated so far.
     pub designs: usize,
 }
 
-/// A search.
+/// Search from one start.
 #[derive(Clone, Debug, Serialize)]
 pub struct StartFact {
-    /// Number; 0 starts from the nominal design.
+    /// Number of the start; 0 is the nominal design.
     pub start: usize,
     /// Status at the end.
     pub status: &'static str,
-    /// The objective that it found.
+    /// Objective of its best design.
     pub objective: Option<f64>,
-    /// By how much that exceeds a limit.
+    /// Violation of its best design, as [`OptimizeFacts::violation`].
     pub violation: Option<f64>,
-    /// Iterations.
+    /// Number of iterations.
     pub iterations: usize,
-    /// Designs that it looked at.
+    /// Number of evaluated designs.
     pub designs: usize,
     /// Number of these that could not be evaluated.
     pub refused: usize,
 }
 
-/// A design that could not be judged.
+/// Design that could not be evaluated.
 #[derive(Clone, Debug, Serialize)]
 pub struct RefusedFact {
-    /// In which search.
+    /// Number of the search.
     pub start: usize,
-    /// In which case.
+    /// Name of the case.
     pub case: Option<String>,
-    /// Why.
+    /// Reason.
     pub why: String,
-    /// The values of the searched variables, in their units.
+    /// Values of the searched variables, in their units.
     pub values: Vec<f64>,
 }
 
-/// The word for a status in JSON.
+/// Word for a status in JSON.
 pub fn status_word(status: OptimizationStatus) -> &'static str {
     match status {
         OptimizationStatus::Optimal => "optimal",
@@ -257,17 +256,17 @@ pub fn status_word(status: OptimizationStatus) -> &'static str {
     }
 }
 
-/// One unit in SI of something that is measured so.
+/// SI value of one user unit of a quantity.
 fn unit_in_si(units: Units, of: impl Into<Dimension>) -> f64 {
     1.0 / units.from_si(of.into(), 1.0)
 }
 
-/// The name of a motion; `None` where there are no cases.
+/// Name of the case of a motion; `None` if the model has no cases.
 pub fn case_name(model: &Model, motion: usize) -> Option<String> {
     model.cases.get(motion).map(|case| case.name.clone())
 }
 
-/// An iteration as a line of text: what is shown while the search goes on.
+/// Iteration as a line of text, shown during the search.
 pub fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
     let kept = match exceeded(i.violation) {
         Some(by) => format!("limits exceeded by {by}"),
@@ -287,21 +286,21 @@ pub fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
     format!("{:>4}  objective {:<12}{kept}{moved}", i.number, number(i.objective))
 }
 
-/// A design is saved to this part of its variables' bounds: what is finer is the search's, and no hand's.
+/// Resolution of a saved design, as a fraction of its variables' bounds: finer digits are artefacts of the search.
 const FINEST: f64 = 1e-9;
 
-/// Digits that are tried where a design of fewer digits does not move as the optimum does: parts of the bounds, down to
-/// the last bit.
+/// Finer resolutions, as fractions of the bounds, that are tried if a design with fewer digits does not move like the
+/// optimum; the last one is full precision.
 const FINER: [f64; 3] = [FINEST, 1e-12, 1e-16];
-/// A saved design may exceed limits by this more than the optimum: what its last digit changes.
+/// Additional violation of limits that a saved design may have due to rounding.
 const SAVED: f64 = 1e-7;
 
-/// By how much limits are exceeded, in words; `None` where that is round-off.
+/// Violation of limits in words; `None` if it is round-off.
 fn exceeded(violation: f64) -> Option<String> {
     (violation > LIMIT_KEPT).then(|| error(violation))
 }
 
-/// The design that is saved: numbers of as few digits as still describe the optimum, judged by solving it.
+/// Design to save: numbers with as few digits as still describe the optimum, checked by solving it.
 pub fn to_save(
     file: &ModelFile,
     motions: &Motions<'_>,
@@ -314,7 +313,7 @@ pub fn to_save(
     all().find(moves).unwrap_or_else(|| rounded(file, asked, design))
 }
 
-/// A design with the searched variables at numbers of few digits in the file's units.
+/// Design with the searched variables rounded to few digits in the file's units.
 pub fn rounded(file: &ModelFile, asked: &OptimizationSettings, design: &[f64]) -> Vec<f64> {
     rounded_to(file, asked, design, FINEST)
 }
@@ -332,7 +331,7 @@ fn rounded_to(file: &ModelFile, asked: &OptimizationSettings, design: &[f64], fi
     design
 }
 
-/// The header-free line of a search that ended.
+/// Line on a search that ended, without header.
 pub fn start_line(k: usize, search: &SearchResult) -> String {
     let from = if k == 0 { "nominal".into() } else { format!("start {k}") };
     let found = search.found.as_ref().map_or("-".into(), |f| number(f.objective));
@@ -344,16 +343,16 @@ pub fn start_line(k: usize, search: &SearchResult) -> String {
 fn in_words(status: OptimizationStatus) -> &'static str {
     match status {
         OptimizationStatus::Optimal => "an optimum",
-        OptimizationStatus::Stuck => "no step goes further",
+        OptimizationStatus::Stuck => "no further progress",
         OptimizationStatus::LimitsNotKept => "limits not kept",
-        OptimizationStatus::IterationLimit => "iterations used up",
+        OptimizationStatus::IterationLimit => "iteration limit reached",
         OptimizationStatus::Interrupted => "interrupted",
         OptimizationStatus::NoStart => "cannot start",
     }
 }
 
 impl OptimizeFacts {
-    /// Those of an optimisation.
+    /// Collects the facts of an optimisation.
     pub fn of(file: &ModelFile, asked: &OptimizationSettings, found: &OptimizationResult) -> Self {
         let (model, units) = (&file.model, file.units);
         let best = found.best.map(|k| &found.searches[k]);
@@ -361,7 +360,7 @@ impl OptimizeFacts {
         let worst = found.searches.first().map_or(OptimizationStatus::NoStart, |s| s.status);
         let status = best.map_or(worst, |b| b.status);
         let before_after = |of: fn(&DesignAssessment) -> f64| BeforeAfter {
-            before: found.drawn.as_ref().map(of),
+            before: found.nominal.as_ref().map(of),
             after: judged.map(of),
         };
         let refused =
@@ -386,7 +385,7 @@ impl OptimizeFacts {
             objective: before_after(|j| j.objective),
             violation: before_after(|j| j.violation),
             margin: BeforeAfter {
-                before: found.drawn.as_ref().and_then(|j| j.margin),
+                before: found.nominal.as_ref().and_then(|j| j.margin),
                 after: judged.and_then(|j| j.margin),
             },
             saved: None,
@@ -432,13 +431,13 @@ impl OptimizeFacts {
         let binding: Vec<&str> =
             self.variables.iter().filter(|v| v.binds.is_some()).map(|v| v.name.as_str()).collect();
         match status {
-            OptimizationStatus::Optimal if best_is_met(found) => "all goals are met: nothing is left to gain".into(),
+            OptimizationStatus::Optimal if best_is_met(found) => "all goals are met: no improvement is possible".into(),
             OptimizationStatus::Optimal if binding.is_empty() => "an optimum: no small change of the design is better".into(),
             OptimizationStatus::Optimal => format!(
                 "optimum found; {} are at their bounds, and wider bounds would improve it",
                 some_of(&binding, ", ")
             ),
-            OptimizationStatus::Stuck => "no step goes further, although it is not quite an optimum: try more `starts`, or more output times \
+            OptimizationStatus::Stuck => "no step makes progress, although it is not quite an optimum: try more `starts`, or more output times \
                 where a metric jumps"
                 .into(),
             OptimizationStatus::LimitsNotKept => format!(
@@ -447,7 +446,7 @@ impl OptimizeFacts {
                 exceeded()
             ),
             OptimizationStatus::IterationLimit => {
-                "the iterations are used up before an optimum was reached: increase `max_iterations`".into()
+                "the iteration limit was reached before an optimum: increase `max_iterations`".into()
             }
             OptimizationStatus::Interrupted => "interrupted: the best design so far".into(),
             OptimizationStatus::NoStart => {
@@ -529,7 +528,7 @@ impl OptimizeFacts {
         if !self.variables.is_empty() {
             tables.push(Table {
                 title: "Design".into(),
-                note: "Start, found and bounds are values of the number that the variable changes; where it changes several, they are \
+                note: "Start, optimised value and bounds are values of the number that the variable changes; where it changes several, they are \
                     changes of the design configuration. Work is a variable's share of what was gained, along the way."
                     .into(),
                 header: header(&["variable", "start", "optimised", "change", "bounds", "work", "active bound"]),
@@ -542,7 +541,7 @@ impl OptimizeFacts {
                 vec![h.name.clone(), place(h.before), place(h.after)]
             };
             tables.push(Table {
-                title: "Hardpoints that move".into(),
+                title: "Moved hardpoints".into(),
                 note: String::new(),
                 header: header(&["hardpoint", "nominal", "optimised"]),
                 rows: self.hardpoints.iter().map(row).collect(),
@@ -561,7 +560,8 @@ impl OptimizeFacts {
             ("objective", format!("{} nominal, {} optimised", shown(before), shown(after))),
         ];
         rows.extend(
-            self.kkt.map(|kkt| ("optimality", format!("{} of the goals' gradient is left", error(kkt)))),
+            self.kkt
+                .map(|kkt| ("optimality", format!("{} of the goals' gradient is unbalanced", error(kkt)))),
         );
         if let Some(after) = self.margin.after {
             let before = self.margin.before.map_or("-".into(), number);
@@ -572,7 +572,9 @@ impl OptimizeFacts {
         }
         if let Some(saved) = &self.saved {
             let is = match (&saved.why, saved.margin, saved.objective) {
-                (Some(why), _, _) => format!("`{}` does not reproduce the design found: {why}", saved.file),
+                (Some(why), _, _) => {
+                    format!("`{}` does not reproduce the optimised design: {why}", saved.file)
+                }
                 (None, margin, objective) => format!(
                     "`{}` was read and solved again: objective {}, margin {}",
                     saved.file,
@@ -594,13 +596,13 @@ impl OptimizeFacts {
         }
         let refused = match self.refused_count {
             0 => String::new(),
-            n => format!(", {n} of which could not be judged"),
+            n => format!(", {n} of which could not be evaluated"),
         };
-        rows.push(("looked at", format!("{designs} designs{refused}, {motions} motions")));
+        rows.push(("evaluated", format!("{designs} designs{refused}, {motions} motions")));
         rows
     }
 
-    /// A multiplier in the unit of the only goal, or in that of the objective.
+    /// Formatted multiplier in the unit of the only goal, or of the objective.
     fn worth(&self, worth: f64) -> String {
         match &self.goals[..] {
             [goal] => {
@@ -628,8 +630,8 @@ impl OptimizeFacts {
                 .is_some_and(|(value, objective)| squares(value, objective))
     }
 
-    /// The page of the nominal design becomes that of the search: what is reported here comes first among its checks,
-    /// and it opens on what the first goal of this motion is taken of, drawn over its abscissa.
+    /// Turns the page of the nominal design into that of the search: the result comes first among the checks, and the
+    /// page opens on the curve of the first goal of this motion, over its abscissa.
     pub fn page(&self, mut page: Payload, model: &Model, outputs: &[Output]) -> Payload {
         let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
         let goal = |g: &GoalFact| model.metrics.iter().find(|m| m.name == g.metric);
@@ -686,7 +688,7 @@ fn unit_name(unit: &str) -> &str {
 }
 
 impl LimitFact {
-    /// By how much it is exceeded.
+    /// Violation of the limit, in its unit.
     fn missed(&self) -> Option<f64> {
         let value = self.value.after?;
         let below = self.min.map_or(0.0, |min| min - value);
@@ -712,7 +714,7 @@ impl LimitFact {
     }
 }
 
-/// A limit that is exceeded by less than this part of its value, in the unit of the file, is reported as kept.
+/// A limit that is exceeded by less than this fraction of its value is reported as satisfied.
 const MISSED: f64 = 1e-7;
 
 fn goals(
@@ -722,7 +724,7 @@ fn goals(
     found: &OptimizationResult,
     judged: Option<&DesignAssessment>,
 ) -> Vec<GoalFact> {
-    let some = found.drawn.as_ref().or(judged);
+    let some = found.nominal.as_ref().or(judged);
     let taken = some.map_or(&[][..], |j| &j.goals[..]);
     let fact = |(k, (goal, motion, _)): (usize, &(usize, usize, f64))| {
         let goal = &asked.goals[*goal];
@@ -737,7 +739,7 @@ fn goals(
             unit: unit(units, dimension),
             target: goal.target.or(metric.take.target().map(|_| 0.0)).map(shown),
             weight: goal.weight * unit_in_si(units, dimension),
-            value: BeforeAfter { before: value(found.drawn.as_ref()), after: value(judged) },
+            value: BeforeAfter { before: value(found.nominal.as_ref()), after: value(judged) },
         }
     };
     taken.iter().enumerate().map(fact).collect()
@@ -751,7 +753,7 @@ fn limits(
     best: Option<&SearchResult>,
 ) -> Vec<LimitFact> {
     let judged = best.and_then(|b| b.found.as_ref());
-    let some = found.drawn.as_ref().or(judged);
+    let some = found.nominal.as_ref().or(judged);
     let taken = some.map_or(&[][..], |j| &j.limits[..]);
     let hardpoint = |h: hardpoint::model::HardpointId| model.hardpoints[h.0].name.as_str();
     let fact = |(k, (limit, motion, _)): (usize, &(usize, Option<usize>, f64))| {
@@ -785,7 +787,7 @@ fn limits(
             unit: unit(units, dimension),
             min: limit.least.map(shown),
             max: limit.most.map(shown),
-            value: BeforeAfter { before: value(found.drawn.as_ref()), after: value(judged) },
+            value: BeforeAfter { before: value(found.nominal.as_ref()), after: value(judged) },
             binds: binds.map(|b| b.0),
             worth: binds.map(|b| b.1 * unit_in_si(units, dimension)),
         }
@@ -793,14 +795,14 @@ fn limits(
     taken.iter().enumerate().map(fact).collect()
 }
 
-/// A change below this part of the bounds is round-off of their parts.
+/// A change below this fraction of the bounds is round-off.
 const ROUND_OFF: f64 = 1e-15;
 
 fn without_round_off(x: f64, [low, high]: [f64; 2]) -> f64 {
     if x.abs() <= ROUND_OFF * (high - low) { 0.0 } else { x }
 }
 
-/// The number of the file that a variable changes, in SI, where it is one.
+/// Nominal value, SI, of the number in the file that a variable changes, if there is exactly one.
 fn nominal(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
     let model = &file.model;
     let number = |change: &Change| match change {
@@ -816,7 +818,7 @@ fn nominal(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
     if let Some(value) = parameters.find_map(number) {
         return Some(value);
     }
-    // What the mirror moves along with it is no number of the file.
+    // Mirrored changes are not numbers of the file.
     let is_image = |change: &Change| matches!(change, Change::Move(m) if file.is_image(&model.hardpoints[m.hardpoint.0].name));
     let mut own = variable.changes.iter().filter(|change| !is_image(change));
     match (own.next(), own.next()) {
@@ -825,26 +827,26 @@ fn nominal(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
     }
 }
 
-/// Returns whether the best search ended where all goals vanish.
+/// True if the best search ended where all goals vanish.
 fn best_is_met(found: &OptimizationResult) -> bool {
     found.best.is_some_and(|k| found.searches[k].optimality.met)
 }
 
-/// A change with its sign.
+/// Formatted change with its sign.
 fn signed(by: f64, unit: &str) -> String {
     format!("{}{}", if by > 0.0 { "+" } else { "" }, with_unit(by, unit))
 }
 
 impl SearchedVariable {
-    /// The value that a change gives, or the change where there is none.
+    /// Value after a change, or the change itself if there is no nominal value.
     fn value(&self, change: f64) -> f64 {
         self.nominal.map_or(change, |nominal| without_round_off(nominal + change, self.bounds))
     }
 }
 
 impl OptimizeFacts {
-    /// Takes in what solving the saved file anew has shown; a design that is not the optimum is not called one.
-    /// `margin` is the one that the search has kept.
+    /// Enters the result of solving the saved file again. A design that does not reproduce the optimum gets another
+    /// status. `margin` is the minimum margin of the search.
     pub fn check_saved(&mut self, to: &str, judged: Result<DesignAssessment, String>, margin: Option<f64>) {
         let mut saved = SavedFact { file: to.into(), ..SavedFact::default() };
         match judged {
@@ -865,13 +867,13 @@ impl OptimizeFacts {
             };
             self.fall_short(
                 "not_reproduced",
-                &format!("the saved design is not the one found: {why}{advice}"),
+                &format!("the saved design differs from the optimised one: {why}{advice}"),
             );
         }
         self.saved = Some(saved);
     }
 
-    /// A result that could not be saved.
+    /// Enters that the result could not be saved.
     pub fn not_saved(&mut self, why: &str) {
         self.fall_short("not_saved", &format!("the result could not be saved: {why}"));
     }

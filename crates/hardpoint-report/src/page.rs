@@ -1,9 +1,9 @@
-//! The HTML report: one file that opens from disk, asks the network for nothing and shows the motion
-//! in 3D beside its curves, design sensitivities and checks.
+//! HTML report: one file that opens from disk without network access and shows the motion in 3D together with its
+//! curves, design sensitivities and checks.
 //!
-//! [`Payload`] is everything the page knows. [`html`] puts it, the page's code and its style into one file.
-//! The page itself is TypeScript under `web/`; its built bundle is kept in this crate's `page/` folder, so
-//! building the crate needs no JavaScript tools. `web/src/payload.ts` is written by a test in this file.
+//! [`Payload`] contains all data of the page. [`html`] combines it with the code and style of the page in one file. The
+//! page is written in TypeScript under `web/`; its bundle is stored in this crate's `page/` folder, so that the crate
+//! builds without JavaScript tools. A test in this file writes `web/src/payload.ts`.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::encoding::{base64, packed};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// One number per output step, kept as `f32`; NaN means "no value at this step" and is drawn as a gap.
+/// One number per output step, as `f32`; NaN means "no value at this step" and is drawn as a gap.
 ///
 /// In the page it is a list of tracks of the packed block, whose values follow each other in turn: see
 /// [`crate::encoding`]. It cannot be serialised before it is packed.
@@ -38,7 +38,7 @@ impl Curve {
         &self.values
     }
 
-    /// The same values as tracks of a packed block.
+    /// Converts the curve to tracks of a packed block.
     pub(crate) fn in_tracks(self, tracks: Vec<u32>) -> Self {
         Self { tracks, ..self }
     }
@@ -65,7 +65,7 @@ impl Serialize for Curve {
     }
 }
 
-/// Everything one report shows. Lengths, angles and times are in [`Payload::units`].
+/// All data of a report. Lengths, angles and times are in [`Payload::units`].
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Payload {
@@ -81,15 +81,15 @@ pub struct Payload {
     pub units: Units,
     /// True if the whole motion was solved.
     pub status: Status,
-    /// A handful of figures for the top of the page.
+    /// Key figures for the top of the page.
     pub summary: Vec<Fact>,
-    /// Sentences about the model that are no errors.
+    /// Notes on the model that are not errors, each a sentence.
     pub notes: Vec<String>,
     /// Output times, `n` steps, ascending.
     pub times: Curve,
     /// Bodies; the first is ground, whose pose is constant.
     pub bodies: Vec<BodyTrack>,
-    /// Joints and constraints that have a place to be drawn at.
+    /// Joints and constraints that can be drawn at a location.
     pub joints: Vec<JointMark>,
     /// Gears, belts, racks, screws and other relations between the joints' coordinates.
     pub couplers: Vec<CouplerMark>,
@@ -97,50 +97,49 @@ pub struct Payload {
     pub drivers: Vec<DriverMark>,
     /// Road wheels.
     pub wheels: Vec<WheelMark>,
-    /// Distances that are measured between two bodies: springs and dampers are often given so.
+    /// Distances between two bodies that are measured: often springs and dampers.
     pub distances: Vec<DistanceMark>,
-    /// Forces on bodies, of joints first; of a model in which something has mass or pushes.
+    /// Forces on bodies, those of joints first; only for models with masses or applied forces.
     pub loads: Vec<LoadMark>,
-    /// The vehicle's own axes in the world, where the mechanism belongs to one.
+    /// Axes of the vehicle in the world, if the mechanism belongs to one.
     pub vehicle: Option<VehicleAxes>,
     /// Quantities that can be plotted over time.
     pub quantities: Vec<Quantity>,
-    /// Single numbers that the design is judged by: metrics, then the static values of measures.
+    /// Single values that characterise the design: metrics, then the static values of measures.
     pub values: Vec<Value>,
-    /// The quantity that the page opens on, an index into [`Payload::quantities`].
+    /// Quantity that the page shows first, an index into [`Payload::quantities`].
     pub first: Option<usize>,
-    /// The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where
-    /// there is none.
+    /// Quantity on the abscissa of that first plot, an index into [`Payload::quantities`]; time if there is none.
     pub over: Option<usize>,
-    /// Other designs over the same motion, to be compared with this one: changed, predicted, re-solved.
+    /// Other designs over the same motion for comparison: changed, predicted, re-solved.
     pub designs: Vec<Design>,
     /// Measures over grids of two drivers.
     pub maps: Vec<GridMap>,
-    /// Designs that were swept over.
+    /// Designs of a sweep.
     pub sweep: Option<SweepPlot>,
-    /// Margin from singular positions over time, if anything is solved for.
+    /// Margin to singular positions over time, if anything is solved for.
     pub margin: Option<Margin>,
     /// Design variables with their sensitivities.
     pub variables: Vec<Variable>,
     /// Facts about the model: bodies, joints, constraints, redundancy, admissibility.
     pub checks: Vec<Table>,
-    /// The model's text: from it the page solves what the reader changes.
+    /// Text of the model, from which the page solves changed designs.
     pub model: Option<ModelText>,
 }
 
-/// The text of a model, with all that is read besides it.
+/// Text of a model with all other files that it needs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ModelText {
     /// Name of the file.
     pub file: String,
-    /// The text.
+    /// Contents of the file.
     pub text: String,
-    /// The files that it names, but for meshes.
+    /// Contents of the files that it names, except meshes.
     pub files: BTreeMap<String, String>,
-    /// The case whose motion this is, where the model has cases.
+    /// Case of this motion, if the model has cases.
     pub case: Option<String>,
-    /// Detail of the motion on the page; as much as fits if it is not given.
+    /// Detail of the motion on the page; as much as fits if not given.
     pub shown: Option<Detail>,
 }
 
@@ -148,27 +147,27 @@ pub struct ModelText {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Detail {
-    /// Every that many steps of those that are kept.
+    /// Stride of the shown steps among the stored ones.
     pub stride: usize,
-    /// Curves of body origins.
+    /// True if curves of body origins are shown.
     pub origins: bool,
-    /// Motion of bodies by the variables, and with that the sensitivities of their origins.
+    /// True if the motion of bodies by the variables, and the sensitivities of their origins, are shown.
     pub bodies: bool,
-    /// Sensitivities of the velocities and accelerations of body origins.
+    /// True if sensitivities of the velocities and accelerations of body origins are shown.
     pub body_rates: bool,
-    /// Comparison of the sensitivities of body origins with differences.
+    /// True if the sensitivities of body origins are compared with differences.
     pub body_differences: bool,
 }
 
-/// Unit symbols as the user writes them.
+/// Unit symbols of the user.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Units {
-    /// For example `mm`.
+    /// Length unit, for example `mm`.
     pub length: String,
-    /// For example `deg`.
+    /// Angle unit, for example `deg`.
     pub angle: String,
-    /// For example `s`.
+    /// Time unit, for example `s`.
     pub time: String,
 }
 
@@ -176,14 +175,14 @@ pub struct Units {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Status {
-    /// False when the motion, or that of a design beside it, stops before its last step; the page then says so in a
+    /// False if the motion, or that of a design shown alongside, stops before its last step; the page then shows a
     /// banner.
     pub complete: bool,
-    /// One sentence.
+    /// Status in one sentence.
     pub message: String,
 }
 
-/// A labelled figure, already formatted with its unit.
+/// Labelled figure, formatted with its unit.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Fact {
@@ -193,11 +192,11 @@ pub struct Fact {
     pub value: String,
 }
 
-/// A body, its hardpoints and where it was.
+/// Body with its hardpoints and its motion.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct BodyTrack {
-    /// The user's name.
+    /// Name of the body.
     pub name: String,
     /// Pose in the world, 7 numbers per step: x y z, then the unit quaternion w x y z (`world_from_body`).
     pub poses: Curve,
@@ -207,22 +206,22 @@ pub struct BodyTrack {
     pub labels: Vec<String>,
     /// Roles of the points, in the order of `skeleton`.
     pub roles: Vec<PointRole>,
-    /// The body's own shape, where the model names a file of it.
+    /// Shape of the body, if the model names a file of it.
     pub mesh: Option<Mesh>,
 }
 
-/// Role of a hardpoint of a body; of several roles the first.
+/// Role of a hardpoint of a body; the first one that applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum PointRole {
-    /// A joint is there.
+    /// Location of a joint.
     Joint,
-    /// It lies on the axis of a hinge.
+    /// Point on the axis of a hinge.
     Hinge,
-    /// It belongs to a wheel: its centre, or where it touches the ground.
+    /// Point of a wheel: its centre, or its contact with the ground.
     Wheel,
-    /// It is measured, or driven by its place in the world.
+    /// Measured point, or point driven in the world.
     Measured,
 }
 
@@ -234,52 +233,51 @@ pub struct Mesh {
     pub file: String,
     /// Three coordinates per vertex.
     pub positions: Curve,
-    /// Three vertices per triangle: numbers below 2^24, which `f32` holds exactly.
+    /// Three vertices per triangle: integers below 2^24, which `f32` represents exactly.
     pub triangles: Curve,
 }
 
-/// A joint or constraint between two bodies.
+/// Joint or constraint between two bodies.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct JointMark {
-    /// The user's name.
+    /// Name of the joint.
     pub name: String,
-    /// `revolute`, `spherical`, `translational`, `distance`, ...; an unknown kind gets a neutral mark.
+    /// Type: `revolute`, `spherical`, `translational`, `distance`, ...; an unknown type gets a neutral mark.
     pub kind: String,
     /// Index into [`Payload::bodies`].
     pub body_i: usize,
     /// Index into [`Payload::bodies`].
     pub body_j: usize,
-    /// Place on body i, in its frame.
+    /// Location on body i, in its frame.
     pub at_i: [f64; 3],
-    /// Place on body j, in its frame.
+    /// Location on body j, in its frame.
     pub at_j: [f64; 3],
-    /// Unit vector along the joint's axis in the frame of body i, where the kind has one.
+    /// Unit vector along the joint's axis in the frame of body i, if the type has one.
     pub axis: Option<[f64; 3]>,
-    /// The same in the frame of body j; in the design configuration the two agree, but for kinds with an axis on each
-    /// body.
+    /// Unit vector along the joint's axis in the frame of body j. In the design configuration both agree, except for
+    /// types with an axis on each body.
     pub axis_j: Option<[f64; 3]>,
-    /// Unit vector along the second axis, where there is one: in the frame of body j for `universal`,
-    /// `constant_velocity`, `dot1` and `angle`, in that of body i for others.
+    /// Unit vector along the second axis, if there is one: in the frame of body j for `universal`, `constant_velocity`,
+    /// `dot1` and `angle`, in that of body i for others.
     pub axis2: Option<[f64; 3]>,
-    /// The two hardpoints that the axis passes through in the design configuration, in the frame of body i, where it is
-    /// given so.
+    /// Hardpoints that define the axis in the design configuration, in the frame of body i, if it is defined by two.
     pub hinge: Option<[[f64; 3]; 2]>,
-    /// Travel per turn of a screw.
+    /// Travel per revolution of a screw.
     pub lead: Option<f64>,
-    /// The curve that a point of body j follows, as points in the frame of body i.
+    /// Curve that a point of body j follows, as points in the frame of body i.
     pub curve: Option<JointCurve>,
-    /// Shape in drawings, if the model gives one: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
+    /// Shape in drawings, if the model defines one: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
     pub draw: Option<String>,
-    /// True if the joint closes a loop instead of carrying body j.
+    /// True if the joint closes a loop (cut joint) instead of carrying body j (tree joint).
     pub cut: bool,
 }
 
-/// A planar curve on a body, sampled finely enough to be drawn.
+/// Planar curve on a body, sampled finely enough for drawing.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct JointCurve {
-    /// True if its last point is followed by its first.
+    /// True if the last point connects to the first.
     pub closed: bool,
     /// Points in the frame of the body.
     pub points: Vec<[f64; 3]>,
@@ -287,21 +285,21 @@ pub struct JointCurve {
     pub normal: [f64; 3],
 }
 
-/// A linear relation between joint coordinates: `sum of coefficient x coordinate = 0`.
+/// Linear relation between joint coordinates: `sum of coefficient x coordinate = 0`.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CouplerMark {
-    /// The user's name.
+    /// Name of the coupler.
     pub name: String,
-    /// `gear`, `bevel`, `rack`, `belt`, `screw`, `linear`: as the model file says.
+    /// Type in the model file: `gear`, `bevel`, `rack`, `belt`, `screw`, `linear`.
     pub kind: String,
-    /// Terms: of a rack first the rack, then the pinion.
+    /// Terms; for a rack the rack first, then the pinion.
     pub terms: Vec<CouplerTerm>,
-    /// Teeth of two gears, radii of two pulleys, radius of a rack's pinion, lead of a screw: as the model file says.
+    /// Sizes in the model file: teeth of two gears, radii of two pulleys, radius of a rack's pinion, lead of a screw.
     pub sizes: Vec<f64>,
 }
 
-/// A joint coordinate with its factor.
+/// Joint coordinate with its factor.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CouplerTerm {
@@ -309,41 +307,40 @@ pub struct CouplerTerm {
     pub joint: usize,
     /// True if the coordinate is an angle; a length otherwise.
     pub turns: bool,
-    /// Per length unit or per radian of the coordinate.
+    /// Factor per length unit or per radian of the coordinate.
     pub coefficient: f64,
 }
 
-/// Coordinate that a driver drives.
+/// Driven coordinate.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct DriverMark {
-    /// The user's name.
+    /// Name of the driver.
     pub name: String,
     /// Law in words.
     pub law: String,
-    /// Index into [`Payload::joints`], where a joint is driven that is drawn.
+    /// Index into [`Payload::joints`], if the driven joint is drawn.
     pub joint: Option<usize>,
     /// True if the driven coordinate is an angle; a length otherwise.
     pub turns: bool,
-    /// The body whose point is driven, and the point in its frame, where that is so.
+    /// Driven point in the frame of its body, if a point is driven.
     pub point: Option<BodyPlace>,
-    /// Unit vector in the world along which the point is driven, or about which the body is turned at it.
+    /// Unit vector in the world along which the point is driven, or about which the body is rotated.
     pub along: Option<[f64; 3]>,
-    /// The driven coordinate, `n` steps, in the length unit or in radians, counted from the drawing.
+    /// Driven coordinate, `n` steps, in the length unit or in radians, relative to the design configuration.
     pub travel: Curve,
-    /// If several drivers move: rate of each of the first of [`Payload::quantities`] by this driver while the others
-    /// are at rest, in its unit per length unit or radian; empty for quantities that do not follow from positions
-    /// alone.
+    /// If several drivers move: rate of each of the first [`Payload::quantities`] by this driver with the others at
+    /// rest, in its unit per length unit or radian; empty for quantities that do not depend on positions alone.
     pub alone: Vec<Curve>,
 }
 
-/// A place on a body.
+/// Point on a body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct BodyPlace {
     /// Index into [`Payload::bodies`].
     pub body: usize,
-    /// In the body's frame.
+    /// Location in the body's frame.
     pub at: [f64; 3],
 }
 
@@ -351,82 +348,83 @@ pub struct BodyPlace {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct WheelMark {
-    /// The user's name.
+    /// Name of the wheel.
     pub name: String,
-    /// Centre, on the body that carries it.
+    /// Centre, on the carrier body.
     pub centre: BodyPlace,
-    /// Unit vector along its spin axis, outboard, in that body's frame.
+    /// Unit vector along the spin axis, outboard, in the frame of the carrier body.
     pub axis: [f64; 3],
-    /// From the centre to the ground.
+    /// Distance from the centre to the ground.
     pub radius: f64,
-    /// Lower and upper point of the axis that it steers about, where there is one.
+    /// Lower and upper point of the steering axis, if there is one.
     pub kingpin: Option<[BodyPlace; 2]>,
 }
 
-/// A distance that is measured between two places.
+/// Measured distance between two points.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct DistanceMark {
     /// Name of the measure.
     pub name: String,
-    /// From where.
+    /// First point.
     pub from: BodyPlace,
-    /// To where.
+    /// Second point.
     pub to: BodyPlace,
-    /// Shape in drawings, if the model gives one; see [`JointMark::draw`].
+    /// Shape in drawings, if the model defines one; see [`JointMark::draw`].
     pub draw: Option<String>,
 }
 
-/// A force on a body: what a joint puts on its second body, or what a spring or another force puts on a point.
+/// Force on a body: the reaction of a joint on body j, or an applied force of a spring or another element at a point.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct LoadMark {
-    /// The user's name of the joint or the force.
+    /// Name of the joint or the force element.
     pub name: String,
-    /// Index into [`Payload::joints`], where a joint puts it there.
+    /// Index into [`Payload::joints`], for the reaction of a joint.
     pub joint: Option<usize>,
-    /// Point of action.
+    /// Point of application.
     pub at: BodyPlace,
-    /// Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a
-    /// number where nothing is known.
+    /// Three numbers per step: force in the world, N. Components that redundant constraints leave undetermined are
+    /// omitted; NaN if the force is unknown.
     pub force: Curve,
-    /// True if something is left out of it at any time.
+    /// True if undetermined components are omitted at any time.
     pub is_part: bool,
 }
 
-/// Unit vectors in the world.
+/// Unit vectors of the vehicle axes in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct VehicleAxes {
     /// Direction of travel.
     pub forward: [f64; 3],
-    /// Upwards.
+    /// Upward direction.
     pub up: [f64; 3],
 }
 
-/// A single number that the design is judged by.
+/// Single value that characterises the design.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Value {
-    /// The user's name of the metric or measure.
+    /// Name of the metric or measure.
     pub name: String,
     /// Kind of value, in a few words: `design configuration`, `at the start`, `range`, `largest`, ...
     pub what: String,
     /// Unit.
     pub unit: String,
-    /// The number, where the motion reaches it.
+    /// Value, if the motion reaches it.
     pub value: Option<f64>,
-    /// When it is taken, where it is taken at one time.
+    /// Time of the value, if it is taken at one time.
     pub time: Option<f64>,
-    /// The quantity that it is taken of, an index into [`Payload::quantities`].
+    /// Quantity that it is evaluated from, an index into [`Payload::quantities`].
     pub quantity: Option<usize>,
-    /// Least and largest value that is wanted, where the model says so.
+    /// Required minimum and maximum, if the model defines them.
     pub target: Option<[Option<f64>; 2]>,
-    /// Derivatives by every design variable, in the order of [`Payload::variables`]; none where one cannot be followed.
+    /// Derivatives by every design variable, in the order of [`Payload::variables`]; empty if the mechanism cannot
+    /// follow one.
     pub sensitivities: Vec<Option<f64>>,
 }
 
-/// Another design over the same output times. What is not known of it is empty.
+/// Another design over the same output times. Unknown curves are empty.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Design {
@@ -434,9 +432,9 @@ pub struct Design {
     pub name: String,
     /// Source of the design.
     pub kind: DesignKind,
-    /// By how much each variable is changed, in the order of [`Payload::variables`], in their units.
+    /// Change of each variable, in the order of [`Payload::variables`], in their units.
     pub change: Vec<f64>,
-    /// A sentence on how the mechanism follows; may be empty.
+    /// Sentence on the admissibility of the change; may be empty.
     pub note: String,
     /// Poses of its bodies, as in [`BodyTrack::poses`].
     pub poses: Vec<Curve>,
@@ -448,7 +446,7 @@ pub struct Design {
     pub quantities: Vec<Option<DesignCurves>>,
     /// Values, in the order of [`Payload::values`].
     pub values: Vec<Option<f64>>,
-    /// Distance from singular positions.
+    /// Margin to singular positions.
     pub margin: Option<Curve>,
 }
 
@@ -457,17 +455,17 @@ pub struct Design {
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum DesignKind {
-    /// Solved anew.
+    /// Solved again.
     Exact,
-    /// By sensitivities.
+    /// Predicted from first derivatives.
     FirstOrder,
-    /// By first and second derivatives.
+    /// Predicted from first and second derivatives.
     SecondOrder,
-    /// No design but one edge of where the curves of many lie.
+    /// Edge of the band of the curves of many designs, not a design itself.
     Band,
 }
 
-/// A quantity of another design with its two time derivatives; what is not known is empty.
+/// Quantity of another design with its two time derivatives; unknown curves are empty.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct DesignCurves {
@@ -479,11 +477,11 @@ pub struct DesignCurves {
     pub accel: Curve,
 }
 
-/// Something that can be plotted over time, with its two time derivatives.
+/// Quantity that can be plotted over time, with its two time derivatives.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Quantity {
-    /// The user's name, for example `toe`.
+    /// Name of the quantity, for example `toe`.
     pub name: String,
     /// Unit of `value`.
     pub unit: String,
@@ -491,7 +489,7 @@ pub struct Quantity {
     pub rate_unit: String,
     /// Unit of `accel`.
     pub accel_unit: String,
-    /// Heading under which it is offered: `measure`, `point`, `body` or `joint`.
+    /// Heading in the list of quantities: `measure`, `point`, `body` or `joint`.
     pub group: String,
     /// The quantity, `n` steps.
     pub value: Curve,
@@ -503,27 +501,27 @@ pub struct Quantity {
     pub wanted: Curve,
 }
 
-/// Designs that were swept over: some of them, each as a point over variables and metrics.
+/// Designs of a sweep, or a part of them, each as a point over variables and metrics.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SweepPlot {
     /// Meaning of a point: `design`, or `posture`.
     pub what: String,
-    /// That many were solved.
+    /// Number of solved designs.
     pub designs: usize,
     /// Point k is design `k * step`.
     pub step: usize,
-    /// The swept variables, then the metrics.
+    /// Swept variables, then metrics.
     pub axes: Vec<SweepAxis>,
-    /// Sobol's indices, where they were requested.
+    /// Sobol indices, if requested.
     pub indices: Vec<SweepIndex>,
 }
 
-/// A variable or a metric of swept designs.
+/// Variable or metric of a sweep.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SweepAxis {
-    /// Name, and the case where there are several.
+    /// Name, with the case if there are several.
     pub name: String,
     /// Unit.
     pub unit: String,
@@ -533,36 +531,36 @@ pub struct SweepAxis {
     pub values: Curve,
 }
 
-/// Sobol's indices of a metric by a variable, each with its standard error.
+/// Sobol indices of a metric with respect to a variable, each with its standard error.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SweepIndex {
-    /// The metric, an index into [`SweepPlot::axes`].
+    /// Metric, an index into [`SweepPlot::axes`].
     pub metric: usize,
-    /// The variable, an index into [`SweepPlot::axes`].
+    /// Variable, an index into [`SweepPlot::axes`].
     pub variable: usize,
-    /// First order.
+    /// First-order index and its standard error.
     pub first: [f64; 2],
-    /// Total.
+    /// Total index and its standard error.
     pub total: [f64; 2],
 }
 
-/// A case that sweeps two drivers over a grid. Tables have a row for each place of the second driver, with a number for
-/// each of the first.
+/// Case that sweeps two drivers over a grid. Tables have a row for each position of the second driver and a column for
+/// each position of the first.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct GridMap {
-    /// The case's name.
+    /// Name of the case.
     pub name: String,
-    /// The two drivers.
+    /// Drivers of the grid.
     pub drivers: [GridDriver; 2],
-    /// Number of positions that were reached, and why others were not.
+    /// Number of positions reached, and reasons for the unreached ones.
     pub note: String,
     /// Measured quantities.
     pub quantities: Vec<GridQuantity>,
 }
 
-/// A driver of a grid.
+/// Driver of a grid.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct GridDriver {
@@ -574,7 +572,7 @@ pub struct GridDriver {
     pub places: Vec<f64>,
 }
 
-/// A measure over a grid.
+/// Measure over a grid.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct GridQuantity {
@@ -584,71 +582,71 @@ pub struct GridQuantity {
     pub unit: String,
     /// Values, row by row.
     pub values: Curve,
-    /// Derivatives by design variables; none where they would be too many for a page.
+    /// Derivatives by design variables; empty if they would be too many for a page.
     pub sensitivities: Vec<GridSensitivity>,
 }
 
-/// The derivative of a measure by a design variable over a grid.
+/// Derivative of a measure by a design variable over a grid.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct GridSensitivity {
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
-    /// The derivative's unit.
+    /// Unit of the derivative.
     pub unit: String,
-    /// The derivatives, row by row.
+    /// Derivatives, row by row.
     pub values: Curve,
 }
 
-/// Margin of the mechanism from singular positions: 1 is best, 0 is a singular position.
+/// Margin of the mechanism to singular positions: 1 is best, 0 is a singular position.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Margin {
-    /// The margin, `n` steps.
+    /// Margin, `n` steps.
     pub value: Curve,
     /// Meaning of its minimum.
     pub note: String,
 }
 
-/// A design variable: what it moves, whether the mechanism can follow, and what follows from it.
+/// Design variable: its design velocities, admissibility and sensitivities.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Variable {
-    /// The user's name.
+    /// Name of the variable.
     pub name: String,
     /// Meaning in a few words; may be empty.
     pub description: String,
     /// Unit of the variable, `1` for a pure number.
     pub unit: String,
-    /// True if every joint stays intact under this design change.
+    /// Admissibility of the change.
     pub admissibility: Admissibility,
-    /// A sentence with the joints concerned and their defect; empty when there is nothing to say.
+    /// Sentence with the joints concerned and their defects; empty if every joint stays closed.
     pub note: String,
-    /// The design velocity at the hardpoints it moves.
+    /// Design velocities of the hardpoints that it moves.
     pub arrows: Vec<Arrow>,
-    /// By how much it is typically changed, where the model says so.
+    /// Typical change, if the model defines one.
     pub typical: Option<f64>,
-    /// By how much it may be made wrong, either way, where the model says so.
+    /// Manufacturing tolerance in either direction, if the model defines one.
     pub tolerance: Option<f64>,
-    /// Least and largest change that is allowed, counted from the drawing, where the model says so.
+    /// Lower and upper bound of the change from the nominal design, if the model defines them.
     pub bounds: Option<[Option<f64>; 2]>,
-    /// Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation
-    /// vector in rad, per unit of the variable; empty where that is not shown.
+    /// First-order motion of each body per unit of the variable: six numbers per step, dx dy dz in the length unit and
+    /// a rotation vector in rad; empty if it is not shown.
     pub shifts: Vec<Curve>,
-    /// Sensitivities, at most one per quantity; empty when the mechanism cannot follow.
+    /// Sensitivities, at most one per quantity; empty if the mechanism cannot follow the variable.
     pub sensitivities: Vec<Sensitivity>,
 }
 
-/// True if a mechanism can follow a design variable.
+/// Admissibility of a design variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Admissibility {
-    /// Every joint stays intact at the design configuration.
+    /// All joints stay closed in the design configuration.
     Admissible,
-    /// Some joint would open; the mechanism closes it again by moving.
+    /// Joints would open; the mechanism closes them by moving.
     Reassembled,
-    /// No motion closes the joint that opens: there is no sensitivity.
+    /// No motion closes the joints that open: there is no sensitivity.
     CannotFollow,
 }
 
@@ -666,7 +664,7 @@ pub struct Arrow {
     pub turn: [f64; 3],
 }
 
-/// Total derivative of one quantity and of its rates with respect to one design variable.
+/// Total derivative of one quantity and its two time derivatives by one design variable.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Sensitivity {
@@ -678,15 +676,15 @@ pub struct Sensitivity {
     pub rate: Curve,
     /// Derivative of its second time derivative.
     pub accel: Curve,
-    /// The same by re-solving a changed design, when that was requested.
+    /// Difference quotients of re-solved designs, if requested.
     pub fd: Option<FiniteDifference>,
 }
 
-/// Central differences of re-solved designs, to be compared with a [`Sensitivity`].
+/// Central differences of re-solved designs, for comparison with a [`Sensitivity`].
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct FiniteDifference {
-    /// The curves hold every that many of the `n` steps, from the first: they are drawn as a few marks.
+    /// Stride of the curves among the `n` steps, starting with the first: they are drawn as a few marks.
     pub stride: usize,
     /// Difference quotient of the quantity.
     pub value: Curve,
@@ -702,13 +700,13 @@ pub struct FiniteDifference {
     pub worst: [f64; 3],
 }
 
-/// A table of facts, its cells already formatted.
+/// Table of facts with formatted cells.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Table {
     /// Heading.
     pub title: String,
-    /// A sentence under the heading; may be empty.
+    /// Sentence under the heading; may be empty.
     pub note: String,
     /// Column headings.
     pub header: Vec<String>,
@@ -717,7 +715,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// The same without the columns that are empty in every row.
+    /// Removes the columns that are empty in every row.
     pub fn without_empty_columns(self) -> Self {
         let full = |k: usize| self.rows.is_empty() || self.rows.iter().any(|row| !row[k].is_empty());
         let kept: Vec<usize> = (0..self.header.len()).filter(|k| full(*k)).collect();
@@ -729,12 +727,12 @@ impl Table {
 /// Assembles the report as one self-contained HTML file.
 ///
 /// # Errors
-/// When the payload does not serialise, which plain numbers and strings never do.
+/// If the payload cannot be serialised, which does not happen with plain numbers and strings.
 pub fn html(payload: &Payload) -> Result<String, serde_json::Error> {
     Ok(file(&payload.title, &packed(payload)?))
 }
 
-/// The file of a packed payload.
+/// HTML file of a packed payload.
 pub(crate) fn file(title: &str, packed: &[u8]) -> String {
     fill(include_str!("../page/report.html"), |slot| match slot {
         "title" => escape_text(title),
@@ -746,19 +744,19 @@ pub(crate) fn file(title: &str, packed: &[u8]) -> String {
     })
 }
 
-/// Element in which a page finds the server that it comes from: empty in a file.
+/// Element in which a page finds its server: empty in a file.
 const SERVER: &str = "<script type=\"application/json\" id=\"server\">";
 
-/// A page as a server sends it, reported `about` the server. Pages are those of this crate.
+/// Page as sent by a server, with data `about` the server. The page must be one of this crate.
 ///
 /// # Errors
-/// When that does not serialise.
+/// If `about` cannot be serialised.
 pub fn served(page: &str, about: &impl Serialize) -> Result<String, serde_json::Error> {
     let about = serde_json::to_string(about)?.replace('<', "\\u003c");
     Ok(page.replacen(SERVER, &format!("{SERVER}{about}"), 1))
 }
 
-/// Replaces every `{{slot}}` of the template; what is put in is never searched for slots again.
+/// Replaces every `{{slot}}` of the template; inserted content is not searched for slots.
 pub(crate) fn fill(template: &str, content: impl Fn(&str) -> String) -> String {
     let mut pieces = template.split("{{");
     let mut page = pieces.next().unwrap_or_default().to_owned();
@@ -770,7 +768,7 @@ pub(crate) fn fill(template: &str, content: impl Fn(&str) -> String) -> String {
     page
 }
 
-/// Text for between tags, or for an attribute in double quotes.
+/// Escapes text between tags, or for an attribute in double quotes.
 pub(crate) fn escape_text(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -1,9 +1,9 @@
-//! From a solution to everything that the page shows, in the user's units.
+//! Payload of the page from a solution, in the user's units.
 //!
-//! All measures and named points, and the origins of all bodies, are offered as quantities with their sensitivities;
-//! each is compared with central differences of re-solved designs where the caller has them. Where that is too much for
-//! a page that opens at once, the bodies lose their comparison, the motion is thinned, and at last the bodies lose
-//! their sensitivities: the CSV files hold everything.
+//! All measures, named points and origins of bodies are quantities with sensitivities, compared with central
+//! differences of re-solved designs if the caller has them. If that is too much for a page that opens at once, detail
+//! is reduced in this order: the comparison of bodies is dropped, the motion is thinned, and finally the sensitivities
+//! of bodies are dropped. The CSV files always contain everything.
 
 mod designs;
 mod drawing;
@@ -25,7 +25,7 @@ use hardpoint_file::{Appearance, ModelFile, Units};
 
 use crate::course::{Course, RoundOff, settled};
 use crate::encoding::{packed, size_in_page};
-use crate::facts::{Answer, Facts};
+use crate::facts::{Facts, VariableAdmissibility};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
 use crate::page::{
@@ -35,37 +35,37 @@ use crate::page::{
 use crate::summary::{RunStatus, Summary};
 use crate::validity::ValidityFact;
 
-/// The page shows at most about this many output times.
+/// Approximate maximum number of output times on a page.
 const MOST_STEPS: usize = 1000;
-/// Everything but the page's code takes at most this many bytes of it.
+/// Maximum size of the page without its code, in bytes.
 const MOST_BYTES: usize = 8 << 20;
-/// A value of a smooth curve takes between that many bytes of the page; measured where that leaves it open whether all
-/// fits.
+/// Minimum and maximum size of a value of a smooth curve on the page, in bytes; the page is packed to measure its size
+/// if these bounds do not decide whether it fits.
 const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
-/// Differences are drawn as that many marks beside the curve that they are compared with.
+/// Number of marks of differences along a curve.
 const MARKS: usize = 36;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Contents of a page: a run, and results that are shown alongside. [`Request::of`] has the run alone; a study adds its
-/// own results.
+/// Contents of a page: a run, and results that are shown alongside. [`Request::of`] contains the run only; a study adds
+/// its own results.
 #[derive(Clone, Debug)]
 pub struct Request<'a> {
-    /// The model file.
+    /// Model file.
     pub file: &'a ModelFile,
-    /// The plan that the model was solved by.
+    /// Analysis that solved the model.
     pub analysis: &'a Analysis<'a>,
-    /// Facts of the whole motion.
+    /// Facts of the whole run.
     pub course: &'a Course,
-    /// Facts.
+    /// Summary of the run.
     pub summary: &'a Summary,
-    /// `differences[b]` are those of variable b, where there are any; of no variable where this is empty.
+    /// `differences[b]`: differences by variable b, if there are any; empty without differences.
     pub differences: &'a [Option<Difference>],
-    /// Another design over the same motion.
+    /// Another design over the same motion, if any.
     pub changed: Option<ChangedDesign<'a>>,
 }
 
 impl<'a> Request<'a> {
-    /// A run by itself.
+    /// Contents of a run without studies.
     pub fn of(
         file: &'a ModelFile,
         analysis: &'a Analysis<'a>,
@@ -76,22 +76,22 @@ impl<'a> Request<'a> {
     }
 }
 
-/// Everything that the page shows of a run.
+/// Payload of a run.
 pub fn payload(request: &Request<'_>) -> Payload {
     fitted(request, &|payload| payload).0
 }
 
-/// A changed design as it is on the page of today's, which shows so much; `request` is of today's.
+/// Changed design for a page of the nominal design with that detail; `request` is that of the nominal design.
 pub fn design(request: &Request<'_>, changed: &ChangedDesign<'_>, shown: Detail) -> Design {
     let compose = Compose::new(request, None, shown);
     let (bodies, values) = (compose.bodies(), compose.values(request.summary));
     compose.exact(changed, request.course.stride, &bodies, &values)
 }
 
-/// The page as one self-contained HTML file; `finish` is what a study makes of the payload.
+/// Page as one self-contained HTML file. `finish` adds the results of a study to the payload.
 ///
 /// # Errors
-/// When the payload does not serialise, which plain numbers and strings never do.
+/// If the payload cannot be serialised, which does not happen with plain numbers and strings.
 pub fn report(
     request: &Request<'_>,
     finish: &dyn Fn(Payload) -> Payload,
@@ -101,7 +101,7 @@ pub fn report(
     Ok(page::file(&payload.title, &data))
 }
 
-/// All that fits into a page, finished; packed already where it had to be weighed.
+/// Finished payload with as much detail as fits into a page, packed already if its size had to be measured.
 fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payload, Option<Vec<u8>>) {
     let (model, solution) = (&request.file.model, &request.course.kept);
     let size = Size {
@@ -133,8 +133,8 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
     (compose(*last), None)
 }
 
-/// Rates of each driver alone, if several move and there are variables: over another quantity, one of them moves on
-/// while a variable changes. If one moves alone, its rates are those of the motion.
+/// Rates of each driver alone, if several move and there are variables: over an abscissa other than time, a driver
+/// compensates while a variable changes. If only one driver moves, its rates are those of the motion.
 fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
     let (model, times) = (request.analysis.model(), &request.course.kept.motion.times);
     let moves = |driver: &Driver| {
@@ -151,7 +151,7 @@ fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
     Some(analysis.driver_rates(&drivers))
 }
 
-/// The page in so much detail.
+/// Payload with a given detail.
 fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) -> Payload {
     let &Request { file, course, summary, differences, ref changed, .. } = request;
     let (model, units, solution) = (&file.model, file.units, &course.kept);
@@ -219,7 +219,7 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
 enum Bodies {
     /// All orders.
     Whole,
-    /// Places and turns, at each of that many output times.
+    /// Translations and rotations only, with a stride.
     Places(usize),
     /// Nothing.
     Nothing,
@@ -239,28 +239,28 @@ impl Bodies {
 #[derive(Clone, Copy, Debug)]
 struct Size {
     steps: usize,
-    /// Without ground.
+    /// Bodies without ground.
     bodies: usize,
     variables: usize,
     outputs: usize,
     /// Forces on bodies.
     loads: usize,
-    /// True if there are differences to compare with.
+    /// True if there are differences for comparison.
     compared: bool,
-    /// Other designs that are shown beside this one.
+    /// Other designs that are shown alongside.
     designs: usize,
 }
 
 impl Detail {
-    /// Levels of detail, from everything to the minimum.
+    /// Levels of detail, from full to minimum.
     fn levels(size: Size, bodies: Bodies) -> Vec<Self> {
         let stride = size.steps.div_ceil(MOST_STEPS).max(1);
         let all = Self { stride, origins: true, bodies: true, body_rates: true, body_differences: true };
         let exact = Self { body_differences: false, ..all };
         let places = Self { body_rates: false, ..exact };
         let none = Self { bodies: false, ..places };
-        // Fewer steps first, as long as curves stay smooth; then the bodies lose their sensitivities, by which a changed design
-        // is drawn; then fewer steps still.
+        // Fewer steps first, as long as curves stay smooth. Then the bodies lose their sensitivities, which draw a
+        // changed design. Then fewer steps still.
         let coarser = |detail: Self, every: usize, least: usize| {
             let first = stride.next_multiple_of(every);
             let strides = (first..).step_by(every).map(move |stride| Self { stride, ..detail });
@@ -276,18 +276,18 @@ impl Detail {
             Bodies::Nothing => Vec::new(),
         };
         levels.extend(coarser(none, 1, MOST_STEPS / 10));
-        // In a model of very many bodies, their own curves would be most of the page.
+        // With very many bodies, the curves of their origins would be most of the page.
         levels.extend(levels.last().map(|d| Self { origins: false, ..*d }));
         levels
     }
 
-    /// Number of values the curves of the page have.
+    /// Number of values in the curves of the page.
     fn values(self, size: Size) -> f64 {
         let steps = size.steps.div_ceil(self.stride);
         let origins = 3 * size.bodies;
         let shown = if self.origins { origins } else { 0 };
         let motion = 3 * (size.outputs + shown + size.loads) + 7 * (size.bodies + 1);
-        // A body's place and turn; the sensitivity of its origin's place is the same numbers.
+        // Translation and rotation of a body; the sensitivity of its origin's position is the same numbers.
         let bodies = if self.bodies { 2 * origins } else { 0 };
         let rates = if self.body_rates { 2 * origins } else { 0 };
         let compared = size.outputs + if self.body_differences { origins } else { 0 };
@@ -297,16 +297,15 @@ impl Detail {
     }
 }
 
-/// Interval of the shown output times at which differences are drawn, rounded, so that the number of marks is nearest
-/// to the wanted one.
+/// Stride of the marks among the shown output times, rounded so that the number of marks is nearest to [`MARKS`].
 pub fn stride_of_marks(steps: usize) -> usize {
     ((steps + MARKS / 2) / MARKS).max(1)
 }
 
-/// The same among the steps that are shown, each of `shown` that were kept, where differences are known at each of
-/// `known` of those.
+/// Stride of the marks among the shown steps: every `shown`-th of the stored ones is shown, and differences are known
+/// at every `known`-th.
 fn shown_stride_of_marks(known: usize, shown: usize, steps: usize) -> usize {
-    // The distance of steps that are both shown and known
+    // Stride of the steps that are both shown and known
     let common = (1..=known).find(|n| (n * shown).is_multiple_of(known)).unwrap_or(known);
     stride_of_marks(steps).div_ceil(common) * common
 }
@@ -315,7 +314,7 @@ fn file_name(file: &str) -> String {
     Path::new(file).file_name().map_or_else(|| file.into(), |n| n.to_string_lossy().into_owned())
 }
 
-/// Status of the run, and the sentence on the changed design if that stopped early.
+/// Status of the run, with the sentence on a changed design that stopped early.
 fn status(summary: &Summary, changed: Option<String>, detail: Detail) -> Status {
     let steps = &summary.steps;
     let complete = summary.status == RunStatus::Complete && changed.is_none();
@@ -354,7 +353,7 @@ fn uncapitalised(sentence: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_lowercase().to_string() + letters.as_str())
 }
 
-/// `2nd`, `4th`, `32nd`.
+/// Ordinal number: `2nd`, `4th`, `32nd`.
 fn ordinal(n: usize) -> String {
     let ending = match (n % 10, n % 100) {
         (_, 11..=13) => "th",
@@ -366,7 +365,7 @@ fn ordinal(n: usize) -> String {
     format!("{n}{ending}")
 }
 
-/// The handful of figures at the top.
+/// Key figures at the top of the page.
 fn headline(summary: &Summary) -> Vec<Fact> {
     let fact = |label: &str, value: String| Fact { label: label.into(), value };
     let (model, steps) = (&summary.model, &summary.steps);
@@ -405,7 +404,7 @@ struct Compose<'a> {
     course: &'a Course,
     /// Stored results.
     solution: &'a Solution,
-    /// The output times that are shown.
+    /// Shown output times, as indices of stored ones.
     steps: Vec<usize>,
     detail: Detail,
     round_off: RoundOff,
@@ -413,7 +412,7 @@ struct Compose<'a> {
     alone: Option<&'a DriverRates>,
 }
 
-/// From the least to the greatest value of a curve.
+/// Minimum and maximum of a curve.
 #[derive(Clone, Copy, Debug)]
 struct Span {
     least: f64,
@@ -426,13 +425,12 @@ impl Span {
         values.fold(none, |s, x| Self { least: s.least.min(x), greatest: s.greatest.max(x) })
     }
 
-    /// Negative where there is no value.
+    /// Negative if there is no value.
     fn range(self) -> f64 {
         self.greatest - self.least
     }
 
-    /// A value of the curve without round-off: 0 where it is no more than that, and a constant where the curve varies
-    /// by no more.
+    /// Value of the curve without round-off: 0 if it is round-off, and constant if the curve varies by round-off only.
     fn shown(self, x: f64, round_off: f64) -> f64 {
         let x =
             if x.is_finite() && self.range() <= round_off { 0.5 * (self.least + self.greatest) } else { x };
@@ -465,7 +463,7 @@ impl<'a> Compose<'a> {
         self.steps.iter().map(|&k| value(k)).collect()
     }
 
-    /// The first `orders` of value, rate and acceleration; the others are empty.
+    /// Value, rate and acceleration up to `orders`; the others are empty.
     fn curves(&self, orders: usize, value: impl Fn(usize, usize) -> f64) -> [Curve; 3] {
         [0, 1, 2].map(|order| if order < orders { self.curve(|k| value(k, order)) } else { Curve::default() })
     }
@@ -474,7 +472,7 @@ impl<'a> Compose<'a> {
         v.to_array().map(|x| self.units.from_si(Kind::Length, x))
     }
 
-    /// All outputs, then x, y and z of every body's origin.
+    /// Quantities: all outputs, then x, y and z of every body's origin.
     fn quantities(&self) -> Vec<Quantity> {
         let measured = &self.solution.measured;
         let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
@@ -495,7 +493,7 @@ impl<'a> Compose<'a> {
         outputs.chain(origins).collect()
     }
 
-    /// A quantity by its value in SI at a step and order.
+    /// Quantity from a function of step and order, SI.
     fn quantity(
         &self,
         name: &str,
@@ -514,7 +512,7 @@ impl<'a> Compose<'a> {
         Quantity { name, unit, rate_unit, accel_unit, group, value, rate, accel, wanted }
     }
 
-    /// The target curve of the first metric that has one for this output.
+    /// Target curve of the first metric that has one for this output.
     fn wanted(&self, of: OutputSource, kind: Dimension) -> Curve {
         let (measured, times) = (&self.solution.measured, &self.solution.motion.times);
         let has = |m: &&Metric| m.of == of && m.take.target_points().is_some();
@@ -526,7 +524,8 @@ impl<'a> Compose<'a> {
 
     fn variables(&self, facts: &Facts, differences: &[Option<Difference>]) -> Vec<Variable> {
         let variable = |(b, fact): (usize, &crate::facts::VariableFact)| {
-            let known = matches!(fact.answer, Answer::Admissible | Answer::Reassembled);
+            let known =
+                matches!(fact.answer, VariableAdmissibility::Admissible | VariableAdmissibility::Reassembled);
             let of = &self.model.variables[b];
             let shown = |x: f64| self.units.from_si(of.quantity, x);
             let difference = differences.get(b).and_then(Option::as_ref);
@@ -535,9 +534,11 @@ impl<'a> Compose<'a> {
                 description: fact.change.replace('`', ""),
                 unit: fact.unit.clone(),
                 admissibility: match fact.answer {
-                    Answer::Admissible | Answer::Unknown => Admissibility::Admissible,
-                    Answer::Reassembled => Admissibility::Reassembled,
-                    Answer::CannotFollow => Admissibility::CannotFollow,
+                    VariableAdmissibility::Admissible | VariableAdmissibility::Unknown => {
+                        Admissibility::Admissible
+                    }
+                    VariableAdmissibility::Reassembled => Admissibility::Reassembled,
+                    VariableAdmissibility::CannotFollow => Admissibility::CannotFollow,
                 },
                 note: fact.note(),
                 arrows: self.arrows(VariableId(b)),
@@ -611,7 +612,7 @@ impl<'a> Compose<'a> {
         list
     }
 
-    /// One sensitivity, with the comparison where there is one.
+    /// Sensitivity, with the comparison if there is one.
     fn sensitivity<F: Fn(usize, usize) -> f64>(
         &self,
         quantity: usize,
@@ -645,7 +646,7 @@ impl<'a> Compose<'a> {
         Sensitivity { quantity, value, rate, accel, fd }
     }
 
-    /// Returns what shows a derivative by variable b, of an order and in SI, in the user's units; round-off becomes 0.
+    /// Returns the conversion of a derivative by variable b from SI to the user's units; round-off becomes 0.
     fn derivatives_shown(&self, b: usize, kind: Dimension) -> impl Fn(usize, f64) -> f64 + use<> {
         let per_si = self.units.derivative_from_si(kind, self.model.variables[b].quantity, 1.0);
         let round_off = [0, 1, 2].map(|order| self.round_off.of(b, kind, order));
@@ -668,7 +669,7 @@ mod tests {
             Detail { stride: 1, origins: true, bodies: true, body_rates: true, body_differences: true }
         );
         assert!(all.values(STRUT) * BYTES_PER_VALUE[1] <= MOST_BYTES as f64);
-        // What is not there cannot be shown.
+        // Sensitivities of bodies that are not stored cannot be shown.
         assert!(Detail::levels(STRUT, Bodies::Nothing).iter().all(|d| !d.bodies));
     }
 

@@ -1,38 +1,39 @@
-//! Motion of bodies by the design variables, stored for runs with too many sensitivities to store whole.
+//! First-order motion of bodies by the design variables, stored for runs with too many sensitivities to store
+//! completely.
 //!
-//! The page draws a changed design by these six numbers per body and variable, and holds no more than `f32`; rates and
-//! accelerations, which are twice as many, are left out.
+//! The page draws a changed design from these six numbers per body and variable, as `f32`. Rates and accelerations,
+//! twice as many numbers, are omitted.
 
 use hardpoint::Solution;
 use hardpoint::model::{BodyId, VariableId};
 
-/// A design that moves is drawn by that many output times at least, or by all of them.
+/// Minimum number of output times for an animated changed design, unless the run has fewer.
 const ENOUGH_ROWS: usize = 100;
-/// Place and turn.
+/// Numbers per body and variable: translation and rotation vector.
 const NUMBERS: usize = 6;
 
-/// Places and turns of all bodies by all variables, to first order, at evenly chosen output times.
+/// Translations and rotations of all bodies by all variables, to first order, at evenly spaced output times.
 #[derive(Clone, Debug)]
 pub(crate) struct Shifts {
-    /// They may take that many bytes.
+    /// Memory limit in bytes.
     most: usize,
     /// Interval of the stored output times.
     stride: usize,
     bodies: usize,
-    /// `places[b * bodies + i]`: where the numbers of body i by variable b begin in a row, if b moves it.
+    /// `places[b * bodies + i]`: offset of the numbers of body i by variable b in a row; `None` if b does not move it.
     places: Vec<Option<usize>>,
     width: usize,
-    /// Output times, by their numbers, and what is kept of them.
+    /// Stored rows with the indices of their output times.
     rows: Vec<(usize, Box<[f32]>)>,
 }
 
 impl Shifts {
-    /// None as yet; they may take that many bytes.
+    /// Empty collection with a memory limit in bytes.
     pub fn new(most: usize) -> Self {
         Self { most, stride: 1, bodies: 0, places: Vec::new(), width: 0, rows: Vec::new() }
     }
 
-    /// Takes those of a window that begins with output time `first`; `stride` is that of what else is kept by now.
+    /// Adds a window that begins with output time `first`; `stride` is that of the other stored results so far.
     pub fn add(&mut self, first: usize, window: &Solution, stride: usize) {
         let sensitivities = &window.sensitivities;
         if self.places.is_empty() {
@@ -73,12 +74,12 @@ impl Shifts {
         self.rows.retain(|(time, _)| time.is_multiple_of(stride));
     }
 
-    /// Interval of the stored output times; `None` if they are too few, among all that were solved, to draw a motion.
+    /// Stride of the stored output times; `None` if they are too few of the solved ones for an animation.
     pub fn stride(&self, solved: usize) -> Option<usize> {
         (self.bodies > 0 && self.rows.len() >= solved.min(ENOUGH_ROWS)).then_some(self.stride)
     }
 
-    /// Place and turn of body i by variable b at an output time that is kept, SI.
+    /// Translation and rotation vector of body i by variable b at a stored output time, SI.
     pub fn at(&self, time: usize, b: usize, i: usize) -> [f64; NUMBERS] {
         let Some(at) = self.places[b * self.bodies + i] else { return [0.0; NUMBERS] };
         let (_, row) = &self.rows[time / self.stride];
@@ -92,7 +93,7 @@ mod tests {
 
     use hardpoint::{Analysis, Run};
 
-    /// A mechanism with variables that move some of its bodies, and one that cannot be followed.
+    /// Mechanism with variables that move some of its bodies, and one that it cannot follow.
     const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/slider_crank.toml");
 
     #[test]
@@ -112,7 +113,7 @@ mod tests {
         {
             let mut shifts = Shifts::new(rows * row);
             analysis.solve_in_windows(Run::new(), 1, |first, window| {
-                // What else is kept is thinned on the way.
+                // The other stored results are thinned during the run.
                 shifts.add(first, window, if first < 100 { 1 } else { beside });
             });
             assert!(shifts.rows.len() <= rows);

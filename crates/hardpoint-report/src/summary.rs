@@ -1,4 +1,4 @@
-//! `summary.json`: what was run, how it went, and the largest sensitivities.
+//! `summary.json`: what was run, the outcome, and the largest sensitivities.
 
 use hardpoint::Solution;
 use hardpoint::joint::Quantity;
@@ -18,20 +18,20 @@ use crate::margin::MarginFact;
 use crate::metric::MetricFact;
 use crate::validity::ValidityFact;
 
-/// Everything that `summary.json` holds. Figures are in the model's units, times in s.
+/// Contents of `summary.json`. Values are in the model's units, times in s.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// Program and version.
     pub generator: &'static str,
     /// Status at the end of the run.
     pub status: RunStatus,
-    /// The mechanism.
+    /// Facts of the mechanism.
     pub model: Facts,
     /// Output times.
     pub steps: Steps,
-    /// Effort of the solution.
+    /// Computational effort.
     pub effort: EffortFact,
-    /// Margin from singular positions, if anything was solved for.
+    /// Margin to singular positions, if anything was solved for.
     pub margin: Option<MarginFact>,
     /// Assembly before the motion, if the mechanism was open in the design configuration.
     pub assembly: Option<AssemblyFact>,
@@ -41,17 +41,17 @@ pub struct Summary {
     pub validity: Vec<ValidityFact>,
     /// Values of the metrics.
     pub metrics: Vec<MetricFact>,
-    /// The maps that were written: over which drivers, how many positions were reached, and why not the others.
+    /// Maps: drivers, number of positions reached, and reasons for unreached ones.
     pub maps: Vec<MapLine>,
     /// The largest sensitivities of every measure.
     pub sensitivities: Vec<Ranking>,
-    /// Durations of the parts of the work.
+    /// Durations of the phases.
     pub timings: Timings,
-    /// The files that were written.
+    /// Written files.
     pub files: Vec<String>,
-    /// Results that were not computed or not written, and how to get them.
+    /// Results that were not computed or not written, with instructions to obtain them.
     pub left_out: Vec<String>,
-    /// Warnings and errors, also those shown on the terminal.
+    /// Warnings and errors, including those shown on the terminal.
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -59,74 +59,74 @@ pub struct Summary {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunStatus {
-    /// At its last output time.
+    /// The last output time was reached.
     Complete,
-    /// The mechanism could not go on; the part before is there.
+    /// The mechanism stopped; the part before the stop was solved.
     Stopped,
-    /// The user ended it; the part before is there.
+    /// The user ended the run; the part before was solved.
     Interrupted,
 }
 
-/// Output times, s.
+/// Numbers of output times, and times in s.
 #[derive(Clone, Debug, Serialize)]
 pub struct Steps {
-    /// Number of were solved.
+    /// Number of solved output times.
     pub solved: usize,
-    /// Number of were requested.
+    /// Number of requested output times.
     pub asked: usize,
-    /// The first one.
+    /// First output time.
     pub start: f64,
-    /// The last one requested.
+    /// Last requested output time.
     pub end: f64,
-    /// The last one solved.
+    /// Last solved output time.
     pub last_solved: Option<f64>,
-    /// Interval of the output times stored for the page, for the series of the margin and for comparisons: 1 for all.
-    /// The result files hold all of them.
+    /// Stride of the output times stored for the page, the series of the margin and comparisons; 1 for all. The result
+    /// files contain all output times.
     pub kept_every: usize,
-    /// Interval of the output times that metrics use.
+    /// Stride of the output times that metrics use.
     pub metrics_every: usize,
 }
 
-/// Effort of a solution.
+/// Computational effort of a solution.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffortFact {
-    /// Solver of the smooth steps: machine code, an interpreted program or the kernel; with the reason if it is not
-    /// machine code.
+    /// Solver of smooth steps: machine code, an interpreted program or the kernel; with the reason if it is not machine
+    /// code.
     pub solved_by: Option<String>,
-    /// Output times that a program has solved; the kernel all others.
+    /// Number of output times solved by a program; the kernel solved the others.
     pub steps_by_program: usize,
-    /// Newton iterations over all steps.
+    /// Number of Newton iterations over all steps.
     pub iterations: usize,
-    /// Steps in between that the predictor needed.
+    /// Number of additional interior steps.
     pub substeps: usize,
-    /// Largest residual of any constraint, m or rad whatever the model's units.
+    /// Largest residual of any constraint, m or rad (SI even if the model's units differ).
     pub worst_residual_si: f64,
-    /// Smallest over largest pivot; 0 at a limit position.
+    /// Minimum ratio of smallest to largest pivot; 0 at a limit position.
     pub least_pivot_ratio: f64,
-    /// Time of that, s.
+    /// Time of the minimum pivot ratio, s.
     pub least_pivot_time: f64,
 }
 
 /// Reason why a run ended early.
 #[derive(Clone, Debug, Serialize)]
 pub struct StopFact {
-    /// Stable code.
+    /// Diagnostic code.
     pub code: &'static str,
-    /// In a sentence, with the drivers' values where it stopped.
+    /// Sentence with the driver positions at the stop.
     pub message: String,
-    /// The last time that was solved, s.
+    /// Last solved time, s.
     pub last_time: Option<f64>,
-    /// The earliest time known to fail, s.
+    /// Earliest time known to fail, s.
     pub failed_time: f64,
     /// Drivers at the last solved position.
     pub drivers: Vec<DriverValue>,
-    /// Smallest over largest pivot of the loop there.
+    /// Ratio of smallest to largest pivot of the loop there.
     pub pivot_ratio: f64,
-    /// The joints of that loop.
+    /// Joints of that loop.
     pub joints: Vec<String>,
-    /// Smallest remaining gaps, largest first, if the mechanism does not assemble.
+    /// Smallest gaps that remain if the mechanism does not assemble, the largest first.
     pub remains: Vec<GapFact>,
-    /// Fraction of its gaps that could be closed together during the assembly, 0 to 1.
+    /// Fraction of the gaps that the assembly could close together, 0 to 1.
     pub closed: Option<f64>,
 }
 
@@ -160,7 +160,7 @@ impl StopFact {
     }
 }
 
-/// A driver's value.
+/// Value of a driver.
 #[derive(Clone, Debug, Serialize)]
 pub struct DriverValue {
     /// Name.
@@ -171,10 +171,10 @@ pub struct DriverValue {
     pub unit: &'static str,
 }
 
-/// The design variables that move a measure, largest first within each unit of variables.
+/// Most influential design variables of a measure, the largest sensitivity first within each unit of variables.
 #[derive(Clone, Debug, Serialize)]
 pub struct Ranking {
-    /// The measure.
+    /// Name of the measure.
     pub measure: String,
     /// `value`, `rate` or `acceleration`.
     pub order: &'static str,
@@ -182,14 +182,14 @@ pub struct Ranking {
     pub largest: Vec<RankedVariable>,
 }
 
-/// The largest sensitivity of a measure by one variable over the motion.
+/// Largest sensitivity of a measure to one variable over the motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct RankedVariable {
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
-    /// The variable's unit; only sensitivities by the same unit can be compared.
+    /// Unit of the variable; only sensitivities per the same unit are comparable.
     pub per: String,
-    /// The sensitivity of largest magnitude, with its sign.
+    /// Sensitivity of largest magnitude, with its sign.
     pub value: f64,
     /// Unit.
     pub unit: String,
@@ -197,23 +197,23 @@ pub struct RankedVariable {
     pub time: f64,
 }
 
-/// Durations of the parts of the work, s.
+/// Durations of the phases, s.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Timings {
-    /// Reading and checking the file, planning the solution.
+    /// Reading and checking the file, and analysing the mechanism.
     pub read: f64,
     /// Motion and sensitivities.
     pub solve: f64,
-    /// Re-solving moved designs to compare with.
+    /// Re-solving moved designs for comparison.
     pub compare: f64,
-    /// Writing the files, but for this one.
+    /// Writing the files, except this one.
     pub write: f64,
-    /// All of it.
+    /// Total duration.
     pub total: f64,
 }
 
 impl Summary {
-    /// The summary of a run, without files.
+    /// Summary of a run, without files.
     pub fn new(file: &ModelFile, topology: &Topology, course: &Course) -> Self {
         let (model, solution) = (&file.model, &course.kept);
         let effort = solution.motion.effort;
@@ -287,7 +287,7 @@ fn rankings(model: &Model, units: Units, course: &Course) -> Vec<Ranking> {
                 });
             }
             let kinds = [Quantity::Length, Quantity::Angle, Quantity::Number].map(|q| symbol(units, q));
-            // Units of parameters of laws come last.
+            // Units of law parameters come last.
             let kind = |r: &RankedVariable| {
                 (kinds.iter().position(|unit| *unit == r.per).unwrap_or(kinds.len()), r.per.clone())
             };

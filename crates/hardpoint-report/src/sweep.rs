@@ -1,4 +1,4 @@
-//! Result of a sweep: its designs as a table, and the distributions of metrics over them, in the model's units.
+//! Result of a sweep: a table of its designs, and distributions and influences of the metrics, in the model's units.
 
 use std::io;
 
@@ -18,81 +18,81 @@ use crate::optimize::{BeforeAfter, Evaluations, case_name};
 use crate::page::{Fact, Payload, SweepAxis, SweepIndex, SweepPlot, Table};
 use crate::tolerance::{FailureFact, bar, header, percent, titled};
 
-/// Maximum number of designs that are drawn, and ranked.
-pub const DRAWN: usize = 5000;
+/// Maximum number of designs that are plotted and ranked.
+pub const MAX_PLOTTED: usize = 5000;
 
-/// A sweep, in the model's units. As JSON it is `summary.json` of `hardpoint sweep`.
+/// Result of a sweep, in the model's units. Serialised as `summary.json` of `hardpoint sweep`.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweepFacts {
     /// Program and version.
     pub generator: String,
-    /// The kind of study.
+    /// Kind of study.
     pub study: &'static str,
-    /// The model's name.
+    /// Name of the model.
     pub model: String,
-    /// The model file.
+    /// Name of the model file.
     pub file: String,
-    /// `complete`, `interrupted`, or `no_design` where none moves to its end.
+    /// Status: `complete`, `interrupted`, or `no_design` if no design reaches the end of its motion.
     pub status: &'static str,
-    /// The same in words, and what to do.
+    /// Status in words, with an instruction.
     pub message: String,
-    /// The first metric: in the design configuration, and the least that was found.
+    /// First metric: nominal value and minimum over the designs.
     pub objective: BeforeAfter,
     /// Cost of the designs.
     pub evaluations: Evaluations,
-    /// Designs that were solved.
+    /// Number of solved designs.
     pub designs: usize,
-    /// Designs that were requested.
+    /// Number of requested designs.
     pub asked: usize,
     /// Method that chose the designs.
     pub method: &'static str,
-    /// From which seed; `null` where nothing is drawn.
+    /// Random seed; `null` if the method is deterministic.
     pub seed: Option<u64>,
-    /// The variables that change.
+    /// Swept variables.
     pub variables: Vec<SweptVariable>,
-    /// Per metric and case.
+    /// Results per metric and case.
     pub metrics: Vec<SweptFact>,
-    /// Designs that do not move to the end.
+    /// Number of designs that do not reach the end of a motion.
     pub failed: usize,
-    /// By what happens to them.
+    /// Failed designs, grouped by cause.
     pub failures: Vec<FailureFact>,
-    /// The files that were written.
+    /// Written files.
     pub files: Vec<String>,
     /// Duration, s.
     pub seconds: f64,
 }
 
-/// A variable that was swept.
+/// Swept variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweptVariable {
     /// Name.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// The least value; of a parameter its own, of all others a change.
+    /// Lower end of the range: the value of a parameter, the change of any other variable.
     pub from: f64,
-    /// The greatest.
+    /// Upper end of the range.
     pub to: f64,
-    /// In a factorial, that many values.
+    /// Number of levels in a factorial.
     pub levels: Option<usize>,
-    /// In the design configuration.
+    /// Nominal value.
     pub start: f64,
-    /// In the design with the least value of the first metric.
+    /// Value in the design with the minimum of the first metric.
     pub end: Option<f64>,
 }
 
-/// A metric in one motion.
+/// Metric in one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweptFact {
     /// Name.
     pub name: String,
-    /// In which case; `null` where there are none.
+    /// Name of the case; `null` if the model has no cases.
     pub case: Option<String>,
     /// Unit.
     pub unit: String,
-    /// In the design configuration.
+    /// Nominal value.
     pub drawn: Option<f64>,
-    /// Number of designs that have it.
+    /// Number of designs with a value.
     pub known: usize,
     /// Distribution over these designs.
     pub distribution: Option<DistributionFact>,
@@ -100,86 +100,86 @@ pub struct SweptFact {
     pub influences: Vec<InfluenceFact>,
 }
 
-/// Distribution of a metric over the designs that have it.
+/// Distribution of a metric over the designs with a value.
 #[derive(Clone, Debug, Serialize)]
 pub struct DistributionFact {
-    /// Mean.
+    /// Mean value.
     pub mean: f64,
     /// Standard deviation.
     pub sigma: f64,
     /// Quantiles at 5 %, 25 %, 50 %, 75 % and 95 %.
     pub quantiles: [f64; 5],
-    /// The design with the least value.
+    /// Design with the minimum.
     pub least: ExtremeDesign,
-    /// The design with the greatest.
+    /// Design with the maximum.
     pub greatest: ExtremeDesign,
 }
 
-/// A design with its value of a metric.
+/// Design with an extreme value of a metric.
 #[derive(Clone, Debug, Serialize)]
 pub struct ExtremeDesign {
-    /// Number.
+    /// Number of the design.
     pub design: usize,
-    /// The metric.
+    /// Value of the metric.
     pub value: f64,
-    /// Variables, in the order of [`SweepFacts::variables`].
+    /// Values of the variables, in the order of [`SweepFacts::variables`].
     pub variables: Vec<f64>,
 }
 
 /// Influence of a variable on a metric.
 #[derive(Clone, Debug, Serialize)]
 pub struct InfluenceFact {
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
-    /// Spearman's rank correlation over the designs that are drawn: 1 or -1 where one always rises or falls with the
-    /// other.
+    /// Spearman's rank correlation over the plotted designs: 1 or -1 if the metric always rises or falls with the
+    /// variable.
     pub rank_correlation: Option<f64>,
-    /// First-order index of Sobol: the part of the variance that is gone where the variable is known. With
+    /// First-order Sobol index: the part of the variance that vanishes if the variable is known. For
     /// `method = "sobol_indices"`.
     pub first: Option<f64>,
-    /// Standard error.
+    /// Standard error of `first`.
     pub first_error: Option<f64>,
-    /// Total index: the part that is left where all others are known.
+    /// Total Sobol index: the part of the variance that remains if all other variables are known.
     pub total: Option<f64>,
-    /// Standard error.
+    /// Standard error of `total`.
     pub total_error: Option<f64>,
-    /// Pairs of designs behind both.
+    /// Number of pairs of designs used for both.
     pub pairs: Option<usize>,
 }
 
-/// Inputs of the facts.
+/// Inputs of [`SweepFacts`].
 #[derive(Clone, Copy)]
 pub struct SweepInputs<'a> {
-    /// The model file.
+    /// Model file.
     pub file: &'a ModelFile,
-    /// Per motion, its number among those of the model.
+    /// Number of each motion among those of the model.
     pub numbers: &'a [usize],
     /// Settings of the sweep.
     pub asked: &'a SweepSettings,
-    /// The motions.
+    /// Motions of the sweep.
     pub motions: &'a Motions<'a>,
-    /// The designs and columns.
+    /// Designs and columns of the sweep.
     pub sweep: &'a Sweep<'a>,
 }
 
-/// Sum of the results of blocks.
+/// Running totals over blocks of designs.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
-    /// Designs so far.
+    /// Number of designs so far.
     pub designs: usize,
-    /// Designs that do not move to the end.
+    /// Number of designs so far that do not reach the end of a motion.
     pub failed: usize,
     cost: StudyCost,
     failures: Vec<(String, usize, FailureFact)>,
 }
 
-/// The designs that are drawn, and what is known of all.
+/// Plotted designs with their variables and metrics.
 #[derive(Clone, Debug, Default)]
-struct DrawnDesigns {
+struct PlottedDesigns {
     numbers: Vec<usize>,
-    /// Per variable, per design, as shown.
+    /// Values of each variable in each design, in the file's units.
     variables: Vec<Vec<f64>>,
-    /// Per metric.
+    /// Values of each metric in each design.
     metrics: Vec<Vec<f64>>,
 }
 
@@ -200,13 +200,13 @@ impl SweepInputs<'_> {
         self.model().metric_dimension(&self.model().metrics[of.metric])
     }
 
-    /// A change of a variable as the file writes it: of a parameter its value.
+    /// Value of a variable in the file's units: of a parameter its value, otherwise the change.
     fn shown(&self, variable: VariableId, change: f64) -> f64 {
         let quantity = self.model().variables[variable.0].quantity;
         self.units().from_si(quantity, change + self.model().nominal_value(variable))
     }
 
-    /// The swept variables of a design, as the file writes them.
+    /// Swept variables of a design, in the file's units.
     fn variables_of(&self, number: usize) -> Vec<f64> {
         let swept = self.sweep.plan().swept(number);
         self.asked.ranges.iter().zip(swept).map(|(range, x)| self.shown(range.variable, x)).collect()
@@ -217,7 +217,7 @@ impl SweepInputs<'_> {
         self.case(of.motion).map_or(name.clone(), |case| format!("{case}.{name}"))
     }
 
-    /// The columns of the table of designs: number, variables, metrics, and why a design failed.
+    /// Columns of the table of designs: number, variables, metrics, and the reason of a failure.
     pub fn columns(&self) -> Vec<(String, Cells)> {
         let variable = |range: &SweepRange| {
             let variable = &self.model().variables[range.variable.0];
@@ -232,7 +232,7 @@ impl SweepInputs<'_> {
         columns
     }
 
-    /// The rows of some designs.
+    /// Rows of a block of designs.
     pub fn rows(&self, block: &SweptBlock) -> Vec<Cells> {
         let mut variables = vec![Vec::new(); self.asked.ranges.len()];
         for number in block.numbers.clone() {
@@ -261,7 +261,7 @@ impl SweepInputs<'_> {
         rows
     }
 
-    /// The columns of the table of curves: a row for each design, motion and output time that was solved.
+    /// Columns of the table of curves: a row for each design, motion and solved output time.
     pub fn curve_columns(&self) -> Vec<(String, Cells)> {
         let mut columns = vec![("design".to_owned(), Cells::Whole(Vec::new()))];
         if self.case(0).is_some() {
@@ -276,7 +276,7 @@ impl SweepInputs<'_> {
         columns
     }
 
-    /// The rows of the curves of some designs.
+    /// Rows of the curves of a block of designs.
     pub fn curve_rows(&self, block: &SweptBlock) -> Vec<Cells> {
         let (mut designs, mut cases, mut times) = (Vec::new(), Vec::new(), Vec::new());
         let mut values = vec![Vec::new(); self.asked.curves.len()];
@@ -306,7 +306,7 @@ impl SweepInputs<'_> {
         rows
     }
 
-    /// Takes a block into account.
+    /// Adds a block to the totals.
     pub fn tally(&self, tally: &mut Tally, block: &SweptBlock) {
         tally.designs = block.numbers.end;
         tally.cost += block.cost;
@@ -316,7 +316,7 @@ impl SweepInputs<'_> {
             match known.into_iter().find(|(code, m, _)| *code == failure.code && *m == failure.motion) {
                 Some((_, _, fact)) => {
                     fact.count += 1;
-                    // A block is reported motion by motion.
+                    // Failures within a block are in the order of motions.
                     fact.first = fact.first.min(failure.number);
                 }
                 None => {
@@ -339,10 +339,10 @@ impl SweepInputs<'_> {
         }
     }
 
-    /// The designs that are drawn: as many as there are, or some of them that stand a step apart which no level of a
-    /// factorial repeats with.
+    /// Numbers of the plotted designs: all, or some with a stride that does not coincide with the period of any level
+    /// of a factorial.
     fn drawn_numbers(&self, designs: usize) -> Vec<usize> {
-        let mut step = designs.div_ceil(DRAWN).max(1);
+        let mut step = designs.div_ceil(MAX_PLOTTED).max(1);
         let repeats = |step: usize| {
             let levels = self
                 .asked
@@ -359,10 +359,10 @@ impl SweepInputs<'_> {
         (0..designs).step_by(step).collect()
     }
 
-    /// All that is known of the designs that were solved; `column` gives the values of a metric in all of them.
+    /// Facts of the solved designs; `column` returns the values of a metric in all of them.
     ///
     /// # Errors
-    /// Those of `column`.
+    /// Errors of `column`.
     pub fn facts(
         &self,
         tally: &Tally,
@@ -370,12 +370,12 @@ impl SweepInputs<'_> {
     ) -> io::Result<(SweepFacts, SweepPlot)> {
         let (file, asked) = (self.file, self.asked);
         let mut drawn =
-            DrawnDesigns { numbers: self.drawn_numbers(tally.designs), ..DrawnDesigns::default() };
+            PlottedDesigns { numbers: self.drawn_numbers(tally.designs), ..PlottedDesigns::default() };
         drawn.variables = vec![Vec::new(); asked.ranges.len()];
         for number in &drawn.numbers {
             drawn.variables.iter_mut().zip(self.variables_of(*number)).for_each(|(c, x)| c.push(x));
         }
-        let as_drawn = self.sweep.drawn();
+        let as_drawn = self.sweep.nominal();
         let mut metrics = Vec::new();
         for (k, of) in self.sweep.metrics().iter().enumerate() {
             let values = column(k)?;
@@ -443,7 +443,11 @@ impl SweepInputs<'_> {
         let (status, message) = if tally.designs < count_asked {
             ("interrupted", format!("interrupted after {} of {count_asked} designs", tally.designs))
         } else if tally.failed == tally.designs {
-            ("no_design", "no design moves to its end: narrow the ranges, or see below why".to_owned())
+            (
+                "no_design",
+                "no design reaches the end of its motion: narrow the ranges; the reasons are listed below"
+                    .to_owned(),
+            )
         } else {
             ("complete", format!("all {} were solved", count(tally.designs, "design")))
         };
@@ -476,7 +480,7 @@ impl SweepInputs<'_> {
 }
 
 /// Plot on the page.
-fn plot(facts: &SweepFacts, drawn: DrawnDesigns) -> SweepPlot {
+fn plot(facts: &SweepFacts, drawn: PlottedDesigns) -> SweepPlot {
     let variable = |(v, values): (&SweptVariable, Vec<f64>)| SweepAxis {
         name: v.name.clone(),
         unit: v.unit.clone(),
@@ -507,7 +511,7 @@ fn plot(facts: &SweepFacts, drawn: DrawnDesigns) -> SweepPlot {
     }
 }
 
-/// A column's name with its unit; a plain number has none.
+/// Name of a column with its unit in brackets; no brackets for a plain number.
 fn with_brackets(name: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { name.into() } else { format!("{name} [{unit}]") }
 }
@@ -531,11 +535,11 @@ impl SweepFacts {
         ));
         if self.failed > 0 {
             let part = percent(self.failed as f64 / self.designs as f64);
-            rows.push(("failed", format!("{} do not move to the end ({part})", self.failed)));
+            rows.push(("failed", format!("{} do not reach the end of the motion ({part})", self.failed)));
         }
         let Evaluations { designs, motions, steps } = self.evaluations;
         rows.push((
-            "looked at",
+            "evaluated",
             format!(
                 "{}, {}, {}",
                 count(designs, "design"),
@@ -574,7 +578,7 @@ impl SweepFacts {
             note: "Over all designs with a value: the designs with the minimum and the maximum, and the quantiles at 5, 50 and 95 %."
                 .into(),
             header: header(&[
-                "metric", "nominal", "least", "in design", "5 %", "median", "95 %", "greatest", "in design ", "mean", "sigma",
+                "metric", "nominal", "minimum", "in design", "5 %", "median", "95 %", "maximum", "in design ", "mean", "sigma",
                 "known",
             ]),
             rows: self.metrics.iter().map(metric).collect(),
@@ -593,7 +597,7 @@ impl SweepFacts {
         let best = self.metrics.first().map_or("-".into(), |m| format!("least {}", titled(&m.name, &m.case)));
         let variables = Table {
             title: "Variables".into(),
-            note: "Of a parameter its value, of all others the change of the nominal design.".into(),
+            note: "Values of parameters; for all other variables changes from the nominal design.".into(),
             header: vec!["variable".into(), "range".into(), "levels".into(), "nominal".into(), best],
             rows: self.variables.iter().map(row).collect(),
         };
@@ -608,9 +612,9 @@ impl SweepFacts {
                 ]
             };
             let failures = Table {
-                title: "Designs that fail".into(),
-                note: "Their rows are kept, with the reason.".into(),
-                header: header(&["case", "what happens to the first", "designs", "first"]),
+                title: "Failed designs".into(),
+                note: "The tables contain their rows, with the reason.".into(),
+                header: header(&["case", "first failure", "designs", "first"]),
                 rows: self.failures.iter().map(row).collect(),
             };
             tables.push(failures.without_empty_columns());
@@ -659,14 +663,14 @@ impl SweepFacts {
             let pairs = m.influences.iter().filter_map(|i| i.pairs).min().unwrap_or(0);
             let all = self.designs / (self.variables.len() + 2);
             let missing = if pairs < all {
-                " Where a design failed its pair is left out: they are those over the part of the ranges where the mechanism moves."
+                " Pairs with a failed design are left out: the indices describe the part of the ranges where the mechanism moves."
             } else {
                 ""
             };
             Table {
                 title: format!("Sobol indices of {}", titled(&m.name, &m.case)),
                 note: format!(
-                    "Part of the variance by the variable alone, and with all it does together with others; from {pairs} pairs of designs.{missing}"
+                    "Part of the variance due to the variable alone, and including interactions with others; from {pairs} pairs of designs.{missing}"
                 ),
                 header: header(&["variable", "first order", "total", ""]),
                 rows: by_total.iter().map(row).collect(),
@@ -680,8 +684,8 @@ impl SweepFacts {
         seconds(self.seconds)
     }
 
-    /// The page of a motion of the nominal design becomes that of the sweep: what is reported here comes first among
-    /// its checks.
+    /// Turns the page of a motion of the nominal design into that of the sweep: the result comes first among the
+    /// checks.
     pub fn page(
         &self,
         swept: &SweepInputs<'_>,

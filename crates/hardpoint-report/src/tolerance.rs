@@ -1,4 +1,4 @@
-//! Result of a tolerance study: spread, yield, contributions and the loosest tolerances, in the model's units.
+//! Result of a tolerance study: spread, yield, contributions and allocated tolerances, in the model's units.
 
 use std::io::Write;
 
@@ -17,230 +17,230 @@ use crate::figures::{count, number, rounded, seconds, some_of, unit, with_unit};
 use crate::optimize::{BeforeAfter, Evaluations, case_name};
 use crate::page::{Curve, Design, DesignCurves, DesignKind, Fact, Payload, Table};
 
-/// A band is drawn that many standard deviations to either side of the mean: 99.73 % of a normal distribution.
+/// Half width of a band in standard deviations: 99.73 % of a normal distribution.
 const BAND: f64 = 3.0;
-/// Contributions below this part are not reported one by one.
+/// Contributions below this fraction are not listed.
 const SLIGHT: f64 = 1e-3;
 /// Number of standard errors above which Monte Carlo and derivatives differ.
 const ERRORS: f64 = 3.0;
-/// A whole bar in a table has that many marks.
+/// Number of marks in a full bar of a table.
 const BAR: f64 = 40.0;
-/// A histogram has that many bars.
+/// Number of bars in a histogram.
 const BARS: usize = 24;
 
-/// A study of tolerances, in the model's units. As JSON it is `summary.json` of `hardpoint tolerance`.
+/// Result of a tolerance study, in the model's units. Serialised as `summary.json` of `hardpoint tolerance`.
 #[derive(Clone, Debug, Serialize)]
 pub struct ToleranceFacts {
     /// Program and version.
     pub generator: String,
-    /// The kind of study.
+    /// Kind of study.
     pub study: &'static str,
-    /// The model's name.
+    /// Name of the model.
     pub model: String,
-    /// The model file.
+    /// Name of the model file.
     pub file: String,
-    /// `complete`, `interrupted`, or `nonlinear` where second derivatives say that the linear answer is off.
+    /// Status: `complete`, `interrupted`, or `nonlinear` if second derivatives show that the linear result is
+    /// inaccurate.
     pub status: &'static str,
-    /// The same in words, and what to do.
+    /// Status in words, with an instruction.
     pub message: String,
-    /// The part that keeps all limits: with the tolerances as they are, and with those that were found.
+    /// Yield of all limits, 0 to 1: with the original and with the allocated tolerances.
     pub objective: BeforeAfter,
     /// Cost of the study.
     pub evaluations: Evaluations,
-    /// Designs that were drawn and solved.
+    /// Number of sampled designs.
     pub samples: usize,
-    /// From which seed.
+    /// Random seed.
     pub seed: u64,
-    /// Variables that may be off.
+    /// Toleranced variables.
     pub variables: Vec<ToleratedFact>,
-    /// Variables with a tolerance that the mechanism cannot follow.
+    /// Toleranced variables that the mechanism cannot follow.
     pub left_out: Vec<String>,
-    /// Per metric and case.
+    /// Spread per metric and case.
     pub metrics: Vec<SpreadFact>,
-    /// Metrics that have no value in the design configuration.
+    /// Metrics without a nominal value.
     pub unknown: Vec<String>,
-    /// Per limit and case.
+    /// Yield per limit and case.
     pub limits: Vec<YieldFact>,
-    /// Designs drawn that do not move to the end.
+    /// Number of sampled designs that do not reach the end of a motion.
     pub failed: usize,
-    /// By what happens to them.
+    /// Failed designs, grouped by cause.
     pub failures: Vec<FailureFact>,
-    /// The loosest tolerances.
+    /// Allocated tolerances, if requested.
     pub allocation: Option<AllocationFact>,
-    /// The files that were written.
+    /// Written files.
     pub files: Vec<String>,
     /// Duration, s.
     pub seconds: f64,
 }
 
-/// A variable that may be off.
+/// Toleranced variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct ToleratedFact {
     /// Name.
     pub name: String,
-    /// The tolerance that it belongs to: its own name, or that of a point.
+    /// Tolerance that it belongs to: its own name, or that of a point.
     pub tolerance: String,
     /// Unit.
     pub unit: String,
-    /// `uniform`, `normal` or `truncated`.
+    /// Distribution: `uniform`, `normal` or `truncated`.
     pub distribution: &'static str,
-    /// By how much it may be off.
+    /// Original tolerance (reach of the deviation).
     pub start: f64,
-    /// By how much it may be off with the tolerances that were found; the same where none were sought; `null` where no
-    /// limit has a say.
+    /// Allocated tolerance; the original one if none were allocated; `null` if no limit constrains it.
     pub end: Option<f64>,
-    /// Standard deviation.
+    /// Standard deviation of the deviation.
     pub sigma: f64,
-    /// Cost of its tolerance.
+    /// Relative cost of its tolerance.
     pub cost: Option<f64>,
 }
 
-/// A metric in one motion.
+/// Metric in one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct SpreadFact {
     /// Name.
     pub name: String,
-    /// In which case; `null` where there are none.
+    /// Name of the case; `null` if the model has no cases.
     pub case: Option<String>,
     /// Unit.
     pub unit: String,
-    /// In the design configuration.
+    /// Nominal value.
     pub nominal: f64,
-    /// The mean to second order.
+    /// Second-order mean.
     pub mean: Option<f64>,
-    /// The standard deviation to first order: the root of the sum of squares.
+    /// First-order standard deviation: root sum square.
     pub rss: f64,
-    /// The standard deviation to second order.
+    /// Second-order standard deviation.
     pub sigma: Option<f64>,
-    /// The second-order part as a part of the first-order standard deviation.
+    /// Second-order part relative to the first-order standard deviation.
     pub nonlinearity: Option<f64>,
-    /// The least value that the tolerances allow.
+    /// Worst-case minimum.
     pub least: ExtremeFact,
-    /// The greatest.
+    /// Worst-case maximum.
     pub greatest: ExtremeFact,
-    /// `linear`, `second_order` or `drawn`: where the spread and the contributions are from.
+    /// Model of the spread and the contributions: `linear`, `second_order` or `drawn`.
     #[serde(serialize_with = "as_word")]
     pub told_by: SpreadModel,
-    /// Reason why linear statistics are off; `null` if they hold.
+    /// Reason why linear statistics are inaccurate; `null` if they are valid.
     pub nonlinear: Option<String>,
-    /// The part of the variance that each variable contributes, the largest first.
+    /// Contributions of the variables to the variance, the largest first.
     pub contributions: Vec<Contribution>,
-    /// The part that only several variables together bring; `null` where it is shared out among them.
+    /// Fraction due to interactions of several variables; `null` if it is distributed among them.
     pub together: Option<f64>,
-    /// Statistics of the Monte Carlo designs.
+    /// Monte Carlo statistics.
     pub sampled: Option<SampledFact>,
 }
 
-/// The least or the greatest value that tolerances allow.
+/// Worst-case minimum or maximum.
 #[derive(Clone, Debug, Serialize)]
 pub struct ExtremeFact {
-    /// To first order.
+    /// First-order value.
     pub first: f64,
-    /// To second order.
+    /// Second-order value.
     pub second: Option<f64>,
-    /// Solved exactly, with all deviations where the second order has them.
+    /// Exact value, with the deviations of the second-order worst case.
     pub exact: Option<f64>,
-    /// Reason why that design has no value.
+    /// Reason why the exact value is missing.
     pub why: Option<String>,
 }
 
-/// Contribution of a variable.
+/// Contribution of a variable to a variance.
 #[derive(Clone, Debug, Serialize)]
 pub struct Contribution {
     /// Name.
     pub variable: String,
-    /// The part of the variance; negative where it takes away from what a correlated one brings.
+    /// Fraction of the variance; may be negative for correlated variables.
     pub share: f64,
-    /// The derivative of the metric, in its unit per the variable's.
+    /// Derivative of the metric by the variable, in its unit per the variable's.
     pub d: f64,
 }
 
-/// A metric of the designs drawn.
+/// Statistics of a metric over the sampled designs.
 #[derive(Clone, Debug, Serialize)]
 pub struct SampledFact {
-    /// Number of have it.
+    /// Number of designs with a value.
     pub known: usize,
-    /// Mean.
+    /// Mean value.
     pub mean: f64,
-    /// Standard error.
+    /// Standard error of the mean.
     pub mean_error: f64,
     /// Standard deviation.
     pub sigma: f64,
-    /// Standard error.
+    /// Standard error of `sigma`.
     pub sigma_error: f64,
-    /// Skewness, 0 where normal.
+    /// Skewness: 0 for a normal distribution.
     pub skewness: f64,
-    /// Kurtosis, 3 where normal.
+    /// Kurtosis: 3 for a normal distribution.
     pub kurtosis: f64,
-    /// The least, 0.135 %, the median, 99.865 %, the greatest.
+    /// Minimum, 0.135 % quantile, median, 99.865 % quantile, maximum.
     pub quantiles: [f64; 5],
-    /// By which part the first-order standard deviation is off; `null` where that is less than three standard errors.
+    /// Relative error of the first-order standard deviation; `null` if it is less than three standard errors.
     pub rss_off: Option<f64>,
 }
 
-/// A limit in one motion.
+/// Limit in one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct YieldFact {
     /// Name.
     pub name: String,
-    /// The metric.
+    /// Metric of the limit.
     pub metric: String,
-    /// In which case.
+    /// Name of the case; `null` if the model has no cases.
     pub case: Option<String>,
     /// Unit.
     pub unit: String,
-    /// It must not be less.
+    /// Lower end.
     pub min: Option<f64>,
-    /// It must not be more.
+    /// Upper end.
     pub max: Option<f64>,
-    /// The part that keeps it, if the metric is normal with the moments of derivatives.
+    /// Yield of a normal distribution with the moments from derivatives, 0 to 1.
     pub by_moments: f64,
-    /// The part of the designs drawn that keep it.
+    /// Yield of the sampled designs, 0 to 1.
     pub sampled: Option<f64>,
-    /// Standard error.
+    /// Standard error of `sampled`.
     pub error: Option<f64>,
-    /// Value in an allocation: the cost saved if it were relaxed by one unit.
+    /// Lagrange multiplier in an allocation: the cost saved if the limit were relaxed by one unit.
     pub worth: Option<f64>,
 }
 
-/// Designs that failed alike.
+/// Designs that failed for the same reason.
 #[derive(Clone, Debug, Serialize)]
 pub struct FailureFact {
-    /// In which case.
+    /// Name of the case; `null` if the model has no cases.
     pub case: Option<String>,
     /// Description of the first failure.
     pub why: String,
-    /// Number.
+    /// Number of the first failed design.
     pub first: usize,
-    /// Total number.
+    /// Number of failed designs.
     pub count: usize,
 }
 
-/// The loosest tolerances.
+/// Allocated tolerances.
 #[derive(Clone, Debug, Serialize)]
 pub struct AllocationFact {
-    /// `rss` or `worst_case`.
+    /// Rule: `rss` or `worst_case`.
     pub rule: &'static str,
-    /// Number of standard deviations that have to fit.
+    /// Number of standard deviations that have to fit between the limits.
     pub sigmas: Option<f64>,
-    /// `found`, or why there are none.
+    /// Status: `found`, or the reason why there are none.
     pub status: String,
-    /// The sum of `cost / tolerance`, in the file's units; of all that have a cost.
+    /// Sum of `cost / tolerance` over all tolerances with a cost, in the file's units.
     pub cost: BeforeAfter,
-    /// Residual of the conditions of optimality.
+    /// Residual of the optimality (KKT) conditions.
     pub kkt: Option<f64>,
-    /// The part of designs drawn from these tolerances that keeps all limits.
+    /// Yield of designs sampled from these tolerances, 0 to 1.
     pub sampled: Option<f64>,
-    /// Standard error.
+    /// Standard error of `sampled`.
     pub error: Option<f64>,
 }
 
-/// Inputs of the facts.
+/// Inputs of [`ToleranceFacts`].
 #[derive(Clone, Copy, Debug)]
 pub struct ToleranceInputs<'a> {
-    /// The model file.
+    /// Model file.
     pub file: &'a ModelFile,
-    /// Per motion, its number among those of the model.
+    /// Number of each motion among those of the model.
     pub numbers: &'a [usize],
     /// Settings of the study.
     pub asked: &'a ToleranceSettings,
@@ -269,14 +269,14 @@ impl ToleranceInputs<'_> {
         &self.model().variables[self.found.variables[k].variable.0].name
     }
 
-    /// The name of a metric in its motion, as a column has it.
+    /// Column name of a metric in its motion.
     fn column(&self, of: &MetricSpread) -> String {
         let name = &self.model().metrics[of.metric].name;
         let case = self.case(of.motion).map_or(String::new(), |case| format!("{case}."));
         format!("{case}{name} [{}]", unit(self.units(), self.dimension(of)))
     }
 
-    /// `metrics.csv`: a row for each metric and motion.
+    /// Writes `metrics.csv`: a row for each metric and motion.
     pub fn write_metrics(&self, out: impl Write) -> csv::Result<()> {
         let facts = ToleranceFacts::of(self);
         let mut csv = CsvWriter::new(out);
@@ -319,7 +319,7 @@ impl ToleranceInputs<'_> {
         Ok(())
     }
 
-    /// `contributions.csv`: a row for each metric, motion and variable.
+    /// Writes `contributions.csv`: a row for each metric, motion and variable.
     pub fn write_contributions(&self, out: impl Write) -> csv::Result<()> {
         let facts = ToleranceFacts::of(self);
         let mut csv = CsvWriter::new(out);
@@ -334,7 +334,7 @@ impl ToleranceInputs<'_> {
         Ok(())
     }
 
-    /// `bands.csv`: a row for each measure, motion and output time.
+    /// Writes `bands.csv`: a row for each measure, motion and output time.
     pub fn write_bands(&self, out: impl Write) -> csv::Result<()> {
         let mut csv = CsvWriter::new(out);
         csv.row([
@@ -382,7 +382,7 @@ impl ToleranceInputs<'_> {
         Ok(())
     }
 
-    /// `samples.csv`: a row for each design drawn, with its deviations and its metrics; empty where there is none.
+    /// Writes `samples.csv`: a row for each sampled design, with its deviations and its metrics; empty without samples.
     pub fn write_samples(&self, deviations: impl Fn(usize) -> Vec<f64>, out: impl Write) -> csv::Result<()> {
         let Some(sampled) = &self.found.sampled else { return Ok(()) };
         let mut csv = CsvWriter::new(out);
@@ -410,8 +410,8 @@ impl ToleranceInputs<'_> {
         Ok(())
     }
 
-    /// The page of a motion becomes that of the study: its bands beside the curves, and what is reported here first
-    /// among its checks.
+    /// Turns the page of a motion into that of the study: its bands are shown along the curves, and the result comes
+    /// first among the checks.
     pub fn page(
         &self,
         facts: &ToleranceFacts,
@@ -432,7 +432,7 @@ impl ToleranceInputs<'_> {
             .collect();
         page.designs.extend(designs.into_iter().filter(|d| d.quantities.iter().any(Option::is_some)));
         if page.designs.iter().any(|d| d.kind == DesignKind::Band) {
-            // The bands are those at a time.
+            // Bands are computed at fixed times, so the abscissa is time.
             page.over = None;
         }
         let cards = facts.rows().into_iter().filter(|(what, _)| ["yield", "failed"].contains(what));
@@ -447,7 +447,7 @@ impl ToleranceInputs<'_> {
         Payload { checks, ..page }
     }
 
-    /// One edge of the bands of a motion, as a design whose curves it is.
+    /// Edge of the bands of a motion, as the curves of a design.
     fn band(&self, motion: usize, by: f64, name: &str, page: &Payload, outputs: &[Output]) -> Design {
         let mut quantities: Vec<Option<DesignCurves>> = page.quantities.iter().map(|_| None).collect();
         for curve in self.found.curves.iter().filter(|c| c.motion == motion) {
@@ -473,7 +473,7 @@ impl ToleranceInputs<'_> {
             name: name.into(),
             kind: DesignKind::Band,
             change: vec![0.0; page.variables.len()],
-            note: "Where 99.73 % of all made will be, if they are normal: from first and second derivatives."
+            note: "Range of 99.73 % of all products, if they are normally distributed: from first and second derivatives."
                 .into(),
             poses: Vec::new(),
             skeletons: Vec::new(),
@@ -509,7 +509,7 @@ impl ToleranceInputs<'_> {
         };
         Some(Table {
             title: format!("Histogram of {}", self.model().metrics[of.metric].name),
-            note: format!("Of {} designs drawn from the tolerances.", drawn.known),
+            note: format!("Of {} designs sampled from the tolerances.", drawn.known),
             header: header(&["about", "designs", ""]),
             rows: counts.iter().enumerate().map(row).collect(),
         })
@@ -520,23 +520,23 @@ pub(crate) fn header(names: &[&str]) -> Vec<String> {
     names.iter().map(|n| (*n).to_owned()).collect()
 }
 
-/// A bar as text, as long as the part is large.
+/// Bar of a table as text, with a length proportional to a fraction.
 pub(crate) fn bar(part: f64) -> String {
     "▇".repeat((BAR * part.clamp(0.0, 1.0)).round() as usize)
 }
 
-/// A part as a percentage.
+/// Fraction as a percentage.
 pub(crate) fn percent(part: f64) -> String {
     format!("{} %", rounded(100.0 * part, 4))
 }
 
-/// A yield with its standard error.
+/// Yield with its standard error.
 fn yield_text(part: f64, error: f64) -> String {
     format!("{} ± {}", percent(part), percent(error))
 }
 
 impl ToleranceFacts {
-    /// Those of a study.
+    /// Collects the facts of a tolerance study.
     pub fn of(studied: &ToleranceInputs<'_>) -> Self {
         let ToleranceInputs { file, asked, found, .. } = *studied;
         let part = |of: &MonteCarlo| of.all.map(Yield::part);
@@ -575,11 +575,12 @@ impl ToleranceFacts {
             .iter()
             .filter_map(|m| Some(format!("`{}` ({})", m.titled(), m.nonlinear.as_ref()?)))
             .collect();
-        let instead = if facts.samples > 0 { "use the designs drawn" } else { "draw designs with `samples`" };
+        let instead =
+            if facts.samples > 0 { "use the sampled designs" } else { "sample designs with `samples`" };
         facts.message = if nonlinear.is_empty() {
-            format!("the linear answer holds: second derivatives add less than {}", percent(NONLINEAR))
+            format!("the linear result is accurate: second derivatives add less than {}", percent(NONLINEAR))
         } else {
-            format!("the linear answer is off for {}: {instead}", some_of(&nonlinear, ", "))
+            format!("the linear result is inaccurate for {}: {instead}", some_of(&nonlinear, ", "))
         };
         if !nonlinear.is_empty() {
             facts.status = "nonlinear";
@@ -602,11 +603,11 @@ impl ToleranceFacts {
             rows.push(("yield", format!("{} keep all limits", yield_text(part, error))));
         }
         if self.samples > 0 {
-            rows.push(("drawn", format!("{}, seed {}", count(self.samples, "design"), self.seed)));
+            rows.push(("sampled", format!("{}, seed {}", count(self.samples, "design"), self.seed)));
         }
         if self.failed > 0 {
             let part = percent(self.failed as f64 / self.samples as f64);
-            rows.push(("failed", format!("{} do not move to the end ({part})", self.failed)));
+            rows.push(("failed", format!("{} do not reach the end of the motion ({part})", self.failed)));
         }
         let ends = |m: &SpreadFact| {
             [("least", &m.least), ("greatest", &m.greatest)]
@@ -630,7 +631,7 @@ impl ToleranceFacts {
         }
         if let Some(a) = &self.allocation {
             let kept = a.sampled.zip(a.error).map_or(String::new(), |(p, e)| {
-                format!("; {} of designs drawn from them keep all limits", yield_text(p, e))
+                format!("; {} of designs sampled from them keep all limits", yield_text(p, e))
             });
             let cost = match (a.cost.before, a.cost.after) {
                 (Some(before), Some(after)) => {
@@ -641,7 +642,7 @@ impl ToleranceFacts {
             rows.push(("loosest", format!("{}{cost}{kept}", a.status)));
         }
         let Evaluations { designs, motions, .. } = self.evaluations;
-        rows.push(("looked at", format!("{}, {}", count(designs, "design"), count(motions, "motion"))));
+        rows.push(("evaluated", format!("{}, {}", count(designs, "design"), count(motions, "motion"))));
         rows
     }
 
@@ -654,7 +655,7 @@ impl ToleranceFacts {
                 Some(_) => "does not move".into(),
                 None => optional(e.exact.or(e.second).or(Some(e.first)), &m.unit),
             };
-            let [mean, sigma] = m.told();
+            let [mean, sigma] = m.best_moments();
             vec![
                 m.titled(),
                 with_unit(m.nominal, &m.unit),
@@ -671,11 +672,11 @@ impl ToleranceFacts {
         };
         let mut tables = vec![Table {
             title: "Metrics".into(),
-            note: "Mean and standard deviation (sigma) are of the designs drawn where the linear answer is off. RSS is the root of the sum \
-                of squares. Worst case: with every deviation at its worst."
+            note: "Mean and standard deviation (sigma) are of the sampled designs where the linear result is inaccurate. RSS is the root sum \
+                square. Worst case: with every deviation at its most unfavourable value."
                 .into(),
             header: header(&[
-                "metric", "nominal", "mean", "sigma", "from", "RSS", "2nd order", "RSS is off by", "bends by", "least", "greatest",
+                "metric", "nominal", "mean", "sigma", "from", "RSS", "2nd order", "RSS error", "nonlinearity", "minimum", "maximum",
             ]),
             rows: self.metrics.iter().map(metric).collect(),
         }];
@@ -688,31 +689,31 @@ impl ToleranceFacts {
         };
         let rows: Vec<Vec<String>> = self.metrics.iter().filter_map(drawn).collect();
         if !rows.is_empty() {
-            let few = if self.failed > 0 { " Designs that do not move are not among them." } else { "" };
+            let few = if self.failed > 0 { " Failed designs are not included." } else { "" };
             tables.push(Table {
-                title: "Designs drawn".into(),
+                title: "Sampled designs".into(),
                 note: format!(
                     "Skewness is 0 and kurtosis 3 of a normal distribution; 99.73 % of the designs are between the quantiles 0.135 % and \
                      99.865 %.{few}"
                 ),
                 header: header(&[
-                    "metric", "mean", "sigma", "skewness", "kurtosis", "least", "0.135 %", "median", "99.865 %", "greatest",
+                    "metric", "mean", "sigma", "skewness", "kurtosis", "minimum", "0.135 %", "median", "99.865 %", "maximum",
                 ]),
                 rows,
             });
         }
         for m in &self.metrics {
-            let told = m.contributions.iter().filter(|c| c.share.abs() >= SLIGHT);
+            let listed = m.contributions.iter().filter(|c| c.share.abs() >= SLIGHT);
             let mut rows: Vec<Vec<String>> =
-                told.map(|c| vec![c.variable.clone(), percent(c.share), bar(c.share)]).collect();
+                listed.map(|c| vec![c.variable.clone(), percent(c.share), bar(c.share)]).collect();
             if let Some(part) = m.together.filter(|part| *part >= SLIGHT) {
-                rows.push(vec!["several together".into(), percent(part), bar(part)]);
+                rows.push(vec!["interactions".into(), percent(part), bar(part)]);
             }
             if !rows.is_empty() {
                 let note = match m.told_by {
                     SpreadModel::Linear => "",
                     SpreadModel::SecondOrder => "From first and second derivatives.",
-                    SpreadModel::Drawn => {
+                    SpreadModel::Sampled => {
                         "From the sampled designs: the variance of the mean at given deviations of each variable."
                     }
                 };
@@ -736,8 +737,10 @@ impl ToleranceFacts {
             };
             tables.push(Table {
                 title: "Limits".into(),
-                note: "The part that keeps them: of the designs drawn, and of a normal distribution with the moments.".into(),
-                header: header(&["limit", "at least", "at most", "drawn", "by moments"]),
+                note:
+                    "Yield: fraction of the sampled designs, and of a normal distribution with the moments."
+                        .into(),
+                header: header(&["limit", "at least", "at most", "sampled", "by moments"]),
                 rows: self.limits.iter().map(row).collect(),
             });
         }
@@ -760,7 +763,7 @@ impl ToleranceFacts {
         let tolerances = Table {
             title: "Variables".into(),
             note: String::new(),
-            header: header(&["variable", "within", "tolerance", "distribution", "sigma", "cost", "loosest"]),
+            header: header(&["variable", "point", "tolerance", "distribution", "sigma", "cost", "loosest"]),
             rows: self.variables.iter().map(row).collect(),
         };
         tables.push(tolerances.without_empty_columns());
@@ -774,9 +777,9 @@ impl ToleranceFacts {
                 ]
             };
             let failures = Table {
-                title: "Designs that fail".into(),
+                title: "Failed designs".into(),
                 note: String::new(),
-                header: header(&["case", "what happens to the first", "designs", "first"]),
+                header: header(&["case", "first failure", "designs", "first"]),
                 rows: self.failures.iter().map(row).collect(),
             };
             tables.push(failures.without_empty_columns());
@@ -790,12 +793,12 @@ impl ToleranceFacts {
     }
 }
 
-/// The word for a model of a spread, in JSON and tables.
+/// Word for a model of the spread, in JSON and tables.
 fn word_of(model: SpreadModel) -> &'static str {
     match model {
         SpreadModel::Linear => "linear",
         SpreadModel::SecondOrder => "second_order",
-        SpreadModel::Drawn => "drawn",
+        SpreadModel::Sampled => "drawn",
     }
 }
 
@@ -805,11 +808,11 @@ fn as_word<S: Serializer>(model: &SpreadModel, serializer: S) -> Result<S::Ok, S
 
 impl SpreadFact {
     /// Mean and standard deviation by the model of the spread.
-    fn told(&self) -> [Option<f64>; 2] {
+    fn best_moments(&self) -> [Option<f64>; 2] {
         match (self.told_by, &self.sampled) {
-            (SpreadModel::Drawn, Some(s)) => [Some(s.mean), Some(s.sigma)],
+            (SpreadModel::Sampled, Some(s)) => [Some(s.mean), Some(s.sigma)],
             (SpreadModel::SecondOrder, _) => [self.mean, self.sigma],
-            (SpreadModel::Linear | SpreadModel::Drawn, _) => {
+            (SpreadModel::Linear | SpreadModel::Sampled, _) => {
                 [self.mean.or(Some(self.nominal)), Some(self.rss)]
             }
         }
@@ -830,7 +833,7 @@ pub(crate) fn titled(name: &str, case: &Option<String>) -> String {
     case.as_ref().map_or(name.to_owned(), |case| format!("{name} ({case})"))
 }
 
-/// The standard error of a part of that many designs.
+/// Standard error of a fraction of a number of designs.
 fn standard_error(part: f64, of: usize) -> f64 {
     Yield { kept: (part * of as f64).round() as usize, of }.error()
 }
@@ -839,7 +842,7 @@ fn tolerated(studied: &ToleranceInputs<'_>, k: usize) -> ToleratedFact {
     let (model, of) = (studied.model(), studied.found.variables[k]);
     let (variable, tolerance) = (&model.variables[of.variable.0], &studied.asked.tolerances[of.tolerance]);
     let shown = |x: f64| studied.units().from_si(variable.quantity, x);
-    let found = studied.found.allocation.as_ref().filter(|a| a.impossible.is_none());
+    let found = studied.found.allocation.as_ref().filter(|a| a.error.is_none());
     let sought = found.and_then(|a| a.tolerances.iter().find(|t| t.tolerance == of.tolerance));
     ToleratedFact {
         name: variable.name.clone(),
@@ -864,26 +867,28 @@ fn spread(studied: &ToleranceInputs<'_>, k: usize) -> SpreadFact {
         why: e.why.clone(),
     };
     let found = studied.found;
-    let told = &found.contributions[k];
+    let model_shares = &found.contributions[k];
     let mut why = Vec::new();
     if found.is_nonlinear(k) {
         match of.nonlinearity().filter(|x| x.is_finite()) {
-            None => why.push("second derivatives are not known".to_owned()),
-            Some(part) if part > NONLINEAR => why.push(format!("it bends by {} of sigma", percent(part))),
+            None => why.push("second derivatives are unknown".to_owned()),
+            Some(part) if part > NONLINEAR => {
+                why.push(format!("the second-order part is {} of sigma", percent(part)))
+            }
             Some(_) => (),
         }
-        if found.drawn_differ(k) {
-            why.push("sigma of the designs drawn is another".into());
+        if found.differs_from_samples(k) {
+            why.push("sigma of the sampled designs differs".into());
         }
         if found.fails_often() {
-            why.push("some designs do not move".into());
+            why.push("some designs do not reach the end".into());
         }
     }
     let contribution = |v: usize| {
         let quantity = studied.model().variables[studied.found.variables[v].variable.0].quantity;
         Contribution {
             variable: studied.variable_name(v).to_owned(),
-            share: told.shares[v],
+            share: model_shares.shares[v],
             d: shown(of.d[v]) / units.from_si(quantity, 1.0),
         }
     };
@@ -916,10 +921,10 @@ fn spread(studied: &ToleranceInputs<'_>, k: usize) -> SpreadFact {
         nonlinearity: of.nonlinearity().filter(|x| x.is_finite()),
         least: extreme(&of.worst[0]),
         greatest: extreme(&of.worst[1]),
-        told_by: told.model,
+        told_by: model_shares.model,
         nonlinear: (!why.is_empty()).then(|| why.join(", ")),
         contributions,
-        together: told.together,
+        together: model_shares.together,
         sampled: studied.found.sampled.as_ref().and_then(sampled),
     }
 }
@@ -931,7 +936,7 @@ fn limit(studied: &ToleranceInputs<'_>, k: usize) -> YieldFact {
     assert_eq!(limit.of, LimitTarget::Metric(of.metric));
     let (units, dimension) = (studied.units(), studied.dimension(of));
     let shown = |x: f64| units.from_si(dimension, x);
-    let worth = studied.found.allocation.as_ref().filter(|a| a.impossible.is_none()).map(|a| a.worth[k]);
+    let worth = studied.found.allocation.as_ref().filter(|a| a.error.is_none()).map(|a| a.worth[k]);
     YieldFact {
         name: limit.name.clone(),
         metric: studied.model().metrics[of.metric].name.clone(),
@@ -961,15 +966,15 @@ fn allocation(studied: &ToleranceInputs<'_>, found: &Allocation) -> AllocationFa
         let limit = &studied.asked.limits[studied.found.limits[k].limit];
         titled(&limit.name, &studied.case(studied.found.metrics[studied.found.limits[k].spread].motion))
     };
-    let status = match found.impossible {
+    let status = match found.error {
         None => "found".to_owned(),
         Some(AllocationError::NoCosts) => "none of the variables that can be followed has a cost".into(),
         Some(AllocationError::NoLimits) => "there is no limit to keep".into(),
-        Some(AllocationError::AsDrawn(k)) => {
-            format!("limit `{}` is not kept by the nominal design: change the design first", name(k))
+        Some(AllocationError::NominalExceeds(k)) => {
+            format!("limit `{}` is violated by the nominal design: change the design first", name(k))
         }
         Some(AllocationError::Fixed(k)) => {
-            format!("tolerances without a cost use up all room of limit `{}`: give them one", name(k))
+            format!("tolerances without a cost exhaust the room of limit `{}`: give them one", name(k))
         }
     };
     let (rule, sigmas) = match found.rule {
@@ -983,7 +988,7 @@ fn allocation(studied: &ToleranceInputs<'_>, found: &Allocation) -> AllocationFa
         status,
         cost: BeforeAfter {
             before: Some(found.cost[0]),
-            after: found.impossible.is_none().then_some(found.cost[1]),
+            after: found.error.is_none().then_some(found.cost[1]),
         },
         kkt: Some(found.residual).filter(|r| r.is_finite()),
         sampled: all.map(Yield::part),

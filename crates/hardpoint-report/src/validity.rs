@@ -1,4 +1,4 @@
-//! Linear range of the sensitivities by each variable.
+//! Linear ranges of the sensitivities by each variable.
 
 use hardpoint::Solution;
 use hardpoint::model::{Model, OutputSource};
@@ -14,34 +14,34 @@ use crate::summary::Summary;
 /// Linear range of the sensitivities by one variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct ValidityFact {
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
-    /// Unit.
+    /// Unit of the variable.
     pub unit: String,
     /// Change in either direction up to which the second-order part of every measure is at most 5 % of the first-order
     /// part, over the whole motion; `null` if all measures are exactly linear, or none depends on the variable.
     pub linear_up_to: Option<f64>,
     /// True if all measures that depend on it are exactly linear in it: their second-order parts are round-off.
     pub exactly_linear: bool,
-    /// The measure that limits it.
+    /// Measure that limits the range.
     pub limited_by: Option<String>,
-    /// The same measure by measure.
+    /// Linear ranges of the single measures.
     pub measures: Vec<MeasureValidity>,
 }
 
 /// Linear range of the sensitivity of one measure by one variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeasureValidity {
-    /// The measure.
+    /// Name of the measure.
     pub measure: String,
-    /// Change of the variable, in its unit; `null` if the measure is exactly linear in it.
+    /// Linear range of the variable, in its unit; `null` if the measure is exactly linear in it.
     pub linear_up_to: Option<f64>,
     /// True if the measure is exactly linear in the variable: its second-order part is round-off.
     pub exactly_linear: bool,
 }
 
 impl ValidityFact {
-    /// Those of a solution: of its measures, or of its points where it has none.
+    /// Linear ranges of a solution: for its measures, or for its points if it has no measures.
     pub fn all(model: &Model, units: Units, solution: &Solution, found: &[Validity]) -> Vec<Self> {
         let outputs = &solution.measured.outputs;
         let counts =
@@ -71,7 +71,7 @@ impl ValidityFact {
         model.variables.iter().zip(found).map(fact).collect()
     }
 
-    /// All of them, with what is known of the motion.
+    /// Table of the linear ranges, with the numerical quality of the motion.
     pub fn table(summary: &Summary) -> Option<Table> {
         let row = |v: &Self| {
             let reach = match v.linear_up_to {
@@ -84,11 +84,11 @@ impl ValidityFact {
         let margin = summary.margin.as_ref().map_or(String::new(), |m| format!(" Margin: {}.", m.line()));
         let pivots = rounded(summary.effort.least_pivot_ratio, 2);
         (!rows.is_empty()).then(|| Table {
-            title: "How far sensitivities can be trusted".into(),
+            title: "Linear range of sensitivities".into(),
             note: format!(
                 "Prediction: change of the variable in either direction at which the second-order part of the named measure is 5 % of the first-order part. Numerics: the smallest pivot is {pivots} of the largest.{margin}"
             ),
-            header: ["variable", "linear within", "limited by"].map(String::from).to_vec(),
+            header: ["variable", "linear range", "limited by"].map(String::from).to_vec(),
             rows,
         })
     }

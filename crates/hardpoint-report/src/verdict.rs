@@ -1,4 +1,4 @@
-//! `verify.json`: exact sensitivities against re-solved designs.
+//! `verify.json`: exact sensitivities compared with re-solved designs.
 
 use hardpoint::Analysis;
 use hardpoint::study::{CheckOutcome, DifferenceScheme, StepError, Verification};
@@ -9,60 +9,60 @@ use crate::facts::variable_unit;
 use crate::figures::{error, number, rounded};
 use crate::page::Table;
 
-/// Everything that `verify.json` holds. Steps are in the variable's unit, times in s.
+/// Contents of `verify.json`. Steps are in the variable's unit, times in s.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
     /// Program and version.
     pub generator: &'static str,
-    /// The mechanism's name.
+    /// Name of the mechanism.
     pub name: String,
-    /// The model file, as it was given.
+    /// Name of the model file, as given.
     pub file: String,
-    /// The units.
+    /// Units of the values.
     pub units: Units,
     /// True if every variable that has sensitivities passed.
     pub passed: bool,
-    /// True if it was ended before all variables were checked.
+    /// True if the verification was ended early.
     pub interrupted: bool,
-    /// Designs that were compared.
+    /// Scheme of the differences.
     pub differences: Differences,
-    /// Every quantity must agree to this at some step.
+    /// Tolerance that every quantity must satisfy at some step.
     pub tolerance: f64,
-    /// The variable and quantity that agree worst.
-    pub worst: Option<Worst>,
-    /// One entry per variable that was checked.
+    /// Variable and quantity with the largest error.
+    pub worst: Option<WorstQuantity>,
+    /// Checks of the variables.
     pub checks: Vec<CheckFact>,
-    /// Time taken, s.
+    /// Duration, s.
     pub seconds: f64,
 }
 
-/// The designs of a difference quotient.
+/// Scheme of a difference quotient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Differences {
-    /// At +h and -h.
+    /// Designs at +h and -h.
     Central,
-    /// At +h and 0.
+    /// Designs at +h and 0.
     Forward,
-    /// At 0 and -h.
+    /// Designs at 0 and -h.
     Backward,
 }
 
-/// Place of the worst agreement.
+/// Variable and quantity with the largest error.
 #[derive(Clone, Debug, Serialize)]
-pub struct Worst {
-    /// The variable.
+pub struct WorstQuantity {
+    /// Name of the variable.
     pub variable: String,
-    /// The quantity.
+    /// Name of the quantity.
     pub quantity: String,
-    /// Largest relative deviation at the step where it agrees best.
+    /// Largest relative deviation at the step of best agreement.
     pub error: f64,
 }
 
-/// The check of one variable.
+/// Check of one variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckFact {
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
     /// Unit; `1` for a plain number.
     pub unit: String,
@@ -70,9 +70,9 @@ pub struct CheckFact {
     pub outcome: Outcome,
     /// Note on the check, in a sentence.
     pub note: Option<&'static str>,
-    /// The quantity that agrees worst, each judged at the step where it agrees best; that step.
+    /// Quantity with the largest error, each at its step of best agreement; with that step.
     pub worst: Option<StepFact>,
-    /// All steps that could be solved, from coarse to fine, each with the quantity that agrees worst there.
+    /// Quantity with the largest error at each solved step, from coarse to fine.
     pub sweep: Vec<StepFact>,
 }
 
@@ -84,32 +84,32 @@ pub enum Outcome {
     Passed,
     /// Some quantity agrees at no step.
     Failed,
-    /// The mechanism cannot follow the variable: nothing to compare.
+    /// The mechanism cannot follow the variable, so there is nothing to compare.
     CannotFollow,
     /// No moved design could be solved to the end.
     NotSolved,
 }
 
-/// Analytic against finite difference at one step.
+/// Deviation of the analytic derivative from the finite difference at one step.
 #[derive(Clone, Debug, Serialize)]
 pub struct StepFact {
-    /// The step as part of the change that moves the farthest marker by the mechanism's size, or by 1 rad.
+    /// Step as a fraction of the change that moves the farthest marker by the mechanism's size, or by 1 rad.
     pub part: f64,
-    /// The step, in the variable's unit.
+    /// Step, in the variable's unit.
     pub step: f64,
     /// Largest relative deviation over all times.
     pub error: f64,
-    /// The quantity.
+    /// Name of the quantity.
     pub quantity: String,
-    /// The time where it is, s.
+    /// Time of the largest deviation, s.
     pub time: f64,
 }
 
 impl Verdict {
-    /// The verdict of a finished verification.
+    /// Facts of a finished verification.
     pub fn new(file: &ModelFile, analysis: &Analysis<'_>, verification: &Verification, seconds: f64) -> Self {
         let (model, units) = (analysis.model(), file.units);
-        // One-sided differences fall with the step in any mechanism.
+        // One-sided differences always have an error proportional to the step.
         let parts_later = verification.scheme == DifferenceScheme::Central
             && analysis.topology().redundant().next().is_some();
         let check = |c: &hardpoint::study::VariableCheck| {
@@ -142,7 +142,7 @@ impl Verdict {
             .iter()
             .filter_map(|c| c.worst.as_ref().map(|b| (c, b)))
             .max_by(|a, b| a.1.error.total_cmp(&b.1.error))
-            .map(|(c, b)| Worst {
+            .map(|(c, b)| WorstQuantity {
                 variable: c.variable.clone(),
                 quantity: b.quantity.clone(),
                 error: b.error,
@@ -166,7 +166,7 @@ impl Verdict {
         }
     }
 
-    /// Per variable, the quantity that agrees worst at its own best step.
+    /// Table of the variables, each with the quantity of the largest error at its step of best agreement.
     pub fn table(&self) -> Table {
         let row = |c: &CheckFact| {
             let outcome = match c.outcome {
@@ -197,7 +197,7 @@ impl Verdict {
         }
     }
 
-    /// Error against step, one row per variable; steps as parts of the natural step.
+    /// Table of the error against the step, one row per variable; steps as fractions of the natural step.
     pub fn sweep_table(&self) -> Table {
         let mut parts: Vec<f64> = Vec::new();
         for s in self.checks.iter().flat_map(|c| &c.sweep) {
@@ -221,12 +221,12 @@ impl Verdict {
     }
 }
 
-/// Meaning of a deviation that is proportional to the step itself, not to its square, in a mechanism with redundant
+/// Explanation of a deviation that is proportional to the step itself, not to its square, in a mechanism with redundant
 /// constraints.
 const FIRST_ORDER: &str = "the mechanism cannot follow a finite step exactly, because its redundant constraints part at \
     second order; the difference falls in proportion to the step, as it must";
 
-/// True if over a decade of steps or more, down to the best one, error and step keep their ratio.
+/// True if error and step keep their ratio over at least a decade of steps, down to the best one.
 fn falls_in_proportion(sweep: &[StepError]) -> bool {
     const DECADE: f64 = 10.0;
     let mut first = 0;
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn a_difference_that_falls_with_the_step_is_told_from_all_others() {
         assert!(falls_in_proportion(&sweep(|h| 3.0 * h)));
-        // At large steps other terms rule.
+        // Higher-order terms dominate at large steps.
         assert!(falls_in_proportion(&sweep(|h| 3.0 * h + 4e3 * h * h)));
         assert!(!falls_in_proportion(&sweep(|h| h * h)), "a wrong design has no such excuse");
         assert!(!falls_in_proportion(&sweep(|_| 0.1)), "nor has a wrong sensitivity");

@@ -1,5 +1,5 @@
-//! `whatif.json`, `whatif.csv` and `whatif.html`: a changed design as it is predicted and as it is, and which variable
-//! moves which measure most.
+//! `whatif.json`, `whatif.csv` and `whatif.html`: a changed design, predicted and exact, and the most influential
+//! variables of each measure.
 
 use std::io::Write;
 
@@ -21,24 +21,24 @@ use crate::margin::MarginFact;
 use crate::metric::MetricChange;
 use crate::page::{Payload, Table};
 
-/// Everything that `whatif.json` holds. Figures are in the model's units, times in s.
+/// Contents of `whatif.json`. Values are in the model's units, times in s.
 #[derive(Clone, Debug, Serialize)]
 pub struct WhatIfFacts {
     /// Program and version.
     pub generator: &'static str,
-    /// The mechanism's name.
+    /// Name of the mechanism.
     pub name: String,
-    /// The model file, as it was given.
+    /// Name of the model file, as given.
     pub file: String,
-    /// Changed variables, and their changes.
+    /// Changes of the variables.
     pub change: Vec<ChangeFact>,
-    /// The nearest admissible change, where this one is none: what would keep the joints closed.
+    /// Nearest admissible change, which keeps the joints closed, if this one is not admissible.
     pub nearest: Vec<ChangeFact>,
-    /// True if and how the mechanism follows, in a sentence.
+    /// Sentence on the admissibility of the change.
     pub follows: String,
-    /// Margins from singular positions, nominal and changed.
+    /// Margins to singular positions, nominal and changed.
     pub margins: [Option<MarginFact>; 2],
-    /// Per measure, how it changes and how well that was predicted.
+    /// Changes of the measures, and the quality of their prediction.
     pub measures: Vec<MeasureFact>,
     /// Changes of the metrics.
     pub metrics: Vec<MetricChange>,
@@ -50,19 +50,19 @@ pub struct WhatIfFacts {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// A variable that is changed.
+/// Change of a variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct ChangeFact {
-    /// Name.
+    /// Name of the variable.
     pub variable: String,
-    /// By how much.
+    /// Change, in `unit`.
     pub by: f64,
     /// Unit; `1` for a plain number.
     pub unit: String,
 }
 
 impl ChangeFact {
-    /// Changes of the variables of a model by a change in SI.
+    /// Changes of the variables of a model, from a change in SI.
     pub fn all(model: &Model, units: Units, change: &[f64]) -> Vec<Self> {
         let changed = model.variables.iter().zip(change).filter(|(_, by)| **by != 0.0);
         let fact = |(variable, by): (&hardpoint::model::DesignVariable, &f64)| Self {
@@ -73,68 +73,68 @@ impl ChangeFact {
         changed.map(fact).collect()
     }
 
-    /// `A.x by 2 mm, B.y by -1 mm`.
+    /// Changes in a line: `A.x by 2 mm, B.y by -1 mm`.
     pub fn line(changes: &[Self]) -> String {
         let one = |c: &Self| format!("{} by {}", c.variable, with_unit(c.by, &c.unit));
         changes.iter().map(one).collect::<Vec<_>>().join(", ")
     }
 }
 
-/// A measure's curves.
+/// Curves of a measure.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeasureFact {
-    /// Name.
+    /// Name of the measure.
     pub measure: String,
     /// Unit.
     pub unit: String,
     /// Largest exact change over the motion, with its sign.
     pub change: Option<f64>,
-    /// Time of that, s.
+    /// Time of the largest change, s.
     pub time: Option<f64>,
-    /// Largest error of the first-order prediction, and of the second-order one; `null` where that is not known, as of
-    /// a velocity.
+    /// Largest errors of the first-order and of the second-order prediction; `null` if unknown, for example for a
+    /// velocity.
     pub errors: Option<[Option<f64>; 2]>,
-    /// Number of times this change could be made before the second-order part is 5 % of the first-order one; `null`
-    /// where the measure is exactly linear along the change, or does not change to first order.
+    /// Factor by which the change can be scaled before its second-order part reaches 5 % of its first-order part;
+    /// `null` if the measure is exactly linear along the change, or does not change to first order.
     pub linear_up_to: Option<f64>,
     /// True if the measure is exactly linear along the change: its second-order part is round-off.
     pub exactly_linear: bool,
-    /// Over the output times: today's value.
+    /// Nominal curve over the output times.
     pub today: Vec<f64>,
-    /// As predicted to first order, and to second order; empty where nothing is predicted.
+    /// First-order prediction; empty if nothing is predicted.
     pub first: Vec<f64>,
-    /// As predicted to second order.
+    /// Second-order prediction; empty if nothing is predicted.
     pub second: Vec<f64>,
-    /// Re-solved.
+    /// Exact curve of the re-solved design.
     pub exact: Vec<f64>,
 }
 
 /// Influence of a variable on a measure.
 #[derive(Clone, Debug, Serialize)]
 pub struct InfluenceFact {
-    /// The measure.
+    /// Name of the measure.
     pub measure: String,
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
     /// Largest derivative over the motion, with its sign.
     pub largest: f64,
-    /// Time of that, s.
+    /// Time of the largest derivative, s.
     pub time: f64,
-    /// Unit.
+    /// Unit of the derivative.
     pub unit: String,
-    /// The variable's unit.
+    /// Unit of the variable.
     pub per: String,
-    /// The measure's unit.
+    /// Unit of the measure.
     pub of: String,
-    /// First-order change of the measure by the variable's typical change, in the measure's unit; `null` if the file
-    /// gives none.
+    /// First-order change of the measure due to the variable's typical change, in the measure's unit; `null` if the
+    /// file gives none.
     pub typical: Option<f64>,
-    /// Likewise, of what its tolerance moves it by, either way.
+    /// First-order change of the measure due to the variable's tolerance, in either direction.
     pub tolerance: Option<f64>,
 }
 
 impl WhatIfFacts {
-    /// With what a change does to the design that these are the facts of.
+    /// Adds the effects of a change on the design.
     pub fn changed(self, file: &ModelFile, topology: &Topology, what_if: &WhatIf) -> Self {
         let (model, units) = (&file.model, file.units);
         let change = ChangeFact::all(model, units, &what_if.change);
@@ -155,7 +155,7 @@ impl WhatIfFacts {
             let shown = |x: f64| units.from_si(output.dimension, x);
             let prediction_quality = what_if.prediction_quality(m);
             let steps = || 0..what_if.len();
-            let foreseen = |order: usize| match prediction_quality {
+            let prediction = |order: usize| match prediction_quality {
                 Some(f) if f.errors[order].is_some() => {
                     steps().map(|k| shown(what_if.predicted(k, m)[order])).collect()
                 }
@@ -173,15 +173,15 @@ impl WhatIfFacts {
                 linear_up_to: prediction_quality.and_then(|f| f.linear_up_to).filter(|x| x.is_finite()),
                 exactly_linear: prediction_quality.and_then(|f| f.linear_up_to).is_some_and(f64::is_infinite),
                 today: steps().map(|k| shown(measured.value(k, m)[0])).collect(),
-                first: foreseen(0),
-                second: foreseen(1),
+                first: prediction(0),
+                second: prediction(1),
                 exact: steps().map(|k| shown(what_if.exact(k, m))).collect(),
             });
         }
         facts
     }
 
-    /// Only the ranking, of a model whose design is not changed.
+    /// Ranking of the variables only, for a model whose design is not changed.
     pub fn of_today(file: &ModelFile, topology: &Topology, today: &Solution) -> Self {
         Self {
             generator: GENERATOR,
@@ -213,7 +213,7 @@ impl WhatIfFacts {
         ChangeFact::line(&self.change)
     }
 
-    /// Table of the changes of the measures, and the quality of their prediction; of those requested, or of all.
+    /// Table of the changes of the measures and the quality of their prediction; of the requested measures, or of all.
     pub fn table(&self, wanted: &dyn Fn(&str) -> bool) -> Table {
         let range = |x: &[f64]| {
             let low = x.iter().copied().fold(f64::INFINITY, f64::min);
@@ -240,18 +240,18 @@ impl WhatIfFacts {
         Table {
             title: format!("What if {}", self.change_line()),
             note: "Predictions come from the nominal derivatives, without solving again; the exact curves are re-solved. \
-                   \"Linear up to\": that many times this change, the second-order part is 5 % of the first-order one."
+                   \"Linear range\": factor on this change at which the second-order part is 5 % of the first-order part."
                 .into(),
             header: [
                 "measure",
                 "unit",
-                "today",
+                "nominal",
                 "changed",
                 "largest change",
                 "at t",
                 "error of 1st order",
                 "error of 2nd order",
-                "linear up to",
+                "linear range",
             ]
             .map(String::from)
             .to_vec(),
@@ -259,8 +259,8 @@ impl WhatIfFacts {
         }
     }
 
-    /// The variables that move a measure most, the strongest first; that many of each unit, and none that does not move
-    /// it.
+    /// Most influential variables of a measure, the largest first; at most `shown` of each unit, without those that
+    /// have no effect.
     pub fn ranking(&self, measure: &str, shown: usize) -> Table {
         let mut units: Vec<&str> = Vec::new();
         let of_measure = || self.influence.iter().filter(|i| i.measure == measure && i.largest != 0.0);
@@ -280,7 +280,7 @@ impl WhatIfFacts {
             }
         }
         Table {
-            title: format!("What moves {measure} most"),
+            title: format!("Most influential variables of {measure}"),
             note: if rows.is_empty() { "No variable moves it.".into() } else { String::new() },
             header: ["rank", "by variable", "largest", "at t", "by a typical change", "by its tolerance"]
                 .map(String::from)
@@ -290,7 +290,7 @@ impl WhatIfFacts {
         .without_empty_columns()
     }
 
-    /// The names of the measures that the ranking knows, each once.
+    /// Names of the ranked measures, each once.
     pub fn ranked(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for i in &self.influence {
@@ -301,10 +301,10 @@ impl WhatIfFacts {
         names
     }
 
-    /// The curves of the measures, one row per output time.
+    /// Writes the curves of the measures, one row per output time.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// If `out` cannot be written.
     pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
         let mut header = vec!["t [s]".to_owned()];
         for m in &self.measures {
@@ -325,8 +325,8 @@ impl WhatIfFacts {
         Ok(())
     }
 
-    /// The page of today's design becomes that of the changed one: what is reported here comes first among its checks,
-    /// and it opens on the first of the `asked` measures, drawn over another one.
+    /// Turns the page of the nominal design into that of the changed one: the result comes first among the checks, and
+    /// the page opens on the first of the `asked` measures, over another one.
     pub fn page(
         &self,
         mut page: Payload,
@@ -360,7 +360,7 @@ impl WhatIfFacts {
         [change, self.table(wanted)].into_iter().chain(metrics).collect()
     }
 
-    /// The change, whether the mechanism follows, and how far it stays from singular positions: each with its label.
+    /// Labelled lines on the change, its admissibility, and the margins to singular positions.
     pub fn change_rows(&self) -> Vec<(&'static str, String)> {
         let margin = |m: &Option<MarginFact>| m.as_ref().map_or("-".into(), |m| number(m.least));
         let [today, changed] = [0, 1].map(|k| margin(&self.margins[k]));
@@ -378,7 +378,7 @@ impl WhatIfFacts {
 }
 
 impl MeasureFact {
-    /// Curves, as far as they are known.
+    /// Known curves with their names.
     fn curves(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
         let all = [&self.today, &self.first, &self.second, &self.exact].map(Vec::as_slice);
         CURVES.into_iter().zip(all).filter(|(_, curve)| !curve.is_empty())
@@ -387,10 +387,10 @@ impl MeasureFact {
 
 const CURVES: [&str; 4] = ["today", "first order", "second order", "exact"];
 
-/// Number of variables of each unit does the page's ranking of a measure show.
+/// Maximum number of variables of each unit in the page's ranking of a measure.
 const MOST_RANKED: usize = 10;
 
-/// True if and how the mechanism follows a change.
+/// Sentence on the admissibility of a change.
 pub(crate) fn follows(model: &Model, what_if: &WhatIf) -> String {
     if !what_if.cannot_follow.is_empty() {
         let which = what_if.cannot_follow.iter().map(|v| model.variables[v.0].name.as_str());
@@ -403,8 +403,8 @@ pub(crate) fn follows(model: &Model, what_if: &WhatIf) -> String {
     format!("re-assembled: {} opens in the design configuration and is closed again by moving", names(joints))
 }
 
-/// Every measure (or every point, where there are no measures) by every variable, the strongest first within each. What
-/// depends on two names is ranked once, and what moves a measure by round-off only does not move it.
+/// Influence of every variable on every measure (or every point, if there are no measures), the largest first within
+/// each. A variable with two names is ranked once, and effects that are round-off are left out.
 fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact> {
     let measured = &today.measured;
     let mut facts = Vec::new();

@@ -213,7 +213,7 @@ impl OpenModel {
             change: values,
             today: &self.nominal.kept,
             exact,
-            foreseen: None,
+            prediction: None,
         };
         Some(payload::design(&request, &changed, self.shown))
     }

@@ -146,7 +146,7 @@ pub(crate) fn run_tolerance(
     let found =
         tolerance(&file.model, &motions, &numbers, &settings, NonZero::<usize>::MIN, &mut on, &|| true);
     let found = found.map_err(|failure| match failure {
-        ToleranceError::Drawn(rejection) => {
+        ToleranceError::Nominal(rejection) => {
             vec![DiagnosticMessage::of(&model.text, &diagnose::stop(&file, &rejection.stop, 0, None))]
         }
         ToleranceError::NothingVaries => {

@@ -91,7 +91,7 @@ impl Contents<'_> {
             paper.row(STRONG, &VARIABLES, &["variable", "unit", "what changes", "over the motion"]);
             for variable in &summary.model.variables {
                 let unit = if variable.unit == "1" { "-" } else { &variable.unit };
-                let cells = [&variable.name, unit, &variable.change, variable.answer_text()];
+                let cells = [&variable.name, unit, &variable.change, variable.admissibility_text()];
                 paper.row(TEXT, &VARIABLES, &cells);
             }
         }

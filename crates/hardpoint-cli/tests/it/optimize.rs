@@ -29,7 +29,7 @@ fn the_tutorial_finds_the_toe_curve_as_it_prints_it() {
     // How long it took is the machine's; what is left of the gradient, and the last steps of a search that is nearly there, are
     // round-off's.
     let iteration = |line: &str| line.trim_start().chars().next().is_some_and(|c| ('2'..='9').contains(&c));
-    let varies = ["time taken", "optimality", "looked at", "saved ", "out/", "saved:"];
+    let varies = ["time taken", "optimality", "evaluated", "saved ", "out/", "saved:"];
     let told = |line: &&str| !varies.iter().any(|word| line.contains(word)) && !iteration(line);
     let lines: Vec<&str> = text.lines().filter(told).collect();
     assert!(lines.len() > 25, "{text}");

@@ -151,8 +151,11 @@ fn what_a_format_cannot_say_is_named() {
         .iter()
         .map(|format| {
             let exported = Format::named(format).unwrap().export(&file);
-            let list: Vec<String> =
-                exported.unsupported.iter().map(|u| format!("{} `{}`: {}\n", u.kind, u.name, u.why)).collect();
+            let list: Vec<String> = exported
+                .unsupported
+                .iter()
+                .map(|u| format!("{} `{}`: {}\n", u.kind, u.name, u.why))
+                .collect();
             format!("## {format}\n{}", list.concat())
         })
         .collect();

@@ -26,7 +26,7 @@ fn the_tolerances_of_the_strut_are_told_and_written() {
         "yield",
         "2000 designs, seed 1",
         "Contributions to toe_in_bump (bump)",
-        "the linear answer holds",
+        "the linear result is accurate",
         "loosest",
     ] {
         assert!(text.contains(words), "{words}: {text}");
@@ -186,7 +186,7 @@ fn where_linear_statistics_are_off_the_designs_drawn_come_first_and_it_is_said_w
     assert_eq!((&linear["told_by"], &linear["nonlinear"]), (&"linear".into(), &serde_json::Value::Null));
     assert_eq!(span["told_by"], "drawn");
     assert!(span["nonlinear"].as_str().unwrap().contains("sigma"), "{span}");
-    for words in ["skewness", "0.135 %", "median", "99.865 %", "use the designs drawn", "several together"] {
+    for words in ["skewness", "0.135 %", "median", "99.865 %", "use the sampled designs", "interactions"] {
         assert!(text.contains(words), "{words}: {text}");
     }
     // Standard deviation and mean of the row are those drawn.
@@ -218,6 +218,6 @@ fn a_worst_case_that_does_not_assemble_is_told_as_such() {
     let stops = |end: &str| !phi[end]["why"].is_null();
     assert!(stops("greatest") || stops("least"), "{phi}");
     assert!(text.contains("worst case  does not move"), "{text}");
-    assert!(text.contains("do not move to the end"), "{text}");
+    assert!(text.contains("do not reach the end of the motion"), "{text}");
     assert!(phi["nonlinear"].as_str().unwrap().contains("do not move"), "{phi}");
 }

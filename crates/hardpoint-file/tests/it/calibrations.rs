@@ -175,11 +175,11 @@ fn what_cannot_be_told_apart_is_named_and_stays() {
     let model = crank();
     let measured = readings(&model, &[1e-3, 0.0, 0.0], &[vec![0.3]], &[0], 1e-5, &mut || 0.0);
     let found = fitted(&model, &measured);
-    assert_eq!((found.certainty.untold.len(), found.status), (2, FitStatus::Found));
+    assert_eq!((found.certainty.unidentifiable.len(), found.status), (2, FitStatus::Found));
     assert!(found.certainty.sigmas.iter().all(Option::is_none));
     assert!(found.objective[1] < 1e-12, "{:?}", found.objective);
     // To first order no untold direction changes what was read.
-    for untold in &found.certainty.untold {
+    for untold in &found.certainty.unidentifiable {
         let change =
             |by: f64| -> Vec<f64> { (0..3).map(|k| found.design[k] + by * untold.direction[k]).collect() };
         let value = |by: f64| {
@@ -192,7 +192,7 @@ fn what_cannot_be_told_apart_is_named_and_stays() {
         assert!(slope.abs() < 1e-6 * size, "{slope}");
     }
     // And a reading that indicates them comes first among those proposed.
-    assert!(found.next[0].tells.is_some(), "{:?}", found.next);
+    assert!(found.next[0].determines.is_some(), "{:?}", found.next);
 }
 
 #[test]
@@ -306,7 +306,11 @@ fn recovered(
         variables.iter().for_each(|v| hidden[v.0] = hidden_by * noise());
         let measured = readings(model, &hidden, postures, outputs, sigma, &mut noise);
         let found = fitted_by(model, &measured, variables, Loss::Squares).unwrap_or_else(|e| panic!("{e:?}"));
-        assert_eq!((found.status, found.certainty.untold.len()), (FitStatus::Found, 0), "seed {seed}");
+        assert_eq!(
+            (found.status, found.certainty.unidentifiable.len()),
+            (FitStatus::Found, 0),
+            "seed {seed}"
+        );
         let off: Vec<f64> = variables.iter().map(|v| found.design[v.0] - hidden[v.0]).collect();
         errors.extend(off.iter().zip(&found.certainty.sigmas).map(|(e, s)| e / s.unwrap()));
         chis.push(mahalanobis(&found.certainty.covariance, &off));

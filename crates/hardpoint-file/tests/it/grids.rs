@@ -115,12 +115,16 @@ fn what_cannot_be_reached_is_a_gap_with_its_reason_and_nothing_else_is() {
         let [bump, steer] = [map.grid.values[0][i], map.grid.values[1][j]];
         let stop = &map.stops[j];
         // Where the first driver stood is where the row ends, and the second stood in its place.
-        assert!(stop.stood[0] > 0.06 && stop.stood[0] < 0.6 && stop.stood[1] == steer, "{:?}", stop.stood);
-        let reached = bump < stop.stood[0];
-        assert_eq!(map.is_solved([i, j]), reached, "{bump} {:?}", stop.stood);
+        assert!(
+            stop.drivers[0] > 0.06 && stop.drivers[0] < 0.6 && stop.drivers[1] == steer,
+            "{:?}",
+            stop.drivers
+        );
+        let reached = bump < stop.drivers[0];
+        assert_eq!(map.is_solved([i, j]), reached, "{bump} {:?}", stop.drivers);
         assert_eq!(map.value([i, j], toe).is_some(), reached);
         assert_eq!(map.d([i, j], VariableId(0), toe).is_some(), reached);
-        assert_eq!(map.why_not([i, j]).map(|s| map.stops[s].row), (!reached).then_some(j));
+        assert_eq!(map.stop_index([i, j]).map(|s| map.stops[s].row), (!reached).then_some(j));
         if reached {
             let single = alone(&model, &map, [i, j]).measured.value(2, toe)[0];
             assert!((map.value([i, j], toe).unwrap() - single).abs() < 1e-9);

@@ -117,7 +117,7 @@ fn a_search_that_is_interrupted_keeps_the_best_so_far() {
     let found = optimize(&file.model, &motions, &asked, searching);
     assert!(found.searches.iter().all(|s| s.status == OptimizationStatus::Interrupted));
     let judged = best(&found).found.as_ref().unwrap();
-    assert!(judged.objective < 0.1 * found.drawn.unwrap().objective);
+    assert!(judged.objective < 0.1 * found.nominal.unwrap().objective);
 }
 
 /// Between what is found and the target, over the whole travel, rad.
@@ -134,7 +134,7 @@ fn the_strut_gets_its_toe_curve_and_steers_no_worse() {
     assert!(search.optimality.left_of_start <= OPTIMAL, "{:e}", search.optimality.left_of_start);
     let judged = search.found.as_ref().unwrap();
     assert_eq!(judged.violation, 0.0);
-    let drawn = found.drawn.as_ref().unwrap();
+    let drawn = found.nominal.as_ref().unwrap();
     assert!(judged.limits[0].2 > drawn.limits[0].2, "the inner wheel steers no less");
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
@@ -158,7 +158,7 @@ fn the_front_axle_gets_the_toe_curve_of_a_published_example() {
     let search = best(&found);
     assert_eq!(search.status, OptimizationStatus::Optimal);
     assert!(search.optimality.left_of_start <= OPTIMAL, "{:e}", search.optimality.left_of_start);
-    let [drawn, left] = [found.drawn.as_ref(), search.found.as_ref()].map(|j| j.unwrap().goals[0].2);
+    let [drawn, left] = [found.nominal.as_ref(), search.found.as_ref()].map(|j| j.unwrap().goals[0].2);
     assert!(drawn > 500.0 * FOLLOWED && left < FOLLOWED, "{drawn} {left}");
 }
 

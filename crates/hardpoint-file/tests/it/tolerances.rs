@@ -366,7 +366,7 @@ fn one_limit_is_allocated_as_the_closed_form_says() {
             AllocationRule::Worst => (0..3).map(|k| (g[k] * shape[k]).abs()).sum::<f64>(),
         };
         let allocation = found.allocation.unwrap();
-        assert!(allocation.impossible.is_none() && allocation.residual < 1e-6, "{:e}", allocation.residual);
+        assert!(allocation.error.is_none() && allocation.residual < 1e-6, "{:e}", allocation.residual);
         for k in 0..3 {
             near(allocation.tolerances[k].after.unwrap(), shape[k] * room / used, BARRIER);
         }
@@ -425,7 +425,7 @@ fn the_tolerances_found_keep_the_limits_of_the_strut() {
     let file = study("strut_tolerances.toml");
     let found = examined(&file, |asked| asked.samples = 4000);
     let allocation = found.allocation.as_ref().unwrap();
-    assert!(allocation.impossible.is_none() && allocation.residual < 1e-6, "{:e}", allocation.residual);
+    assert!(allocation.error.is_none() && allocation.residual < 1e-6, "{:e}", allocation.residual);
     let all = allocation.sampled.as_ref().unwrap().all.unwrap();
     // Three standard deviations to the nearer end of the limit that binds most.
     assert!(all.part() > 0.99 && all.part() > sampled(&found).all.unwrap().part(), "{all:?}");
@@ -440,21 +440,21 @@ fn the_tolerances_found_keep_the_limits_of_the_strut() {
 
 #[test]
 fn what_cannot_be_allocated_is_told() {
-    let impossible = |text: &str, most: f64| {
+    let error_of = |text: &str, most: f64| {
         let file = crank(text);
         let found = examined(&file, |asked| {
             asked.samples = 0;
             limits(asked, AllocationRule::Worst, &[(0, most)]);
         });
-        found.allocation.unwrap().impossible
+        found.allocation.unwrap().error
     };
-    assert_eq!(impossible(COSTS, 0.37), Some(AllocationError::AsDrawn(0)));
+    assert_eq!(error_of(COSTS, 0.37), Some(AllocationError::NominalExceeds(0)));
     assert_eq!(
-        impossible(&COSTS.replace("rod = { tolerance = 0.6, cost = 2 }", "rod = 6"), 0.374),
+        error_of(&COSTS.replace("rod = { tolerance = 0.6, cost = 2 }", "rod = 6"), 0.374),
         Some(AllocationError::Fixed(0))
     );
-    assert_eq!(impossible("[tolerance.variables]\nrod = 6", 0.374), Some(AllocationError::NoCosts));
-    assert_eq!(impossible(COSTS, 0.374), None);
+    assert_eq!(error_of("[tolerance.variables]\nrod = 6", 0.374), Some(AllocationError::NoCosts));
+    assert_eq!(error_of(COSTS, 0.374), None);
 }
 
 #[test]

@@ -20,10 +20,10 @@ pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool)
     text
 }
 
-/// The unit of a design variable; `1` for a plain number.
+/// Unit of a design variable; `1` for a plain number.
 ///
-/// A parameter of a law that is neither a length nor an angle is a number to the core, and one of the variable is as
-/// much of the parameter as the rate of its change says: that decides whether the user's unit or the SI unit is meant.
+/// To the core, a parameter of a law that is neither a length nor an angle is a plain number. The rate of change of the
+/// parameter per unit of the variable then decides whether the variable is in the user's unit or in SI.
 pub fn variable_unit(model: &Model, units: Units, variable: &DesignVariable) -> String {
     if variable.quantity != Quantity::Number {
         return symbol(units, variable.quantity).into();
@@ -44,7 +44,7 @@ pub fn variable_unit(model: &Model, units: Units, variable: &DesignVariable) -> 
     }
 }
 
-/// The unit of which a parameter changes by one, `rate` being that change inside.
+/// Unit in which a parameter changes by one, if it changes by `rate` internally.
 fn parameter_unit(units: Units, driven: Quantity, kind: ParameterKind, rate: f64) -> Option<String> {
     let is = |size: f64| (rate - size).abs() <= 1e-12 * size;
     match kind {
@@ -61,7 +61,7 @@ fn parameter_unit(units: Units, driven: Quantity, kind: ParameterKind, rate: f64
     }
 }
 
-/// The text for the user's units if that is what the rate means, or else for SI units.
+/// Text for the user's units if the rate corresponds to them, otherwise for SI units.
 fn in_either(
     units: Units,
     driven: Quantity,
@@ -72,7 +72,7 @@ fn in_either(
     meant.map(text)
 }
 
-/// `x`, `-z`, `(0.6, 0.8, 0)`.
+/// Formatted direction: `x`, `-z`, `(0.6, 0.8, 0)`.
 pub(super) fn direction_text(v: Vec3) -> String {
     let Some(u) = v.unit() else { return "nothing".into() };
     const AXES: [(&str, [f64; 3]); 6] = [

@@ -1,6 +1,6 @@
-//! Facts of a mechanism that is planned and, as far as possible, solved.
+//! Facts of a mechanism that is analysed and, as far as possible, solved.
 //!
-//! Built once and shown three times: as text by `hardpoint check`, as JSON, and as tables of the page.
+//! They are collected once and shown as text by `hardpoint check`, as JSON, and as tables of the page.
 
 mod change;
 mod notes;
@@ -8,7 +8,7 @@ mod redundancy;
 mod text;
 
 pub use change::variable_unit;
-pub use redundancy::{Instead, RedundancyFact};
+pub use redundancy::{JointReplacement, RedundancyFact};
 pub use text::outline;
 pub(crate) use text::table;
 
@@ -28,26 +28,26 @@ use serde::Serialize;
 
 use crate::figures::{count, per, rounded, symbol, unit};
 
-/// The facts, with all names as the user wrote them and all figures in the user's units.
+/// Facts of a mechanism, with the names of the model file and values in the user's units.
 #[derive(Clone, Debug, Serialize)]
 pub struct Facts {
-    /// The mechanism's name.
+    /// Name of the mechanism.
     pub name: String,
-    /// Description in the file.
+    /// Description in the model file.
     pub description: Option<String>,
-    /// The model file, as it was given.
+    /// Name of the model file, as given.
     pub file: String,
-    /// The units of every figure; time is in s.
+    /// Units of all values; time is in s.
     pub units: Units,
     /// `relative` or `absolute` coordinates.
     pub formulation: &'static str,
-    /// Total number of each kind.
+    /// Numbers of entries of each kind.
     pub counts: Counts,
     /// Bodies without ground.
     pub bodies: Vec<BodyFact>,
-    /// Joints and why each is in the tree or cut.
+    /// Joints, each with the reason why it is in the tree or cut.
     pub joints: Vec<JointFact>,
-    /// Couplers between joint coordinates; those of screws come last.
+    /// Couplers between joint coordinates; those of screws are last.
     pub couplers: Vec<CouplerFact>,
     /// Drivers.
     pub drivers: Vec<DriverFact>,
@@ -55,30 +55,30 @@ pub struct Facts {
     pub blocks: Vec<BlockFact>,
     /// Constraints that the others imply.
     pub redundant: Vec<RedundantFact>,
-    /// The same by the joints, couplers and drivers that they are among.
+    /// Redundant constraints, grouped by the joints, couplers and drivers involved.
     pub redundancy: Vec<RedundancyFact>,
-    /// Design variables and whether the mechanism can follow them.
+    /// Design variables with their admissibility.
     pub variables: Vec<VariableFact>,
-    /// Conditions of every joint on a change of the design.
+    /// Conditions of admissibility of each joint.
     pub conditions: Vec<ConditionFact>,
     /// Measures.
     pub measures: Vec<MeasureFact>,
-    /// Sentences about what is worth knowing and no error.
+    /// Notes that are neither warnings nor errors, each a sentence.
     pub notes: Vec<String>,
 }
 
-/// Total number.
+/// Numbers of entries of each kind.
 #[derive(Clone, Debug, Serialize)]
 pub struct Counts {
     /// Bodies without ground.
     pub bodies: usize,
     /// Joints.
     pub joints: usize,
-    /// Couplers, each of which is one constraint.
+    /// Couplers; each is one constraint.
     pub couplers: usize,
     /// Drivers.
     pub drivers: usize,
-    /// Degrees of freedom without drivers, at the design configuration.
+    /// Degrees of freedom without drivers, in the design configuration.
     pub mobility: usize,
     /// Constraint equations of all joints, without couplers.
     pub joint_constraints: usize,
@@ -94,125 +94,125 @@ pub struct Counts {
     pub unknowns: usize,
 }
 
-/// A body.
+/// Body of a mechanism.
 #[derive(Clone, Debug, Serialize)]
 pub struct BodyFact {
     /// Name.
     pub name: String,
-    /// The joint of the tree that places it; none if it moves freely or in absolute coordinates.
+    /// Tree joint that places the body; `null` if it moves freely or in absolute coordinates.
     pub placed_by: Option<String>,
-    /// The body that carries it.
+    /// Body that carries it.
     pub carried_by: String,
-    /// Joints on it.
+    /// Joints on the body.
     pub joints: Vec<String>,
 }
 
-/// A joint.
+/// Joint of a mechanism.
 #[derive(Clone, Debug, Serialize)]
 pub struct JointFact {
     /// Name.
     pub name: String,
-    /// Type, as written.
+    /// Type in the model file.
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// True if it is treated as a universal joint, to hold an idle spin.
+    /// True if it is treated as a universal joint, to fix an idle rotation.
     pub holds_spin: bool,
     /// Bodies i and j.
     pub bodies: [String; 2],
     /// `tree` or `cut`.
     pub role: &'static str,
-    /// Why.
+    /// Reason for the role.
     pub why: String,
-    /// Number of constraint equations it represents.
+    /// Number of constraint equations.
     pub constraints: usize,
 }
 
-/// A coupler.
+/// Coupler of a mechanism.
 #[derive(Clone, Debug, Serialize)]
 pub struct CouplerFact {
     /// Name.
     pub name: String,
-    /// Relation of the coordinates, counted from the design configuration, in these units.
+    /// Relation of the coordinates, counted from the design configuration, in the units of the terms.
     pub relation: String,
-    /// The coordinates with their factors.
+    /// Coordinates with their factors.
     pub terms: Vec<TermFact>,
 }
 
-/// A coordinate times a number.
+/// Coordinate with its factor.
 #[derive(Clone, Debug, Serialize)]
 pub struct TermFact {
-    /// The joint.
+    /// Joint of the coordinate.
     pub joint: String,
     /// Coordinate.
     pub coordinate: &'static str,
-    /// The factor, where the coordinate is in `unit`.
+    /// Factor, for the coordinate in `unit`.
     pub coefficient: f64,
-    /// The coordinate's unit.
+    /// Unit of the coordinate.
     pub unit: &'static str,
 }
 
-/// A driver.
+/// Driver of a mechanism.
 #[derive(Clone, Debug, Serialize)]
 pub struct DriverFact {
     /// Name.
     pub name: String,
-    /// Quantity that it prescribes.
+    /// Prescribed quantity.
     pub drives: String,
-    /// The joint that it drives, if it drives a joint.
+    /// Driven joint; `null` if it drives a point or an orientation.
     pub joint: Option<String>,
-    /// The joint's coordinate.
+    /// Driven coordinate of the joint.
     pub coordinate: Option<&'static str>,
-    /// The law as written, in `unit`, t in s.
+    /// Law in the model file, in `unit`, t in s.
     pub law: String,
-    /// The law's unit.
+    /// Unit of the law.
     pub unit: &'static str,
 }
 
-/// Unknowns that are solved together.
+/// Block: unknowns that are solved together.
 #[derive(Clone, Debug, Serialize)]
 pub struct BlockFact {
-    /// Place in the order of solution, from 1.
+    /// Index in the order of solution, from 1.
     pub number: usize,
-    /// Number of unknown coordinates it solves for.
+    /// Number of unknown coordinates.
     pub unknowns: usize,
-    /// The joints whose coordinates they are.
+    /// Joints of these coordinates.
     pub joints: Vec<String>,
-    /// The cut joints, couplers, and drivers across cut joints, that it closes.
+    /// Cut joints, couplers, and drivers across cut joints that the block closes.
     pub closes: Vec<String>,
-    /// The bodies that stand when it is solved.
+    /// Bodies whose poses are known after the block is solved.
     pub places: Vec<String>,
-    /// Redundant constraints among those that it closes.
+    /// Number of redundant constraints of the block.
     pub redundant: usize,
 }
 
-/// A constraint that the others imply.
+/// Constraint that is implied by the others.
 #[derive(Clone, Debug, Serialize)]
 pub struct RedundantFact {
     /// Joint.
     pub joint: String,
-    /// The driver, if it prescribes a coordinate.
+    /// Driver, if it prescribes a coordinate.
     pub driver: Option<String>,
-    /// The coupler, if it is one.
+    /// Coupler, if the constraint is one.
     pub coupler: Option<String>,
     /// Constraint in words.
     pub constraint: String,
 }
 
-/// True if the mechanism can follow a design variable over the motion.
+/// Admissibility of a design variable over the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Answer {
-    /// All joints stay closed with all bodies where they are.
+pub enum VariableAdmissibility {
+    /// All joints stay closed with all bodies fixed.
     Admissible,
-    /// Joints open and the mechanism closes them by moving.
+    /// Joints open, and the mechanism closes them by moving.
     Reassembled,
-    /// No motion closes them: there is no sensitivity.
+    /// No motion closes the joints: there is no sensitivity.
     CannotFollow,
     /// The motion was not solved.
     Unknown,
 }
 
-/// A design variable.
+/// Design variable of a mechanism.
 #[derive(Clone, Debug, Serialize)]
 pub struct VariableFact {
     /// Name.
@@ -221,22 +221,22 @@ pub struct VariableFact {
     pub unit: String,
     /// Change per unit of the variable.
     pub change: String,
-    /// Joints that open at the design configuration while all bodies stay; none: admissible there.
+    /// Joints that open in the design configuration with all bodies fixed; empty if the variable is admissible there.
     pub opens_at_design: Vec<DefectFact>,
-    /// The answer over the whole solved motion.
-    pub answer: Answer,
-    /// If the mechanism cannot follow: the joints that resist, with the largest defect over the motion.
+    /// Admissibility over the whole solved motion.
+    pub answer: VariableAdmissibility,
+    /// If the mechanism cannot follow: the joints that stay open, with the largest defect over the motion.
     pub resists: Vec<DefectFact>,
     /// If the mechanism cannot follow: the time of the largest defect, s.
     pub time: Option<f64>,
 }
 
-/// By how much a joint opens per unit of a variable.
+/// Opening of a joint per unit of a variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct DefectFact {
     /// The joint.
     pub joint: String,
-    /// Constraint that fails most.
+    /// Constraint with the largest defect.
     pub constraint: String,
     /// The defect per unit of the variable.
     pub defect: f64,
@@ -244,7 +244,7 @@ pub struct DefectFact {
     pub unit: String,
 }
 
-/// A measure.
+/// Measure of a mechanism.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeasureFact {
     /// Name.
@@ -256,7 +256,7 @@ pub struct MeasureFact {
 }
 
 impl Facts {
-    /// The facts of a planned mechanism; without a solution nothing is said over the motion.
+    /// Facts of an analysed mechanism; without a solution there are none over the motion.
     pub fn new(file: &ModelFile, topology: &Topology, solution: Option<&Solution>) -> Self {
         let (model, units) = (&file.model, file.units);
         let in_plane = made_by_plane(file, topology);
@@ -289,14 +289,14 @@ impl Facts {
         }
     }
 
-    /// Number of variables that have this answer.
-    pub fn answers(&self, answer: Answer) -> usize {
+    /// Number of variables with an admissibility.
+    pub fn count_admissibility(&self, answer: VariableAdmissibility) -> usize {
         self.variables.iter().filter(|v| v.answer == answer).count()
     }
 }
 
-/// Redundant constraints of a planar model that only say that it stays in its plane: in coordinates that lie in the
-/// plane they follow from nothing else.
+/// Redundant constraints of a planar model that only keep it in its plane: no other constraints imply them in planar
+/// coordinates.
 fn made_by_plane(file: &ModelFile, topology: &Topology) -> Vec<RowId> {
     if file.plane.is_none() || topology.formulation == Formulation::Absolute {
         return Vec::new();
@@ -317,7 +317,7 @@ fn counts(model: &Model, topology: &Topology, in_plane: &[RowId]) -> Counts {
         joint_constraints: model.named_joints().map(|(_, j)| j.kind.rows.len()).sum(),
         cut_constraints: topology.rows.iter().filter(|r| !r.is_term).count() - in_plane.len(),
         redundant_constraints: topology.redundant().count() - in_plane.len(),
-        // Every joint beyond those of a spanning tree closes one.
+        // Every joint outside a spanning tree closes a loop.
         loops: joints.saturating_sub(bodies),
         coordinates: topology.coordinates.len(),
         unknowns: topology.unknowns(),
@@ -338,7 +338,7 @@ fn bodies(model: &Model, topology: &Topology) -> Vec<BodyFact> {
     joints_on(model).into_iter().enumerate().skip(1).map(fact).collect()
 }
 
-/// Per body, ground included: the names of the joints on it.
+/// Names of the joints on every body, ground included.
 fn joints_on(model: &Model) -> Vec<Vec<String>> {
     let mut joints_on = vec![Vec::new(); model.bodies.len()];
     for (_, joint) in model.named_joints() {
@@ -350,7 +350,7 @@ fn joints_on(model: &Model) -> Vec<Vec<String>> {
 }
 
 fn joints(model: &Model, topology: &Topology) -> Vec<JointFact> {
-    let spins = held_spins(model);
+    let spins = fixed_spins(model);
     let fact = |(id, joint): (JointId, &Joint)| {
         let (role, why) = match &topology.roles[id.0] {
             JointRole::Tree { child, unknowns } => {
@@ -376,12 +376,12 @@ fn joints(model: &Model, topology: &Topology) -> Vec<JointFact> {
     model.named_joints().map(fact).collect()
 }
 
-/// The balls that are treated as universal joints, to hold an idle spin.
-pub(crate) fn held_spins(model: &Model) -> HashSet<JointId> {
+/// Spherical joints that are treated as universal joints, to fix an idle rotation.
+pub(crate) fn fixed_spins(model: &Model) -> HashSet<JointId> {
     model.idle.iter().map(|i| i.joint).collect()
 }
 
-/// The type of a joint as it was written: a ball that holds an idle spin is still a ball.
+/// Type of a joint in the model file: a spherical joint with a fixed idle rotation is still spherical.
 pub(crate) fn written_kind(joint: &Joint, holds_spin: bool) -> &'static str {
     if holds_spin { joint::SPHERICAL.name } else { joint.kind.name }
 }
@@ -391,7 +391,7 @@ fn why_cut(joint: &Joint, reason: CutReason) -> &'static str {
         CutReason::AlwaysCut if joint.kind.places == 2 => "a rod or leg carries no body",
         CutReason::AlwaysCut => "a joint of this type carries no body",
         CutReason::ClosesLoop => "other joints place its bodies with fewer unknowns",
-        CutReason::Requested => "the model asks for it",
+        CutReason::Requested => "the model file requests it",
         CutReason::Absolute => "absolute coordinates cut every joint",
     }
 }
@@ -399,8 +399,8 @@ fn why_cut(joint: &Joint, reason: CutReason) -> &'static str {
 fn couplers(model: &Model, units: Units) -> Vec<CouplerFact> {
     let fact = |coupler: &Coupler| {
         let inside = |t: &hardpoint::model::CouplerTerm| units.to_si(model.coupled(t).quantity, 1.0);
-        // The equation may be multiplied by any number. Coefficients of the file are shown as they are there; teeth and radii
-        // make coefficients of their own, of which the first coordinate keeps its factor.
+        // The equation may be scaled. Coefficients from the file are shown unchanged; coefficients from teeth and radii
+        // are scaled so that the first coordinate keeps its factor.
         let first = coupler.transmission.map_or(1.0, |_| inside(&coupler.terms[0]));
         let term = |t: &hardpoint::model::CouplerTerm| TermFact {
             joint: joint_name(model, t.joint),
@@ -414,7 +414,7 @@ fn couplers(model: &Model, units: Units) -> Vec<CouplerFact> {
     model.couplers.iter().map(fact).collect()
 }
 
-/// `20 R1.angle + 40 R2.angle = 0`.
+/// Formatted relation: `20 R1.angle + 40 R2.angle = 0`.
 fn relation(terms: &[TermFact]) -> String {
     let mut text = String::new();
     for (k, t) in terms.iter().enumerate() {
@@ -431,7 +431,7 @@ fn relation(terms: &[TermFact]) -> String {
     text + " = 0"
 }
 
-/// The names of the points that a person wrote, the first at each place.
+/// Names of the points in the model file, the first at each location.
 type Points<'m> = HashMap<(BodyId, HardpointId), &'m str>;
 
 fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
@@ -533,12 +533,18 @@ fn variables(model: &Model, units: Units, solution: Option<&Solution>) -> Vec<Va
         let opens = admissibility_at_design(model, &model.field(VariableId(k)));
         let over_motion = solution.and_then(|s| s.sensitivities.admissibility.get(k));
         let (answer, resists, time) = match over_motion {
-            Some(sensitivity::Admissibility::Admissible) => (Answer::Admissible, Vec::new(), None),
-            Some(sensitivity::Admissibility::Reassembled { .. }) => (Answer::Reassembled, Vec::new(), None),
-            Some(sensitivity::Admissibility::CannotFollow { joints, time }) => {
-                (Answer::CannotFollow, defects(joints), Some(*time))
+            Some(sensitivity::Admissibility::Admissible) => {
+                (VariableAdmissibility::Admissible, Vec::new(), None)
             }
-            Some(sensitivity::Admissibility::Unknown) | None => (Answer::Unknown, Vec::new(), None),
+            Some(sensitivity::Admissibility::Reassembled { .. }) => {
+                (VariableAdmissibility::Reassembled, Vec::new(), None)
+            }
+            Some(sensitivity::Admissibility::CannotFollow { joints, time }) => {
+                (VariableAdmissibility::CannotFollow, defects(joints), Some(*time))
+            }
+            Some(sensitivity::Admissibility::Unknown) | None => {
+                (VariableAdmissibility::Unknown, Vec::new(), None)
+            }
         };
         VariableFact {
             name: variable.name.clone(),
@@ -553,26 +559,25 @@ fn variables(model: &Model, units: Units, solution: Option<&Solution>) -> Vec<Va
     model.variables.iter().enumerate().map(fact).collect()
 }
 
-/// A condition of kinematic admissibility: an elementary constraint of a joint must stay closed with all bodies where
-/// they are.
+/// Condition of kinematic admissibility: an elementary constraint of a joint must stay closed with all bodies fixed.
 #[derive(Clone, Debug, Serialize)]
 pub struct ConditionFact {
-    /// The joint.
+    /// Joint of the condition.
     pub joint: String,
-    /// The constraint.
+    /// Constraint in words.
     pub constraint: String,
-    /// The design variables that open it, and by how much per unit.
+    /// Design variables that violate it, with the defect per unit.
     pub opened_by: Vec<OpenFact>,
 }
 
-/// By how much a variable opens a constraint.
+/// Defect of a constraint by a variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct OpenFact {
-    /// The variable.
+    /// Name of the variable.
     pub variable: String,
-    /// The defect per unit of it.
+    /// Defect per unit of the variable.
     pub defect: f64,
-    /// The defect's unit.
+    /// Unit of the defect.
     pub unit: String,
 }
 
@@ -594,7 +599,7 @@ fn conditions(model: &Model, units: Units) -> Vec<ConditionFact> {
     }
     for (variable, field) in model.variables.iter().zip(model.fields(&[])) {
         let unit = variable_unit(model, units, variable);
-        // What of a condition is no more than round-off opens nothing.
+        // Defects that are round-off do not count.
         let opens = admissibility_at_design(model, &field);
         let most: HashMap<JointId, f64> = opens.iter().map(|o| (o.joint, o.value)).collect();
         let counts = |d: &Condition| most.get(&d.joint).is_some_and(|most| d.value.abs() > ROUND_OFF * most);
@@ -613,11 +618,11 @@ fn conditions(model: &Model, units: Units) -> Vec<ConditionFact> {
     facts.into_iter().map(|f| f.2).collect()
 }
 
-/// Against the condition of its joint that fails most, a defect below this part is round-off.
+/// A defect below this fraction of the largest one of the same joint is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
 fn defect(model: &Model, units: Units, (by, unit): (Quantity, &str), defect: &JointDefect) -> DefectFact {
-    // The defect of a direction is a cosine that is 0 when closed: to first order an angle.
+    // The defect of a direction is a cosine that is 0 when closed. To first order it is an angle.
     let of = Quantity::from(defect.row);
     DefectFact {
         joint: joint_name(model, defect.joint),

@@ -1,4 +1,4 @@
-//! Notes that are no errors: idle rotations, laws that are not smooth.
+//! Notes that are not warnings: idle rotations, laws with jumps, distance from the origin.
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::Jump;
@@ -7,7 +7,7 @@ use hardpoint_file::Units;
 
 use crate::figures::{names, number, order_unit, rounded, symbol, with_unit};
 
-/// One note per idle spin.
+/// One note per idle rotation.
 pub(super) fn idle_spins(model: &Model) -> Vec<String> {
     let note = |idle: &hardpoint::model::IdleRotation| {
         let bodies = names(idle.bodies.iter().map(|b| model.bodies[b.0].name.as_str()));
@@ -24,7 +24,7 @@ pub(super) fn idle_spins(model: &Model) -> Vec<String> {
     model.idle.iter().map(note).collect()
 }
 
-/// One note per driver and order of derivative that jumps while the run lasts.
+/// One note per driver and per order of derivative that jumps during the run.
 pub(super) fn jumps(model: &Model, units: Units) -> Vec<String> {
     let (Some(&start), Some(&end)) = (model.times.first(), model.times.last()) else { return Vec::new() };
     let of_driver = |driver: &Driver| {
@@ -40,7 +40,7 @@ pub(super) fn jumps(model: &Model, units: Units) -> Vec<String> {
     model.drivers.iter().flat_map(of_driver).collect()
 }
 
-/// A mechanism this many of its sizes from the origin has lost four digits before anything is computed.
+/// Distance from the origin, in sizes of the mechanism, at which four digits are lost in the coordinates.
 const FAR: f64 = 1e4;
 
 /// Note on a mechanism that is far from the origin.

@@ -14,31 +14,31 @@ use super::joint_name;
 /// Redundant constraints among the same joints, couplers and drivers.
 #[derive(Clone, Debug, Serialize)]
 pub struct RedundancyFact {
-    /// Number of constraints that are redundant among them.
+    /// Number of redundant constraints among them.
     pub count: usize,
-    /// The joints.
+    /// Joints involved.
     pub joints: Vec<String>,
-    /// The couplers.
+    /// Couplers involved.
     pub couplers: Vec<String>,
-    /// The drivers that prescribe what the others already do.
+    /// Drivers that prescribe what the joints and couplers already determine.
     pub drivers: Vec<String>,
-    /// A joint that would remove them all as another type, together with the joints named so before it.
-    pub instead: Option<Instead>,
+    /// Joint whose replacement by another type, together with the replacements before it, would remove all of them.
+    pub instead: Option<JointReplacement>,
 }
 
-/// A joint that could be of a type with more freedom.
+/// Replacement of a joint by a type with more freedom.
 #[derive(Clone, Debug, Serialize)]
-pub struct Instead {
-    /// The joint.
+pub struct JointReplacement {
+    /// Name of the joint.
     pub joint: String,
-    /// The type that it has.
+    /// Present type.
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// The type that it could have.
+    /// Proposed type.
     pub instead: &'static str,
 }
 
-/// Whatever may be part of a redundancy, joints first.
+/// Part of a redundancy, joints first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Part {
     Joint(usize),
@@ -46,10 +46,10 @@ enum Part {
     Driver(usize),
 }
 
-/// All redundant constraints, those among the same parts together, in the order of the file; of a planar model without
-/// those that the plane makes.
+/// All redundant constraints, grouped by the parts involved, in the order of the file; for a planar model without those
+/// of the plane itself.
 pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Vec<RedundancyFact> {
-    /// Maximum number of bodies for the exact search with every joint cut, which is cubic in six unknowns per body.
+    /// Maximum number of bodies for the exact search with every joint cut: its cost is cubic in six unknowns per body.
     const MOST_BODIES: usize = 50;
     let left_out = topology.redundant().count();
     if left_out == 0 {
@@ -60,15 +60,14 @@ pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Ve
         .then(|| Topology::of(model, Formulation::Absolute).ok())
         .flatten()
         .filter(|t| t.redundant().count() == left_out);
-    // In a tree whose coordinates lie in the plane, a constraint that follows from nothing else is one that the plane
-    // makes.
+    // In a tree with planar coordinates, a redundant constraint that no others imply is one of the plane itself.
     let in_plane = planar.then(|| Topology::of(model, Formulation::Relative).ok()).flatten();
     let plan = in_plane.as_ref().or(all_cut.as_ref()).unwrap_or(topology);
     let mut groups: BTreeMap<Vec<Part>, usize> = BTreeMap::new();
     for redundancy in plan.redundancies(model).into_iter().filter(|r| !planar || !r.implied_by.is_empty()) {
         *groups.entry(parts(model, plan, &redundancy)).or_default() += 1;
     }
-    let mut freed = Freed { model: model.clone(), redundant: left_out, mobility: topology.mobility };
+    let mut relaxed = RelaxedModel { model: model.clone(), redundant: left_out, mobility: topology.mobility };
     let fact = |(parts, count): (Vec<Part>, usize)| {
         let of = |pick: fn(&Part) -> Option<usize>, name: &dyn Fn(usize) -> String| {
             parts.iter().filter_map(pick).map(name).collect::<Vec<_>>()
@@ -82,7 +81,7 @@ pub(super) fn redundancy(model: &Model, topology: &Topology, planar: bool) -> Ve
             joints: of(joint, &|k| model.joints[k].name.clone()),
             couplers: of(coupler, &|k| model.couplers[k].name.clone()),
             drivers: of(driver, &|k| model.drivers[k].name.clone()),
-            instead: if small { freed.instead(topology, &joints, count) } else { None },
+            instead: if small { relaxed.find_replacement(topology, &joints, count) } else { None },
         }
     };
     groups.into_iter().map(fact).collect()
@@ -109,17 +108,22 @@ fn parts(model: &Model, plan: &Topology, redundancy: &Redundancy) -> Vec<Part> {
     parts
 }
 
-/// The model as far as its redundant constraints are removed by joints with more freedom.
-struct Freed {
+/// Model with redundant constraints removed by joints with more freedom.
+struct RelaxedModel {
     model: Model,
     redundant: usize,
     mobility: usize,
 }
 
-impl Freed {
-    /// A joint that removes that many redundant constraints as another type, and leaves the mechanism driven as it is:
-    /// tried, together with those found before. Joints that close a loop come first.
-    fn instead(&mut self, topology: &Topology, joints: &[usize], redundant: usize) -> Option<Instead> {
+impl RelaxedModel {
+    /// Joint whose replacement removes `redundant` redundant constraints and leaves the mechanism driven as before;
+    /// tested together with the replacements found so far. Joints that close a loop come first.
+    fn find_replacement(
+        &mut self,
+        topology: &Topology,
+        joints: &[usize],
+        redundant: usize,
+    ) -> Option<JointReplacement> {
         let is_cut = |j: &usize| matches!(topology.roles[*j], JointRole::Cut(_));
         let (cut, tree): (Vec<usize>, Vec<usize>) = joints.iter().partition(|j| is_cut(j));
         cut.into_iter().chain(tree).find_map(|j| {
@@ -139,7 +143,7 @@ impl Freed {
             let left = self.redundant - redundant;
             if plan.is_ok_and(|p| p.redundant().count() == left && p.mobility == self.mobility) {
                 self.redundant = left;
-                return Some(Instead {
+                return Some(JointReplacement {
                     joint: joint_name(&self.model, JointId(j)),
                     kind: kind.name,
                     instead: instead.name,
@@ -150,7 +154,7 @@ impl Freed {
         })
     }
 
-    /// True if a driver, coupler or measure needs a coordinate of the joint, which another type may not have.
+    /// True if a driver, coupler or measure uses a coordinate of the joint, which another type may not have.
     fn is_named_by_others(&self, joint: JointId) -> bool {
         let model = &self.model;
         let measured = |k: &MeasureKind| matches!(k, MeasureKind::Coordinate { joint: j, .. } if *j == joint);
@@ -161,7 +165,7 @@ impl Freed {
 }
 
 impl RedundancyFact {
-    /// `3 redundant constraints among \`A\`, \`B\` and \`C\`: ...`.
+    /// Note in words: `3 redundant constraints among \`A\`, \`B\` and \`C\`: ...`.
     pub fn note(&self) -> String {
         let parts = (self.joints.iter().map(|j| format!("`{j}`")))
             .chain(quoted("coupler", &self.couplers))

@@ -1,4 +1,4 @@
-//! The facts in words: lines for headings, sentences, and tables for the terminal and the page.
+//! Facts in words: lines, sentences, and tables for the terminal and the page.
 
 use hardpoint::model::JointId;
 use hardpoint_file::ModelFile;
@@ -7,32 +7,35 @@ use crate::figures::{count, number, rounded, some_of, with_unit};
 use crate::page::Table;
 
 use super::{
-    Answer, CouplerFact, DefectFact, DriverFact, Facts, VariableFact, couplers, drivers, held_spins,
-    joints_on, written_kind,
+    CouplerFact, DefectFact, DriverFact, Facts, VariableAdmissibility, VariableFact, couplers, drivers,
+    fixed_spins, joints_on, written_kind,
 };
 
-/// Number of conditions above which only those are listed that some variable opens.
+/// Maximum number of conditions that are all listed; above it only violated ones are.
 const MOST_CONDITIONS: usize = 400;
 
 impl Facts {
-    /// `12 (1 admissible, 11 re-assembled)`, `12, all admissible`.
+    /// Line on the variables: `12 (1 admissible, 11 re-assembled)`, `12, all admissible`.
     pub fn variables_line(&self) -> String {
-        let answers = [
-            (Answer::Admissible, "admissible", "all admissible"),
-            (Answer::Reassembled, "re-assembled", "all re-assembled"),
-            (Answer::CannotFollow, "cannot be followed", "none can be followed"),
-            (Answer::Unknown, "not examined", "not examined"),
+        let wordings = [
+            (VariableAdmissibility::Admissible, "admissible", "all admissible"),
+            (VariableAdmissibility::Reassembled, "re-assembled", "all re-assembled"),
+            (VariableAdmissibility::CannotFollow, "cannot be followed", "none can be followed"),
+            (VariableAdmissibility::Unknown, "not examined", "not examined"),
         ];
         let n = self.variables.len();
-        if let Some((_, one, all)) = answers.iter().find(|(a, ..)| n > 0 && self.answers(*a) == n) {
+        if let Some((_, one, all)) =
+            wordings.iter().find(|(a, ..)| n > 0 && self.count_admissibility(*a) == n)
+        {
             return format!("{n}, {}", if n == 1 { one } else { all });
         }
-        let found = answers.iter().filter(|(a, ..)| self.answers(*a) > 0);
-        let parts: Vec<String> = found.map(|(a, words, _)| format!("{} {words}", self.answers(*a))).collect();
+        let found = wordings.iter().filter(|(a, ..)| self.count_admissibility(*a) > 0);
+        let parts: Vec<String> =
+            found.map(|(a, words, _)| format!("{} {words}", self.count_admissibility(*a))).collect();
         if parts.is_empty() { "none".into() } else { format!("{n} ({})", parts.join(", ")) }
     }
 
-    /// `2, prescribed by 2 drivers`.
+    /// Line on the degrees of freedom: `2, prescribed by 2 drivers`.
     pub fn freedom_line(&self) -> String {
         match self.counts.mobility {
             0 => "0 (nothing can move)".into(),
@@ -40,7 +43,7 @@ impl Facts {
         }
     }
 
-    /// `2, solved in 1 block of 5 unknowns`.
+    /// Line on the loops: `2, solved in 1 block of 5 unknowns`.
     pub fn loops_line(&self) -> String {
         let solved = match self.blocks.len() {
             0 => "no unknowns".into(),
@@ -58,7 +61,7 @@ impl Facts {
         format!("{}, {solved}", self.counts.loops)
     }
 
-    /// `4 joints, 1 coupler`.
+    /// Numbers of joints and couplers: `4 joints, 1 coupler`.
     pub fn joints_text(&self) -> String {
         let joints = count(self.counts.joints, "joint");
         match self.counts.couplers {
@@ -67,7 +70,7 @@ impl Facts {
         }
     }
 
-    /// `20 in joints, 1 in a coupler; 5 written out at cuts, 3 of them redundant`.
+    /// Line on the constraints: `20 in joints, 1 in a coupler; 5 written out at cuts, 3 of them redundant`.
     pub fn constraints_line(&self) -> String {
         let c = &self.counts;
         let redundant = match c.redundant_constraints {
@@ -83,7 +86,7 @@ impl Facts {
         format!("{joints} in joints{couplers}; {cut} written out at cuts{redundant}")
     }
 
-    /// Everything worth knowing that is no error, each a sentence without a full stop.
+    /// All notes, each a sentence without a full stop.
     pub fn all_notes(&self) -> Vec<String> {
         const SHOWN: usize = 6;
         let groups = self.redundancy.iter().take(SHOWN).map(super::RedundancyFact::note);
@@ -93,7 +96,7 @@ impl Facts {
         groups.chain(more).chain(self.notes.iter().cloned()).collect()
     }
 
-    /// Everything as tables, for the terminal and the page.
+    /// All facts as tables, for the terminal and the page.
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = vec![self.body_table(), self.joint_table()];
         tables.extend(coupler_table(&self.couplers));
@@ -141,7 +144,7 @@ impl Facts {
         });
         table(
             "Blocks",
-            "Independent loops in the order of solution; what drivers alone place comes before.",
+            "Independent loops in the order of solution; bodies placed by drivers alone come first.",
             ["block", "unknowns", "in joints", "closes", "places", "redundant"],
             rows,
         )
@@ -164,7 +167,7 @@ impl Facts {
         (!rows.is_empty()).then(|| {
             table(
                 "Redundant constraints",
-                "The others imply them; they are left out of the solution and watched at every step.",
+                "The others imply them; they are left out of the solution and monitored at every step.",
                 ["joint", "constraint"],
                 rows,
             )
@@ -183,7 +186,7 @@ impl Facts {
                     unit,
                     v.change.clone(),
                     at_design.into(),
-                    v.answer_text().into(),
+                    v.admissibility_text().into(),
                     v.defects_text(),
                 ]
             })
@@ -191,7 +194,7 @@ impl Facts {
         (!rows.is_empty()).then(|| {
             table(
                 "Design variables",
-                "Admissible: every joint stays closed with all bodies where they are. Re-assembled: joints open and \
+                "Admissible: every joint stays closed with all bodies fixed. Re-assembled: joints open and \
                  the mechanism closes them by moving. Cannot follow: no motion closes them, so there is no number. \
                  A defect is per unit of the variable.",
                 ["variable", "unit", "change", "at design", "over the motion", "joints and their defect"],
@@ -230,11 +233,11 @@ impl Facts {
     }
 }
 
-/// Tables of a mechanism that cannot be planned: its bodies, joints, couplers and drivers.
+/// Tables of a mechanism that cannot be analysed: bodies, joints, couplers and drivers.
 pub fn outline(file: &ModelFile) -> Vec<Table> {
     let (model, units) = (&file.model, file.units);
     let body = |(b, joints): (usize, Vec<String>)| vec![model.bodies[b].name.clone(), joints.join(", ")];
-    let spins = held_spins(model);
+    let spins = fixed_spins(model);
     let joint = |(id, j): (JointId, &hardpoint::model::Joint)| {
         let [i, k] = j.bodies.map(|b| model.bodies[b.0].name.as_str());
         let kind = written_kind(j, spins.contains(&id)).to_owned();
@@ -277,20 +280,20 @@ fn driver_table(drivers: &[DriverFact]) -> Option<Table> {
 }
 
 impl VariableFact {
-    /// The answer in the words used everywhere.
-    pub fn answer_text(&self) -> &'static str {
+    /// Admissibility in words.
+    pub fn admissibility_text(&self) -> &'static str {
         match self.answer {
-            Answer::Admissible => "admissible",
-            Answer::Reassembled => "re-assembled",
-            Answer::CannotFollow => "cannot follow",
-            Answer::Unknown => "not examined",
+            VariableAdmissibility::Admissible => "admissible",
+            VariableAdmissibility::Reassembled => "re-assembled",
+            VariableAdmissibility::CannotFollow => "cannot follow",
+            VariableAdmissibility::Unknown => "not examined",
         }
     }
 
-    /// The joints concerned, with their defects; empty where every joint stays closed.
+    /// Joints concerned, with their defects; empty if every joint stays closed.
     pub fn defects_text(&self) -> String {
         let (list, time) = match self.answer {
-            Answer::CannotFollow => (&self.resists, self.time),
+            VariableAdmissibility::CannotFollow => (&self.resists, self.time),
             _ => (&self.opens_at_design, None),
         };
         let mut text = list.iter().map(DefectFact::text).collect::<Vec<_>>().join(", ");
@@ -300,7 +303,7 @@ impl VariableFact {
         text
     }
 
-    /// A sentence about what the mechanism makes of the variable; empty for an admissible one.
+    /// Sentence on the effect of the variable on the joints; empty for an admissible variable.
     pub fn note(&self) -> String {
         let defects = |list: &[DefectFact]| {
             let parts: Vec<String> =
@@ -308,11 +311,11 @@ impl VariableFact {
             parts.join(", ")
         };
         match self.answer {
-            Answer::Admissible | Answer::Unknown => String::new(),
-            Answer::Reassembled => {
+            VariableAdmissibility::Admissible | VariableAdmissibility::Unknown => String::new(),
+            VariableAdmissibility::Reassembled => {
                 format!("The mechanism re-assembles: the variable opens {}.", defects(&self.opens_at_design))
             }
-            Answer::CannotFollow => {
+            VariableAdmissibility::CannotFollow => {
                 let time = self.time.map_or(String::new(), |t| format!(" (at t = {} s)", number(t)));
                 format!("Not possible: no motion closes {}{time}.", defects(&self.resists))
             }

@@ -1,6 +1,7 @@
-//! A changed design beside today's: as it is when solved again, and as today's derivatives predict it.
+//! Changed design alongside the nominal one: solved again, and predicted from the nominal derivatives.
 //!
-//! What differs from today by round-off only is today's number, so that the page draws it in the same place.
+//! A value that differs from the nominal one by round-off only is replaced by it, so that the page draws both in the
+//! same place.
 
 use std::iter;
 
@@ -8,7 +9,7 @@ use hardpoint::Solution;
 use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Direction, Model, VariableId};
 use hardpoint::space::Vec3;
-use hardpoint::study::{WhatIf, metrics_beside, value_beside};
+use hardpoint::study::{WhatIf, metrics_beside, unwrapped_value};
 use hardpoint_file::ModelFile;
 
 use crate::course::settled;
@@ -18,28 +19,28 @@ use crate::whatif::follows;
 
 use super::{Compose, ORIGIN};
 
-/// Hardpoints of a body that are nearer to each other than this part of the mechanism's size are one.
+/// Hardpoints of a body coincide if their distance is less than this fraction of the mechanism's size.
 const SAME: f64 = 1e-9;
 
-/// A design beside today's, solved over the same output times.
+/// Changed design, solved over the same output times as the nominal one.
 #[derive(Clone, Debug)]
 pub struct ChangedDesign<'a> {
     /// Name on the page.
     pub name: String,
-    /// Origin of the design and admissibility, in a sentence; may be empty.
+    /// Sentence on the origin and admissibility of the design; may be empty.
     pub note: String,
-    /// By how much every variable is changed, m, rad, or plain.
+    /// Change of every variable, m, rad, or plain.
     pub change: &'a [f64],
-    /// Today's design, all output times that were solved.
+    /// Solution of the nominal design at all output times.
     pub today: &'a Solution,
-    /// The changed design.
+    /// Solution of the changed design.
     pub exact: &'a Solution,
-    /// The study that predicts the changed design from today's derivatives, where that is of interest.
-    pub foreseen: Option<&'a WhatIf>,
+    /// Prediction of the changed design from the nominal derivatives, if it is to be shown.
+    pub prediction: Option<&'a WhatIf>,
 }
 
 impl<'a> ChangedDesign<'a> {
-    /// The design of a what-if, solved and predicted.
+    /// Changed design of a what-if study, solved and predicted.
     pub fn of(model: &Model, what_if: &'a WhatIf) -> Self {
         Self {
             name: "changed".into(),
@@ -47,16 +48,16 @@ impl<'a> ChangedDesign<'a> {
             change: &what_if.change,
             today: &what_if.today,
             exact: &what_if.exact,
-            foreseen: Some(what_if),
+            prediction: Some(what_if),
         }
     }
 
-    /// At most that many designs it is on the page: solved, and predicted to first and to second order.
+    /// Maximum number of designs it adds to the page: solved, and predicted to first and to second order.
     pub(super) fn designs(&self) -> usize {
-        if self.foreseen.is_some() { 3 } else { 1 }
+        if self.prediction.is_some() { 3 } else { 1 }
     }
 
-    /// Reason why it has no values at the end of the motion, in a sentence, if its motion stopped early.
+    /// Sentence on the reason why its motion stopped early, if it did.
     pub(super) fn stopped(&self, file: &ModelFile) -> Option<String> {
         let stop = StopFact::of(file, self.exact)?;
         let (name, solved, asked) = (&self.name, self.exact.motion.len(), file.model.times.len());
@@ -67,20 +68,20 @@ impl<'a> ChangedDesign<'a> {
         Some(format!("The {name} design {solved}: {} ({}).", stop.message, stop.code))
     }
 
-    /// Output times that both designs were solved for.
+    /// Number of output times at which both designs were solved.
     fn solved(&self) -> usize {
         self.today.motion.len().min(self.exact.motion.len())
     }
 
-    /// The value of output m at time k.
+    /// Value of output m at time k, SI.
     fn value(&self, k: usize, m: usize) -> f64 {
-        value_beside(self.today, self.exact, k, m)
+        unwrapped_value(self.today, self.exact, k, m)
     }
 }
 
 impl Compose<'_> {
-    /// The changed design, then how it is predicted. Today's solution is kept at every `stride`-th output time;
-    /// `bodies` and `values` are today's.
+    /// The changed design, then its predictions. The nominal solution is stored at every `stride`-th output time;
+    /// `bodies` and `values` are nominal.
     pub(super) fn designs(
         &self,
         changed: &ChangedDesign<'_>,
@@ -88,16 +89,17 @@ impl Compose<'_> {
         bodies: &[BodyTrack],
         values: &[Value],
     ) -> Vec<Design> {
-        let beside = Beside { today: self, changed, stride };
-        let mut designs = vec![beside.exact(bodies, values)];
+        let comparison = DesignComparison { today: self, changed, stride };
+        let mut designs = vec![comparison.exact(bodies, values)];
         let follows = |what_if: &&WhatIf| what_if.cannot_follow.is_empty() && changed.solved() > 0;
-        if let Some(what_if) = changed.foreseen.filter(follows) {
-            designs.extend([beside.first_order(what_if, values), beside.second_order(what_if, values)]);
+        if let Some(what_if) = changed.prediction.filter(follows) {
+            designs
+                .extend([comparison.first_order(what_if, values), comparison.second_order(what_if, values)]);
         }
         designs
     }
 
-    /// The changed design, solved.
+    /// Changed design, solved.
     pub(super) fn exact(
         &self,
         changed: &ChangedDesign<'_>,
@@ -105,47 +107,49 @@ impl Compose<'_> {
         bodies: &[BodyTrack],
         values: &[Value],
     ) -> Design {
-        Beside { today: self, changed, stride }.exact(bodies, values)
+        DesignComparison { today: self, changed, stride }.exact(bodies, values)
     }
 }
 
-/// The other number; today's, where the two differ by round-off, and 0 where it is no more than that.
+/// Returns `other`, replaced by the nominal number if they differ by round-off only, and by 0 if it is round-off
+/// itself.
 fn same_or_other(round_off: f64, today: f64, other: f64) -> f64 {
     settled(if (other - today).abs() <= round_off { today } else { other }, round_off)
 }
 
-struct Beside<'a> {
+struct DesignComparison<'a> {
     today: &'a Compose<'a>,
     changed: &'a ChangedDesign<'a>,
-    /// Interval of the stored output times among those that were solved.
+    /// Stride of the stored output times among the solved ones.
     stride: usize,
 }
 
-impl Beside<'_> {
-    /// A curve over the output times that are shown; `value` is requested those that both designs were solved for.
+impl DesignComparison<'_> {
+    /// Curve over the shown output times; `value` is called for those at which both designs were solved.
     fn curve(&self, value: impl Fn(usize) -> f64) -> Curve {
         let solved = self.changed.solved();
         self.whole_steps().map(|k| if k < solved { value(k) } else { f64::NAN }).collect()
     }
 
-    /// The output times that are shown, counted among all that were solved.
+    /// Shown output times, as indices of all solved ones.
     fn whole_steps(&self) -> impl Iterator<Item = usize> + '_ {
         self.today.steps.iter().map(|k| k * self.stride)
     }
 
-    /// The first `orders` of value, rate and acceleration; the others are empty.
+    /// Value, rate and acceleration up to `orders`; the others are empty.
     fn curves(&self, orders: usize, value: impl Fn(usize, usize) -> f64) -> DesignCurves {
         let curve = |order| if order < orders { self.curve(|k| value(k, order)) } else { Curve::default() };
         DesignCurves { value: curve(0), rate: curve(1), accel: curve(2) }
     }
 
-    /// The other design's number; today's, where the two differ by round-off, and 0 where it is no more than that.
-    fn beside(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
+    /// Number of the other design, replaced by the nominal one if they differ by round-off only, and by 0 if it is
+    /// round-off itself.
+    fn other_value(&self, of: impl Into<Dimension>, order: usize, today: f64, other: f64) -> f64 {
         same_or_other(self.today.round_off.value(of.into(), order), today, other)
     }
 
-    /// Per body that moves and output time that is shown, place, velocity and acceleration of its origin in the changed
-    /// design.
+    /// Position, velocity and acceleration of the origin of each moving body in the changed design, at each shown
+    /// output time.
     fn origins(&self) -> Vec<Vec<[[f64; 3]; 3]>> {
         let (units, solved) = (self.today.units, self.changed.solved());
         let round_off = [0, 1, 2].map(|order| self.today.round_off.value(Dimension::LENGTH, order));
@@ -167,7 +171,7 @@ impl Beside<'_> {
         (1..bodies).map(|b| self.whole_steps().map(|k| at(b, k)).collect()).collect()
     }
 
-    /// The curves of all quantities: those of the outputs, then x, y and z of every body's origin.
+    /// Curves of all quantities: outputs, then x, y and z of every body's origin.
     fn quantities(
         &self,
         output: impl Fn(usize) -> Option<DesignCurves>,
@@ -179,8 +183,7 @@ impl Beside<'_> {
         (0..outputs).map(output).chain(origins.map(|(b, axis)| origin(b, axis))).collect()
     }
 
-    /// The values that the design is judged by, in the order of today's: first the metrics, then the measures at one
-    /// time.
+    /// Values of the changed design in the order of the nominal ones: metrics, then measures at one time.
     fn values(
         &self,
         today: &[Value],
@@ -206,7 +209,7 @@ impl Beside<'_> {
         today.iter().enumerate().map(value).collect()
     }
 
-    /// As it is when solved again.
+    /// Design as solved again.
     fn exact(&self, bodies: &[BodyTrack], values: &[Value]) -> Design {
         let (changed, units) = (self.changed, self.today.units);
         let (today, exact) = (changed.today, changed.exact);
@@ -240,12 +243,12 @@ impl Beside<'_> {
         }
     }
 
-    /// As today's sensitivities predict it.
+    /// Design as predicted from the nominal sensitivities.
     fn first_order(&self, what_if: &WhatIf, values: &[Value]) -> Design {
         let units = self.today.units;
         let today = &what_if.today;
         let changed = || what_if.change.iter().enumerate().filter(|(_, by)| **by != 0.0);
-        // Together, variables may be followed that are not one by one: then rates are not known.
+        // A combination of variables may be followed although the single variables are not; rates are then unknown.
         let one_by_one = changed().all(|(v, _)| today.sensitivities.at(0, v).is_some());
         let output = |m: usize| {
             let output = &today.measured.outputs[m];
@@ -257,7 +260,7 @@ impl Beside<'_> {
                         .sum::<f64>()
                 };
                 let other = if order == 0 { what_if.predicted(k, m)[0] } else { now + rise() };
-                units.from_si(output.dimension, self.beside(output.dimension, order, now, other))
+                units.from_si(output.dimension, self.other_value(output.dimension, order, now, other))
             };
             let known = one_by_one || output.known.by_position;
             let orders = if one_by_one { output.known.orders } else { 1 };
@@ -271,12 +274,15 @@ impl Beside<'_> {
                     let s = today.sensitivities.at(k, v).map(|s| s.body(b));
                     by * s.map_or(f64::NAN, |s| ORIGIN[order](&s).to_array()[axis])
                 });
-                units.from_si(Kind::Length, self.beside(Kind::Length, order, now, now + rise.sum::<f64>()))
+                units.from_si(
+                    Kind::Length,
+                    self.other_value(Kind::Length, order, now, now + rise.sum::<f64>()),
+                )
             };
             one_by_one.then(|| self.curves(3, value))
         };
         let change = self.change();
-        let foreseen = |of: &Value| {
+        let prediction = |of: &Value| {
             let rise = change.iter().zip(&of.sensitivities).filter(|(by, _)| **by != 0.0);
             let rise: Option<f64> = rise.map(|(by, d)| d.map(|d| by * d)).sum();
             Some(of.value? + rise.filter(|_| !of.sensitivities.is_empty())?)
@@ -284,12 +290,12 @@ impl Beside<'_> {
         let note = "Predicted from the nominal sensitivities, without solving again.".to_owned();
         Design {
             quantities: self.quantities(output, origin),
-            values: values.iter().map(foreseen).collect(),
+            values: values.iter().map(prediction).collect(),
             ..self.design("predicted to first order", DesignKind::FirstOrder, note)
         }
     }
 
-    /// As today's first and second derivatives predict it: of positions alone.
+    /// Design as predicted from the nominal first and second derivatives: quantities that depend on positions alone.
     fn second_order(&self, what_if: &WhatIf, values: &[Value]) -> Design {
         let units = self.today.units;
         let output = |m: usize| {
@@ -298,7 +304,7 @@ impl Beside<'_> {
                 let now = what_if.today.measured.value(k, m)[0];
                 units.from_si(
                     output.dimension,
-                    self.beside(output.dimension, 0, now, what_if.predicted(k, m)[1]),
+                    self.other_value(output.dimension, 0, now, what_if.predicted(k, m)[1]),
                 )
             };
             output.known.by_position.then(|| self.curves(1, value))
@@ -315,7 +321,7 @@ impl Beside<'_> {
         }
     }
 
-    /// A design of which nothing is known yet.
+    /// Design without any known curves.
     fn design(&self, name: &str, kind: DesignKind, note: String) -> Design {
         Design {
             name: name.into(),
@@ -331,20 +337,20 @@ impl Beside<'_> {
         }
     }
 
-    /// By how much every variable is changed, in its unit.
+    /// Change of every variable, in its unit.
     fn change(&self) -> Vec<f64> {
         let variables = self.today.model.variables.iter().zip(self.changed.change);
         variables.map(|(v, by)| self.today.units.from_si(v.quantity, *by)).collect()
     }
 
-    /// Poses of the bodies of the changed design. A body that does not change has the same numbers.
+    /// Poses of the bodies of the changed design. Unchanged bodies have the same numbers as in the nominal design.
     fn poses(&self) -> Vec<Curve> {
         let [far, turned] = [Dimension::LENGTH, Dimension::ANGLE].map(|of| self.today.round_off.value(of, 0));
         let pose = |k: usize, b: usize| {
             let [now, other] = [self.changed.today, self.changed.exact].map(|s| s.motion.at(k).body(b));
             let [p, mut q] = [now.quaternion(), other.quaternion()];
             if iter::zip(p, q).map(|(p, q)| p * q).sum::<f64>() < 0.0 {
-                // Both signs are the same orientation.
+                // Both signs of a quaternion are the same orientation.
                 q = q.map(|x| -x);
             }
             let apart = iter::zip(p, q).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt();
@@ -361,9 +367,9 @@ impl Beside<'_> {
         (0..self.today.model.bodies.len()).map(track).collect()
     }
 
-    /// The hardpoints of the changed design in its bodies' frames, in the order of today's.
+    /// Hardpoints of the changed design in its bodies' frames, in the order of the nominal ones.
     fn skeletons(&self, bodies: &[BodyTrack]) -> Vec<Vec<[f64; 3]>> {
-        // A page that shows no variables is requested designs all the same.
+        // Other designs can be requested even if the page shows no variables.
         let model = self.today.analysis.model();
         let same = self.today.units.from_si(Kind::Length, SAME * model.size());
         let mut moved: Vec<Vec<[Vec3; 2]>> = vec![Vec::new(); model.bodies.len()];
@@ -392,7 +398,7 @@ impl Beside<'_> {
     }
 }
 
-/// With a capital and a full stop.
+/// Text with an initial capital and a full stop.
 fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();

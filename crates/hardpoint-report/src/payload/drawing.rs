@@ -1,5 +1,5 @@
-//! Contents of a drawing of the mechanism: bodies with their hardpoints, joints, couplers, drivers and wheels, all from
-//! the model and none of it from names.
+//! Drawing of the mechanism: bodies with their hardpoints, joints, couplers, drivers and wheels, all derived from the
+//! model and not from names.
 
 use hardpoint::constraint::Row;
 use hardpoint::joint::{Freedom, Need, Quantity as Kind};
@@ -13,7 +13,7 @@ use hardpoint::study::DriverRates;
 use hardpoint::topology::JointRole;
 use hardpoint_file::MeshFrame;
 
-use crate::facts::{held_spins, written_kind};
+use crate::facts::{fixed_spins, written_kind};
 use crate::figures::symbol;
 use crate::page::{
     Arrow, BodyPlace, BodyTrack, CouplerMark, CouplerTerm, Curve, DistanceMark, DriverMark, JointCurve,
@@ -22,29 +22,30 @@ use crate::page::{
 
 use super::Compose;
 
-/// Points of a curve, that many that the chords between them look smooth.
+/// Number of points of a curve: enough to make it look smooth.
 const CURVE_POINTS: usize = 240;
-/// Hardpoints of a body are the same place where they are this part of the mechanism's size apart.
+/// Hardpoints of a body coincide if their distance is less than this fraction of the mechanism's size.
 const SAME_PLACE: f64 = 1e-9;
-/// A point this near to where a wheel touches the ground, as a part of its radius, is meant to be there.
+/// Distance from a wheel's ground contact, as a fraction of its radius, within which a point is taken as the contact
+/// point.
 const NEAR_CONTACT: f64 = 0.02;
-/// Vehicle axes are those of ISO 8855: x forward, z up.
+/// Vehicle axes as in ISO 8855: x forward, z up.
 const VEHICLE: VehicleAxes = VehicleAxes { forward: [1.0, 0.0, 0.0], up: [0.0, 0.0, 1.0] };
 
-/// A hardpoint of a body's skeleton.
+/// Hardpoint of a body's skeleton.
 struct SkeletonPoint {
     at: Vec3,
     labels: Vec<String>,
     role: PointRole,
 }
 
-/// True if a joint is drawn: a driven distance is drawn like a leg; a driven point or orientation has nothing to draw.
+/// True if a joint is drawn. A driven distance is drawn like a leg; a driven point or orientation has nothing to draw.
 pub(super) fn is_drawn(joint: &Joint) -> bool {
     !joint.unnamed || joint.kind.places == 2
 }
 
 impl Compose<'_> {
-    /// All bodies with what is on them.
+    /// All bodies with their hardpoints and motion.
     pub(super) fn bodies(&self) -> Vec<BodyTrack> {
         let states = &self.solution.motion;
         let track = |(b, points): (usize, Vec<SkeletonPoint>)| {
@@ -66,7 +67,7 @@ impl Compose<'_> {
         self.skeletons().into_iter().enumerate().map(track).collect()
     }
 
-    /// The body's own shape, in its frame.
+    /// Mesh of the body, in its frame.
     fn mesh(&self, body: usize) -> Option<Mesh> {
         let mesh = self.looks.bodies.get(&body)?;
         let body_from_file = match mesh.frame {
@@ -81,7 +82,7 @@ impl Compose<'_> {
         })
     }
 
-    /// The hardpoints of every body, each place once.
+    /// Hardpoints of every body, each location once.
     fn skeletons(&self) -> Vec<Vec<SkeletonPoint>> {
         let geometry = self.model.geometry(&[]);
         let mut skeletons: Vec<Vec<SkeletonPoint>> = Vec::new();
@@ -100,7 +101,7 @@ impl Compose<'_> {
             }
         };
         for (j, joint) in self.model.joints.iter().enumerate() {
-            // A driven point is none of the body that its direction belongs to.
+            // A driven point does not belong to the body of its direction.
             let (ends, role) =
                 if is_drawn(joint) { (0..2, PointRole::Joint) } else { (1..2, PointRole::Measured) };
             for end in ends {
@@ -127,24 +128,24 @@ impl Compose<'_> {
         skeletons
     }
 
-    /// The two hardpoints that a hinge's axis passes through: both lie on both of its bodies.
+    /// Hardpoints that define the axis of a hinge: both are on both of its bodies.
     pub(super) fn hinge_points(&self, joint: &Joint) -> Option<[HardpointId; 2]> {
         let turns = joint.kind.freedoms.is_some_and(|f| f.iter().all(|f| matches!(f, Freedom::Turn(_))));
         joint.axis.filter(|_| turns && joint.axis2.is_none())?.hardpoints()
     }
 
-    /// Position of a hardpoint of the design configuration in a body's frame.
+    /// Position of a hardpoint in the design configuration, in a body's frame.
     pub(super) fn in_body(&self, body: BodyId, at: HardpointId) -> Vec3 {
         self.model.bodies[body.0].frame.inverse().point(self.model.hardpoints[at.0].position)
     }
 
-    /// The hardpoint's name, or that of the joint whose coordinates were written in its place.
+    /// Name of the hardpoint, or of the joint if the model file has coordinates instead.
     fn label<'m>(&'m self, at: HardpointId, joint: &'m str) -> &'m str {
         let hardpoint = &self.model.hardpoints[at.0];
         if hardpoint.unnamed { joint } else { &hardpoint.name }
     }
 
-    /// The joints that are drawn, by their places in the model.
+    /// Drawn joints, with their indices in the model.
     fn drawn_joints(&self) -> impl Iterator<Item = (usize, &Joint)> {
         self.model.joints.iter().enumerate().filter(|(_, joint)| is_drawn(joint))
     }
@@ -154,14 +155,14 @@ impl Compose<'_> {
         self.drawn_joints().position(|(j, _)| j == joint.0)
     }
 
-    /// The joints that are drawn.
+    /// Marks of all drawn joints.
     pub(super) fn joints(&self) -> Vec<JointMark> {
         let geometry = self.model.geometry(&[]);
         let roles = &self.analysis.topology().roles;
-        let spins = held_spins(self.model);
+        let spins = fixed_spins(self.model);
         let mark = |(j, joint): (usize, &Joint)| {
             let [i, k] = &geometry.markers[j];
-            // Of a cross the second pin is the x axis of body j: z_i . x_j = 0.
+            // The second pin of a cross is the x axis of body j: z_i . x_j = 0.
             let crosses = joint.kind.rows.contains(&Row::Dot1(2, 0));
             let axis2 = joint.axis2.map(|_| match joint.kind.axis2 {
                 Need::OnBodyJ => k.rot.cols[2],
@@ -189,7 +190,7 @@ impl Compose<'_> {
         self.drawn_joints().map(mark).collect()
     }
 
-    /// Travel per turn of a screw, in the length unit.
+    /// Travel per revolution of a screw, in the length unit.
     fn lead(&self, joint: JointId) -> Option<f64> {
         let of_joint = |c: &&Coupler| c.terms.iter().all(|t| t.joint == joint);
         let couplers = self.model.couplers.iter().filter(of_joint);
@@ -199,12 +200,12 @@ impl Compose<'_> {
         })
     }
 
-    /// A curve in the x-y plane of a marker, in the frame of its body.
+    /// Curve in the x-y plane of a marker, in the frame of its body.
     fn joint_curve(&self, curve: &PlanarCurve, body_from_marker: Pose) -> JointCurve {
         let closed = curve.is_closed();
         let parts = if closed { CURVE_POINTS } else { CURVE_POINTS - 1 };
         let point = |k: usize| {
-            // The last point of an open curve is its end itself: beyond it there is none.
+            // The last point of an open curve is exactly its end, since the curve is undefined beyond.
             let u = if k == parts { curve.length() } else { curve.length() * k as f64 / parts as f64 };
             let [[x, y], ..] = curve.at(u);
             self.length(body_from_marker.point(Vec3::new(x, y, 0.0)))
@@ -216,7 +217,7 @@ impl Compose<'_> {
         }
     }
 
-    /// Gears, racks, belts, screws and other relations.
+    /// Marks of gears, racks, belts, screws and other couplers.
     pub(super) fn couplers(&self) -> Vec<CouplerMark> {
         let length = |x: f64| self.units.from_si(Kind::Length, x);
         let mark = |coupler: &Coupler| {
@@ -245,7 +246,7 @@ impl Compose<'_> {
         self.model.couplers.iter().map(mark).collect()
     }
 
-    /// Driven coordinates, with their ranges.
+    /// Driven coordinates with their curves.
     pub(super) fn drivers(&self) -> Vec<DriverMark> {
         let geometry = self.model.geometry(&[]);
         let mark = |(d, driver): (usize, &Driver)| {
@@ -295,7 +296,7 @@ impl Compose<'_> {
         BodyPlace { body: of.body.0, at: self.length(self.in_body(of.body, of.at)) }
     }
 
-    /// A direction of the design configuration in a body's frame, unit length.
+    /// Unit vector of a direction in the design configuration, in a body's frame.
     fn direction_in_body(&self, body: BodyId, direction: Direction) -> Vec3 {
         let along = match direction {
             Direction::Along(u) => u,
@@ -307,17 +308,17 @@ impl Compose<'_> {
         self.model.bodies[body.0].frame.rot.transpose_mul(along)
     }
 
-    /// A wheel's centre and where it touches the ground in the design configuration, in its body's frame.
+    /// Centre and ground contact of a wheel in the design configuration, in the frame of its body.
     fn wheel_places(&self, wheel: &Wheel) -> [Vec3; 2] {
         let axis = self.direction_in_body(wheel.body, wheel.spin_axis);
         let up = self.model.bodies[wheel.body.0].frame.rot.transpose_mul(Vec3::new(0.0, 0.0, 1.0));
-        // The way down in the wheel's plane.
+        // Downward direction in the wheel plane.
         let down = axis * axis.dot(up) - up;
         let centre = self.in_body(wheel.body, self.model.points[wheel.centre.0].at);
         [centre, centre + down * (wheel.radius / down.norm())]
     }
 
-    /// Road wheels.
+    /// Marks of road wheels.
     pub(super) fn wheels(&self) -> Vec<WheelMark> {
         let mark = |wheel: &Wheel| WheelMark {
             name: wheel.name.clone(),
@@ -329,12 +330,12 @@ impl Compose<'_> {
         self.model.wheels.iter().map(mark).collect()
     }
 
-    /// The axes of the vehicle that the mechanism belongs to: one with road wheels.
+    /// Vehicle axes, if the mechanism has road wheels.
     pub(super) fn vehicle(&self) -> Option<VehicleAxes> {
         (!self.model.wheels.is_empty()).then_some(VEHICLE)
     }
 
-    /// Distances that are measured.
+    /// Marks of measured distances.
     pub(super) fn distances(&self) -> Vec<DistanceMark> {
         let mark = |(m, measure): (usize, &Measure)| match measure.kind {
             MeasureKind::Distance { from, to } => Some(DistanceMark {
@@ -348,7 +349,7 @@ impl Compose<'_> {
         self.model.measures.iter().enumerate().filter_map(mark).collect()
     }
 
-    /// The design velocity of every marker and named point that the variable moves, in its body's frame.
+    /// Design velocity of every marker and named point that the variable moves, in the frame of its body.
     pub(super) fn arrows(&self, variable: VariableId) -> Vec<Arrow> {
         let geometry = self.model.geometry(&[]);
         let field = self.model.field(variable);
@@ -370,7 +371,7 @@ impl Compose<'_> {
             v: speed(*v),
             turn: [0.0; 3],
         });
-        // A hinge's marker is at one end of its axis; show what moves at the other end too.
+        // The marker of a hinge is at one end of its axis; the velocity is also shown at the other end.
         let far_ends = self.model.variables[variable.0].changes.iter().filter_map(|change| match change {
             Change::Move(change) => Some((change.hardpoint, change.velocity)),
             _ => None,

@@ -9,19 +9,19 @@ use super::{Compose, Span};
 /// Rank of a quantity on the page; the highest is shown first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Rank {
-    /// True if the design bends its curve: what only follows a driver, or is shifted as a whole, says little about the
-    /// design.
+    /// True if the design affects the shape of its curve. A curve that only follows a driver, or is shifted as a whole,
+    /// is of little interest.
     follows_design: bool,
-    /// True if a metric sums it up: then its author asks for it.
+    /// True if a metric uses it, which shows the author's interest.
     in_metric: bool,
-    /// True if it is a measure, rather than a point's coordinate.
+    /// True if it is a measure, not a coordinate of a point.
     is_measure: bool,
 }
 
 impl Compose<'_> {
-    /// The quantity that the page opens on: the one of greatest [`Rank`] among those that vary and follow the course of
-    /// time (slopes and the like follow one driver alone); of equals the first, for authors begin with what they care
-    /// for. None where nothing varies.
+    /// Quantity that the page shows first: the one of highest [`Rank`] among those that vary and are defined over time
+    /// (slopes and similar measures are over one driver alone). Among equals it is the first, since authors list
+    /// important ones first. `None` if nothing varies.
     pub(super) fn first(&self, course: &Course) -> Option<usize> {
         let measured = &self.solution.measured;
         let over_time = |value: &dyn Fn(usize) -> f64| Span::of(self.steps.iter().map(|&k| value(k))).range();

@@ -1,4 +1,4 @@
-//! Forces on bodies, as the page draws them.
+//! Forces on bodies, for drawing.
 
 use hardpoint::Analysis;
 use hardpoint::model::Model;
@@ -11,22 +11,22 @@ use crate::page::{BodyPlace, Curve, LoadMark};
 use super::Compose;
 use super::drawing::is_drawn;
 
-/// A component of a force below this part of the largest force is round-off.
+/// A component below this fraction of the largest force is round-off.
 const ROUND_OFF: f64 = 1e-11;
 
-/// Number of forces the page has of a model.
+/// Number of forces on the page of a model.
 pub(super) fn count(model: &Model) -> usize {
     if model.has_loads() { joints(model).len() + model.pushed().len() } else { 0 }
 }
 
-/// The joints whose forces are shown.
+/// Indices of the joints whose forces are shown.
 fn joints(model: &Model) -> Vec<usize> {
     let all = model.joints.iter().enumerate();
     all.filter(|(_, joint)| is_drawn(joint) && !joint.unnamed).map(|(j, _)| j).collect()
 }
 
 impl Compose<'_> {
-    /// Forces of today's design.
+    /// Forces of the nominal design.
     pub(super) fn loads(&self) -> Vec<LoadMark> {
         if count(self.model) == 0 {
             return Vec::new();
@@ -50,21 +50,21 @@ impl Compose<'_> {
             .collect()
     }
 
-    /// Forces of the design with these changes of the variables, in the same order.
+    /// Forces of the design with a change of the variables, in the same order.
     pub(super) fn forces(&self, change: &[f64]) -> Vec<Curve> {
         if count(self.model) == 0 { Vec::new() } else { self.curves_of(&self.solved_loads(change)) }
     }
 
-    /// Loads at the output times that are shown.
+    /// Loads at the shown output times.
     fn solved_loads(&self, change: &[f64]) -> Loads {
         let times = self.steps.iter().map(|&k| self.solution.motion.times[k]).collect();
-        // The plan's model has the variables that the design changes; the one that is shown may have none.
+        // The analysed model has the variables of the change; the shown one may have none.
         let model = Model { times, ..self.analysis.model().clone() };
         let plan = Analysis::with(&model, self.analysis.topology().formulation);
         plan.map_or_else(|_| Loads::default(), |analysis| analysis.loads(change))
     }
 
-    /// Three numbers per step of each force; without a number where the motion was not solved.
+    /// Three numbers per step of each force; NaN where the motion was not solved.
     fn curves_of(&self, loads: &Loads) -> Vec<Curve> {
         let (shown, solved) = (joints(self.model), loads.times.len());
         let known = |k: usize, j: usize| {

@@ -1,9 +1,9 @@
-//! The single numbers that a design is judged by.
+//! Single values that characterise a design.
 
 use hardpoint::model::{Dimension, Driver, OutputSource, VariableId};
 
 use crate::course::settled;
-use crate::facts::Answer;
+use crate::facts::VariableAdmissibility;
 use crate::figures::order_unit;
 use crate::metric::MetricFact;
 use crate::page::Value;
@@ -11,12 +11,13 @@ use crate::summary::Summary;
 
 use super::Compose;
 
-/// A driver is where it was drawn if it is no farther from there than this part of the mechanism's size, or of a
-/// radian.
-const AS_DRAWN: f64 = 1e-9;
+/// A driver is in the design configuration if its distance from it is at most this fraction of the mechanism's size, or
+/// of a radian.
+const AT_DESIGN: f64 = 1e-9;
 
 impl Compose<'_> {
-    /// Metrics, then the values of all measures in the design configuration, or at the start.
+    /// Metrics, then the values of all measures in the design configuration, or at the start if the motion does not
+    /// pass it.
     pub(super) fn values(&self, summary: &Summary) -> Vec<Value> {
         let metrics = summary.metrics.iter().enumerate().map(|(k, fact)| self.metric_value(k, fact));
         let outputs = self.solution.measured.outputs.iter().enumerate();
@@ -48,13 +49,13 @@ impl Compose<'_> {
         }
     }
 
-    /// The step in the design configuration, or else the first one, and its name.
+    /// Step in the design configuration, otherwise the first one, with its description.
     fn design_step(&self) -> Option<(usize, &'static str)> {
         let times = &self.solution.motion.times;
         let size = self.model.size();
         let as_drawn = |driver: &Driver, t: f64| {
             let dimension = Dimension::from(self.model.driven(driver).quantity);
-            driver.law.at(t).value().abs() <= AS_DRAWN * size.powi(dimension.length.into())
+            driver.law.at(t).value().abs() <= AT_DESIGN * size.powi(dimension.length.into())
         };
         let drawn = times.iter().position(|&t| self.model.drivers.iter().all(|d| as_drawn(d, t)));
         match drawn {
@@ -68,7 +69,10 @@ impl Compose<'_> {
         let output = &measured.outputs[m];
         let value = settled(measured.value(step, m)[0], self.round_off.value(output.dimension, 0));
         let sensitivity = |b: usize| {
-            let known = matches!(summary.model.variables[b].answer, Answer::Admissible | Answer::Reassembled);
+            let known = matches!(
+                summary.model.variables[b].answer,
+                VariableAdmissibility::Admissible | VariableAdmissibility::Reassembled
+            );
             let d = known.then(|| measured.d(step, VariableId(b), m)[0]).filter(|d| d.is_finite())?;
             let d = settled(d, self.round_off.of(b, output.dimension, 0));
             Some(self.units.derivative_from_si(output.dimension, self.model.variables[b].quantity, d))

@@ -176,7 +176,7 @@ fn one_output_time_or_ten_thousand_are_a_page() {
         assert_whole(&page);
         assert_eq!(page.times.values().len(), shown, "{times}");
         assert!(page.status.complete);
-        // Where it begins is the same however many times follow.
+        // The start is independent of the number of output times.
         for (a, b) in page.quantities.iter().zip(&whole.quantities) {
             let (x, y) = (a.value.values()[0], b.value.values()[0]);
             assert!((x - y).abs() <= 1e-5 * (1.0 + y.abs()), "{} {x} {y}", a.name);
@@ -210,7 +210,7 @@ fn names_are_text_whatever_they_hold() {
         assert_eq!(page.title, name);
         assert!(page.quantities.iter().any(|q| q.name == name) && page.values.iter().any(|v| v.name == name));
         let html = html(&page).unwrap();
-        // The page's own, whatever the model says.
+        // Only the page's own elements, whatever names the model contains.
         assert_eq!(html.matches("<script").count(), SCRIPTS, "{name}");
         assert_eq!(html.matches("</script>").count(), SCRIPTS, "{name}");
     }
@@ -243,7 +243,7 @@ fn a_model_without_variables_or_measures_is_a_page() {
 #[test]
 fn a_motion_that_stops_at_once_is_a_page_of_what_there_is() {
     let text = slider_crank("mm", 1e3, "deg", 360.0);
-    // Stretched, crank and rod reach 25 mm farther than they are drawn.
+    // Stretched, crank and rod reach 25 mm farther than in the design configuration.
     let pulled = |law: &str| {
         text.replace("joint = \"bearing\", law = \"360*t\"", &format!("joint = \"guide\", law = \"{law}\""))
     };
@@ -258,7 +258,7 @@ fn a_motion_that_stops_at_once_is_a_page_of_what_there_is() {
             "{}",
             page.status.message
         );
-        // Of nothing there is nothing to be looked at first, and no single number.
+        // Without contents there is no first quantity and no single value.
         assert!(solved > 0 || page.first.is_none() && page.values.iter().all(|v| v.value.is_none()));
     }
 }

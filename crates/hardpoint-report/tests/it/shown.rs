@@ -15,7 +15,7 @@ use hardpoint_report::page::Table;
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 
-/// In mm and degrees; the model is replaced.
+/// Model in mm and degrees.
 const FRAME: &str = r#"
 name = "frame"
 units = { length = "mm", angle = "deg" }
@@ -136,7 +136,7 @@ fn couplers_are_written_out_in_the_users_units_and_counted() {
     assert!((ratio.abs() - 20.0_f64.to_radians()).abs() < 1e-12, "{ratio}");
 }
 
-/// Three arms that turn about y, each driven in a way of its own.
+/// Three arms that rotate about y, each driven differently.
 fn arms() -> Draft {
     let at = |x: f64, y: f64| LocationDraft::At(Vec3::new(x, y, 0.0));
     let arm = |k: usize| {
@@ -291,7 +291,7 @@ fn a_singular_position_just_beyond_the_end_is_told() {
     assert_eq!(margin.singular_kind, Some("limit"));
     let ahead = margin.ahead().unwrap();
     assert!(ahead.starts_with("A singular position is estimated to lie about 1e-5 s ("), "{ahead}");
-    assert!(ahead.ends_with("beyond the end; its loop cannot be closed beyond"), "{ahead}");
+    assert!(ahead.ends_with("beyond the end; its loop cannot be closed any further"), "{ahead}");
 }
 
 #[test]
@@ -305,7 +305,7 @@ fn a_motion_to_a_singular_position_stops_there() {
 
 #[test]
 fn a_mechanism_next_to_a_singular_position_is_warned_of() {
-    // Drawn with its coupler and rocker in line but for 0.1 um.
+    // In the design configuration, coupler and rocker are in line to within 0.1 um.
     let file = one_four_bar(Vec3::new(0.18, 0.04 + 1e-7, 0.0), |_| "0 * t".into());
     let (solution, summary) = solved(&file);
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
@@ -350,7 +350,7 @@ fn an_assembly_is_shown_with_gaps_and_moves() {
     let (_, summary) = solved(&file);
     let assembly = summary.assembly.as_ref().unwrap();
     insta::assert_snapshot!(text(&assembly.tables(), &["Assembled", "Moved by the assembly"]));
-    // Nothing is said of what fits in the design configuration.
+    // Constraints that are closed in the design configuration are not reported.
     let (_, fits) = solved(&self::file(&with_a_rod_of(0.1125_f64.sqrt())));
     assert!(fits.assembly.is_none());
 }
@@ -528,7 +528,7 @@ time = {{ end = 1, steps = 4 }}
         all += "\n";
     }
     insta::assert_snapshot!(all);
-    // What a driver holds at rest is none of these.
+    // Mechanisms that a driver fixes are not among these.
     let moves = frame(&skew).replace("[0.1, 0, 1]", "\"z\"").replace("[0, 0.1, 1]", "\"z\"")
         + "[drivers]\nm = { joint = \"A\", law = \"0\" }\n";
     let file = hardpoint_file::parse(&moves, "drawn.toml").unwrap();

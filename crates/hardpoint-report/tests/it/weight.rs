@@ -63,14 +63,14 @@ fn a_large_models_page_weighs_ten_megabytes_at_most() {
     assert_eq!((file.model.bodies.len() - 1, file.model.variables.len()), (81, 240));
     let (payload, report) = page(&file, false);
     let weight = report.len();
-    // It was packed to be weighed; that is what is in the page.
+    // It was packed to measure its size; the page contains that block.
     assert!(report == html(&payload).unwrap());
     assert!(weight <= 10_000_000, "{weight}");
     assert!(payload.times.values().len() >= 100);
     assert!(payload.variables.iter().all(|v| v.sensitivities.len() >= 40));
     println!("{weight} bytes, {} steps", payload.times.values().len());
 
-    // A changed design is drawn by how the bodies move with the variables.
+    // A changed design is drawn from the motion of the bodies by the variables.
     let solution = Analysis::new(&file.model).unwrap().run();
     let stride = solution.motion.len().div_ceil(payload.times.values().len());
     for (b, variable) in payload.variables.iter().enumerate() {

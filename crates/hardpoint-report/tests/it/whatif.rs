@@ -11,7 +11,7 @@ use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::page::{Curve, Design, DesignKind, Payload, Table, html};
-use hardpoint_report::payload::{ChangedDesign as Beside, Request, payload};
+use hardpoint_report::payload::{ChangedDesign, Request, payload};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::WhatIfFacts;
 
@@ -29,15 +29,15 @@ fn change(file: &ModelFile, of: &[(&str, f64)]) -> Vec<f64> {
     change
 }
 
-/// The page as the command makes it, and what it is made of.
-struct ChangedDesign<'f> {
+/// Page of a changed design, as made by the command, with its inputs.
+struct WhatIfPage<'f> {
     analysis: Analysis<'f>,
     found: WhatIf,
     facts: WhatIfFacts,
     page: Payload,
 }
 
-fn changed<'f>(file: &'f ModelFile, of: &[(&str, f64)]) -> ChangedDesign<'f> {
+fn changed<'f>(file: &'f ModelFile, of: &[(&str, f64)]) -> WhatIfPage<'f> {
     let analysis = Analysis::new(&file.model).unwrap();
     let today = analysis.run();
     let course = Course::of(&file.model, &today);
@@ -45,9 +45,9 @@ fn changed<'f>(file: &'f ModelFile, of: &[(&str, f64)]) -> ChangedDesign<'f> {
     let facts = WhatIfFacts::of_today(file, analysis.topology(), &today);
     let found = what_if(&analysis, today, &change(file, of));
     let facts = facts.changed(file, analysis.topology(), &found);
-    let beside = Some(Beside::of(&file.model, &found));
-    let page = payload(&Request { changed: beside, ..Request::of(file, &analysis, &course, &summary) });
-    ChangedDesign { analysis, found, facts, page }
+    let changed = Some(ChangedDesign::of(&file.model, &found));
+    let page = payload(&Request { changed, ..Request::of(file, &analysis, &course, &summary) });
+    WhatIfPage { analysis, found, facts, page }
 }
 
 /// All digits that the page holds of a curve.
@@ -88,7 +88,7 @@ fn expected(
 fn curves_of_the_changed_design_are_those_of_the_solver() {
     let file = gallery("macpherson.toml");
     let (model, units) = (&file.model, file.units);
-    let ChangedDesign { analysis, found, page, .. } =
+    let WhatIfPage { analysis, found, page, .. } =
         changed(&file, &[("tie_rod_inner_z", 20.0), ("lca_tilt", -0.5)]);
     let today: &Solution = &found.today;
     let exact = analysis.solve(Run::new().at(&found.change).without_sensitivities());
@@ -101,7 +101,7 @@ fn curves_of_the_changed_design_are_those_of_the_solver() {
     for (m, output) in today.measured.outputs.iter().enumerate() {
         let curves = |kind| design(&page, kind).quantities[m].as_ref();
         let now = |k: usize, order: usize| today.measured.value(k, m)[order];
-        let foreseen = |k: usize, order: usize| {
+        let prediction = |k: usize, order: usize| {
             let changes = found.change.iter().enumerate().filter(|(_, by)| **by != 0.0);
             now(k, order)
                 + changes.map(|(v, by)| by * today.measured.d(k, VariableId(v), m)[order]).sum::<f64>()
@@ -118,7 +118,7 @@ fn curves_of_the_changed_design_are_those_of_the_solver() {
             assert_eq!(text(anew), expected(as_is, magnitude, solved), "{} {order}", output.name);
             // The value comes along the whole change at once, the rates variable by variable.
             let linear = steps().map(|k| {
-                [now(k, order), if order == 0 { found.predicted(k, m)[0] } else { foreseen(k, order) }]
+                [now(k, order), if order == 0 { found.predicted(k, m)[0] } else { prediction(k, order) }]
             });
             assert_eq!(text(first), expected(as_is, magnitude, linear), "{} {order}", output.name);
         }
@@ -142,7 +142,7 @@ fn curves_of_the_changed_design_are_those_of_the_solver() {
 #[test]
 fn what_a_change_leaves_alone_has_todays_numbers() {
     let file = gallery("macpherson.toml");
-    let ChangedDesign { page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
+    let WhatIfPage { page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
     let body = |name: &str| page.bodies.iter().position(|b| b.name == name).unwrap();
     let angle = page.quantities.iter().position(|q| q.name == "lca_angle").unwrap();
     for design in &page.designs {
@@ -165,11 +165,11 @@ fn what_a_change_leaves_alone_has_todays_numbers() {
     }
 }
 
-/// Metrics, and measures at one time: as solved, and by today's derivatives.
+/// Metrics, and measures at one time: exact, and predicted from the nominal derivatives.
 #[test]
 fn values_of_the_changed_design_are_those_of_its_curves() {
     let file = gallery("macpherson.toml");
-    let ChangedDesign { found, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0), ("lca_tilt", -0.5)]);
+    let WhatIfPage { found, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0), ("lca_tilt", -0.5)]);
     assert!(page.designs.iter().all(|d| d.values.len() == page.values.len()));
     let exact = design(&page, DesignKind::Exact);
     for (value, found_value) in page.values.iter().zip(&exact.values).skip(file.model.metrics.len()) {
@@ -179,11 +179,11 @@ fn values_of_the_changed_design_are_those_of_its_curves() {
         assert!((found_value.unwrap() - solved).abs() < 1e-6, "{}", value.name);
         for kind in [DesignKind::FirstOrder, DesignKind::SecondOrder] {
             let at = page.values.iter().position(|v| v.name == value.name && v.what == value.what).unwrap();
-            let Some(foreseen) = design(&page, kind).values[at] else { continue };
+            let Some(prediction) = design(&page, kind).values[at] else { continue };
             let order = usize::from(kind == DesignKind::SecondOrder);
             let linear =
                 file.units.from_si(found.today.measured.outputs[m].dimension, found.predicted(k, m)[order]);
-            assert!((foreseen - linear).abs() < 1e-6, "{} {kind:?}", value.name);
+            assert!((prediction - linear).abs() < 1e-6, "{} {kind:?}", value.name);
         }
     }
 }
@@ -197,16 +197,16 @@ fn nothing_is_foreseen_of_what_cannot_be_followed() {
         file
     };
     let tilt = file.model.variables.iter().map(|v| v.name.clone()).find(|v| v.ends_with(".tilt_x")).unwrap();
-    let ChangedDesign { found, page, .. } = changed(&file, &[(&tilt, 1.0)]);
-    let foreseen = page.designs.iter().filter(|d| d.kind != DesignKind::Exact).count();
-    assert_eq!(foreseen == 0, !found.cannot_follow.is_empty(), "{tilt}");
+    let WhatIfPage { found, page, .. } = changed(&file, &[(&tilt, 1.0)]);
+    let prediction = page.designs.iter().filter(|d| d.kind != DesignKind::Exact).count();
+    assert_eq!(prediction == 0, !found.cannot_follow.is_empty(), "{tilt}");
 }
 
 #[test]
 fn the_page_opens_on_what_is_asked_for_and_ranks_each_variable_once() {
     let mut file = gallery("macpherson.toml");
     add_coordinates(&mut file.model);
-    let ChangedDesign { facts, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
+    let WhatIfPage { facts, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
     let asked = ["camber", "toe"].map(String::from);
     let page = facts.page(page, &asked, Some("wheel_travel"), &|name| asked.iter().any(|a| a == name));
     let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
@@ -221,9 +221,9 @@ fn the_page_opens_on_what_is_asked_for_and_ranks_each_variable_once() {
 
     let mut seen = HashSet::new();
     assert!(facts.influence.iter().all(|i| seen.insert((&i.measure, &i.variable))));
-    // The coordinate that the model's variable is already is not ranked besides.
+    // A coordinate that is already a variable of the model is not ranked twice.
     assert!(!facts.influence.iter().any(|i| i.variable == "tie_rod_inner.z"));
-    // What does not move it is not in the ranking.
+    // Variables without effect are not ranked.
     let ranked = facts.ranking("lca_angle", usize::MAX);
     assert!(ranked.rows.len() > 3 && !ranked.rows.iter().any(|row| row[1].starts_with("tie_rod")));
 }
@@ -272,7 +272,7 @@ fn known(curve: &Curve, parts: usize) -> Vec<bool> {
 fn a_changed_design_that_locks_has_gaps_and_the_page_says_why() {
     let file = four_bar_with_metrics();
     // With its pivots 250 mm apart, the crank no longer turns round.
-    let ChangedDesign { found, facts, page, .. } = changed(&file, &[("D_x", -150.0)]);
+    let WhatIfPage { found, facts, page, .. } = changed(&file, &[("D_x", -150.0)]);
     let (solved, all) = (found.exact.motion.len(), found.today.motion.len());
     assert!(0 < solved && solved < all && page.times.values().len() == all, "{solved} of {all}");
     let there: Vec<bool> = (0..all).map(|k| k < solved).collect();
@@ -313,8 +313,7 @@ fn a_changed_design_that_locks_has_gaps_and_the_page_says_why() {
 #[test]
 fn of_a_changed_design_that_cannot_be_assembled_the_page_has_nothing_but_the_reason() {
     let file = gallery("double_wishbone.toml");
-    let ChangedDesign { found, facts, page, .. } =
-        changed(&file, &[("tie_rod_outer_y_fixed_length", 1000.0)]);
+    let WhatIfPage { found, facts, page, .. } = changed(&file, &[("tie_rod_outer_y_fixed_length", 1000.0)]);
     assert!(found.exact.motion.is_empty() && found.is_empty());
     let [exact] = &page.designs[..] else { panic!("nothing is predicted of what is not there") };
     let nothing = |curve: &Curve, parts: usize| !known(curve, parts).contains(&true);
@@ -327,7 +326,7 @@ fn of_a_changed_design_that_cannot_be_assembled_the_page_has_nothing_but_the_rea
     let page = facts.page(page, &[], None, &|_| true);
     assert!(html(&page).is_ok());
 
-    // Today's design is written all the same.
+    // The nominal design is written anyway.
     let stop = found.exact.stop.as_ref().unwrap();
     let told = diagnose::stop_of_changed(&file, stop, 0);
     assert!(told.message.starts_with("the changed design: the mechanism does not assemble"), "{told:?}");

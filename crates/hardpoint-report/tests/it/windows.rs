@@ -19,7 +19,7 @@ fn assert_same(name: &str, whole: &Solution, part: &Solution, first: usize, stri
             assert_eq!(bits(a), bits(b), "{name}: {} at {n}", whole.measured.outputs[m].name);
         }
         for b in 0..whole.sensitivities.variables {
-            // Before the end of a run it is not known which variables cannot be followed.
+            // Only the end of a run shows which variables the mechanism cannot follow.
             let Some(bodies) = whole.sensitivities.at(n, b) else { continue };
             let same = part.sensitivities.at(k, b).is_some_and(|part| part.iter().eq(bodies.iter()));
             assert!(same, "{name}");
@@ -49,7 +49,7 @@ fn windows_of_a_run_are_parts_of_the_whole() {
         let mut kept =
             SampledResults::new(Sampling { rows: 11, motion: true, sensitivities: true, outputs: None });
         let (mut next, mut windows) = (0, 0);
-        // The least there is: one round of the lanes.
+        // Smallest window: one batch of lanes.
         let end = analysis.solve_in_windows(Run::new(), 1, |first, window| {
             assert_eq!(first, next, "{name}");
             assert_same(&name, &whole, window, first, 1);
@@ -71,7 +71,7 @@ fn windows_of_a_run_are_parts_of_the_whole() {
     assert!(seen > 10, "only {seen} models");
 }
 
-/// A crank of a cut joint, of which only rates tell the turns.
+/// A crank with a cut joint, whose revolutions follow from rates only.
 #[test]
 fn turns_are_counted_through_windows() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/slider_crank.toml");

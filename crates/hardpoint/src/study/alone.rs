@@ -8,14 +8,15 @@ use crate::run::{Analysis, Walk};
 use crate::sensitivity::{PairDirection, Seconds};
 use crate::space::Pose;
 
-/// Derivatives of the values of all outputs by what drivers ask for, each while the others stand.
+/// Derivatives of all output values with respect to the coordinate that each driver prescribes, the other drivers
+/// fixed.
 #[derive(Clone, Debug, Default)]
 pub struct DriverRates {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// The drivers, as requested.
+    /// Requested drivers.
     pub drivers: Vec<DriverId>,
-    /// The columns: measures, then components of points.
+    /// Columns: measures, then components of points.
     pub outputs: Vec<Output>,
     /// `values[(k * drivers + d) * outputs + m]`.
     values: Vec<f64>,
@@ -24,8 +25,8 @@ pub struct DriverRates {
 }
 
 impl DriverRates {
-    /// Rate of output m at time k by driver d of those requested, in the output's unit per m or rad; `None` for outputs
-    /// that do not follow from positions alone.
+    /// Rate of output m at time k with respect to requested driver d, in the output's unit per m or rad; `None` for
+    /// outputs that do not depend on positions alone.
     pub fn value(&self, k: usize, d: usize, m: usize) -> Option<f64> {
         let value = self.values[(k * self.drivers.len() + d) * self.outputs.len() + m];
         Some(value).filter(|_| self.outputs[m].known.by_position)
@@ -33,7 +34,7 @@ impl DriverRates {
 }
 
 impl Analysis<'_> {
-    /// Rates by single drivers along the motion of the nominal design (`docs/theory.md`, section 7).
+    /// Derivatives with respect to single drivers along the motion of the nominal design (`docs/theory.md`, section 7).
     pub fn driver_rates(&self, drivers: &[DriverId]) -> DriverRates {
         let model = self.model();
         let design = self.design(&[]);

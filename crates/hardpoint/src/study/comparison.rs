@@ -8,36 +8,36 @@ use crate::space::Vec3;
 use super::difference::Difference;
 use super::magnitude::Magnitude;
 
-/// A sensitivity that moves a quantity by less than this part of it per natural step counts as zero.
+/// A sensitivity that changes a quantity by less than this fraction per natural step counts as zero.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// Analytic against finite difference of one quantity at one step.
+/// Deviation of the analytic derivative from the finite difference of one quantity at one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepError {
-    /// The step, m, rad, or units of tau.
+    /// Step, m, rad, or units of tau.
     pub step: f64,
-    /// Largest deviation over all times of the difference, relative as [`Comparison::of`] says; infinite where there is
-    /// no sensitivity.
+    /// Largest deviation over all times of the difference, relative as described in [`Comparison::of`]; infinite if
+    /// there is no sensitivity.
     pub error: f64,
-    /// The quantity: `knuckle acceleration`, `toe rate`, ...
+    /// Name of the quantity: `knuckle acceleration`, `toe rate`, ...
     pub quantity: String,
-    /// The time where it is, s.
+    /// Time of the largest deviation, s.
     pub time: f64,
 }
 
-/// The largest relative deviation of every quantity at its step: of each body but ground six kinds of motion, of each
-/// output its orders.
+/// Largest relative deviation of every quantity at its step: six kinds of motion for each body except ground, and all
+/// orders of each output.
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
-    /// The six [`KINDS`], each of all bodies but ground; then value, rate and acceleration of every output.
+    /// The six [`KINDS`], each for all bodies except ground; then value, rate and acceleration of every output.
     errors: Vec<StepError>,
-    /// Without ground.
+    /// Number of bodies without ground.
     bodies: usize,
-    /// Number of orders each output has.
+    /// Number of orders of each output.
     orders: Vec<usize>,
 }
 
-/// A kind of motion of a body.
+/// Kind of motion of a body.
 struct Kind {
     name: &'static str,
     of: fn(&BodySensitivity) -> Vec3,
@@ -54,7 +54,7 @@ const fn kind(
     Kind { name, of, order, dimension }
 }
 
-/// Order by order, of the origin first.
+/// Kinds of motion, order by order, translation of the origin first.
 const KINDS: [Kind; 6] = [
     kind("position", |s| s.dr, 0, Dimension::LENGTH),
     kind("orientation", |s| s.dpi, 0, Dimension::ANGLE),
@@ -65,30 +65,30 @@ const KINDS: [Kind; 6] = [
 ];
 
 impl Comparison {
-    /// Compares the sensitivities of a complete solution with a difference over the same output times; empty where
-    /// nothing was solved.
+    /// Compares the sensitivities of a complete solution with a difference over the same output times; empty if nothing
+    /// was solved.
     ///
-    /// A deviation is relative to the largest sensitivity of its kind over all bodies and times, or, where
-    /// the design hardly matters, to what one natural step would have to change for one part in a thousand of
-    /// the motion itself.
+    /// A deviation is relative to the largest sensitivity of its kind over all bodies and times. If the design has
+    /// hardly any effect, it is relative to the sensitivity that would change the motion by one part in a thousand per
+    /// natural step.
     pub fn of(model: &Model, solution: &Solution, d: &Difference) -> Self {
         Self::where_decided(model, solution, d, &UndecidedOutputs::default())
     }
 
-    /// The same but for outputs at times at which differences decide nothing.
+    /// Compares as [`Comparison::of`], but skips outputs at times at which the differences are undecided.
     pub(super) fn where_decided(
         model: &Model,
         solution: &Solution,
         d: &Difference,
         undecided: &UndecidedOutputs,
     ) -> Self {
-        let mut comparing = Comparing::new(model, solution, d);
+        let mut builder = ComparisonBuilder::new(model, solution, d);
         if !solution.motion.is_empty() {
-            comparing.bodies();
-            comparing.outputs(undecided);
+            builder.bodies();
+            builder.outputs(undecided);
         }
         let orders = solution.measured.outputs.iter().map(|o| o.known.orders).collect();
-        Self { errors: comparing.errors, bodies: model.bodies.len() - 1, orders }
+        Self { errors: builder.errors, bodies: model.bodies.len() - 1, orders }
     }
 
     /// Errors of all quantities.
@@ -96,7 +96,7 @@ impl Comparison {
         &self.errors
     }
 
-    /// The quantity that agrees worst.
+    /// Quantity with the largest error.
     pub fn worst(&self) -> Option<&StepError> {
         self.errors.iter().max_by(|a, b| a.error.total_cmp(&b.error))
     }
@@ -107,7 +107,7 @@ impl Comparison {
     }
 
     /// Errors of value, rate and acceleration of output m, a column of
-    /// [`MeasureResults`](crate::measure::MeasureResults); 0 for orders that it does not have.
+    /// [`MeasureResults`](crate::measure::MeasureResults); 0 for missing orders.
     pub fn of_output(&self, m: usize) -> [f64; 3] {
         let first = KINDS.len() * self.bodies + self.orders[..m].iter().sum::<usize>();
         [0, 1, 2].map(|order| if order < self.orders[m] { self.errors[first + order].error } else { 0.0 })
@@ -115,9 +115,9 @@ impl Comparison {
 
     /// Reduces the error of outputs that agree at no step by the spread of the differences themselves, time by time.
     ///
-    /// The spread s of the three steps in a row that differ least bounds truncation and round-off there: truncation
-    /// falls by a factor of 10 (one-sided of 3) from each to the next. A derivative that is wrong by more than s stays
-    /// wrong by the rest.
+    /// The smallest spread s of three consecutive steps bounds truncation and round-off at that time: truncation falls
+    /// by a factor of 10 (one-sided: 3) from step to step. Only the part of a deviation that exceeds s remains as an
+    /// error.
     pub(super) fn allow_for_spread(
         &mut self,
         model: &Model,
@@ -127,7 +127,7 @@ impl Comparison {
         tolerance: f64,
     ) {
         let Some(finest) = differences.last() else { return };
-        let comparing = Comparing::new(model, solution, finest);
+        let builder = ComparisonBuilder::new(model, solution, finest);
         let (measured, steps) = (&solution.measured, solution.motion.len());
         let columns = measured.outputs.len();
         let mut place = KINDS.len() * self.bodies;
@@ -138,9 +138,9 @@ impl Comparison {
                 if self.errors.get(index).is_none_or(|e| e.error <= tolerance) {
                     continue;
                 }
-                let scale = comparing.scale_of(m, order);
+                let scale = builder.scale_of(m, order);
                 let (mut worst, mut time) = (0.0, 0.0);
-                for k in (0..steps).filter(|k| comparing.is_defined(*k, m) && !undecided.at(*k, m)) {
+                for k in (0..steps).filter(|k| builder.is_defined(*k, m) && !undecided.at(*k, m)) {
                     let exact = measured.derivative(k, variable, m, order);
                     let of = |d: &Difference| d.outputs[k * columns + m][order];
                     let rest = |w: &[Difference]| {
@@ -152,7 +152,8 @@ impl Comparison {
                     let known =
                         differences.windows(3).map(rest).filter(|(s, a)| s.is_finite() && a.is_finite());
                     let least = known.min_by(|a, b| a.0.total_cmp(&b.0));
-                    // A derivative that is no number is an error, and so is one that nothing can be compared with.
+                    // A derivative that is not a number is an error, and so is one without any difference to compare
+                    // with.
                     let error =
                         least.map_or(f64::INFINITY, |(spread, apart)| (apart - spread).max(0.0) / scale);
                     if error > worst {
@@ -167,7 +168,7 @@ impl Comparison {
         }
     }
 
-    /// Keeps of every quantity the better of two steps.
+    /// Keeps the better of two steps for every quantity.
     pub fn keep_better(&mut self, other: Self) {
         if self.errors.is_empty() {
             *self = other;
@@ -178,21 +179,22 @@ impl Comparison {
     }
 }
 
-/// Outputs at times at which differences decide nothing about their derivatives, whatever these are.
+/// Outputs and times at which finite differences cannot decide whether a derivative is right.
 #[derive(Clone, Debug, Default)]
 pub(super) struct UndecidedOutputs {
-    /// `[k * columns + m]`; empty where all are decided.
+    /// `[k * columns + m]`; empty if all are decided.
     places: Vec<bool>,
     columns: usize,
 }
 
-/// A second difference above this part of a magnitude itself has the zero of its vector about as near as the step.
+/// If the second difference exceeds this fraction of the magnitude itself, the zero of its vector is about one step
+/// away.
 const KINK: f64 = 1e-4;
 
 impl UndecidedOutputs {
-    /// Decides by the difference with the finest step: undecided are magnitudes that reach zero within the step, where
-    /// `abs(v)` has a kink and no derivative at v = 0; and outputs that the moved designs have no number for. `None`
-    /// where nothing was solved.
+    /// Decides from the difference with the finest step. Undecided are magnitudes that reach zero within the step,
+    /// where `abs(v)` has a kink and no derivative at v = 0, and outputs without a value in a moved design. All are
+    /// decided if there is no difference.
     pub fn by(model: &Model, solution: &Solution, finest: Option<&Difference>) -> Self {
         let Some(d) = finest else { return Self::default() };
         let measured = &solution.measured;
@@ -201,7 +203,7 @@ impl UndecidedOutputs {
             let y = measured.value(k, m)[0];
             let Some(far) = model.measures[m].kind.distance_from_kink(y) else { return false };
             let (bend, change) = (d.bends[k * columns + m], d.outputs[k * columns + m][0] * d.step);
-            // Of one-sided differences the change over the step alone is known.
+            // One-sided differences provide only the change over the step.
             let near = if bend.is_nan() { change } else { bend };
             near.abs() > KINK * far || far == 0.0
         };
@@ -219,14 +221,14 @@ impl UndecidedOutputs {
     }
 }
 
-/// The measures that an output is, or is made of.
+/// Indices of the measures that an output is computed from, its own included.
 fn measures_of(model: &Model, output: OutputSource) -> Vec<usize> {
     let OutputSource::Measure(m) = output else { return Vec::new() };
     let sources = model.measures[m].kind.sources().into_iter();
     std::iter::once(m).chain(sources.flat_map(|source| measures_of(model, source))).collect()
 }
 
-struct Comparing<'a> {
+struct ComparisonBuilder<'a> {
     model: &'a Model,
     solution: &'a Solution,
     d: &'a Difference,
@@ -235,7 +237,7 @@ struct Comparing<'a> {
     errors: Vec<StepError>,
 }
 
-impl<'a> Comparing<'a> {
+impl<'a> ComparisonBuilder<'a> {
     fn new(model: &'a Model, solution: &'a Solution, d: &'a Difference) -> Self {
         let span = match &solution.motion.times[..] {
             [first, .., last] => last - first,
@@ -245,7 +247,7 @@ impl<'a> Comparing<'a> {
         Self { model, solution, d, magnitude, natural: model.natural_step(d.variable), errors: Vec::new() }
     }
 
-    /// The output times that the difference is of.
+    /// Indices of the output times of the difference.
     fn times(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (0..self.solution.motion.len()).step_by(self.d.stride)
     }
@@ -253,7 +255,7 @@ impl<'a> Comparing<'a> {
     fn bodies(&mut self) {
         let (solution, d) = (self.solution, self.d);
         let n = solution.motion.bodies;
-        // Row by row and body by body, like the difference; nothing where the mechanism cannot follow the variable.
+        // Row by row and body by body, like the difference; empty if the mechanism cannot follow the variable.
         let exact = self.times().filter_map(|k| solution.sensitivities.at(k, d.variable.0));
         let exact: Vec<BodySensitivity> = exact.flat_map(|bodies| bodies.iter()).collect();
         for kind in KINDS {
@@ -295,7 +297,7 @@ impl<'a> Comparing<'a> {
         }
     }
 
-    /// Returns the scale of deviations of output m's time derivative of that order.
+    /// Scale of deviations of the given time derivative of output m.
     fn scale_of(&self, m: usize, order: usize) -> f64 {
         let measured = &self.solution.measured;
         let sizes =
@@ -303,21 +305,21 @@ impl<'a> Comparing<'a> {
         sizes.fold(0.0, f64::max).max(self.negligible(measured.outputs[m].dimension, order))
     }
 
-    /// Returns whether output m has its numbers at time k. Next to a time without them the neighbours' may be anything.
+    /// True if output m has all its orders at time k. The neighbours of a time without values are unreliable.
     fn is_defined(&self, k: usize, m: usize) -> bool {
         let measured = &self.solution.measured;
         let orders = measured.outputs[m].known.orders;
         measured.value(k, m)[..orders].iter().all(|x| x.is_finite())
     }
 
-    /// A sensitivity below which there is none to speak of.
+    /// Sensitivity below which a quantity counts as independent of the variable.
     fn negligible(&self, of: Dimension, order: usize) -> f64 {
         NEGLIGIBLE * self.magnitude.of(of, order) / self.natural
     }
 
     fn push(&mut self, quantity: String, scale: f64, deviations: impl Iterator<Item = f64>) {
         let (row, most) = deviations.enumerate().fold((0, 0.0), |best, (row, x)| {
-            // A NaN deviation must win.
+            // A NaN deviation must be selected.
             if !(x <= best.1) { (row, x) } else { best }
         });
         let error = if most == 0.0 { 0.0 } else { most / scale };

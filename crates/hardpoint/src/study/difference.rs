@@ -1,4 +1,4 @@
-//! Finite differences by re-solving moved designs: the slow, inexact way, to check the exact one.
+//! Finite differences by re-solving moved designs: slow and approximate, used to check the exact derivatives.
 
 use crate::model::{Dimension, VariableId};
 use crate::motion::{BodyState, Stop};
@@ -9,17 +9,17 @@ use crate::space::Vec3;
 /// Pair of designs of a difference quotient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DifferenceScheme {
-    /// Those at +h and -h: the error falls with the square of h.
+    /// Designs at +h and -h: the error falls with the square of h.
     #[default]
     Central,
-    /// Those at +h and 0: the error falls with h. For a variable that cannot be moved to the other side.
+    /// Designs at +h and 0: the error falls with h. For a variable that cannot be moved to the other side.
     Forward,
-    /// Those at 0 and -h, likewise.
+    /// Designs at 0 and -h: the error falls with h. For a variable that cannot be moved to the other side.
     Backward,
 }
 
 impl DifferenceScheme {
-    /// The designs to solve, in steps from the nominal one.
+    /// Designs to solve, in steps from the nominal one.
     fn moves(self) -> &'static [f64] {
         match self {
             Self::Central => &[1.0, -1.0],
@@ -29,29 +29,29 @@ impl DifferenceScheme {
     }
 }
 
-/// Difference quotients of a whole motion by one design variable.
+/// Difference quotients over a whole motion by one design variable.
 #[derive(Clone, Debug)]
 pub struct Difference {
     /// The variable.
     pub variable: VariableId,
-    /// From the nominal design to a moved one, m, rad, or units of tau.
+    /// Step from the nominal design to a moved one, m, rad, or units of tau.
     pub step: f64,
-    /// Distance of its output times: row k is output time `k * stride`.
+    /// Stride of its output times: row k is output time `k * stride`.
     pub stride: usize,
-    /// `bodies[k * n + i]`: of body i in row k.
+    /// `bodies[k * n + i]`: quotient of body i in row k.
     pub bodies: Vec<BodySensitivity>,
-    /// `outputs[k * m + j]`: of value, rate and acceleration of output j in row k.
+    /// `outputs[k * m + j]`: quotients of value, rate and acceleration of output j in row k.
     pub outputs: Vec<[f64; 3]>,
-    /// `bends[k * m + j]`: of the value of output j in row k `y(b + h) - 2 y(b) + y(b - h)`, which is far above h^2
-    /// where it has a kink between the moved designs; NaN of one-sided differences.
+    /// `bends[k * m + j]`: second difference `y(b + h) - 2 y(b) + y(b - h)` of the value of output j in row k. It is
+    /// far above h^2 if the output has a kink between the moved designs; NaN for one-sided differences.
     pub bends: Vec<f64>,
 }
 
-/// Re-solves the designs that a scheme asks for, for each variable and step, eight at a time, and divides. `nominal` is
+/// Solves the designs of a scheme for each variable and step, eight at a time, and returns the quotients. `nominal` is
 /// the complete solution of the nominal design.
 ///
 /// # Errors
-/// Per entry: the [`Stop`] of the moved design that did not run to the end.
+/// Per entry, the [`Stop`] of a moved design that did not reach the end.
 pub fn finite_differences(
     analysis: &Analysis<'_>,
     nominal: &Solution,
@@ -61,10 +61,10 @@ pub fn finite_differences(
     finite_differences_each(analysis, nominal, scheme, steps, 1)
 }
 
-/// The same at every `stride`-th output time, from the first on.
+/// Returns the quotients of [`finite_differences`] at every `stride`-th output time, from the first on.
 ///
 /// # Errors
-/// As [`finite_differences`].
+/// See [`finite_differences`].
 pub fn finite_differences_each(
     analysis: &Analysis<'_>,
     nominal: &Solution,
@@ -76,7 +76,7 @@ pub fn finite_differences_each(
     let analysis =
         &analysis.without_metrics(analysis.model().times.iter().step_by(stride).copied().collect());
     let mut out = Vec::with_capacity(steps.len());
-    // Few at a time: a solution holds its whole motion.
+    // Small groups, since a solution stores its whole motion.
     for group in steps.chunks(8 / moves.len()) {
         let designs: Vec<Vec<f64>> = group
             .iter()
@@ -125,13 +125,13 @@ impl Rows<'_> {
         self.solution.motion.at(row * self.stride).iter()
     }
 
-    /// Value, rate and acceleration of output m.
+    /// Value, rate and acceleration of output m in a row.
     fn output(self, row: usize, m: usize) -> [f64; 3] {
         self.solution.measured.value(row * self.stride, m)
     }
 }
 
-/// `apart`: how far the two designs are from each other.
+/// Difference quotient of a body; `apart` is the difference of the variable between the two designs.
 fn quotient(
     (variable, step, stride): (VariableId, f64, usize),
     plus: Rows<'_>,
@@ -152,7 +152,7 @@ fn quotient(
             let (p, q) = (plus.output(row, m), minus.output(row, m));
             let mut d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
             if kinds[m].dimension == Dimension::ANGLE {
-                // Both designs' angles may have been counted through different turns.
+                // The designs may count an angle through different turns.
                 let turn = 2.0 * std::f64::consts::PI;
                 d[0] -= turn * (d[0] / turn).round();
             }
@@ -163,7 +163,7 @@ fn quotient(
     Difference { variable, step, stride, bodies, outputs, bends }
 }
 
-/// Second differences of all outputs' values.
+/// Second differences of the values of all outputs.
 fn bend(bends: &mut [f64], [plus, nominal, minus]: [Rows<'_>; 3]) {
     let columns = nominal.solution.measured.outputs.len();
     for (place, bend) in bends.iter_mut().enumerate() {

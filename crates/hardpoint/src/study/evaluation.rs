@@ -1,5 +1,5 @@
-//! Evaluation of designs for all searches and sweeps: the metrics of a design in all motions of the mechanism, with
-//! their exact derivatives.
+//! Evaluation of designs for searches and sweeps: the metrics of a design in all motions of the mechanism, with exact
+//! derivatives.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -11,29 +11,30 @@ use crate::topology::{Formulation, TopologyError};
 
 use super::metric::{MetricValue, metrics};
 
-/// The motions of a mechanism, ready to be solved for any design.
+/// Motions of a mechanism, ready to be solved for any design.
 #[derive(Clone, Debug)]
 pub struct Motions<'m> {
     analyses: Vec<Analysis<'m>>,
 }
 
-/// A design as a study sees it.
+/// Evaluated design.
 #[derive(Clone, Debug, Default)]
 pub struct DesignEvaluation {
-    /// Per motion, what was solved, with sensitivities.
+    /// Solution of each motion, with sensitivities.
     pub solutions: Vec<Solution>,
-    /// Per motion, its metrics.
+    /// Metrics of each motion.
     pub metrics: Vec<Vec<MetricValue>>,
 }
 
-/// Reason why a design has no values: in one of its motions it does not assemble, locks, or reaches a dead point.
+/// Reason why a design has no values: in one of its motions it does not assemble, locks, or reaches a singular
+/// position.
 #[derive(Clone, Debug)]
 pub struct EvaluationError {
-    /// In which motion, as [`Model::motions`] counts them.
+    /// Number of the motion, in the order of [`Model::motions`].
     pub motion: usize,
     /// Stop of that motion.
     pub stop: Box<Stop>,
-    /// The same in one line.
+    /// One-line description of the stop.
     pub why: String,
 }
 
@@ -46,11 +47,11 @@ impl fmt::Display for EvaluationError {
 /// Cost of a study.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StudyCost {
-    /// Designs that were looked at.
+    /// Number of evaluated designs.
     pub designs: usize,
-    /// Motions solved for them.
+    /// Number of solved motions.
     pub motions: usize,
-    /// Positions solved at output times, each with its sensitivities.
+    /// Number of solved output times, each with its sensitivities.
     pub steps: usize,
 }
 
@@ -63,10 +64,10 @@ impl std::ops::AddAssign for StudyCost {
 }
 
 impl<'m> Motions<'m> {
-    /// Plans the solution of the motions of a mechanism, one model each ([`Model::motions`]).
+    /// Prepares the motions of a mechanism, one model each ([`Model::motions`]).
     ///
     /// # Errors
-    /// The motion that cannot be driven, and why.
+    /// Number of the motion that cannot be driven, and the reason.
     pub fn of<M: Into<SharedModel<'m>>>(
         motions: impl IntoIterator<Item = M>,
         formulation: Formulation,
@@ -75,30 +76,31 @@ impl<'m> Motions<'m> {
         Ok(Self { analyses: motions.into_iter().enumerate().map(plan).collect::<Result<_, _>>()? })
     }
 
-    /// Their analyses, in order.
+    /// Analyses of the motions, in order.
     pub fn analyses(&self) -> &[Analysis<'m>] {
         &self.analyses
     }
 
-    /// The model of one of them.
+    /// Model of one motion.
     pub fn model(&self, motion: usize) -> &Model {
         self.analyses[motion].model()
     }
 
-    /// Total number.
+    /// Number of motions.
     pub fn len(&self) -> usize {
         self.analyses.len()
     }
 
-    /// True if there is none.
+    /// True if there are no motions.
     pub fn is_empty(&self) -> bool {
         self.analyses.is_empty()
     }
 
-    /// The design with variable k at `design[k]` in all motions; `more` is asked at every output time, and may end it.
+    /// Evaluates the design with variable k at `design[k]` in all motions. `more` is called at every output time; if it
+    /// returns false, the evaluation ends.
     ///
     /// # Errors
-    /// If a motion does not reach its end, the first such motion.
+    /// An [`EvaluationError`] with the first motion that does not reach its end.
     pub fn evaluate(
         &self,
         design: &[f64],
@@ -130,7 +132,7 @@ impl<'m> From<Vec<Analysis<'m>>> for Motions<'m> {
 }
 
 impl EvaluationError {
-    /// True if it was the caller who ended it.
+    /// True if the caller ended the evaluation.
     pub fn interrupted(&self) -> bool {
         matches!(self.stop.kind, StopKind::Interrupted)
     }

@@ -1,4 +1,5 @@
-//! Gradients of chosen outputs by all design variables, in whichever direction is shorter.
+//! Gradients of chosen outputs by all design variables, by direct differentiation or the adjoint method, whichever is
+//! cheaper.
 
 use hardpoint_tape::LANES;
 
@@ -17,25 +18,25 @@ use crate::sensitivity::{Adjoint, Admissibility, DefectWatch, Load, Resistance, 
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
-/// Cost of an output by the adjoint method, in solutions for one variable by direct differentiation: its load takes
-/// some evaluations of the measure besides the three solutions. 1 to 3 in small mechanisms, less in large ones
-/// (`docs/performance.md`).
+/// Cost of an output by the adjoint method, relative to the solution for one variable by direct differentiation: its
+/// adjoint load takes some evaluations of the measure besides three solutions. Measured: 1 to 3 in small mechanisms,
+/// less in large ones (`docs/performance.md`).
 const OUTPUT_COST: usize = 3;
-/// Likewise a load: what it makes of the bodies has to be found first, and how it goes with each of them.
+/// Relative cost of a joint or driver load: its dependence on the motion of each body has to be found first.
 const LOAD_COST: usize = 6;
-/// Likewise a constraint row that was left out and has to be watched: two solutions for the position alone.
+/// Relative cost of a redundant constraint row, which has to be monitored: two solutions for the position alone.
 const ROW_COST: usize = 1;
 
-/// Method of gradients. All methods give the same numbers, to round-off.
+/// Method of gradients. All methods give the same values to round-off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GradientMethod {
-    /// Whichever is expected to be faster: adjoint where there are more variables than redundant rows, three times the
-    /// outputs and six times the loads together.
+    /// The method that is expected to be faster: adjoint if the number of variables exceeds the number of redundant
+    /// rows plus three times the outputs plus six times the loads.
     #[default]
     Auto,
-    /// Variable by variable: the cost grows with the variables, and outputs are nearly free.
+    /// Variable by variable: the cost grows with the number of variables and hardly with the outputs.
     Direct,
-    /// Output by output: the cost grows with the outputs, and variables are nearly free.
+    /// Output by output: the cost grows with the number of outputs and hardly with the variables.
     Adjoint,
 }
 
@@ -44,13 +45,13 @@ pub enum GradientMethod {
 pub struct Gradients {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// The outputs requested.
+    /// Requested outputs.
     pub outputs: Vec<Output>,
     /// Number of design variables.
     pub variables: usize,
-    /// Method that was used: direct or adjoint.
+    /// Method used: direct or adjoint.
     pub method: GradientMethod,
-    /// Per variable: whether and how the mechanism follows the change.
+    /// Admissibility of each variable.
     pub admissibility: Vec<Admissibility>,
     /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
@@ -59,10 +60,10 @@ pub struct Gradients {
 }
 
 impl Gradients {
-    /// Derivatives by every variable, at fixed t, of value, rate and acceleration of the m-th output requested, at time
+    /// Derivatives by every variable, at fixed t, of value, rate and acceleration of the m-th requested output at time
     /// k; in the output's unit, per s, per s^2, per unit of the variable.
     ///
-    /// Those of a variable that the mechanism cannot follow are NaN: [`Gradients::admissibility`] says why.
+    /// NaN for a variable that the mechanism cannot follow: see [`Gradients::admissibility`] for the reason.
     pub fn at(&self, k: usize, m: usize) -> &[[f64; 3]] {
         let first = (k * self.outputs.len() + m) * self.variables;
         &self.d[first..first + self.variables]
@@ -70,21 +71,21 @@ impl Gradients {
 }
 
 impl Analysis<'_> {
-    /// Gradients of some outputs, by their indices in [`outputs`], by all variables at the design with variable k at
-    /// `design[k]`.
+    /// Gradients of some outputs, given by their indices in [`outputs`], by all variables at the design with variable k
+    /// at `design[k]`.
     ///
-    /// The adjoint way costs one transposed solution for each output and time, with its first two time derivatives, and
-    /// a few products for each marker that a variable moves (`docs/theory.md`, section 8).
+    /// The adjoint method costs one transposed solution for each output and time, with its first two time derivatives,
+    /// and a few products for each marker that a variable moves (`docs/theory.md`, section 8).
     ///
-    /// Of loads it is one solution more. Velocities, slopes over a driver, compliances and formulas over other measures
-    /// always go the direct way.
+    /// Loads take one more solution. Velocities, slopes over a driver, compliances and formulas over other measures
+    /// always use direct differentiation.
     ///
     /// # Panics
-    /// If there is no such output.
+    /// If an index is out of range.
     pub fn gradients(&self, design: &[f64], outputs_asked: &[usize], method: GradientMethod) -> Gradients {
         let all = outputs(self.model());
         let asked: Vec<Output> = outputs_asked.iter().map(|&m| all[m].clone()).collect();
-        // What is neither a smooth function of positions alone nor a load is no load on the bodies.
+        // Only smooth functions of positions, and loads, can be written as an adjoint load on the bodies.
         let is_plain = |o: &Output| {
             let formula = |k: usize| matches!(self.model().measures[k].kind, MeasureKind::Combination { .. });
             o.known.by_position && !matches!(o.source, OutputSource::Measure(k) if formula(k))
@@ -105,7 +106,7 @@ impl Analysis<'_> {
         }
     }
 
-    /// The way to go for that many outputs, that many of which are loads.
+    /// Chooses the method for a number of outputs, of which `loads` are loads.
     fn method(&self, outputs: usize, loads: usize, method: GradientMethod) -> GradientMethod {
         let adjoint = OUTPUT_COST * (outputs - loads)
             + LOAD_COST * loads
@@ -117,7 +118,7 @@ impl Analysis<'_> {
         }
     }
 
-    /// Those of outputs that only a whole run knows.
+    /// Gradients of outputs that are known only after a whole run.
     fn gradients_of_run(&self, design: &[f64], indices: &[usize], outputs: Vec<Output>) -> Gradients {
         let Solution { motion, sensitivities, measured, stop, .. } = self.solve(Run::new().at(design));
         let variables = self.model().variables.len();
@@ -192,32 +193,32 @@ impl Analysis<'_> {
     }
 }
 
-/// Data of the adjoint method besides a stepper.
+/// Workspace of the adjoint method, in addition to a stepper.
 struct AdjointSolver<'a> {
     analysis: &'a Analysis<'a>,
     adjoint: Adjoint,
     watch: DefectWatch,
     asked: Vec<Requested>,
-    /// `None` where no load is requested.
+    /// `None` if no load is requested.
     loads: Option<(LoadSolver<'a>, LoadGradients)>,
     /// Bodies that outputs are measured on.
     bodies: Vec<usize>,
     poses: Vec<Pose<Dual<Rates>>>,
-    /// Body-fixed data of measures, with their derivatives by each variable that changes some of them.
+    /// Body-fixed data of measures, with their derivatives by each variable that affects them.
     fixed: BodyFixed<Dual<Rates>>,
     moved: Vec<Option<BodyFixed<Dual<Rates>>>>,
     gradient: Vec<[f64; 3]>,
 }
 
-/// The request.
+/// Requested output, by kind.
 enum Requested {
     /// A function of positions.
     Output(Box<RequestedOutput>),
-    /// The load that this measure is.
+    /// A load, by the index of its measure.
     Load(usize),
 }
 
-/// The measure that an output is, where that is a load.
+/// Index of the measure of an output that is a load; `None` otherwise.
 fn load_of(model: &Model, output: &Output) -> Option<usize> {
     match output.source {
         OutputSource::Measure(m) if model.measures[m].kind.is_load() => Some(m),
@@ -225,16 +226,16 @@ fn load_of(model: &Model, output: &Output) -> Option<usize> {
     }
 }
 
-/// An output, and what it depends on.
+/// Requested output with its dependencies.
 struct RequestedOutput {
     output: Output,
-    /// Per body that it depends on: how it goes with the body's twist.
+    /// Dependence on the twist of each body that it is measured on.
     loads: Vec<(usize, Load)>,
     support: Support,
-    /// Variables that move what it is measured with within its body.
+    /// Variables that move body-fixed data of its measure.
     variables: Vec<usize>,
-    /// Derivatives by the six unit twists of each of these bodies, then by each of these variables: of value, rate and
-    /// acceleration.
+    /// Derivatives of value, rate and acceleration by the six unit twists of each of these bodies, then by each of
+    /// these variables.
     derivatives: Vec<[f64; 3]>,
 }
 
@@ -302,7 +303,7 @@ impl<'a> AdjointSolver<'a> {
         }
     }
 
-    /// Appends what is found at time t.
+    /// Appends the gradients at time t.
     fn add(
         &mut self,
         stepper: &mut Stepper<'_>,
@@ -327,7 +328,8 @@ impl<'a> AdjointSolver<'a> {
         result.times.push(t);
     }
 
-    /// The gradient of output m: what its load works on the design, and what variables change in itself.
+    /// Gradient of output m: the work of its adjoint load on the design velocities, plus the direct contribution of the
+    /// variables.
     fn trace(&mut self, topology: &Topology, state: &mut State<f64>, m: usize) {
         let RequestedOutput { loads, support, variables, derivatives, .. } = match &mut self.asked[m] {
             Requested::Output(output) => &mut **output,
@@ -354,8 +356,8 @@ impl<'a> AdjointSolver<'a> {
         }
     }
 
-    /// Derivatives of all outputs by the design twists of bodies (by six unit twists of each, constant in the world, so
-    /// that their rates are those of the load) and by variables that change the data of the measures.
+    /// Derivatives of all outputs by the design twists of bodies (six unit twists each, constant in the global frame,
+    /// so that their rates are those of the load) and by variables that change the data of the measures.
     fn differentiate(&mut self, state: &State<f64>) {
         let Self { analysis, asked, poses, fixed, moved, bodies, .. } = self;
         let model = analysis.model();
@@ -384,13 +386,13 @@ impl<'a> AdjointSolver<'a> {
     }
 }
 
-/// A pose that goes with nothing.
+/// Pose with zero derivatives.
 fn still(pose: Pose<Rates>) -> Pose<Dual<Rates>> {
     let still = |x: Vec3<Rates>| x.map(Dual::constant);
     Pose { rot: Mat3 { cols: pose.rot.cols.map(still) }, r: still(pose.r) }
 }
 
-/// Lets a pose go with a unit twist of the world: a turn about x, y or z, then a slide.
+/// Sets the derivative of a pose to a global unit twist: a rotation about x, y or z, then a translation.
 fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
     let axis = Vec3::AXES[unit % 3].spread();
     let twist = if unit < 3 { Twist::turn(axis, Vec3::zero()) } else { Twist::slide(axis) };
@@ -403,7 +405,7 @@ fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
     set(&mut pose.r, velocity);
 }
 
-/// Lets it go with nothing again.
+/// Resets the derivative of a pose to zero.
 fn stop(pose: &mut Pose<Dual<Rates>>) {
     let nothing = Vec3::zero();
     pose.rot.cols.iter_mut().for_each(|c| set(c, nothing));

@@ -1,4 +1,4 @@
-//! Two drivers over a grid: what every measure is wherever both stand, with its sensitivities.
+//! Map of two drivers over a grid: value and sensitivities of every measure at each pair of driver positions.
 
 use std::ops::ControlFlow;
 
@@ -11,8 +11,7 @@ use crate::topology::{Formulation, TopologyError};
 
 use super::evaluation::StudyCost;
 
-/// A solved grid. Positions are counted row by row: in a row the first driver goes from position to position while the
-/// second is.
+/// Solved grid. Positions are counted row by row: along a row the first driver moves and the second is fixed.
 #[derive(Clone, Debug)]
 pub struct GridMap {
     /// The grid.
@@ -21,7 +20,7 @@ pub struct GridMap {
     pub outputs: Vec<Output>,
     /// Outputs that have values at rest.
     still: Vec<bool>,
-    /// Per position, what was found there.
+    /// Result at each position.
     positions: Vec<Position>,
     /// Number of design variables.
     variables: usize,
@@ -31,39 +30,41 @@ pub struct GridMap {
     pub cost: StudyCost,
 }
 
-/// Reason why positions could not be reached.
+/// Stop that made positions of a row unreachable.
 #[derive(Clone, Debug)]
 pub struct GridStop {
-    /// The row.
+    /// Index of the row.
     pub row: usize,
     /// Stop of the motion.
     pub stop: Stop,
-    /// Positions of the two drivers at that time.
-    pub stood: [f64; 2],
+    /// Positions of the two drivers at that time, m or rad.
+    pub drivers: [f64; 2],
 }
 
 #[derive(Clone, Debug)]
 enum Position {
-    /// Values of all outputs, then by each variable theirs.
+    /// Values of all outputs, then their derivatives by each variable in turn.
     Solved(Vec<f64>),
-    /// The place in the stops of what ended the motion before.
+    /// Not reached; index into the stops.
     NotReached(usize),
-    /// The caller wanted no more.
+    /// Not tried because the caller ended the study.
     NotTried,
 }
 
-/// The times of the two parts of every motion: the second driver goes to where it is, then the first one sweeps.
-pub(super) const STANDS: [f64; 2] = [0.0, 1.0];
+/// End times of the two phases of every motion, s: the second driver moves to its position first, then the first driver
+/// sweeps.
+pub(super) const PHASE_ENDS: [f64; 2] = [0.0, 1.0];
 
 impl GridMap {
-    /// Solves a grid at the design with variable k at `design[k]`; `more` is asked at every position, and may end it.
+    /// Solves a grid at the design with variable k at `design[k]`. `more` is called at every position; if it returns
+    /// false, the study ends.
     ///
-    /// Each row is reached from the drawn position: first the second driver goes to where it is in that row, then the
-    /// first one goes up, and in a motion of its own down. So a position beyond a limit on one side says nothing of the
+    /// Each row is reached from the design configuration. The second driver moves to its position in the row first.
+    /// Then the first driver moves up, and in a separate motion down. A stop on one side therefore does not affect the
     /// other side.
     ///
     /// # Errors
-    /// A [`TopologyError`] where the mechanism cannot be driven.
+    /// A [`TopologyError`] if the mechanism cannot be driven.
     pub fn solve(
         model: &Model,
         grid: &Grid,
@@ -71,7 +72,7 @@ impl GridMap {
         design: &[f64],
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<Self, TopologyError> {
-        let [first, second] = &from_drawing(model, grid);
+        let [first, second] = &relative_values(model, grid);
         let outputs = crate::measure::outputs(model);
         let mut map = Self {
             grid: grid.clone(),
@@ -84,8 +85,8 @@ impl GridMap {
         };
         for row in 0..second.len() {
             for sign in [1.0, -1.0] {
-                // Each side from the middle outwards; where the first driver is in the design configuration counts as
-                // the upper side.
+                // Each side runs from the middle outwards. The design position of the first driver belongs to the upper
+                // side.
                 let mut places: Vec<usize> =
                     (0..first.len()).filter(|k| (first[*k] >= 0.0) == (sign > 0.0)).collect();
                 if sign < 0.0 {
@@ -107,7 +108,7 @@ impl GridMap {
         Ok(map)
     }
 
-    /// Takes one motion's positions.
+    /// Stores the positions of one motion.
     fn take(
         &mut self,
         row: usize,
@@ -120,14 +121,14 @@ impl GridMap {
         let interrupted = solution.stop.as_ref().is_some_and(|s| matches!(s.kind, StopKind::Interrupted));
         let stopped = solution.stop.as_ref().filter(|_| !interrupted).map(|stop| {
             let t = stop.failed_time;
-            let gone = [sweep(farthest, t), second[row] * t.clamp(STANDS[0], STANDS[1])];
+            let travelled = [sweep(farthest, t), second[row] * t.clamp(PHASE_ENDS[0], PHASE_ENDS[1])];
             let as_drawn = [self.grid.values[0][0] - first[0], self.grid.values[1][0] - second[0]];
-            let stood = [0, 1].map(|k| as_drawn[k] + gone[k]);
-            self.stops.push(GridStop { row, stop: stop.clone(), stood });
+            let drivers = [0, 1].map(|k| as_drawn[k] + travelled[k]);
+            self.stops.push(GridStop { row, stop: stop.clone(), drivers });
             self.stops.len() - 1
         });
         for place in places {
-            // The same number as when the times were made.
+            // Bitwise equal to the output time, which is computed by the same expression.
             let time = time_of(first[*place], farthest);
             let k = times.iter().position(|t| *t == time).expect("every place has its time");
             let found = if k < solution.motion.len() {
@@ -151,19 +152,19 @@ impl GridMap {
         numbers
     }
 
-    /// True if output m has numbers in a map: what follows from positions, or from what happens while one driver alone
-    /// moves. Velocities, accelerations and what follows from them are those of a motion, and there is none.
+    /// True if output m has values in a map: it depends on positions only, or on the motion of one driver alone.
+    /// Velocities, accelerations and outputs that depend on them need a motion, which a map does not have.
     pub fn has(&self, m: usize) -> bool {
         self.still[m]
     }
 
-    /// Output m where the first driver is at its value i, the second at its value j; `None` where that was not reached,
-    /// or where there is no such number.
+    /// Output m with the first driver at its value i and the second at its value j, SI; `None` if that position was not
+    /// reached or the output has no value there.
     pub fn value(&self, [i, j]: [usize; 2], m: usize) -> Option<f64> {
         self.number([i, j], m)
     }
 
-    /// Derivative by a design variable; `None` also where the mechanism cannot follow that.
+    /// Derivative by a design variable, SI; `None` also if the mechanism cannot follow the variable.
     pub fn d(&self, [i, j]: [usize; 2], variable: VariableId, m: usize) -> Option<f64> {
         self.number([i, j], (1 + variable.0) * self.outputs.len() + m)
     }
@@ -181,7 +182,7 @@ impl GridMap {
     }
 
     /// Index in [`stops`](Self::stops) of the reason why a position was not reached.
-    pub fn why_not(&self, [i, j]: [usize; 2]) -> Option<usize> {
+    pub fn stop_index(&self, [i, j]: [usize; 2]) -> Option<usize> {
         match self.positions[j * self.grid.values[0].len() + i] {
             Position::NotReached(stop) => Some(stop),
             _ => None,
@@ -193,64 +194,65 @@ impl GridMap {
         self.positions.iter().filter(|p| matches!(p, Position::Solved(_))).count()
     }
 
-    /// True if the caller ended it before all positions were tried.
+    /// True if the caller ended the study before all positions were tried.
     pub fn interrupted(&self) -> bool {
         self.positions.iter().any(|p| matches!(p, Position::NotTried))
     }
 
-    /// All positions, row by row.
+    /// All positions `[i, j]`, row by row.
     pub fn places(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
         let [first, second] = [0, 1].map(|k| self.grid.values[k].len());
         (0..second).flat_map(move |j| (0..first).map(move |i| [i, j]))
     }
 }
 
-/// Position of the first driver at a time.
+/// Position of the first driver at a time, relative to the design configuration.
 fn sweep(farthest: f64, time: f64) -> f64 {
-    farthest * (time - STANDS[1]).max(0.0)
+    farthest * (time - PHASE_ENDS[1]).max(0.0)
 }
 
-/// When it is there, on its way to the farthest place of its side.
+/// Time at which the first driver passes a position on its way to the farthest position of its side, s.
 fn time_of(place: f64, farthest: f64) -> f64 {
-    STANDS[1] + if place == 0.0 { 0.0 } else { place / farthest }
+    PHASE_ENDS[1] + if place == 0.0 { 0.0 } else { place / farthest }
 }
 
-/// Positions of the two drivers, relative to the design configuration.
-fn from_drawing(model: &Model, grid: &Grid) -> [Vec<f64>; 2] {
+/// Positions of the two drivers relative to the design configuration.
+fn relative_values(model: &Model, grid: &Grid) -> [Vec<f64>; 2] {
     [0, 1].map(|k| {
         let as_drawn = model.as_drawn(grid.drivers[k]);
         grid.values[k].iter().map(|value| value - as_drawn).collect()
     })
 }
 
-/// The mechanism in one half of a row: the first driver goes as far as the first number, the second as far as the
-/// second.
-fn row_model(model: &Model, grid: &Grid, ways: [f64; 2], places: impl Iterator<Item = f64>) -> Model {
+/// Model of one half of a row: the drivers move by `travels[0]` and `travels[1]`, m or rad.
+fn row_model(model: &Model, grid: &Grid, travels: [f64; 2], places: impl Iterator<Item = f64>) -> Model {
     let mut laws = vec![Some(Law::constant(0.0)); model.drivers.len()];
     let mut formulas = Vec::new();
-    let [begin, stands] = STANDS;
-    let texts =
-        [format!("({:?})*max(t - {stands:?}, 0)", ways[0]), format!("({:?})*min(t, {stands:?})", ways[1])];
+    let [begin, first_end] = PHASE_ENDS;
+    let texts = [
+        format!("({:?})*max(t - {first_end:?}, 0)", travels[0]),
+        format!("({:?})*min(t, {first_end:?})", travels[1]),
+    ];
     for (driver, text) in grid.drivers.into_iter().zip(texts) {
         let (law, formula) = law_of(model, driver, text);
         laws[driver.0] = Some(law);
         formulas.extend(formula);
     }
-    // The drawn position comes first: the rest is followed from there.
+    // The motion starts in the design configuration and continues from there.
     let mut times = vec![begin];
-    times.extend(places.map(|place| time_of(place, ways[0])));
-    // A position of a grid is no moment of a motion: loads are those of the mechanism at rest there.
+    times.extend(places.map(|place| time_of(place, travels[0])));
+    // A grid position is static, so loads are those of the mechanism at rest.
     let load_mode = Some(LoadMode::Static);
     let case = Case { name: grid.name.clone(), laws, formulas, times, load_mode };
     // A map has no metrics.
     Model { cases: vec![case], metrics: Vec::new(), ..model.clone() }.in_case(CaseId(0))
 }
 
-/// A law written here. Where the driver's laws count from zero and the drawing follows the design, the driver has gone
-/// back by what the drawing has moved before the first place is passed, so that it is where the grid says in every
-/// design.
+/// Law from a text that is valid by construction. If the driver's laws count from zero and its design position depends
+/// on the design variables, the law also compensates the shift of the design position during the first phase. The
+/// driver is then at the grid's value in every design.
 pub(super) fn law_of(model: &Model, driver: DriverId, text: String) -> (Law, Option<Formula>) {
-    let [_, stands] = STANDS;
+    let [_, first_end] = PHASE_ENDS;
     let law =
         |text: &str, with: &[(&str, f64)]| Law::parse_with(text, with).expect("a law that is written here");
     let zero = model.drivers[driver.0].law.as_drawn();
@@ -261,7 +263,7 @@ pub(super) fn law_of(model: &Model, driver: DriverId, text: String) -> (Law, Opt
     match follows {
         None => (law(&text, &[]), None),
         Some((value, formula)) => {
-            let text = format!("{text} + ({value:?} - as_drawn)*min(t, {stands:?})");
+            let text = format!("{text} + ({value:?} - as_drawn)*min(t, {first_end:?})");
             (law(&text, &[("as_drawn", value)]), Some(formula))
         }
     }

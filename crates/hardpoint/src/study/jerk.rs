@@ -8,7 +8,7 @@ use crate::run::{Analysis, PreparedDesign, Walk};
 pub struct Jerks {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// `states[k * bodies + b]` at time k of body b; body 0 is ground.
+    /// `states[k * bodies + b]`: body b at time k; body 0 is ground.
     pub states: Vec<BodyJerk>,
     /// Number of bodies, ground included.
     pub bodies: usize,
@@ -26,14 +26,14 @@ impl Jerks {
 impl Analysis<'_> {
     /// Jerk of all bodies over the motion of the design with variable k at `design[k]`.
     ///
-    /// Where the third derivative of a driver's law jumps, it is that on the side which the law itself gives.
+    /// At a jump of the third derivative of a driver's law, the one-sided value of the law itself is used.
     pub fn jerks(&self, design: &[f64]) -> Jerks {
         let design = self.design(design);
         self.jerks_in(&design, usize::MAX, &mut |_| ())
     }
 
-    /// As [`Analysis::jerks`] of the nominal design, that many output times at a time: `each` sees them one part after
-    /// the other.
+    /// Computes [`Analysis::jerks`] of the nominal design in windows of `rows` output times and calls `each` with one
+    /// window after the other.
     pub fn jerks_in_windows(&self, rows: usize, mut each: impl FnMut(&Jerks)) {
         let design = self.design(&[]);
         let last = self.jerks_in(&design, rows, &mut each);

@@ -6,34 +6,35 @@ use crate::motion::Stop;
 use crate::run::{Analysis, Walk};
 use crate::space::Vec3;
 
-/// Reaction of a joint on its second body, global.
+/// Reaction wrench of a joint on body j, global components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLoad {
-    /// Location of the joint on that body, m.
+    /// Point of application on body j, m.
     pub place: Vec3,
-    /// The force, N, with that of drivers on the joint's coordinates.
+    /// Force, N, including forces of drivers on the joint's coordinates.
     pub force: Vec3,
-    /// The moment about that place, N m.
+    /// Moment about that point, N m.
     pub moment: Vec3,
-    /// Determined components of force and moment: with redundant constraints some of them depend on stiffness, and the
-    /// values here are one of many solutions.
+    /// True for determined components of force and moment. With redundant constraints some components depend on
+    /// stiffness, and the values here are one of many solutions.
     pub known: [[bool; 3]; 2],
-    /// The same force and moment along the global axes in the design configuration, which have turned with the body.
+    /// Force, N, and moment, N m, in axes that coincide with the global axes in the design configuration and turn with
+    /// body j.
     pub in_body: [Vec3; 2],
-    /// Determined components of these.
+    /// True for determined components of `in_body`.
     pub known_in_body: [[bool; 3]; 2],
-    /// Determined part of the force, global: the force without its components along undetermined directions.
+    /// Determined part of the force, N, global: the force without its components along undetermined directions.
     pub known_force: Vec3,
-    /// Along how many directions the force is known; 3: it is known.
+    /// Number of directions in which the force is determined; 3 if it is fully determined.
     pub known_directions: usize,
 }
 
 /// Load of a driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriverLoad {
-    /// Force, N, or moment, N m; positive where it works while what it drives grows.
+    /// Force, N, or moment, N m; positive if it does positive work when the driven coordinate increases.
     pub force: f64,
-    /// The speed that it prescribes, m/s or rad/s: times the force it is the power, W.
+    /// Prescribed speed, m/s or rad/s. Force times speed is the power, W.
     pub speed: f64,
 }
 
@@ -42,17 +43,17 @@ pub struct DriverLoad {
 pub struct Loads {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// `joints[k * n + j]` at time k of joint j, of n.
+    /// `joints[k * n + j]`: load of joint j of n at time k.
     pub joints: Vec<JointLoad>,
-    /// `drivers[k * n + d]` at time k of driver d, of n.
+    /// `drivers[k * n + d]`: load of driver d of n at time k.
     pub drivers: Vec<DriverLoad>,
-    /// `pushes[k * n + i]` at time k of [`Model::pushed`](crate::model::Model::pushed)'s place i, of n: the force on
-    /// its body there, global, N.
+    /// `pushes[k * n + i]`: applied force at point i of n of [`Model::pushed`](crate::model::Model::pushed) on its body
+    /// at time k, global, N.
     pub pushes: Vec<Vec3>,
-    /// Friction elements that are not determined at some time, because redundant constraints share their normal force:
-    /// then no load is determined.
+    /// Friction elements whose friction is undetermined at some time because redundant constraints share their normal
+    /// force. No load is determined then.
     pub shared_friction: Vec<ElementId>,
-    /// Friction that has more than one solution at some time: then no load is known either.
+    /// Friction elements with more than one solution at some time. No load is determined then.
     pub ambiguous_friction: Vec<ElementId>,
     /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
@@ -71,7 +72,7 @@ impl Loads {
         &self.drivers[k * n..(k + 1) * n]
     }
 
-    /// Forces at all of [`Model::pushed`](crate::model::Model::pushed)'s places at output time k.
+    /// Applied forces at all points of [`Model::pushed`](crate::model::Model::pushed) at output time k, global, N.
     pub fn pushes_at(&self, k: usize) -> &[Vec3] {
         let n = self.pushes.len() / self.times.len().max(1);
         &self.pushes[k * n..(k + 1) * n]
@@ -79,8 +80,8 @@ impl Loads {
 }
 
 impl Analysis<'_> {
-    /// Loads of all joints and drivers over the motion of the design with variable k at `design[k]`; of a model in
-    /// which nothing has mass and nothing pushes they are all zero.
+    /// Loads of all joints and drivers over the motion of the design with variable k at `design[k]`; all zero for a
+    /// model without masses and applied forces.
     pub fn loads(&self, design: &[f64]) -> Loads {
         let (model, design) = (self.model(), self.design(design));
         let mut solver = LoadSolver::new(self.design_map(), self.topology(), &design.values, false).judging();
@@ -117,7 +118,7 @@ impl Analysis<'_> {
     }
 }
 
-/// Enters elements that are not there yet.
+/// Adds the elements that are not in the list yet.
 fn note(list: &mut Vec<ElementId>, elements: impl Iterator<Item = ElementId>) {
     for element in elements {
         if !list.contains(&element) {

@@ -3,19 +3,19 @@
 use crate::model::{Dimension, Model};
 use crate::motion::Motion;
 
-/// Threshold of a zero change: a natural step of the design ([`natural_step`](crate::model::Model::natural_step)) would
-/// change the quantity by less than this part of the whole motion.
+/// Threshold of a zero change: a natural step of the design ([`natural_step`](crate::model::Model::natural_step))
+/// changes the quantity by less than this fraction of the whole motion.
 const NOTHING: f64 = 1e-10;
 
-/// The magnitude of a motion at orders 0, 1 and 2. Of itself a mechanism has that of its size, turns of 1 rad, and no
-/// rates.
+/// Magnitude of a motion at orders 0, 1 and 2. A mechanism at rest has the magnitude of its size, rotations of 1 rad,
+/// and no rates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Magnitude {
     /// Size of the mechanism, m.
     size: f64,
-    /// Magnitudes at orders 0, 1 and 2: lengths in sizes, angles in rad, per s to the power of the order.
+    /// Magnitudes at orders 0, 1 and 2: lengths relative to the size, angles in rad, per s to the power of the order.
     orders: [f64; 3],
-    /// Mass, kg, and what pushes it besides, N: weights, given forces, and preloads.
+    /// Mass, kg, and applied forces, N: weights, given forces, and preloads.
     mass: f64,
     pushed: f64,
 }
@@ -29,14 +29,14 @@ impl Magnitude {
         Self { size: model.size(), orders: [1.0, 0.0, 0.0], mass, pushed }
     }
 
-    /// Magnitude of a motion that is complete.
+    /// Magnitude of a complete motion.
     pub fn of_motion(model: &Model, motion: &Motion) -> Self {
         let mut magnitude = Self::at_rest(model);
         magnitude.add(motion);
         magnitude
     }
 
-    /// Takes in a further part of the motion.
+    /// Adds a further part of the motion.
     pub fn add(&mut self, motion: &Motion) {
         let [_, rate, acceleration] = &mut self.orders;
         for s in motion.states() {
@@ -45,11 +45,11 @@ impl Magnitude {
         }
     }
 
-    /// The same, but for orders that are round-off: where a motion is at rest or runs at a steady speed all the `span`,
-    /// s, the next order counts as if the one before were gone through once in that time.
+    /// Replaces orders that are round-off. If a motion is at rest or runs at constant speed over the whole `span`, s,
+    /// the next order becomes the one before divided by the span.
     #[must_use]
     pub fn or_once_in(mut self, span: f64) -> Self {
-        /// An order that changes the one before it by less than this part during the run is round-off.
+        /// An order is round-off if it changes the one before it by less than this fraction over the span.
         const STEADY: f64 = 1e-12;
         for order in 1..3 {
             if self.orders[order] * span < STEADY * self.orders[order - 1] {
@@ -59,8 +59,8 @@ impl Magnitude {
         self
     }
 
-    /// Magnitude of a quantity's time derivative of that order in the motion, SI. Total orders above 2, including those
-    /// of the quantity itself, count as 2.
+    /// Magnitude of the given time derivative of a quantity in the motion, SI. Total orders above 2, including those of
+    /// the quantity itself, count as 2.
     pub fn of(&self, quantity: Dimension, order: usize) -> f64 {
         let order = (order as i8 - quantity.time).clamp(0, 2) as usize;
         let order = self.orders[order] * self.size.powi(quantity.length.into());
@@ -68,11 +68,11 @@ impl Magnitude {
             return order;
         }
         let force = self.pushed + self.mass * self.orders[2] * self.size;
-        // Without any it is 1 N.
+        // 1 N if there are no forces.
         order * if force > 0.0 { force } else { 1.0 }.powi(quantity.force.into())
     }
 
-    /// The largest change of a quantity's time derivative of that order over a natural step that is round-off, SI.
+    /// Largest change of the given time derivative of a quantity over a natural step that is still round-off, SI.
     pub fn round_off(&self, quantity: Dimension, order: usize) -> f64 {
         NOTHING * self.of(quantity, order)
     }

@@ -1,4 +1,4 @@
-//! Studies: questions that take many solutions.
+//! Studies: analyses that solve a mechanism many times.
 
 mod alone;
 mod calibrate;
@@ -60,7 +60,7 @@ pub use tolerance::{
 pub use validity::{Validity, validity};
 pub use verify::{CheckOutcome, PASS, PASS_ONE_SIDED, VariableCheck, Verification, VerifyOptions, verify};
 pub use whatif::{
-    PredictionQuality, WhatIf, add_coordinates, add_tilts, coordinate, repeats_coordinate, value_beside,
+    PredictionQuality, WhatIf, add_coordinates, add_tilts, coordinate, repeats_coordinate, unwrapped_value,
     variable_named, variable_names, what_if,
 };
 
@@ -69,7 +69,7 @@ mod test_models {
     use crate::draft::{Draft, JointDraft};
     use crate::law::Law;
 
-    /// A crank-rocker in the plane z = 0, its coupler a distance joint, with a point on the rocker.
+    /// Planar crank-rocker in the plane z = 0. The coupler is a distance joint; a point is measured on the rocker.
     pub fn crank_rocker() -> Draft {
         let rod = JointDraft::new("rod", "distance", ["crank", "rocker"]).at("B").at("C");
         Draft::new("four-bar")

@@ -1,4 +1,4 @@
-//! The nearest admissible change: what was requested, with as much more as keeps the joints closed.
+//! Nearest admissible change: the requested change plus the smallest further change that keeps the joints closed.
 
 use crate::linalg::{FullPivot, least_squares};
 use crate::model::{Change, End, Model, VariableId};
@@ -6,59 +6,60 @@ use crate::run::{Analysis, Walk};
 use crate::sensitivity::{DirectDifferentiation, PlanVelocity, conditions_at_design};
 use crate::space::Vec3;
 
-/// Conditions that the motion adds are taken at that many of its output times, evenly.
+/// Maximum number of output times, evenly spaced, at which conditions of the motion are taken.
 const TIMES: usize = 24;
-/// A condition is met where its defect is below this part of what the largest change makes of the strongest condition:
-/// some hundred times the round-off of typed coordinates.
+/// A condition is met if its defect is below this fraction of the defect of the strongest condition under the largest
+/// change: about a hundred times the round-off of typed coordinates.
 const MET: f64 = 1e-7;
-/// A variable that was requested moves by this part of what others do: it is kept where they can make up for it.
-const KEPT: f64 = 1e-9;
+/// Weight of a requested variable relative to the others: its value is kept as long as other variables can compensate.
+const REQUESTED_WEIGHT: f64 = 1e-9;
 
-/// An admissible change near one that was requested.
+/// Admissible change near a requested one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearestAdmissible {
-    /// By how much every variable changes, m, rad, or plain.
+    /// Change of every variable, m, rad, or plain.
     pub change: Vec<f64>,
     /// Number of independent conditions.
     pub conditions: usize,
-    /// The largest defect of the change that was requested, and of this one, in units of the mechanism's size or rad.
+    /// Largest defects of the requested change and of this one, in units of the mechanism's size or rad.
     pub defects: [f64; 2],
 }
 
-/// The change nearest to `change` that keeps all joints closed with all bodies where they are (paper, section 4), and
-/// over the motion meets what redundant constraints ask for; to first order.
+/// Returns the change nearest to `change` that keeps all joints closed with all bodies fixed (section 4 of the paper)
+/// and satisfies the conditions of redundant constraints over the motion, to first order.
 ///
-/// It is the least-squares projection onto the null space of these conditions, over the variables requested and all
-/// others of the model that move one coordinate of a hardpoint or tilt one joint
-/// ([`add_coordinates`](super::add_coordinates), [`add_tilts`](super::add_tilts)), each measured by its
-/// [natural step](crate::model::Model::natural_step); what was requested is kept as long as others can make up for it.
+/// It is the least-squares projection onto the null space of these conditions. The projection uses the requested
+/// variables and all others of the model that move one coordinate of a hardpoint or tilt one joint
+/// ([`add_coordinates`](super::add_coordinates), [`add_tilts`](super::add_tilts)), each scaled by its
+/// [natural step](crate::model::Model::natural_step). Requested values are kept as long as other variables can
+/// compensate.
 pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdmissible {
     let model = analysis.model();
     let change = model.whole(change);
     let scales: Vec<f64> = (0..change.len()).map(|v| model.natural_step(VariableId(v))).collect();
-    let asked: Vec<f64> = change.iter().zip(&scales).map(|(x, scale)| x / scale).collect();
-    let weight: Vec<f64> = (0..asked.len()).map(|v| weight(model, &asked, v)).collect();
+    let requested: Vec<f64> = change.iter().zip(&scales).map(|(x, scale)| x / scale).collect();
+    let weight: Vec<f64> = (0..requested.len()).map(|v| weight(model, &requested, v)).collect();
     let mut rows = conditions(analysis, &scales);
-    // What does not move opens nothing.
-    // A_kv = d(defect k)/d(b_v) natural_v / unit_k, 0 for what is
+    // Variables that do not move open no joint.
+    // A_kv = d(defect k)/d(b_v) natural_v / unit_k, 0 for fixed variables
     rows.iter_mut()
         .for_each(|row| row.iter_mut().zip(&weight).filter(|x| *x.1 == 0.0).for_each(|x| *x.0 = 0.0));
     rows.retain(|row| row.iter().any(|x| x.abs() > MET));
     let defect = |x: &[f64]| rows.iter().map(|r| dot(r, x).abs()).fold(0.0, f64::max);
     let independent = FullPivot::of(rows.clone(), change.len(), MET).rows;
     let a: Vec<&Vec<f64>> = independent.iter().map(|&r| &rows[r]).collect();
-    let mut found = asked.clone();
+    let mut found = requested.clone();
     if !a.is_empty() {
-        // d = x - B (A B)^+ A x    with W = B B: the least change, measured by W^-1, that meets them
-        // min (d - x)^T W^-1 (d - x)  with  A d = 0,  x what was requested                                   (35)
+        // d = x - B (A B)^+ A x    with W = B B: smallest correction in the metric W^-1
+        // min (d - x)^T W^-1 (d - x)  with  A d = 0,  x the requested change                                 (35)
         let b: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
-        let right = a.iter().map(|row| dot(row, &asked)).collect();
+        let right = a.iter().map(|row| dot(row, &requested)).collect();
         let least = least_squares([a.len(), b.len()], |i, v| a[i][v] * b[v], &[right]).remove(0);
         for ((x, b), y) in found.iter_mut().zip(&b).zip(least) {
             *x -= b * y;
         }
         if !found.iter().all(|x| x.is_finite()) {
-            found.clone_from(&asked);
+            found.clone_from(&requested);
         }
     }
     let largest = found.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
@@ -66,14 +67,14 @@ pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdm
     NearestAdmissible {
         change: found.iter().zip(&scales).map(cleaned).collect(),
         conditions: a.len(),
-        defects: [defect(&asked), defect(&found)],
+        defects: [defect(&requested), defect(&found)],
     }
 }
 
 /// Mobility of a variable: its entry of W in (35).
-fn weight(model: &Model, asked: &[f64], v: usize) -> f64 {
-    if asked[v] != 0.0 {
-        return KEPT;
+fn weight(model: &Model, requested: &[f64], v: usize) -> f64 {
+    if requested[v] != 0.0 {
+        return REQUESTED_WEIGHT;
     }
     let variable = &model.variables[v];
     let is_axis = |u: Vec3| Vec3::AXES.contains(&u);
@@ -84,9 +85,9 @@ fn weight(model: &Model, asked: &[f64], v: usize) -> f64 {
         }
         _ => false,
     };
-    // Of two that do the same, one would undo what the other is asked to do.
+    // Of two variables with the same effect, one would undo the requested change of the other.
     let same = |k: &usize| model.variables[*k].changes == variable.changes;
-    let is_double = (0..asked.len()).filter(same).any(|k| k < v || asked[k] != 0.0);
+    let is_double = (0..requested.len()).filter(same).any(|k| k < v || requested[k] != 0.0);
     if is_simple && !variable.fixed_length && !is_double { 1.0 } else { 0.0 }
 }
 
@@ -94,13 +95,14 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// One row per condition: its defect per natural step of every variable; lengths in sizes of the mechanism.
+/// One row per condition: its defect per natural step of every variable; lengths relative to the size of the mechanism.
 fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
     let model = analysis.model();
     let (variables, size) = (scales.len(), model.size());
     let mut rows: Vec<Vec<f64>> = Vec::new();
     let fields = model.fields(&[]);
-    // By joint, constraint and how often that joint has had it: couplers may repeat one.
+    // Identified by joint, constraint and repetition within the joint: a coupler may have the same constraint more than
+    // once.
     let mut keys = Vec::new();
     for (v, field) in fields.iter().enumerate() {
         let mut seen = Vec::new();
@@ -126,7 +128,7 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
     let mut direct = DirectDifferentiation::new(model, topology);
     let mut parts: Vec<_> = fields.iter().map(|f| PlanVelocity::new(topology, f)).collect();
     if topology.redundant().next().is_some() {
-        // A motion that ends early asks for less.
+        // A motion that stops early contributes fewer conditions.
         let _ = walk.each(|stepper| {
             if done % every == 0 {
                 stepper.state.finish_wrenches(&stepper.topology);

@@ -1,5 +1,5 @@
-//! Deviations drawn at random, and the moments of what they are drawn from. A deviation of `m` coordinates of one point
-//! scatters alike in all directions: in a disc or a sphere (`docs/theory.md`, section on tolerances).
+//! Random deviations, and the moments of their distributions. A deviation of `m` coordinates of one point scatters
+//! alike in all directions, in a disc or a sphere (`docs/theory.md`, section on tolerances).
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -7,22 +7,22 @@ use rand_distr::{Distribution, StandardNormal, StandardUniform};
 
 use crate::model::Scatter;
 
-/// Below that many standard deviations a cut-off normal is drawn from within its reach, above from the normal: either
-/// way at least a third of the trials count.
+/// A truncated normal with fewer standard deviations than this is drawn by rejection from its support, otherwise from
+/// the normal: at least a third of the trials are accepted in either case.
 const NARROW: f64 = 1.5;
-/// Terms of the series for even narrower ones: each is less than `k^2 / 2 / j` of the one before.
+/// Terms of the series for even narrower truncation: each is less than `k^2 / 2 / j` of the one before.
 const TERMS: i32 = 60;
 
-/// Moments of one coordinate of a deviation; the mean is 0.
+/// Moments of one coordinate of a deviation with zero mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {
     /// Standard deviation, in the unit of the reach.
     pub sigma: f64,
-    /// The mean of its fourth power over that of its square, squared: 3 of a normal distribution.
+    /// Kurtosis: the mean fourth power divided by the squared mean square; 3 for a normal distribution.
     pub kurtosis: f64,
 }
 
-/// The moments of each of `m` coordinates that scatter alike within a reach.
+/// Moments of each of `m` coordinates that scatter alike within a reach.
 ///
 /// ```text
 /// s^2 = E[r^2] / m,    kurtosis = 3 m E[r^4] / ((m + 2) E[r^2]^2)
@@ -45,7 +45,7 @@ pub fn moments(scatter: Scatter, m: usize, reach: f64) -> Moments {
 }
 
 /// `int_0^k r^n exp(-r^2/2) dr`, as the series `exp(-k^2/2) k^(n+1) (1/(n+1) + k^2/((n+1)(n+3)) + ...)`, whose terms
-/// are all positive; for a far `k` by parts from the first two.
+/// are all positive; for a large `k` by parts from the first two.
 fn radial(n: usize, k: f64) -> f64 {
     let end = (-0.5 * k * k).exp();
     if k < 5.0 {
@@ -65,15 +65,15 @@ fn radial(n: usize, k: f64) -> f64 {
     }
 }
 
-/// Random stream of the design of a number: each number has its own stream, so that no design depends on the designs
-/// drawn before it, nor on the thread.
+/// Random stream of the design with a number. Each number has its own stream, so that a design depends neither on the
+/// designs drawn before it nor on the thread.
 pub fn design_stream(seed: u64, number: u64) -> ChaCha8Rng {
     let mut stream = ChaCha8Rng::seed_from_u64(seed);
     stream.set_stream(number);
     stream
 }
 
-/// Draws a deviation of as many coordinates as there is room for.
+/// Draws a deviation into `to`, one coordinate per entry.
 pub fn draw(scatter: Scatter, reach: f64, stream: &mut ChaCha8Rng, to: &mut [f64]) {
     let m = to.len();
     let normal = |to: &mut [f64], stream: &mut ChaCha8Rng| {
@@ -81,7 +81,7 @@ pub fn draw(scatter: Scatter, reach: f64, stream: &mut ChaCha8Rng, to: &mut [f64
     };
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
     let even = |stream: &mut ChaCha8Rng| -> f64 { StandardUniform.sample(stream) };
-    // Evenly in a sphere of radius 1: any direction, and a radius whose m-th power is even.
+    // Uniform in the unit sphere: any direction, and a radius whose m-th power is uniform.
     let in_sphere = |to: &mut [f64], stream: &mut ChaCha8Rng| {
         normal(to, stream);
         let by = even(stream).powf(1.0 / m as f64) / norm(to);
@@ -136,7 +136,7 @@ mod tests {
         let phi = (-2.0_f64).exp() / (2.0 * std::f64::consts::PI).sqrt();
         let part = libm::erf(2.0_f64.sqrt());
         near(moments(Scatter::Truncated { sigmas: 2.0 }, 1, 2.0).sigma, (1.0 - 4.0 * phi / part).sqrt());
-        // Far away nothing is cut off; near by only evenness is left.
+        // Far truncation leaves a normal distribution, near truncation a uniform one.
         for m in 1..=3 {
             let far = moments(Scatter::Truncated { sigmas: 12.0 }, m, 12.0);
             near(far.sigma, 1.0);
@@ -144,7 +144,7 @@ mod tests {
             let close = moments(Scatter::Truncated { sigmas: 1e-7 }, m, 1.0);
             near(close.sigma, moments(Scatter::Uniform, m, 1.0).sigma);
         }
-        // Both ways of integrating agree where they meet.
+        // Both integration methods agree at the switch.
         for n in 0..8 {
             near(radial(n, 5.0 - 1e-14), radial(n, 5.0));
         }

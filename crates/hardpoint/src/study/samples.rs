@@ -1,8 +1,8 @@
-//! Many designs in all motions, each by its number: what Monte Carlo, sweeps and their like have in common.
+//! Solution of many numbered designs in all motions, shared by Monte Carlo studies and sweeps.
 //!
-//! Designs go in blocks of fixed size, and eight of a block side by side. A block is the same whoever solves it and
-//! however many are requested, so that no result depends on threads, and the first designs of many are those of few, to
-//! the last bit.
+//! Designs are solved in blocks of fixed size, eight of a block batched. The content of a block depends neither on the
+//! thread nor on the number of requested designs. Results are therefore independent of threads, and the first designs
+//! of a long run equal those of a short run to the last bit.
 
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -16,40 +16,39 @@ use crate::run::{Run, Solution};
 
 use super::evaluation::Motions;
 
-/// Designs of one block: enough that what begins a block counts for nothing beside it, few enough that an interruption
-/// is soon heard.
+/// Number of designs in a block: large enough to make the cost of starting a block negligible, small enough to respond
+/// to an interruption quickly.
 pub const BLOCK: usize = 512;
 
 /// Designs to solve, and options.
 pub struct SampleRun<'w> {
-    /// The numbers of the designs. They begin with a multiple of 512, or the first designs are not solved beside those
-    /// that they would be beside in a longer run.
+    /// Numbers of the designs. Start at a multiple of 512: otherwise the first designs are batched with other
+    /// neighbours than in a longer run.
     pub numbers: Range<usize>,
-    /// The values of all variables of the design of a number.
+    /// Returns the values of all variables of the design with a given number.
     pub design: &'w (dyn Fn(usize) -> Vec<f64> + Sync),
-    /// On that many threads.
+    /// Number of threads.
     pub threads: NonZero<usize>,
-    /// Is asked before every block whether to go on.
+    /// Called before every block; returns false to end the run.
     pub more: &'w (dyn Fn() -> bool + Sync),
 }
 
 /// Results gathered over a block.
 #[derive(Clone, Debug)]
 pub struct SampleBlock<A> {
-    /// The designs.
+    /// Numbers of the designs.
     pub numbers: Range<usize>,
     /// Gathered results.
     pub found: A,
 }
 
 impl Motions<'_> {
-    /// Solves many designs in all motions, without sensitivities. Of every block `see` gathers what is wanted: it is
-    /// shown each design of it, by its number and the motion, motion by motion and in the order of their numbers.
-    /// `done` is given the blocks in order, and may end the work; what was given to it then are all designs up to some
-    /// number.
+    /// Solves many designs in all motions, without sensitivities. `see` gathers the results of a block. It is called
+    /// with each design of the block, by number and motion, motion by motion and in ascending order of numbers. `done`
+    /// receives the blocks in order and may end the run; it has then received all designs up to some number.
     ///
     /// # Panics
-    /// If `see` or `done` does.
+    /// If `see` or `done` panics.
     pub fn sample<A: Default + Send>(
         &self,
         run: &SampleRun<'_>,
@@ -59,7 +58,7 @@ impl Motions<'_> {
         let SampleRun { numbers, design, threads, more } = run;
         let (next, ended) = (AtomicUsize::new(0), AtomicBool::new(false));
         let blocks = numbers.len().div_ceil(BLOCK);
-        // What was found of blocks whose turn has not come, and whose turn it is.
+        // Results of blocks that wait for an earlier block, and the number of the next block to report.
         let waiting = Mutex::new((BTreeMap::new(), 0_usize, done));
         let work = || {
             while let Some(block) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|b| *b < blocks) {
@@ -94,7 +93,7 @@ impl Motions<'_> {
         see: &(dyn Fn(&mut A, usize, usize, &Solution) + Sync),
     ) -> A {
         let mut designs: Vec<Vec<f64>> = numbers.clone().map(design).collect();
-        // A last group that is not full is filled with designs that nobody sees: those that would come next.
+        // An incomplete last batch is filled up with the designs that would come next. Their results are ignored.
         let full = designs.len().next_multiple_of(LANES);
         designs.extend((numbers.end..).take(full - designs.len()).map(design));
         let mut found = A::default();

@@ -1,4 +1,4 @@
-//! Second design derivatives over a motion: Hessians, their products with vectors, and how a curve bends along a
+//! Second design derivatives over a motion: Hessians, Hessian-vector products, and the curvature of curves along a
 //! change.
 
 use crate::design::BodyFixed;
@@ -16,15 +16,15 @@ use crate::space::Pose;
 pub struct SecondDerivatives {
     /// Output times that were solved, s.
     pub times: Vec<f64>,
-    /// The pairs, as requested.
+    /// Requested pairs of directions.
     pub pairs: Vec<[usize; 2]>,
-    /// The columns: measures, then components of points.
+    /// Columns: measures, then components of points.
     pub outputs: Vec<Output>,
     /// Number of bodies, ground included.
     pub bodies: usize,
-    /// `values[(k * pairs + p) * outputs + m]`, and likewise by body.
+    /// `values[(k * pairs + p) * outputs + m]`: second derivatives of the outputs.
     values: Vec<f64>,
-    /// Likewise, derivatives along the second direction of each pair.
+    /// First derivatives along the second direction of each pair, in the same layout.
     firsts: Vec<f64>,
     curvatures: Vec<BodyCurvature>,
     /// Reason why the run ended before the last output time, if it did.
@@ -32,37 +32,36 @@ pub struct SecondDerivatives {
 }
 
 impl SecondDerivatives {
-    /// Second derivative of the value of output m at time k, along the directions of pair p; in the output's unit per
+    /// Second derivative of the value of output m at time k along the directions of pair p, in the output's unit per
     /// unit of both.
     pub fn value(&self, k: usize, p: usize, m: usize) -> f64 {
         self.values[(k * self.pairs.len() + p) * self.outputs.len() + m]
     }
 
-    /// The derivative of the value of output m at time k along the second direction of pair p.
+    /// First derivative of the value of output m at time k along the second direction of pair p.
     pub fn first(&self, k: usize, p: usize, m: usize) -> f64 {
         self.firsts[(k * self.pairs.len() + p) * self.outputs.len() + m]
     }
 
-    /// Second derivative of a body's position.
+    /// Second derivative of a body's position at time k along the directions of pair p.
     pub fn body(&self, k: usize, p: usize, body: BodyId) -> &BodyCurvature {
         &self.curvatures[(k * self.pairs.len() + p) * self.bodies + body.0]
     }
 }
 
 impl Analysis<'_> {
-    /// Second derivatives at the design with variable k at `design[k]`, for pairs of directions, each given by its
-    /// index.
+    /// Second derivatives at the design with variable k at `design[k]`, for pairs of directions, given by their
+    /// indices.
     ///
-    /// A direction says how fast every variable goes (missing entries are 0). With the unit vectors and all pairs of
-    /// them this is the Hessian; with one direction v more and the pairs of it with every unit vector the Hessian times
-    /// v; with one direction and the pair of it with itself, how much the curves bend along a change. Each pair costs
-    /// one solution with the factors that the motion leaves.
+    /// A direction contains the rate of every variable (missing entries are 0). Unit vectors and all their pairs give
+    /// the Hessian. One further direction v, paired with every unit vector, gives the Hessian times v. One direction
+    /// paired with itself gives the curvature along a change. Each pair costs one solution with the existing factors.
     ///
-    /// Directions that the mechanism cannot follow give numbers that mean nothing: ask
+    /// Results for directions that the mechanism cannot follow are meaningless: check
     /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility) first.
     ///
     /// # Panics
-    /// Panics if a pair names a direction that does not exist.
+    /// If a pair contains an index that is out of range.
     pub fn second(&self, design: &[f64], directions: &[Vec<f64>], pairs: &[[usize; 2]]) -> SecondDerivatives {
         let design = self.design(design);
         let directions: Vec<Vec<f64>> = directions.iter().map(|d| self.model().whole(d)).collect();
@@ -85,11 +84,11 @@ impl Analysis<'_> {
     }
 }
 
-/// Data of second derivatives besides a stepper.
+/// Workspace of second derivatives, in addition to a stepper.
 struct SecondDerivativeSolver<'a> {
     analysis: &'a Analysis<'a>,
     seconds: Seconds,
-    /// Per pair, what measures depend on.
+    /// Body-fixed data of measures, per pair.
     fixed: Vec<BodyFixed<Dual<Dual>>>,
     asked_for: Vec<usize>,
     poses: Vec<Pose<Dual<Dual>>>,
@@ -122,7 +121,7 @@ impl<'a> SecondDerivativeSolver<'a> {
         }
     }
 
-    /// Appends what is found at time t.
+    /// Appends the second derivatives at time t.
     fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, result: &mut SecondDerivatives) {
         self.seconds.solve(stepper, t);
         let (model, state) = (self.analysis.model(), &stepper.state);

@@ -1,5 +1,5 @@
-//! Bounded least squares by basin's trust region, for all who can give residuals and their derivatives; and what
-//! solvers that step back ask for again.
+//! Bounded least squares by basin's trust-region solver, for problems with residuals and their derivatives, and a cache
+//! of recent results for solvers that step back.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -9,10 +9,10 @@ use basin::{
     TrustRegionReflective,
 };
 
-/// Gradient relative to that at the start below which a point is stationary.
+/// A point is stationary if its gradient is below this fraction of the gradient at the start.
 const STATIONARY: f64 = 1e-13;
-/// Number of points that are kept: a line search may go back a few.
-const KEPT: usize = 16;
+/// Number of cached points: a line search may return to one of the last few.
+const CACHED_POINTS: usize = 16;
 
 /// Results at the most recent points.
 pub(super) struct Recent<T>(RefCell<Vec<(Vec<f64>, T)>>);
@@ -24,13 +24,13 @@ impl<T> Default for Recent<T> {
 }
 
 impl<T> Recent<T> {
-    /// Calls `show` with the result at a point: a stored one, or else a new one.
+    /// Calls `show` with the result at a point, cached or newly computed.
     pub fn at<X>(&self, x: &[f64], find: impl FnOnce() -> T, show: impl FnOnce(&T) -> X) -> X {
         let known = self.0.borrow().iter().any(|(at, _)| at == x);
         if !known {
             let found = find();
             let mut recent = self.0.borrow_mut();
-            if recent.len() == KEPT {
+            if recent.len() == CACHED_POINTS {
                 drop(recent.remove(0));
             }
             recent.push((x.to_vec(), found));
@@ -40,9 +40,10 @@ impl<T> Recent<T> {
     }
 }
 
-/// Residuals at a point, of the order of one at the start; NaN where there are none, from which the solver steps back.
+/// Residuals at a point, of order one at the start; NaN if the point cannot be evaluated, so that the solver steps
+/// back.
 pub(super) type Residuals<'p> = Box<dyn Fn(&[f64]) -> Vec<f64> + 'p>;
-/// Their derivatives, a row each.
+/// Derivatives of the residuals, one row per residual.
 pub(super) type Derivatives<'p> = Box<dyn Fn(&[f64]) -> DenseMatrix + 'p>;
 
 /// Least squares within bounds.
@@ -85,14 +86,13 @@ impl Jacobian for Bounded<'_> {
     }
 }
 
-/// The solver under way.
+/// Trust-region solver between iterations.
 pub(super) struct TrustRegion<'p>(
     Stepper<Bounded<'p>, PointState<Vec<f64>, f64>, TrustRegionReflective<f64>>,
 );
 
 impl<'p> TrustRegion<'p> {
-    /// From a point on, every coordinate of which stays between the same bounds; `None` where there is nothing to begin
-    /// with.
+    /// Solver from a start, with the same bounds for every coordinate; `None` if the solver cannot start.
     pub fn new(
         start: Vec<f64>,
         [low, high]: [f64; 2],
@@ -112,7 +112,7 @@ impl<'p> TrustRegion<'p> {
     }
 }
 
-/// One iteration of any of basin's solvers; steps that end no iteration are gone through.
+/// Performs one iteration of any of basin's solvers; internal steps that do not end an iteration are skipped.
 pub(super) fn next<P, S, So>(stepper: &mut Stepper<P, S, So>) -> Option<Vec<f64>>
 where
     S: State<Param = Vec<f64>, Float = f64> + basin::CountsMirror,

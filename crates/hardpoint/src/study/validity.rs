@@ -1,41 +1,42 @@
-//! Linear range of sensitivities: from the second derivatives along each variable.
+//! Linear range of sensitivities, from the second derivatives along each variable.
 
 use crate::model::VariableId;
 use crate::run::{Analysis, Solution};
 
 use super::magnitude::Magnitude;
 
-/// The second-order part may be this part of the first-order one where a linear prediction is still trusted.
+/// Largest ratio of the second-order to the first-order part at which a linear prediction is trusted.
 const LINEAR: f64 = 0.05;
-/// Over a natural step a second-order part below this part of the first-order one is round-off: the output is linear in
-/// the variable. Second derivatives hold to some 1e-13 of the terms that cancel in them, and these may be a thousand
-/// times larger than the first-order part; what bends at all in a mechanism bends by far more.
+/// A second-order part over a natural step below this fraction of the first-order part is round-off: the output is
+/// linear in the variable. Second derivatives are accurate to about 1e-13 of the terms that cancel in them, and these
+/// may be a thousand times larger than the first-order part. Real curvature of a mechanism is far larger.
 const ROUND_OFF: f64 = 1e-10;
-/// A variable that moves an output by less than this part of what the strongest does is not judged by it: next to
-/// nothing, any bend is large.
+/// A variable that moves an output by less than this fraction of the most influential one is not considered: relative
+/// to a negligible effect, any curvature is large.
 const SLIGHT: f64 = 1e-2;
-/// Second derivatives of that many bytes are held at once; between such parts the work can be ended.
+/// Maximum size of the second derivatives in memory at once, in bytes; the work can be ended between such parts.
 const MOST_BYTES: usize = 8 << 20;
 
 /// Linear range of the sensitivities by one design variable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Validity {
-    /// Per output: how far the variable may go, m, rad or plain, before the largest second-order part over the motion
-    /// is 5 % of the largest first-order one; infinite where it is exactly linear, `None` where there is no sensitivity
-    /// to speak of or no second derivative ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
+    /// Per output, the change of the variable, m, rad or plain, at which the largest second-order part over the motion
+    /// is 5 % of the largest first-order part; infinite if the output is exactly linear, `None` if it has no
+    /// significant sensitivity or no second derivative
+    /// ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
     pub linear_up_to: Vec<Option<f64>>,
 }
 
-/// Number of times a change may be made until its second-order part is 5 % of its first-order part; infinite where that
-/// is exactly linear. Both parts are those of a natural step.
+/// Factor by which a change can be scaled until its second-order part is 5 % of its first-order part; infinite if it is
+/// exactly linear. Both parts are those of a natural step.
 pub(super) fn linear_up_to(first: f64, second: f64) -> f64 {
     // y(b + s) = y + y_b s + y_bb s^2 / 2: abs(y_bb s^2 / 2) = 0.05 abs(y_b s) at s = 0.05 abs(y_b) / abs(y_bb / 2)
     // (34)
     if second <= ROUND_OFF * first { f64::INFINITY } else { LINEAR * first / second }
 }
 
-/// The validity of the sensitivities of a solution of the nominal design, variable by variable; nothing is said of
-/// variables that the mechanism cannot follow. `more` is asked before every part of the work, and may end it.
+/// Linear ranges of the sensitivities of a solution of the nominal design, variable by variable, without variables that
+/// the mechanism cannot follow. `more` is called before every part of the work; if it returns false, the study ends.
 pub fn validity(
     analysis: &Analysis<'_>,
     solution: &Solution,

@@ -1,6 +1,6 @@
-//! The paper's section 6 for any model: analytic sensitivities against re-solved designs, over a sweep of steps. The
-//! error must fall with the square of the step (central differences) or with the step itself (one-sided ones), then
-//! rise by round-off.
+//! Verification of analytic sensitivities against re-solved designs over a range of steps (section 6 of the paper), for
+//! any model. The error must fall with the square of the step (central differences) or with the step itself (one-sided
+//! differences), then rise by round-off.
 
 use std::ops::ControlFlow;
 
@@ -11,27 +11,29 @@ use crate::sensitivity::Admissibility;
 use super::comparison::{Comparison, StepError, UndecidedOutputs};
 use super::difference::{DifferenceScheme, finite_differences};
 
-/// A quantity passes if central differences agree to this at some step of the sweep, relative to the largest
-/// sensitivity of its kind. The best that they can reach in a well-conditioned mechanism is about (machine
-/// epsilon)^(2/3) = 4e-11; accelerations near a limit lose four digits of it. Where differences do not agree with one
-/// another to this, because of truncation or round-off, by how much they do not is allowed besides.
+/// Tolerance of central differences, relative to the largest sensitivity of the same kind: a quantity passes if it
+/// agrees to this at some step. In a well-conditioned mechanism central differences reach about (machine epsilon)^(2/3)
+/// = 4e-11 at best; accelerations near a limit position lose four digits. Where the differences themselves scatter by
+/// more than this, because of truncation or round-off, their spread is allowed in addition.
 pub const PASS: f64 = 1e-6;
 
-/// The same for one-sided differences. Truncation grows with the step itself, so that they reach (machine
-/// epsilon)^(1/2) = 1.5e-8 at best: 400 times more than central ones, and the tolerance is as many times larger.
+/// Tolerance of one-sided differences. Truncation grows with the step itself, so that they reach (machine
+/// epsilon)^(1/2) = 1.5e-8 at best: 400 times more than central differences. The tolerance is larger by the same
+/// factor.
 pub const PASS_ONE_SIDED: f64 = 4e-4;
 
 /// Options of a verification.
 #[derive(Clone, Debug)]
 pub struct VerifyOptions {
-    /// Designs that are compared.
+    /// Scheme of the differences.
     pub scheme: DifferenceScheme,
     /// Steps as parts of [natural steps](crate::model::Model::natural_step), from coarse to fine.
     pub steps: Vec<f64>,
 }
 
 impl VerifyOptions {
-    /// Half decades from 1e-2 to where round-off rules: 1e-6 for central differences, 1e-9 for one-sided ones.
+    /// Options with half-decade steps from 1e-2 to where round-off dominates: 1e-6 for central differences, 1e-9 for
+    /// one-sided ones.
     pub fn new(scheme: DifferenceScheme) -> Self {
         let finest = if scheme == DifferenceScheme::Central { 12 } else { 18 };
         Self { scheme, steps: (4..=finest).map(|k| 10.0_f64.powf(-0.5 * f64::from(k))).collect() }
@@ -46,34 +48,34 @@ impl Default for VerifyOptions {
 }
 
 impl DifferenceScheme {
-    /// Within what these differences must agree.
+    /// Tolerance of the differences, relative to the largest sensitivity of the same kind.
     pub fn tolerance(self) -> f64 {
         if self == Self::Central { PASS } else { PASS_ONE_SIDED }
     }
 }
 
-/// The check of all design variables.
+/// Result of the verification of all design variables.
 #[derive(Clone, Debug)]
 pub struct Verification {
-    /// Designs that were compared.
+    /// Scheme of the differences.
     pub scheme: DifferenceScheme,
-    /// One entry per variable, in the model's order.
+    /// Checks of the variables, in the model's order.
     pub checks: Vec<VariableCheck>,
     /// True if the sweep was ended before all variables were checked.
     pub interrupted: bool,
 }
 
-/// The check of one design variable.
+/// Result of the check of one design variable.
 #[derive(Clone, Debug)]
 pub struct VariableCheck {
     /// The variable.
     pub variable: VariableId,
     /// Outcome of the check.
     pub outcome: CheckOutcome,
-    /// Every quantity at the step where it agrees best. Truncation and round-off are not the same for all of them, so
-    /// that no one step suits all.
+    /// Every quantity at the step where it agrees best. Truncation and round-off differ between quantities, so no
+    /// single step suits all of them.
     pub quantities: Comparison,
-    /// At every step that could be solved, the quantity that agrees worst there.
+    /// Quantity with the largest error at every step that could be solved.
     pub sweep: Vec<StepError>,
 }
 
@@ -91,7 +93,7 @@ pub enum CheckOutcome {
 }
 
 impl VariableCheck {
-    /// The quantity that agrees worst at its own best step, which decides.
+    /// Quantity with the largest error at its own best step. It decides the outcome.
     pub fn worst(&self) -> Option<&StepError> {
         self.quantities.worst()
     }
@@ -108,9 +110,9 @@ impl Verification {
     }
 }
 
-/// Compares the sensitivities of a complete solution with re-solved designs, variable by variable.
-/// `progress` is called with the number of variables done, and may end the study; an analysis that is
-/// [asked to end](Analysis::ended_by) ends it within a variable, which is then left out.
+/// Compares the sensitivities of a complete solution with re-solved designs, variable by variable. `progress` is called
+/// with the number of variables done and may end the study. An analysis that is
+/// [ended by its caller](Analysis::ended_by) also ends it within a variable, which is then left out.
 pub fn verify(
     analysis: &Analysis<'_>,
     solution: &Solution,
@@ -133,7 +135,7 @@ pub fn verify(
     Verification { scheme: options.scheme, checks, interrupted }
 }
 
-/// The check of one variable; nothing where the analysis was asked to end meanwhile.
+/// Checks one variable; `None` if the analysis was ended meanwhile.
 fn check_variable(
     analysis: &Analysis<'_>,
     solution: &Solution,
@@ -181,10 +183,10 @@ mod tests {
     use crate::model::Model;
     use crate::study::test_models::crank_rocker;
 
-    /// A derivative of an output that is wrong by this part of the largest of its kind.
+    /// Relative error of a derivative that the check must detect.
     const WRONG: f64 = 1e-4;
 
-    /// The spread of differences allows for truncation and round-off, which are far less than this on a crank-rocker.
+    /// The spread of differences allows for truncation and round-off, which are far below this error on a crank-rocker.
     #[test]
     fn a_derivative_of_an_output_that_is_wrong_at_one_time_fails() {
         let draft = crank_rocker().times((0..=20).map(|k| 0.1 * f64::from(k))).variable_moving(

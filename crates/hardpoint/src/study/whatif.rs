@@ -1,4 +1,4 @@
-//! Changed designs: predicted from the derivatives of the nominal design, and solved exactly.
+//! What-if study: changed designs, predicted from the derivatives of the nominal design and solved exactly.
 
 use crate::joint::Quantity;
 use crate::model::{Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId, change};
@@ -9,40 +9,42 @@ use crate::space::Vec3;
 use super::second::SecondDerivatives;
 use super::validity::linear_up_to;
 
-/// A changed design: today's curves, those predicted, and those solved exactly.
+/// Changed design: nominal, predicted and exact curves.
 #[derive(Clone, Debug)]
 pub struct WhatIf {
-    /// By how much every variable changes, m, rad, or plain.
+    /// Change of every variable, m, rad, or plain.
     pub change: Vec<f64>,
-    /// Today's design, with its sensitivities.
+    /// Solution of the nominal design, with its sensitivities.
     pub today: Solution,
     /// The changed design, re-solved.
     pub exact: Solution,
     /// Second derivatives of the curves along the change.
     bend: SecondDerivatives,
-    /// The change as part of a natural one, of the variable that goes farthest.
+    /// Change divided by a natural step, for the variable with the largest such ratio.
     part: f64,
-    /// The joints that the change opens in the design configuration, so that the mechanism re-assembles; none where it
-    /// is admissible as a whole.
+    /// Joints that the change opens in the design configuration, so that the mechanism has to be re-assembled; empty if
+    /// the change as a whole is admissible.
     pub opens: Vec<JointDefect>,
-    /// Changed variables that the mechanism cannot follow, not even together: then nothing is predicted.
+    /// Changed variables that the mechanism cannot follow, not even in combination. Nothing is predicted if there are
+    /// any.
     pub cannot_follow: Vec<VariableId>,
 }
 
 /// Quality of the prediction of one output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictionQuality {
-    /// Largest exact change over the motion, and the index of its time.
+    /// Largest exact change over the motion, and the index of its output time.
     pub change: (f64, usize),
-    /// Largest error of the first-order prediction, and of the second-order one, which follows for positions alone
-    /// ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
+    /// Largest errors of the first-order and of the second-order prediction. The latter is known for outputs that
+    /// depend on positions alone ([`KnownOrders::by_position`](crate::model::KnownOrders::by_position)).
     pub errors: [Option<f64>; 2],
-    /// Number of times the change could be made before its second-order part is 5 % of the first-order one; infinite
-    /// where it is exactly linear, `None` where the first-order part is nothing or the second-order one is not known.
+    /// Factor by which the change can be scaled before its second-order part reaches 5 % of its first-order part;
+    /// infinite if it is exactly linear, `None` if the first-order part is negligible or the second-order part is
+    /// unknown.
     pub linear_up_to: Option<f64>,
 }
 
-/// Predicts and solves a changed design; `today` is the nominal design's solution.
+/// Predicts and solves a changed design. `today` is the solution of the nominal design.
 pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> WhatIf {
     let model = analysis.model();
     let change = model.whole(change);
@@ -73,17 +75,17 @@ pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> What
 }
 
 impl WhatIf {
-    /// Output times that both designs were solved for.
+    /// Number of output times at which both designs were solved.
     pub fn len(&self) -> usize {
         self.today.measured.len().min(self.exact.measured.len())
     }
 
-    /// True if there is none.
+    /// True if there are no common output times.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The first-order change of the value of output m at time k.
+    /// First-order change of the value of output m at time k.
     pub fn first(&self, k: usize, m: usize) -> f64 {
         if self.today.measured.outputs[m].known.by_position {
             return self.bend.first(k, 0, m);
@@ -92,21 +94,22 @@ impl WhatIf {
         changed.map(|(v, d)| d * self.today.measured.d(k, VariableId(v), m)[0]).sum()
     }
 
-    /// The second-order part of the change of its value.
+    /// Second-order part of the change of the value of output m at time k.
     pub fn second(&self, k: usize, m: usize) -> f64 {
         0.5 * self.bend.value(k, 0, m)
     }
 
-    /// The value of output m at time k as predicted to first and to second order.
+    /// Value of output m at time k, predicted to first and to second order.
     pub fn predicted(&self, k: usize, m: usize) -> [f64; 2] {
         // y + y_b . d,    y + y_b . d + d . y_bb d / 2
         let linear = self.today.measured.value(k, m)[0] + self.first(k, m);
         [linear, linear + self.second(k, m)]
     }
 
-    /// The exact value; an angle that is counted through turns is counted through the same ones as today's.
+    /// Exact value of output m at time k. An angle over several turns is counted through the same turns as in the
+    /// nominal design.
     pub fn exact(&self, k: usize, m: usize) -> f64 {
-        value_beside(&self.today, &self.exact, k, m)
+        unwrapped_value(&self.today, &self.exact, k, m)
     }
 
     /// Quality of the prediction of output m over the motion; `None` if nothing was predicted or solved.
@@ -123,14 +126,13 @@ impl WhatIf {
             if now.abs() > change.0.abs() {
                 change = (now, k);
             }
-            for (most, foreseen) in errors.iter_mut().zip(self.predicted(k, m)) {
-                *most = most.map(|most| most.max((foreseen - exact).abs()));
+            for (most, predicted) in errors.iter_mut().zip(self.predicted(k, m)) {
+                *most = most.map(|most| most.max((predicted - exact).abs()));
             }
             (first, second) = (first.max(self.first(k, m).abs()), second.max(self.second(k, m).abs()));
         }
         let natural = |first: f64, second: f64| {
-            // Per natural step: the first-order part goes with the size of the change, the second-order part with its
-            // square.
+            // The first-order part scales with the change, the second-order part with its square.
             linear_up_to(first / self.part, second / (self.part * self.part)) / self.part
         };
         let linear_up_to = (bends && first > 0.0).then(|| natural(first, second));
@@ -138,9 +140,9 @@ impl WhatIf {
     }
 }
 
-/// The value of output m at time k of another design; an angle that is counted through turns is counted through the
-/// same ones as today's.
-pub fn value_beside(today: &Solution, other: &Solution, k: usize, m: usize) -> f64 {
+/// Value of output m at time k of another design. An angle over several turns is counted through the same turns as in
+/// the nominal design.
+pub fn unwrapped_value(today: &Solution, other: &Solution, k: usize, m: usize) -> f64 {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
     let [x, now] = [other, today].map(|s| s.measured.value(k, m)[0]);
     match today.measured.outputs[m].dimension {
@@ -149,9 +151,9 @@ pub fn value_beside(today: &Solution, other: &Solution, k: usize, m: usize) -> f
     }
 }
 
-/// A variable that a name represents: one of the model's, or else `HARDPOINT.x`, `.y`, `.z`, or `JOINT.tilt_x`,
-/// `.tilt_y`, `.tilt_z` (about a global axis through the joint's place), which the model is given as a new variable. A
-/// coordinate that one of the model's variables is already represents that variable.
+/// Variable with a name: one of the model's, or else `HARDPOINT.x`, `.y`, `.z`, or `JOINT.tilt_x`, `.tilt_y`, `.tilt_z`
+/// (about a global axis through the joint's point), which is added to the model. If a variable of the model is already
+/// that coordinate, it is returned instead.
 pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
     if let Some(known) = model.variable(name) {
         return Some(known);
@@ -184,8 +186,8 @@ pub fn variable_named(model: &mut Model, name: &str) -> Option<VariableId> {
     Some(VariableId(model.variables.len() - 1))
 }
 
-/// The coordinate that a variable is, if it moves one hardpoint along one global axis and does nothing else, and how
-/// much of it a unit is: -1 where the variable goes against the axis.
+/// Coordinate of a variable that moves one hardpoint along one global axis and nothing else, with the change of the
+/// coordinate per unit of the variable; -1 if the variable points against the axis.
 fn coordinate_of(variable: &DesignVariable) -> Option<(HardpointId, usize, f64)> {
     let Change::Move(change::Move { hardpoint, .. }) = *variable.changes.first()? else { return None };
     let mut velocity = Vec3::ZERO;
@@ -201,8 +203,8 @@ fn coordinate_of(variable: &DesignVariable) -> Option<(HardpointId, usize, f64)>
     Some((hardpoint, axis, part(axis)))
 }
 
-/// The variable that a coordinate of a hardpoint is, and by how much the coordinate goes with a unit of it: 1 or -1
-/// where the variable is plainly that coordinate.
+/// Variable that is a coordinate of a hardpoint, with the change of the coordinate per unit of the variable: 1 or -1
+/// for a variable that is exactly that coordinate.
 pub fn coordinate(model: &Model, hardpoint: HardpointId, axis: usize) -> Option<(VariableId, f64)> {
     let of = |(k, v): (usize, &DesignVariable)| {
         coordinate_of(v)
@@ -212,8 +214,8 @@ pub fn coordinate(model: &Model, hardpoint: HardpointId, axis: usize) -> Option<
     model.variables.iter().enumerate().find_map(of)
 }
 
-/// True if a variable is a hardpoint's coordinate under the hardpoint's name, and an earlier variable is the same
-/// coordinate, up to sign and unit.
+/// True if a variable is a coordinate of a hardpoint, named after the hardpoint, and an earlier variable is the same
+/// coordinate up to sign and unit.
 pub fn repeats_coordinate(model: &Model, variable: VariableId) -> bool {
     let own = &model.variables[variable.0];
     let Some((hardpoint, axis, _)) = coordinate_of(own) else { return false };
@@ -222,7 +224,7 @@ pub fn repeats_coordinate(model: &Model, variable: VariableId) -> bool {
     own.name == name && model.variables[..variable.0].iter().any(same)
 }
 
-/// Gives a model a variable for every coordinate of its hardpoints that no variable of its own is.
+/// Adds a variable to the model for every coordinate of its hardpoints that has none.
 pub fn add_coordinates(model: &mut Model) {
     for h in (0..model.hardpoints.len()).filter(|h| !model.hardpoints[*h].unnamed).collect::<Vec<_>>() {
         for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
@@ -235,7 +237,7 @@ pub fn add_coordinates(model: &mut Model) {
     }
 }
 
-/// Gives a model the variables that tilt each of its joints with an axis, as far as it has none of that name.
+/// Adds variables to the model that tilt each joint with an axis, unless variables of these names exist.
 pub fn add_tilts(model: &mut Model) {
     let tilts: Vec<String> = model
         .joints
@@ -248,7 +250,7 @@ pub fn add_tilts(model: &mut Model) {
     }
 }
 
-/// All names that [`variable_named`] knows in a model.
+/// All names that [`variable_named`] accepts for a model.
 pub fn variable_names(model: &Model) -> Vec<String> {
     let mut names: Vec<String> = model.variables.iter().map(|v| v.name.clone()).collect();
     for h in model.hardpoints.iter().filter(|h| !h.unnamed) {

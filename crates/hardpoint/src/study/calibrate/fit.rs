@@ -1,4 +1,4 @@
-//! The fit: bounded steps of basin's trust region over the directions that the readings tell of.
+//! Fit by bounded steps of basin's trust region over the directions that the readings determine.
 
 use std::cell::RefCell;
 
@@ -11,51 +11,51 @@ use crate::run::Analysis;
 use crate::study::evaluation::StudyCost;
 use crate::study::trust_region::{Recent, TrustRegion};
 
-use super::posture::{ReachedPosture, stand};
+use super::posture::{ReachedPosture, solve_posture};
 use super::{
     Calibration, CalibrationError, CalibrationRequest, Certainty, FitStatus, FittedReading, Loss,
     NextReading, Reading, UnreachedPosture,
 };
 
-/// Natural steps, about the mechanism's size or a radian, that a fit may go from the drawing: what is measured is near
-/// what was meant.
+/// Maximum change of a variable from the nominal design, in natural steps (each about the mechanism's size or a
+/// radian).
 const FARTHEST: f64 = 10.0;
-/// A singular value below this part of the largest is round-off: the readings tell nothing of its direction.
+/// A singular value below this fraction of the largest is round-off: the readings do not determine its direction.
 const ROUND_OFF: f64 = 1e-9;
-/// The objective has settled where an iteration lowers it by less than this part of itself.
+/// The objective has converged if an iteration lowers it by less than this fraction.
 const SETTLED: f64 = 1e-12;
-/// Median of the sizes of normal residuals, as a part of their standard deviation.
+/// Median absolute value of normal residuals, as a fraction of their standard deviation.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
 
-/// Workspace that is used repeatedly.
+/// Data of a fit.
 pub(super) struct FitWorkspace<'b> {
     pub model: &'b Model,
     pub analyses: &'b [Analysis<'b>],
-    pub asked: &'b CalibrationRequest<'b>,
-    /// The variables that are sought, without those that cannot be followed.
+    pub request: &'b CalibrationRequest<'b>,
+    /// Fitted variables, without those that the mechanism cannot follow.
     pub variables: Vec<VariableId>,
     left_out: Vec<VariableId>,
-    /// A natural step of each.
+    /// Natural step of each fitted variable.
     pub steps: Vec<f64>,
     not_reached: Vec<UnreachedPosture>,
-    /// The readings that are compared, by their place among all.
+    /// Indices of the compared readings.
     pub compared: Vec<usize>,
-    /// True if standard deviations were given.
+    /// True if all readings have standard deviations.
     pub has_sigmas: bool,
-    drawn: Vec<Option<ReachedPosture>>,
+    nominal: Vec<Option<ReachedPosture>>,
     pub cost: RefCell<StudyCost>,
 }
 
 /// State of a search.
 pub(super) struct SearchResult {
     pub status: FitStatus,
-    /// Natural steps from the drawing.
+    /// Changes from the nominal design, in natural steps.
     pub x: Vec<f64>,
-    /// Residuals in the standard deviations given, or in SI, and their derivatives by natural steps.
+    /// Residuals, in the given standard deviations or in SI, and their derivatives by natural steps.
     pub at: Rows,
     /// Weight of each residual.
     pub weights: Vec<f64>,
-    /// The standard deviation that was found of residuals; 1 where they were given.
+    /// Estimated standard deviation of the residuals; 1 if standard deviations are given.
     pub scale: f64,
     pub objective: [f64; 2],
     iterations: Vec<f64>,
@@ -69,44 +69,44 @@ pub(super) struct Rows {
 }
 
 impl<'b> FitWorkspace<'b> {
-    pub fn new(model: &'b Model, analyses: &'b [Analysis<'b>], asked: &'b CalibrationRequest<'b>) -> Self {
+    pub fn new(model: &'b Model, analyses: &'b [Analysis<'b>], request: &'b CalibrationRequest<'b>) -> Self {
         Self {
             model,
             analyses,
-            asked,
-            variables: asked.variables.to_vec(),
+            request,
+            variables: request.variables.to_vec(),
             left_out: Vec::new(),
             steps: Vec::new(),
             not_reached: Vec::new(),
             compared: Vec::new(),
-            has_sigmas: asked.measured.readings.iter().all(|r| r.sigma.is_some()),
-            drawn: Vec::new(),
+            has_sigmas: request.measured.readings.iter().all(|r| r.sigma.is_some()),
+            nominal: Vec::new(),
             cost: RefCell::new(StudyCost { designs: 1, ..StudyCost::default() }),
         }
     }
 
     fn readings(&self) -> &'b [Reading] {
-        &self.asked.measured.readings
+        &self.request.measured.readings
     }
 
-    /// Determines the reachable postures, and the variables that can be followed in them.
-    pub fn look_at_drawing(&mut self) -> Result<(), CalibrationError> {
+    /// Determines the reachable postures, and the variables that the mechanism can follow in them.
+    pub fn evaluate_nominal(&mut self) -> Result<(), CalibrationError> {
         for (posture, analysis) in self.analyses.iter().enumerate() {
-            let found = stand(analysis, &[], &mut self.cost.borrow_mut());
+            let found = solve_posture(analysis, &[], &mut self.cost.borrow_mut());
             if let Err(stop) = &found {
                 self.not_reached.push(UnreachedPosture { posture, why: stop.headline(analysis.model()) });
             }
-            self.drawn.push(found.ok());
+            self.nominal.push(found.ok());
         }
-        let stands = || self.drawn.iter().flatten();
-        let follows = |v: &VariableId| stands().all(|stand| stand.follows(*v));
+        let reached = || self.nominal.iter().flatten();
+        let follows = |v: &VariableId| reached().all(|p| p.follows(*v));
         (self.variables, self.left_out) = self.variables.iter().partition(|v| follows(v));
         if self.variables.is_empty() {
             return Err(CalibrationError::NothingVaries);
         }
         self.steps = self.variables.iter().map(|v| self.model.natural_step(*v)).collect();
         let is_known =
-            |r: &Reading| self.drawn[r.posture].as_ref().is_some_and(|s| s.value(r.output).is_finite());
+            |r: &Reading| self.nominal[r.posture].as_ref().is_some_and(|s| s.value(r.output).is_finite());
         self.compared = (0..self.readings().len()).filter(|k| is_known(&self.readings()[*k])).collect();
         if self.compared.is_empty() {
             let why = self.not_reached.first().map_or(String::new(), |n| n.why.clone());
@@ -119,7 +119,7 @@ impl<'b> FitWorkspace<'b> {
         Ok(())
     }
 
-    /// The design that many natural steps from the drawing.
+    /// Design at changes from the nominal design in natural steps.
     pub fn design(&self, x: &[f64]) -> Vec<f64> {
         let mut design = vec![0.0; self.model.variables.len()];
         for ((v, step), x) in self.variables.iter().zip(&self.steps).zip(x) {
@@ -128,32 +128,32 @@ impl<'b> FitWorkspace<'b> {
         design
     }
 
-    /// All postures that are reached in the design configuration, of a design; `None` where one is not, or the caller
-    /// wants no more.
-    fn stands(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Vec<Option<ReachedPosture>>> {
+    /// Solves a design in all postures that the nominal design reaches; `None` if one is not reached, or the caller
+    /// ended the fit.
+    fn solve_postures(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Vec<Option<ReachedPosture>>> {
         let design = self.design(x);
         self.cost.borrow_mut().designs += 1;
-        let of = |(analysis, drawn): (&Analysis<'_>, &Option<ReachedPosture>)| {
-            if drawn.is_none() {
+        let of = |(analysis, nominal): (&Analysis<'_>, &Option<ReachedPosture>)| {
+            if nominal.is_none() {
                 return Some(None);
             }
             if !more() {
                 return None;
             }
-            stand(analysis, &design, &mut self.cost.borrow_mut()).ok().map(Some)
+            solve_posture(analysis, &design, &mut self.cost.borrow_mut()).ok().map(Some)
         };
-        self.analyses.iter().zip(&self.drawn).map(of).collect()
+        self.analyses.iter().zip(&self.nominal).map(of).collect()
     }
 
-    fn rows(&self, stands: &[Option<ReachedPosture>]) -> Rows {
+    fn rows(&self, postures: &[Option<ReachedPosture>]) -> Rows {
         let mut rows = Rows::default();
         for k in &self.compared {
             let reading = &self.readings()[*k];
-            let stand =
-                stands[reading.posture].as_ref().expect("only postures that are reached are compared");
+            let posture =
+                postures[reading.posture].as_ref().expect("only postures that are reached are compared");
             let sigma = self.unit(reading);
-            let by = |(v, step): (&VariableId, &f64)| stand.d(reading.output, *v) * step / sigma;
-            rows.r.push((stand.value(reading.output) - reading.value) / sigma);
+            let by = |(v, step): (&VariableId, &f64)| posture.d(reading.output, *v) * step / sigma;
+            rows.r.push((posture.value(reading.output) - reading.value) / sigma);
             rows.d.push(self.variables.iter().zip(&self.steps).map(by).collect());
         }
         rows
@@ -164,19 +164,19 @@ impl<'b> FitWorkspace<'b> {
         reading.sigma.filter(|_| self.has_sigmas).unwrap_or(1.0)
     }
 
-    /// `None` where a posture is not reached, or where the mechanism does not follow all variables.
+    /// Residuals of a design; `None` if a posture is not reached, or the mechanism does not follow all variables.
     fn rows_at(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Rows> {
-        let rows = self.rows(&self.stands(x, more)?);
+        let rows = self.rows(&self.solve_postures(x, more)?);
         rows.r.iter().chain(rows.d.iter().flatten()).all(|x| x.is_finite()).then_some(rows)
     }
 
-    /// The standard deviation of residuals: found where none were given.
-    fn scale_of(&self, r: &[f64], told: usize) -> f64 {
+    /// Standard deviation of the residuals, estimated if none are given.
+    fn scale_of(&self, r: &[f64], determined: usize) -> f64 {
         if self.has_sigmas {
             return 1.0;
         }
-        let found = if self.asked.loss == Loss::Squares {
-            let free = r.len().saturating_sub(told).max(1) as f64;
+        let found = if self.request.loss == Loss::Squares {
+            let free = r.len().saturating_sub(determined).max(1) as f64;
             (r.iter().map(|r| r * r).sum::<f64>() / free).sqrt()
         } else {
             let mut sizes: Vec<f64> = r.iter().map(|r| r.abs()).collect();
@@ -187,14 +187,14 @@ impl<'b> FitWorkspace<'b> {
     }
 
     fn weights(&self, r: &[f64], scale: f64) -> Vec<f64> {
-        r.iter().map(|r| self.asked.loss.weight(r / scale)).collect()
+        r.iter().map(|r| self.request.loss.weight(r / scale)).collect()
     }
 
-    /// From the drawing to where no small change fits better.
+    /// Fits from the nominal design until no small change improves the fit.
     pub fn search(&self, progress: &mut dyn FnMut(usize, f64), more: &dyn Fn() -> bool) -> SearchResult {
         let n = self.variables.len();
         let mut x = vec![0.0; n];
-        let mut at = self.rows(&self.drawn);
+        let mut at = self.rows(&self.nominal);
         let mut scale = self.scale_of(&at.r, n);
         let mut weights = self.weights(&at.r, scale);
         let squares = |at: &Rows, w: &[f64]| at.r.iter().zip(w).map(|(r, w)| w * r * r).sum::<f64>();
@@ -202,10 +202,10 @@ impl<'b> FitWorkspace<'b> {
         let mut iterations = Vec::new();
         let first = at.clone();
         progress(0, squares(&at, &weights) / (scale * scale));
-        while iterations.len() < self.asked.iterations {
+        while iterations.len() < self.request.iterations {
             let before = squares(&at, &weights);
-            let (Singular { mut directions, .. }, told) = weighed(&at.d, &weights, n);
-            directions.truncate(told);
+            let (Singular { mut directions, .. }, determined) = weighed(&at.d, &weights, n);
+            directions.truncate(determined);
             let step = self.step(&x, &at, &weights, &directions, more);
             if !more() {
                 status = FitStatus::Interrupted;
@@ -236,13 +236,13 @@ impl<'b> FitWorkspace<'b> {
         SearchResult { status, x, at, weights, scale, objective, iterations }
     }
 
-    /// The sum of the loss over all residuals.
+    /// Sum of the loss over all residuals.
     fn loss_of(&self, r: &[f64], scale: f64) -> f64 {
-        let weight = |r: f64| self.asked.loss.weight(r);
+        let weight = |r: f64| self.request.loss.weight(r);
         r.iter().map(|r| r / scale).map(|r| weight(r) * r * r).sum()
     }
 
-    /// The best fit with these weights over some directions, from x on; `None` where there is no way.
+    /// Best fit with fixed weights over some directions, starting at x; `None` if there is none.
     fn step(
         &self,
         x: &[f64],
@@ -290,14 +290,14 @@ impl<'b> FitWorkspace<'b> {
         };
         let bounds = [-FARTHEST, FARTHEST];
         let mut solver = TrustRegion::new(none.clone(), bounds, Box::new(residuals), Box::new(derivatives))?;
-        // Weights are looked at anew after every iteration of a robust fit; of squares they stay.
-        let most = if self.asked.loss == Loss::Squares { self.asked.iterations } else { 1 };
+        // A robust loss needs new weights after every iteration; squares keep theirs.
+        let most = if self.request.loss == Loss::Squares { self.request.iterations } else { 1 };
         let z = (0..most).map_while(|_| solver.step()).last().unwrap_or(none);
         let rows = recent.at(&z, || find(&z), Option::clone)?;
         Some((place(&z), rows))
     }
 
-    /// All of it.
+    /// Assembles the result.
     pub fn calibration(
         self,
         search: SearchResult,
@@ -309,9 +309,10 @@ impl<'b> FitWorkspace<'b> {
         for (row, k) in self.compared.iter().enumerate() {
             let reading = &self.readings()[*k];
             let sigma = self.unit(reading);
-            let drawn = self.drawn[reading.posture].as_ref().map_or(f64::NAN, |s| s.value(reading.output));
+            let nominal =
+                self.nominal[reading.posture].as_ref().map_or(f64::NAN, |s| s.value(reading.output));
             fitted[*k] = Some(FittedReading {
-                before: drawn,
+                before: nominal,
                 value: reading.value + sigma * search.at.r[row],
                 residual: search.at.r[row] / search.scale,
                 weight: search.weights[row],
@@ -334,14 +335,15 @@ impl<'b> FitWorkspace<'b> {
     }
 }
 
-/// Singular values of weighted rows: the directions they determine, and the number of singular values above round-off.
+/// Singular value decomposition of weighted rows: the directions, their singular values, and the number of singular
+/// values above round-off.
 pub(super) fn weighed(rows: &[Vec<f64>], weights: &[f64], n: usize) -> (Singular, usize) {
     let weighted: Vec<Vec<f64>> =
         rows.iter().zip(weights).map(|(row, w)| row.iter().map(|x| w.sqrt() * x).collect()).collect();
     let found = singular(&weighted, n);
     let least = ROUND_OFF * found.values.first().copied().unwrap_or_default();
-    let told = found.values.iter().filter(|s| **s > least).count();
-    (found, told)
+    let determined = found.values.iter().filter(|s| **s > least).count();
+    (found, determined)
 }
 
 fn along(x: &[f64], directions: &[Vec<f64>], z: &[f64]) -> Vec<f64> {

@@ -1,14 +1,14 @@
-//! Fit of the geometry to measured data: best fit, accuracy, unidentifiable changes, readings to add.
+//! Calibration: fit of the geometry to measured data, with the accuracy of the result, unidentifiable changes, and
+//! proposed further readings.
 //!
-//! A reading i of an output y in a posture with standard deviation s_i has the residual `r_i = (y(b) - m_i) / s_i`; the
-//! fit makes the sum of their squares least, or that of a robust loss. With the exact Jacobian `J = dr/db` of what was
-//! read,
+//! A reading i of an output y in a posture, with standard deviation s_i, has the residual `r_i = (y(b) - m_i) / s_i`.
+//! The fit minimises the sum of their squares or of a robust loss. With the exact Jacobian `J = dr/db` of the readings,
 //!
 //! ```text
 //! covariance = (J' W J)^-1,    W = the weights of the loss
 //! ```
 //!
-//! over the directions that the readings tell anything of; the others are named and stay in the design configuration
+//! over the directions that the readings determine. All other directions are reported and keep their design values
 //! (`docs/theory.md`, section 13).
 
 mod certainty;
@@ -26,23 +26,23 @@ use super::evaluation::StudyCost;
 pub use certainty::{Certainty, UnidentifiableChange};
 pub use next::{Improvement, NextReading};
 
-/// One value that was read in a posture. In SI.
+/// Measured value of one output in a posture, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// The posture, by its place in [`Measurements::postures`].
+    /// Index of the posture in [`Measurements::postures`].
     pub posture: usize,
-    /// The column of [`outputs`](crate::measure::outputs).
+    /// Column of [`outputs`](crate::measure::outputs).
     pub output: usize,
     /// Measured value.
     pub value: f64,
-    /// Standard deviation; none where that is to be found from the residuals, the same for all.
+    /// Standard deviation; `None` if it is to be estimated from the residuals, the same for all.
     pub sigma: Option<f64>,
 }
 
 /// Measurements of a mechanism.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurements {
-    /// Values of the drivers in each posture, as their laws count, m or rad.
+    /// Values of the drivers in each posture, in the coordinate of their laws, m or rad.
     pub postures: Vec<Vec<f64>>,
     /// Readings in the postures.
     pub readings: Vec<Reading>,
@@ -51,19 +51,19 @@ pub struct Measurements {
 /// Loss function of residuals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loss {
-    /// Square.
+    /// Square of the residual.
     #[default]
     Squares,
-    /// Square up to 1.345 standard deviations, beyond that its size.
+    /// Square up to 1.345 standard deviations, linear beyond.
     Huber,
-    /// The logarithm of its square: beyond some standard deviations next to nothing.
+    /// Logarithm of the square: residuals of many standard deviations have next to no influence.
     Cauchy,
 }
 
 impl Loss {
-    /// By how much a residual counts less than its square would, from 0 to 1.
+    /// Weight of a residual relative to least squares, from 0 to 1.
     pub fn weight(self, r: f64) -> f64 {
-        // 95 % efficient where all is normal (Holland and Welsch 1977)
+        // 95 % efficiency for normal residuals (Holland and Welsch 1977)
         const HUBER: f64 = 1.345;
         const CAUCHY: f64 = 2.385;
         match self {
@@ -77,29 +77,29 @@ impl Loss {
 /// Status of a fit at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FitStatus {
-    /// No small change of the design fits better.
+    /// No small change of the design improves the fit.
     Found,
-    /// The iterations were used up.
+    /// The iteration limit was reached.
     IterationLimit,
-    /// The caller ended it.
+    /// The caller ended the fit.
     Interrupted,
 }
 
-/// A posture that the mechanism in the design configuration does not reach, whose readings are left out.
+/// Posture that the nominal design does not reach. Its readings are left out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnreachedPosture {
-    /// The posture.
+    /// Index of the posture.
     pub posture: usize,
     /// Description of the event.
     pub why: String,
 }
 
-/// A reading beside what the design found gives.
+/// Reading with the values of the nominal and the fitted design.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedReading {
-    /// In the design configuration, SI.
+    /// Value of the nominal design, SI.
     pub before: f64,
-    /// Value of the fitted design.
+    /// Value of the fitted design, SI.
     pub value: f64,
     /// Fitted minus measured value, in standard deviations; in estimated ones if none are given.
     pub residual: f64,
@@ -110,28 +110,28 @@ pub struct FittedReading {
 /// Result of a calibration, SI.
 #[derive(Clone, Debug)]
 pub struct Calibration {
-    /// Status at the end.
+    /// Status at the end of the fit.
     pub status: FitStatus,
-    /// The variables that were sought.
+    /// Fitted variables.
     pub variables: Vec<VariableId>,
-    /// Those that the mechanism cannot follow, and that were left as they are.
+    /// Variables that the mechanism cannot follow. They keep their design values.
     pub left_out: Vec<VariableId>,
-    /// The design found: the change of every variable of the model.
+    /// Fitted design: change of every variable of the model.
     pub design: Vec<f64>,
-    /// The columns.
+    /// Columns of the outputs.
     pub outputs: Vec<Output>,
     /// Fitted values of every reading; `None` if its posture is not reached.
     pub fitted: Vec<Option<FittedReading>>,
     /// Postures whose readings were left out.
     pub not_reached: Vec<UnreachedPosture>,
-    /// The sum that was made least, of the nominal design and of the one found: of squared residuals in standard
-    /// deviations, or of the loss. Where no standard deviations were given, in those that were found.
+    /// Objective of the nominal and the fitted design: sum of squared residuals in standard deviations, or of the loss.
+    /// Without given standard deviations, estimated ones are used.
     pub objective: [f64; 2],
     /// Objective after each iteration.
     pub iterations: Vec<f64>,
     /// Accuracy of the variables.
     pub certainty: Certainty,
-    /// Further readings with the most information, the best first.
+    /// Proposed further readings, the most informative first.
     pub next: Vec<NextReading>,
     /// Cost of the study.
     pub cost: StudyCost,
@@ -142,77 +142,78 @@ pub struct Calibration {
 pub enum CalibrationError {
     /// The mechanism cannot be driven.
     Topology(TopologyError),
-    /// The mechanism in the design configuration reaches none of the postures; what happens on the way to the first.
+    /// The nominal design reaches none of the postures; contains the stop on the way to the first.
     NothingReached(String),
     /// The mechanism can follow none of the variables.
     NothingVaries,
-    /// No more readings than variables that they tell of, and no standard deviations: how sure anything is cannot be
-    /// known.
+    /// Without standard deviations there must be more readings than variables, since the accuracy cannot be estimated
+    /// otherwise.
     TooFewReadings {
-        /// Readings that were reached.
+        /// Number of compared readings.
         readings: usize,
-        /// Variables.
+        /// Number of variables.
         variables: usize,
     },
 }
 
-/// The request.
+/// Measurements, variables and options of a calibration.
 #[derive(Clone, Copy, Debug)]
 pub struct CalibrationRequest<'a> {
     /// Measurements to fit.
     pub measured: &'a Measurements,
-    /// The variables that are sought.
+    /// Variables to fit.
     pub variables: &'a [VariableId],
     /// Loss function of the residuals.
     pub loss: Loss,
-    /// In which formulation the mechanism is solved.
+    /// Formulation of the mechanism.
     pub formulation: Formulation,
-    /// At most that many iterations.
+    /// Maximum number of iterations.
     pub iterations: usize,
 }
 
-/// Finds the design that explains measurements best. `progress` is reported the objective after every iteration, and
-/// `more` is asked at every posture whether to go on.
+/// Fits the design to measurements. `progress` is called with the objective after every iteration. `more` is called at
+/// every posture; if it returns false, the fit ends.
 ///
 /// # Errors
-/// Where nothing can be fitted.
+/// A [`CalibrationError`] if nothing can be fitted.
 pub fn calibrate(
     model: &Model,
-    asked: &CalibrationRequest<'_>,
+    request: &CalibrationRequest<'_>,
     progress: &mut dyn FnMut(usize, f64),
     more: &dyn Fn() -> bool,
 ) -> Result<Calibration, CalibrationError> {
-    let models: Vec<Model> = asked.measured.postures.iter().map(|p| posture::standing(model, p)).collect();
-    let analyses = posture::planned(&models, asked.formulation).map_err(CalibrationError::Topology)?;
-    let mut bench = fit::FitWorkspace::new(model, &analyses, asked);
-    bench.look_at_drawing()?;
-    let search = bench.search(progress, more);
-    let known = bench.known(&search);
-    let certainty = bench.certainty(&search, &known);
+    let models: Vec<Model> =
+        request.measured.postures.iter().map(|p| posture::posture_model(model, p)).collect();
+    let analyses = posture::planned(&models, request.formulation).map_err(CalibrationError::Topology)?;
+    let mut workspace = fit::FitWorkspace::new(model, &analyses, request);
+    workspace.evaluate_nominal()?;
+    let search = workspace.search(progress, more);
+    let directions = workspace.directions(&search);
+    let certainty = workspace.certainty(&search, &directions);
     let next = match search.status {
-        FitStatus::Found => bench.next(&search, &known, &certainty),
+        FitStatus::Found => workspace.next(&search, &directions, &certainty),
         _ => Vec::new(),
     };
-    Ok(bench.calibration(search, certainty, next, outputs(model)))
+    Ok(workspace.calibration(search, certainty, next, outputs(model)))
 }
 
-/// Values of all outputs of a design in some postures of the drivers, as [`Measurements::postures`]; or the reason why
-/// one is not reached. SI.
+/// Values of all outputs of a design in postures of the drivers, given as in [`Measurements::postures`], SI; the reason
+/// for each posture that is not reached.
 ///
 /// # Errors
-/// A [`TopologyError`] where the mechanism cannot be driven.
+/// A [`TopologyError`] if the mechanism cannot be driven.
 pub fn values_in_postures(
     model: &Model,
     design: &[f64],
     postures: &[Vec<f64>],
     formulation: Formulation,
 ) -> Result<Vec<Result<Vec<f64>, String>>, TopologyError> {
-    let models: Vec<Model> = postures.iter().map(|p| posture::standing(model, p)).collect();
+    let models: Vec<Model> = postures.iter().map(|p| posture::posture_model(model, p)).collect();
     let values = |analysis: &Analysis<'_>| {
-        let stand = posture::stand(analysis, design, &mut StudyCost::default());
+        let solved = posture::solve_posture(analysis, design, &mut StudyCost::default());
         let values =
-            |stand: posture::ReachedPosture| (0..outputs(model).len()).map(|m| stand.value(m)).collect();
-        stand.map(values).map_err(|stop| stop.headline(analysis.model()))
+            |posture: posture::ReachedPosture| (0..outputs(model).len()).map(|m| posture.value(m)).collect();
+        solved.map(values).map_err(|stop| stop.headline(analysis.model()))
     };
     Ok(posture::planned(&models, formulation)?.iter().map(values).collect())
 }

@@ -1,67 +1,67 @@
-//! Further readings with the most information.
+//! Proposed further readings.
 
 use crate::measure::outputs;
 use crate::model::{DriverId, Model, VariableId};
 use crate::run::{Analysis, Run};
 
 use super::Certainty;
-use super::certainty::Known;
+use super::certainty::Directions;
 use super::fit::{FitWorkspace, SearchResult};
 use super::posture::derivative;
 
-/// Number of readings that are proposed.
+/// Maximum number of proposed readings.
 const PROPOSED: usize = 5;
 /// Maximum number of postures of a motion that are considered.
-const LOOKED_AT: usize = 24;
-/// A reading indicates a direction that the others do not tell if it makes its standard deviation less than a natural
-/// step, about the mechanism's size.
-const TELLS: f64 = 1.0;
+const MAX_POSTURES: usize = 24;
+/// A reading determines an unidentifiable direction if it reduces its standard deviation below this number of natural
+/// steps (about the mechanism's size).
+const DETERMINES: f64 = 1.0;
 
-/// A further reading, of the standard deviation that readings of its kind have. In SI.
+/// Proposed reading, with the standard deviation of readings of its kind, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextReading {
-    /// The column of [`outputs`](crate::measure::outputs).
+    /// Column of [`outputs`](crate::measure::outputs).
     pub output: usize,
-    /// Values of the drivers, as their laws count.
+    /// Values of the drivers, in the coordinate of their laws, m or rad.
     pub drivers: Vec<f64>,
-    /// The standard deviation that was assumed.
+    /// Assumed standard deviation.
     pub sigma: f64,
-    /// Index of the unidentifiable change that it would determine best.
-    pub tells: Option<usize>,
-    /// The variable whose standard deviation it makes smaller by the largest part, by its place among those sought;
-    /// none where it indicates nothing of those that are known.
+    /// Index of the unidentifiable change that the reading determines best; `None` if it determines none.
+    pub determines: Option<usize>,
+    /// Variable whose standard deviation the reading reduces by the largest fraction; `None` if it improves no known
+    /// variable.
     pub improves: Option<Improvement>,
 }
 
 /// Effect of a further reading on a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Improvement {
-    /// The variable, by its place among those sought.
+    /// Index among the fitted variables.
     pub variable: usize,
-    /// Standard deviation now, SI.
+    /// Standard deviation without the reading, SI.
     pub before: f64,
-    /// With the reading.
+    /// Standard deviation with the reading, SI.
     pub after: f64,
 }
 
-/// A reading that could be taken: its derivatives by natural steps, in standard deviations.
+/// Possible reading: its derivatives by natural steps, in standard deviations.
 struct Candidate {
     next: NextReading,
     g: Vec<f64>,
 }
 
 impl FitWorkspace<'_> {
-    /// The best reading of each output, the best first.
+    /// Best reading of each output, the most informative first.
     pub(super) fn next(
         &self,
         search: &SearchResult,
-        known: &Known,
+        directions: &Directions,
         certainty: &Certainty,
     ) -> Vec<NextReading> {
-        let covariance = known.covariance(self.variables.len());
+        let covariance = directions.covariance(self.variables.len());
         let mut best: Vec<Option<(f64, NextReading)>> = vec![None; outputs(self.model).len()];
         for candidate in self.candidates(search) {
-            let (worth, next) = self.judged(candidate, known, &covariance, certainty);
+            let (worth, next) = self.rate(candidate, directions, &covariance, certainty);
             let best = &mut best[next.output];
             if worth > 0.0 && best.as_ref().is_none_or(|(w, _)| worth > *w) {
                 *best = Some((worth, next));
@@ -72,19 +72,24 @@ impl FitWorkspace<'_> {
         found.into_iter().take(PROPOSED).map(|(_, next)| next).collect()
     }
 
-    /// Information of a reading: the change of the logarithm of the determinant, and far more if it determines an
-    /// unidentifiable change.
-    fn judged(
+    /// Information gain of a reading: change of the logarithm of the determinant, with a large bonus if it determines
+    /// an unidentifiable change.
+    fn rate(
         &self,
         Candidate { mut next, g }: Candidate,
-        known: &Known,
+        directions: &Directions,
         covariance: &[Vec<f64>],
         certainty: &Certainty,
     ) -> (f64, NextReading) {
         let n = g.len();
         let along = |v: &Vec<f64>| v.iter().zip(&g).map(|(v, g)| v * g).sum::<f64>().abs();
-        let new = known.untold.iter().map(|(v, _)| along(v)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        next.tells = new.filter(|(_, by)| *by > TELLS).map(|(k, _)| k);
+        let new = directions
+            .unidentifiable
+            .iter()
+            .map(|(v, _)| along(v))
+            .enumerate()
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        next.determines = new.filter(|(_, by)| *by > DETERMINES).map(|(k, _)| k);
         // C - C g g' C / (1 + g' C g)
         let cg: Vec<f64> =
             covariance.iter().map(|row| row.iter().zip(&g).map(|(c, g)| c * g).sum()).collect();
@@ -96,9 +101,10 @@ impl FitWorkspace<'_> {
         };
         let part = |i: &Improvement| i.after / i.before;
         let most = (0..n).filter_map(improved).min_by(|a, b| part(a).total_cmp(&part(b)));
-        // What a reading of something not reported does to the rest is not known before that is reported.
-        next.improves = most.filter(|_| next.tells.is_none() && new.is_none_or(|(_, by)| by <= TELLS));
-        let worth = match next.tells {
+        // The effect on the other variables is unknown until the unidentifiable change is determined.
+        next.improves =
+            most.filter(|_| next.determines.is_none() && new.is_none_or(|(_, by)| by <= DETERMINES));
+        let worth = match next.determines {
             Some(_) => 1e6 + new.map_or(0.0, |(_, by)| by.ln()),
             None => gcg.ln_1p(),
         };
@@ -107,8 +113,8 @@ impl FitWorkspace<'_> {
 
     /// Possible readings: every output in the measured postures, and along the motions of the model.
     fn candidates(&self, search: &SearchResult) -> Vec<Candidate> {
-        let readings = &self.asked.measured.readings;
-        let known = outputs(self.model);
+        let readings = &self.request.measured.readings;
+        let directions = outputs(self.model);
         let sigma_of = |output: usize| {
             let of = |k: &usize| {
                 let reading = &readings[*k];
@@ -116,11 +122,11 @@ impl FitWorkspace<'_> {
                 sigma.map(|s| (reading.output, s))
             };
             let all: Vec<(usize, f64)> = self.compared.iter().filter_map(of).collect();
-            let like = all.iter().find(|(o, _)| known[*o].dimension == known[output].dimension);
+            let like = all.iter().find(|(o, _)| directions[*o].dimension == directions[output].dimension);
             all.iter().find(|(o, _)| *o == output).or(like).map(|(_, s)| *s)
         };
-        let sigmas: Vec<Option<f64>> = (0..known.len())
-            .map(|m| sigma_of(m).filter(|_| self.model.is_known_at_rest(known[m].source)))
+        let sigmas: Vec<Option<f64>> = (0..directions.len())
+            .map(|m| sigma_of(m).filter(|_| self.model.is_known_at_rest(directions[m].source)))
             .collect();
         let mut found = Vec::new();
         let design = self.design(&search.x);
@@ -138,7 +144,7 @@ impl FitWorkspace<'_> {
                             output,
                             drivers: drivers.clone(),
                             sigma,
-                            tells: None,
+                            determines: None,
                             improves: None,
                         };
                         found.push(Candidate { next, g });
@@ -146,19 +152,19 @@ impl FitWorkspace<'_> {
                 }
             }
         };
-        for (analysis, drivers) in self.analyses.iter().zip(&self.asked.measured.postures) {
+        for (analysis, drivers) in self.analyses.iter().zip(&self.request.measured.postures) {
             at(analysis, &|k| (k > 0).then(|| drivers.clone()));
         }
         for model in self.model.motions() {
-            let every = model.times.len().div_ceil(LOOKED_AT).max(1);
+            let every = model.times.len().div_ceil(MAX_POSTURES).max(1);
             let few = Model { times: model.times.iter().step_by(every).copied().collect(), ..model };
-            if let Ok(analysis) = Analysis::with(&few, self.asked.formulation) {
-                let stands = |k: usize| {
+            if let Ok(analysis) = Analysis::with(&few, self.request.formulation) {
+                let drivers_at = |k: usize| {
                     let place =
                         |d: usize| few.drivers[d].law.at(few.times[k]).value() + few.as_drawn(DriverId(d));
                     Some((0..few.drivers.len()).map(place).collect())
                 };
-                at(&analysis, &stands);
+                at(&analysis, &drivers_at);
             }
         }
         found

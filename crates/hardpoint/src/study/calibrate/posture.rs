@@ -1,14 +1,14 @@
-//! Postures of measurements: the drivers are at rest, and every posture is reached from the design configuration by
-//! itself.
+//! Postures of measurements: the drivers are at rest, and every posture is reached separately from the design
+//! configuration.
 
 use crate::model::{Case, CaseId, DriverId, LoadMode, Model, VariableId};
 use crate::motion::Stop;
 use crate::run::{Analysis, Run, Solution};
 use crate::study::evaluation::StudyCost;
-use crate::study::grid::{STANDS, law_of};
+use crate::study::grid::{PHASE_ENDS, law_of};
 use crate::topology::{Formulation, TopologyError};
 
-/// A posture that was reached, the last of its motion.
+/// Reached posture: the last output time of its motion.
 #[derive(Clone, Debug)]
 pub(super) struct ReachedPosture(Solution);
 
@@ -17,31 +17,31 @@ impl ReachedPosture {
         self.0.motion.len() - 1
     }
 
-    /// Value of an output.
+    /// Value of an output, SI.
     pub fn value(&self, output: usize) -> f64 {
         self.0.measured.value(self.last(), output)[0]
     }
 
-    /// True if the mechanism follows a variable there.
+    /// True if the mechanism follows a variable in this posture.
     pub fn follows(&self, variable: VariableId) -> bool {
         self.0.sensitivities.at(self.last(), variable.0).is_some()
     }
 
-    /// The derivative of an output by a variable that it follows.
+    /// Derivative of an output by a variable that the mechanism follows.
     pub fn d(&self, output: usize, variable: VariableId) -> f64 {
         derivative(&self.0, self.last(), output, variable)
     }
 }
 
-/// The derivative of an output at an output time; NaN where the mechanism cannot follow the variable.
+/// Derivative of an output at an output time; NaN if the mechanism cannot follow the variable.
 pub(super) fn derivative(solution: &Solution, k: usize, output: usize, variable: VariableId) -> f64 {
     let followed = solution.sensitivities.at(k, variable.0).is_some();
     if followed { solution.measured.d(k, variable, output)[0] } else { f64::NAN }
 }
 
-/// The model in which every driver goes from where it is drawn to where it stood.
-pub(super) fn standing(model: &Model, places: &[f64]) -> Model {
-    let [begin, end] = STANDS;
+/// Model in which every driver moves from the design configuration to its position in a posture.
+pub(super) fn posture_model(model: &Model, places: &[f64]) -> Model {
+    let [begin, end] = PHASE_ENDS;
     let mut laws = Vec::new();
     let mut formulas = Vec::new();
     for (d, place) in places.iter().enumerate() {
@@ -60,11 +60,11 @@ pub(super) fn standing(model: &Model, places: &[f64]) -> Model {
     Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0))
 }
 
-/// A posture of a design.
+/// Solves a posture of a design.
 ///
 /// # Errors
-/// What kept the mechanism from it.
-pub(super) fn stand(
+/// The [`Stop`] that prevents the posture.
+pub(super) fn solve_posture(
     analysis: &Analysis<'_>,
     design: &[f64],
     cost: &mut StudyCost,

@@ -1,4 +1,4 @@
-//! One damped Gauss-Newton step of goals that are squares, under bounds and linearised limits.
+//! Damped Gauss-Newton step for squared goals, with bounds and linearised limits.
 //!
 //! ```text
 //! min  |r + J x|^2 + mu |x|^2    so that    0 <= at + x <= 1,    c + C x <= 0        J, C: by the parts of the bounds
@@ -10,36 +10,36 @@ use crate::linalg::least_squares;
 
 use super::problem::{LimitRow, Point, Problem};
 
-/// Weight of an active limit, as a multiple of the norm of the strongest column of the misfits.
+/// Weight of an active limit, relative to the norm of the strongest column of the misfits.
 const HEAVY: f64 = 1e4;
-/// Linearised limits that are exceeded by less than this part of their scale are kept.
+/// Linearised limits are satisfied if they are exceeded by less than this fraction of their scale.
 const EXCEEDED: f64 = 1e-10;
-/// Bounds that are exceeded by less than this part of their width are kept.
+/// Bounds are satisfied if they are exceeded by less than this fraction of their width.
 const BEYOND: f64 = 1e-13;
-/// Multipliers above minus this part of the largest possible gradient are not negative.
+/// A multiplier is negative if it is below minus this fraction of the largest possible gradient.
 const NEGATIVE: f64 = 1e-12;
-/// Maximum number of releases of one constraint: cycles end.
+/// Maximum number of releases of one constraint, to break cycles.
 const RELEASES: usize = 3;
 
-/// A step and its predicted effect.
+/// Step with its predicted effect.
 pub(super) struct GaussNewton {
-    /// Change of every searched variable, as a part of its bounds.
+    /// Change of every searched variable, as a fraction of its bounds.
     pub step: Vec<f64>,
-    /// Predicted decrease for linear misfits, as a part of the objective.
+    /// Predicted decrease for linear misfits, as a fraction of the objective.
     pub promise: f64,
 }
 
 /// A constraint of the step.
 #[derive(Clone, Copy, PartialEq)]
 enum Constraint {
-    /// A bound of a variable, by its number.
+    /// Bound of a variable, by its index.
     Bound(usize),
-    /// A limit, by the number of its row.
+    /// Limit, by the index of its row.
     Limit(usize),
 }
 
 impl GaussNewton {
-    /// `damping` is mu as a part of the largest curvature.
+    /// Computes the step; `damping` is mu as a fraction of the largest curvature.
     pub fn new(problem: &Problem<'_>, point: &Point, limit_scales: &[f64], damping: f64) -> Self {
         let spans: Vec<f64> = problem.bounds.iter().map(|[low, high]| high - low).collect();
         let (n, at) = (spans.len(), problem.parts(&point.design));
@@ -54,11 +54,11 @@ impl GaussNewton {
             |x: &[f64]| -> Vec<f64> { (0..rows).map(|k| values[k] + along(&|v| misfit(k, v), x)).collect() };
         let exceeds_after =
             |row: &LimitRow, x: &[f64]| row.exceeds / limit_scales[row.of] + along(&|v| limit(row, v), x);
-        // Steps of the variables that are at a bound, and the rows of the active limits.
+        // Steps of variables at a bound, and rows of the active limits.
         let mut fixed: Vec<Option<f64>> = vec![None; n];
         let mut active: Vec<usize> = (0..point.limits.len()).filter(|k| point.limits[*k].equal).collect();
         let mut released: Vec<Constraint> = Vec::new();
-        // The shortest step for the active constraints.
+        // Shortest step for the active constraints.
         let solve = |fixed: &[Option<f64>], active: &[usize]| -> Vec<f64> {
             let mut x: Vec<f64> = fixed.iter().map(|x| x.unwrap_or(0.0)).collect();
             let free: Vec<usize> = (0..n).filter(|v| fixed[*v].is_none()).collect();
@@ -86,7 +86,7 @@ impl GaussNewton {
             x
         };
         let mut step = solve(&fixed, &active);
-        // Every constraint may be added once, and again after each of its releases.
+        // Every constraint may be added once, and again after each release.
         for _ in 0..(RELEASES + 1) * (2 * n + point.limits.len() + 1) {
             let is_beyond =
                 |v: &usize| fixed[*v].is_none() && !(-BEYOND..=1.0 + BEYOND).contains(&(at[*v] + step[*v]));

@@ -1,11 +1,10 @@
-//! The design that serves some goals best, within bounds and limits: from what moves a curve to the hardpoints that
-//! give it.
+//! Optimisation: the design that minimises weighted goals within bounds and limits.
 //!
-//! Goals and limits are metrics of the motions, with exact derivatives. Where all goals are squares (a curve fitted, a
-//! target met) and only bounds limit the design, the search is one of bounded least squares; otherwise sequential
-//! programming. Goals that count by their greatest value (`max` metrics) are searched as `t` with every part of the
-//! curve below `t`, so that minimax needs nothing of the user. A design whose motion does not assemble, locks, or
-//! reaches a dead point is a step that was refused: the search steps back and goes on.
+//! Goals and limits are metrics of the motions, with exact derivatives. If all goals are squares (a curve fitted, a
+//! target met) and only bounds limit the design, bounded least squares are used, otherwise sequential programming. For
+//! goals on a maximum (`max` metrics) the search minimises `t` with every part of the curve below `t`, so minimax
+//! problems need no reformulation. If the motion of a design does not assemble, locks, or reaches a singular position,
+//! the step is rejected: the search steps back and continues.
 
 mod gauss_newton;
 mod optimality;
@@ -27,96 +26,97 @@ pub use optimality::{ActiveConstraint, Optimality};
 use problem::{Point, Problem, Refusal};
 use solver::{Memory, Sequential, Solver, least_squares};
 
-/// A limit that is exceeded by less than this part of its scale is kept: the rest is round-off of the search.
+/// A limit is satisfied if it is exceeded by less than this fraction of its scale: the rest is round-off of the search.
 pub const LIMIT_KEPT: f64 = 1e-8;
 use LIMIT_KEPT as KEPT;
-/// A design this near to optimal is an optimum.
+/// Optimality residual below which a design is an optimum.
 const OPTIMAL: f64 = 1e-6;
-/// A search that came to rest short of this, relative to the scale of the goals or to the gradient at the start, starts
-/// again where it is ...
+/// A search that comes to rest above this residual, relative to the scale of the goals or to the gradient at the start,
+/// is restarted from its best design ...
 const SHARP: f64 = 5e-9;
-/// ... as often as this.
+/// ... at most this number of times.
 const AGAIN: usize = 3;
 /// Relative change of the objective below which a search is at rest.
 const NO_LESS: f64 = 1e-14;
-/// ... and so has one whose step is less than this part of the bounds.
+/// A search is also at rest if its step is below this fraction of the bounds.
 const RESTING: f64 = 1e-13;
-/// Objectives that differ by less than this part are the same but for round-off: of such designs the one nearer to
-/// optimal is the better.
+/// Objectives with a relative difference below this are equal to round-off; the design with the smaller optimality
+/// residual is then the better one.
 const THE_SAME: f64 = 1e-12;
-/// A run that takes away so much of what kept the design from an optimum was worth it, whatever it did to the
-/// objective.
+/// A run that reduces the optimality residual to this fraction is progress, whatever its effect on the objective.
 const NEARER: f64 = 0.5;
-/// Gauss-Newton steps that promise less than this part of the objective are not made: the rest is round-off.
+/// Gauss-Newton steps with a smaller predicted decrease, as a fraction of the objective, are not made: the rest is
+/// round-off.
 const NO_PROMISE: f64 = 1e-14;
-/// Initial damping of Gauss-Newton steps, as a part of the largest curvature.
+/// Initial damping of Gauss-Newton steps, as a fraction of the largest curvature.
 const DAMPING: f64 = 1e-4;
 /// Factor by which the damping changes after a step.
 const DAMPED: f64 = 3.0;
 /// Minimum damping: the square of the round-off in derivatives of motions.
 const LEAST_DAMPING: f64 = 1e-22;
-/// Maximum number of steps that lead back to a valley or a limit ...
+/// Maximum number of corrector steps that return to a valley or a limit ...
 const CORRECTIONS: usize = 2;
 /// ... and the factor of their damping.
 const CORRECTING: f64 = 1e4;
-/// A Gauss-Newton step that gains this part of what it promised is a good one.
+/// A Gauss-Newton step is good if it achieves this fraction of its predicted decrease.
 const GOOD: f64 = 0.25;
-/// Steps that take away less than this part of the objective, and less than they promised, are idle ...
+/// A step is idle if it achieves less than this fraction of the objective and less than predicted ...
 const WEAK: f64 = 0.05;
-/// ... and after this number of them the misfits are too curved for Gauss-Newton steps: others make an end of it.
+/// ... and after this number of idle steps the misfits are too curved for Gauss-Newton steps: other solvers finish the
+/// search.
 const IDLE: usize = 4;
-/// Then Gauss-Newton steps are tried again only where they promise this part of the objective.
+/// Gauss-Newton steps are then tried again only if they predict a decrease by this fraction of the objective.
 const MUCH: f64 = 0.5;
-/// The first step promises this part of what the longest one promises.
+/// Predicted decrease of the first step, as a fraction of that of the longest step.
 const FAIR: f64 = 0.1;
-/// A step that makes the objective this many times greater is not corrected.
+/// A step that increases the objective by this factor is not corrected.
 const ASTRAY: f64 = 1e4;
-/// Squares under limits that do not fall to half within this number of iterations are left to Gauss-Newton steps.
+/// Squares under limits that do not halve within this number of iterations switch to Gauss-Newton steps ...
 const PATIENCE: usize = 20;
-/// ... which are better if they halve the objective.
+/// ... which are preferred if they reduce the objective to this fraction.
 const HALVED: f64 = 0.5;
-/// The first solver has done its work where a step gains less than this part of the objective: others make an end of
-/// it.
+/// The first solver hands over if a step gains less than this fraction of the objective.
 const HARDLY_LESS: f64 = 1e-6;
-/// A start that cannot be judged is drawn nearer that many times.
+/// Maximum number of trials for a start that cannot be evaluated; each is half as far from the nominal design as the
+/// one before.
 const HALVINGS: i32 = 8;
-/// Low-discrepancy points have that many coordinates; further variables start where they are drawn.
+/// Maximum dimension of the low-discrepancy points; further variables start at their nominal values.
 const MOST_DIMENSIONS: usize = 256;
 
 /// Result of an optimisation.
 #[derive(Clone, Debug)]
 pub struct OptimizationResult {
-    /// The nominal design; `None` where it cannot be judged.
-    pub drawn: Option<DesignAssessment>,
+    /// Nominal design; `None` if it cannot be evaluated.
+    pub nominal: Option<DesignAssessment>,
     /// Reason why the nominal design cannot be evaluated.
     pub nominal_failure: Option<FailedDesign>,
-    /// The searches, one per start, in order; that of number 0 starts from the nominal design.
+    /// Searches in the order of their starts; number 0 starts from the nominal design.
     pub searches: Vec<SearchResult>,
-    /// The best of them, by its place there: of those that keep all limits the one with the least objective, of others
-    /// the one that exceeds them least. `None` where none could start.
+    /// Index of the best search: the lowest objective among those that satisfy all limits, otherwise the smallest
+    /// violation. `None` if none could start.
     pub best: Option<usize>,
-    /// All that it cost.
+    /// Total cost.
     pub cost: StudyCost,
 }
 
-/// A design, judged.
+/// Evaluated design with its goals and limits.
 #[derive(Clone, Debug, Default)]
 pub struct DesignAssessment {
-    /// The values of all variables of the model, m, rad or plain.
+    /// Values of all variables of the model, m, rad or plain.
     pub design: Vec<f64>,
-    /// Objective: the weighted sum over all goals, without unit.
+    /// Objective: weighted sum of all goals, dimensionless.
     pub objective: f64,
-    /// By how much the limit is exceeded that is exceeded most, as a part of its scale; 0 where all are kept.
+    /// Largest violation of a limit, as a fraction of its scale; 0 if all are satisfied.
     pub violation: f64,
-    /// The least margin to a singular position in any motion, where it is known.
+    /// Minimum margin to a singular position over all motions, 0 to 1, if known.
     pub margin: Option<f64>,
-    /// Per goal and motion in which it is taken, its value in SI.
+    /// Value of each goal in each of its motions: index of the goal, motion, SI value.
     pub goals: Vec<(usize, usize, f64)>,
-    /// Per limit, and motion where it is one of a metric, its value in SI.
+    /// Value of each limit: index of the limit, motion if it is on a metric, SI value.
     pub limits: Vec<(usize, Option<usize>, f64)>,
 }
 
-/// One search.
+/// Result of one search.
 #[derive(Clone, Debug)]
 pub struct SearchResult {
     /// Start values of all variables.
@@ -129,10 +129,10 @@ pub struct SearchResult {
     pub optimality: Optimality,
     /// Iterations, in order, the start first.
     pub iterations: Vec<Iteration>,
-    /// Per searched variable, how much of the change of the objective it brought: along the way, the mean gradient of
-    /// each step times the step.
+    /// Contribution of each searched variable to the change of the objective: the sum over all steps of mean gradient
+    /// times step.
     pub work: Vec<f64>,
-    /// Designs that could not be judged.
+    /// Designs that could not be evaluated.
     pub refused: Vec<FailedDesign>,
     /// Cost of the search.
     pub cost: StudyCost,
@@ -141,89 +141,88 @@ pub struct SearchResult {
 /// Status of a search at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OptimizationStatus {
-    /// At an optimum.
+    /// Converged to an optimum.
     Optimal,
     /// No step makes progress, although the conditions of an optimum are not satisfied.
     Stuck,
-    /// At the design that exceeds the limits least, or as near to it as no step got further: they cannot all be kept
-    /// there.
+    /// Ended at the design with the smallest violation that was found: not all limits can be satisfied there.
     LimitsNotKept,
-    /// After as many iterations as it was allowed.
+    /// The iteration limit was reached.
     IterationLimit,
-    /// By the caller.
+    /// The caller ended the search.
     Interrupted,
-    /// It could not start: see [`SearchResult::refused`].
+    /// The search could not start: see [`SearchResult::refused`].
     NoStart,
 }
 
 /// One iteration of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Iteration {
-    /// Number; 0 is the start.
+    /// Number of the iteration; 0 is the start.
     pub number: usize,
-    /// The objective there.
+    /// Objective at the current design.
     pub objective: f64,
-    /// As [`DesignAssessment::violation`].
+    /// Violation at the current design, as [`DesignAssessment::violation`].
     pub violation: f64,
-    /// Length of the step, as the largest fraction of a variable's bounds.
+    /// Length of the step: the largest change of a variable as a fraction of its bounds.
     pub step: f64,
-    /// The variable that went farthest, and by how much in its unit.
+    /// Variable with that change, and the change in its unit.
     pub most: Option<(VariableId, f64)>,
-    /// Designs looked at so far, in this search.
+    /// Number of designs evaluated so far in this search.
     pub designs: usize,
-    /// The best design so far: the values of all variables of the model, m, rad or plain.
+    /// Best design so far: values of all variables of the model, m, rad or plain.
     pub best: Vec<f64>,
 }
 
-/// A design that could not be judged.
+/// Design that could not be evaluated.
 #[derive(Clone, Debug)]
 pub struct FailedDesign {
-    /// The values of all variables.
+    /// Values of all variables, m, rad or plain.
     pub design: Vec<f64>,
-    /// In which motion.
+    /// Index of the motion, if one failed.
     pub motion: Option<usize>,
-    /// Why.
+    /// Reason.
     pub why: String,
 }
 
 /// Progress reports of a search.
 #[derive(Clone, Copy, Debug)]
 pub enum SearchProgress<'s> {
-    /// It did an iteration.
+    /// An iteration was completed.
     Iteration(&'s Iteration),
-    /// It ended.
+    /// The search ended.
     End(&'s SearchResult),
 }
 
 /// Options of an optimisation besides those of the model file.
 pub struct OptimizationRequest<'w> {
-    /// Receives every iteration and of the end of every search, by its number, and may end them all.
+    /// Receives every iteration and the end of every search, with the number of the search, and may end all searches.
     pub progress: &'w mut (dyn FnMut(usize, SearchProgress<'_>) -> ControlFlow<()> + Send),
-    /// Is asked at every output time of every motion whether to go on.
+    /// Called at every output time of every motion; returns false to end the searches.
     pub more: &'w (dyn Fn() -> bool + Sync),
-    /// Searches run on that many threads; what they find does not depend on it.
+    /// Number of threads. The results do not depend on it.
     pub threads: NonZero<usize>,
-    /// The number of the first start: 0 is the nominal design. Searches from other numbers can be done elsewhere.
+    /// Number of the first start: 0 is the nominal design. Starts can be distributed over several calls.
     pub first: usize,
 }
 
-/// Searches for the design that serves the goals best.
+/// Minimises the goals over the design variables.
 ///
 /// `motions` are those of the model ([`Model::motions`]), in order.
 pub fn optimize(
     model: &Model,
     motions: &Motions<'_>,
-    asked: &OptimizationSettings,
-    searching: OptimizationRequest<'_>,
+    settings: &OptimizationSettings,
+    request: OptimizationRequest<'_>,
 ) -> OptimizationResult {
-    let problem = Problem::new(model, motions, asked);
-    let OptimizationRequest { progress, more, threads, first } = searching;
+    let problem = Problem::new(model, motions, settings);
+    let OptimizationRequest { progress, more, threads, first } = request;
     let mut cost = StudyCost::default();
-    let (drawn, nominal_failure) = match problem.at(vec![0.0; model.variables.len()], &mut cost, more) {
-        Ok(point) => (Some(judged(&problem, &point, &limit_scales(&problem, &point))), None),
-        Err(refusal) => (None, Some(refused(vec![0.0; model.variables.len()], refusal))),
+    let (nominal, nominal_failure) = match problem.at(vec![0.0; model.variables.len()], &mut cost, more) {
+        Ok(point) => (Some(assess(&problem, &point, &limit_scales(&problem, &point))), None),
+        Err(refusal) => (None, Some(failed_design(vec![0.0; model.variables.len()], refusal))),
     };
-    let starts: Vec<Vec<f64>> = (0..asked.starts.max(1)).map(|k| start(&problem, first + k)).collect();
+    let starts: Vec<Vec<f64>> = (0..settings.starts.max(1)).map(|k| start(&problem, first + k)).collect();
     let (next, ended) = (AtomicUsize::new(0), std::sync::atomic::AtomicBool::new(false));
     let progress = Mutex::new(progress);
     let searches = Mutex::new(starts.iter().map(|_| None).collect::<Vec<Option<SearchResult>>>());
@@ -231,8 +230,8 @@ pub fn optimize(
     let work = || {
         while let Some(k) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|k| *k < starts.len()) {
             let tell = |of: SearchProgress<'_>| {
-                let told = (progress.lock().expect("no telling before has panicked"))(k, of);
-                if told.is_break() {
+                let flow = (progress.lock().expect("no telling before has panicked"))(k, of);
+                if flow.is_break() {
                     ended.store(true, Ordering::Relaxed);
                 }
             };
@@ -249,47 +248,47 @@ pub fn optimize(
     let searches: Vec<SearchResult> =
         searches.into_iter().map(|s| s.expect("every start was searched from")).collect();
     searches.iter().for_each(|s| cost += s.cost);
-    OptimizationResult { drawn, nominal_failure, best: best(&searches), searches, cost }
+    OptimizationResult { nominal, nominal_failure, best: best(&searches), searches, cost }
 }
 
-/// Judges one design, given by the values of all variables of the model.
+/// Evaluates the goals and limits of one design, given by the values of all variables of the model.
 ///
 /// # Errors
-/// Fails where a motion stops, comes closer to a singular position than the margin that is requested, or a goal has no
+/// A [`FailedDesign`] if a motion stops, comes closer to a singular position than the required margin, or a goal has no
 /// value.
 pub fn judge(
     model: &Model,
     motions: &Motions<'_>,
-    asked: &OptimizationSettings,
+    settings: &OptimizationSettings,
     design: &[f64],
 ) -> Result<DesignAssessment, FailedDesign> {
-    let problem = Problem::new(model, motions, asked);
+    let problem = Problem::new(model, motions, settings);
     let design = design.iter().copied().chain(std::iter::repeat(0.0)).take(model.variables.len()).collect();
-    let judged_at = |point: Point| judged(&problem, &point, &limit_scales(&problem, &point));
+    let judged_at = |point: Point| assess(&problem, &point, &limit_scales(&problem, &point));
     match problem.at(design, &mut StudyCost::default(), &|| true) {
         Ok(point) => Ok(judged_at(point)),
-        Err(refusal) => Err(refused(Vec::new(), refusal)),
+        Err(refusal) => Err(failed_design(Vec::new(), refusal)),
     }
 }
 
-/// The k-th start, as parts of the bounds: the nominal design, then points that fill the bounds evenly.
+/// Start k, as fractions of the bounds: the nominal design, then low-discrepancy points.
 fn start(problem: &Problem<'_>, k: usize) -> Vec<f64> {
-    let drawn = problem.parts(&vec![0.0; problem.model.variables.len()]);
-    let dimension = |(d, drawn): (usize, f64)| match k {
-        0 => drawn,
-        _ if d >= MOST_DIMENSIONS => drawn,
+    let nominal = problem.parts(&vec![0.0; problem.model.variables.len()]);
+    let dimension = |(d, nominal): (usize, f64)| match k {
+        0 => nominal,
+        _ if d >= MOST_DIMENSIONS => nominal,
         _ => f64::from(sample(k as u32, d as u32, 0)),
     };
-    drawn.into_iter().enumerate().map(dimension).collect()
+    nominal.into_iter().enumerate().map(dimension).collect()
 }
 
-/// The best of some searches.
+/// Index of the best search.
 fn best(searches: &[SearchResult]) -> Option<usize> {
     let found = |k: &usize| searches[*k].found.as_ref();
     let rank = |k: &usize| {
-        let judged = found(k).expect("only those that found something are ranked");
-        let kept = judged.violation <= KEPT;
-        (!kept, if kept { judged.objective } else { judged.violation })
+        let assessment = found(k).expect("only those that found something are ranked");
+        let kept = assessment.violation <= KEPT;
+        (!kept, if kept { assessment.objective } else { assessment.violation })
     };
     let order = |a: &usize, b: &usize| {
         let ([a, b], [x, y]) = ([rank(a).0, rank(b).0], [rank(a).1, rank(b).1]);
@@ -305,11 +304,11 @@ fn best(searches: &[SearchResult]) -> Option<usize> {
     (0..searches.len()).filter(as_good).min_by(|a, b| residual(a).total_cmp(&residual(b)))
 }
 
-fn refused(design: Vec<f64>, Refusal { motion, why, .. }: Refusal) -> FailedDesign {
+fn failed_design(design: Vec<f64>, Refusal { motion, why, .. }: Refusal) -> FailedDesign {
     FailedDesign { design, motion, why }
 }
 
-fn judged(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> DesignAssessment {
+fn assess(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> DesignAssessment {
     let goals = problem.goals.iter().zip(&point.goal_values).map(|(t, v)| (t.of, t.motion, *v));
     let limits = problem.limits.iter().zip(&point.limit_values);
     DesignAssessment {
@@ -333,7 +332,7 @@ fn limit_scales(problem: &Problem<'_>, point: &Point) -> Vec<f64> {
     scales.into_iter().map(|s| if s > 0.0 { s } else { 1.0 }).collect()
 }
 
-/// One search from one start.
+/// Runs one search from one start.
 fn search(
     problem: &Problem<'_>,
     start: &[f64],
@@ -342,13 +341,13 @@ fn search(
 ) -> SearchResult {
     let memory = Memory::new(problem, more);
     let n = start.len();
-    // A start that cannot be judged is drawn nearer to the nominal design, half of the way each time.
-    let drawn = problem.parts(&vec![0.0; problem.model.variables.len()]);
+    // A start that cannot be evaluated is moved half of the way to the nominal design each time.
+    let nominal = problem.parts(&vec![0.0; problem.model.variables.len()]);
     let nearer = |halvings: i32| -> Vec<f64> {
         let part = 0.5_f64.powi(halvings);
-        drawn.iter().zip(start).map(|(drawn, start)| drawn + part * (start - drawn)).collect()
+        nominal.iter().zip(start).map(|(nominal, start)| nominal + part * (start - nominal)).collect()
     };
-    let tries = if start == drawn { 1 } else { HALVINGS };
+    let tries = if start == nominal { 1 } else { HALVINGS };
     let starts = (0..tries).map(nearer).take_while(|_| !memory.interrupted());
     let judged_start =
         |start: Vec<f64>| memory.at(&start, |found| found.as_ref().ok().cloned()).map(|p| (start, p));
@@ -370,20 +369,21 @@ fn search(
     if let Some((start, point)) = point {
         let mut run = Descent::new(problem, &memory, &start, point);
         run.go(&mut search, tell);
-        search.found = Some(judged(problem, &run.best, &run.scales));
+        search.found = Some(assess(problem, &run.best, &run.scales));
         search.optimality = run.optimality(&run.best);
         search.status = run.status(&search);
     }
-    search.refused = memory.refused.take().into_iter().map(|(design, why)| refused(design, why)).collect();
+    search.refused =
+        memory.refused.take().into_iter().map(|(design, why)| failed_design(design, why)).collect();
     search.cost = memory.cost.take();
     search
 }
 
-/// A search under way.
+/// State of a search.
 struct Descent<'p> {
     problem: &'p Problem<'p>,
     memory: &'p Memory<'p>,
-    /// Scales of the limits, and of the gradient at the start.
+    /// Scales of the limits, from the start.
     scales: Vec<f64>,
     steepest: f64,
     /// Current point, as fractions of the bounds.
@@ -391,7 +391,7 @@ struct Descent<'p> {
     here: Point,
     best: Point,
     ran_out: bool,
-    /// Gauss-Newton steps were idle.
+    /// True if Gauss-Newton steps were idle.
     is_curved: bool,
 }
 
@@ -416,7 +416,7 @@ impl<'p> Descent<'p> {
         Optimality::of(self.problem, point, &self.scales, self.steepest)
     }
 
-    /// Returns whether a search can end here.
+    /// True if a search can end at a point.
     fn is_sharp(&self, point: &Point) -> bool {
         let Optimality { residual, left_of_start, .. } = self.optimality(point);
         self.violation(point) <= KEPT && residual < OPTIMAL && (residual < SHARP || left_of_start < SHARP)
@@ -426,7 +426,7 @@ impl<'p> Descent<'p> {
         point.violation(|k| self.scales[k])
     }
 
-    /// True if one design is better than another: it keeps the limits, and serves the goals better.
+    /// True if one design is better than another: it satisfies the limits, or has the lower objective.
     fn is_better(&self, one: &Point, other: &Point) -> bool {
         let [a, b] = [one, other].map(|p| self.violation(p));
         match [a <= KEPT, b <= KEPT] {
@@ -443,8 +443,8 @@ impl<'p> Descent<'p> {
         }
     }
 
-    /// The solver that is made for goals and limits like these, from where the search is. Least squares come near to
-    /// bounds from within, slowly: what they leave is left to sequential programming.
+    /// Solver for this kind of goals and limits, started at the current point. Least squares approach bounds slowly
+    /// from within; sequential programming finishes such searches.
     fn solver(&self, squares: bool) -> Option<Box<dyn Solver + 'p>> {
         if squares {
             least_squares(self.memory, &self.at, &self.here).map(|s| Box::new(s) as Box<dyn Solver + 'p>)
@@ -459,20 +459,20 @@ impl<'p> Descent<'p> {
         let squares = self.here.is_squares();
         let mut idle = 0;
         for run in 0..=AGAIN {
-            let stands = |run: &Self| {
+            let state = |run: &Self| {
                 (run.best.objective(), run.violation(&run.best), run.optimality(&run.best).residual)
             };
-            let before = stands(self);
+            let before = state(self);
             self.descend(run, search, tell);
             if !self.ran_out {
                 self.polish(search, tell);
             }
-            let after = stands(self);
+            let after = state(self);
             let less = before.0 - after.0 > THE_SAME * before.0.abs() || after.1 < before.1;
             let gained = run == 0 || less || after.2 < NEARER * before.2;
             let sharp = self.is_sharp(&self.best);
             idle = if gained { 0 } else { idle + 1 };
-            // Where there are two solvers, what one cannot improve is left to the other.
+            // If there are two solvers, the other one continues when one makes no progress.
             let at_rest = idle > usize::from(squares);
             if sharp || at_rest || self.ran_out || self.memory.interrupted() {
                 return;
@@ -481,16 +481,16 @@ impl<'p> Descent<'p> {
         }
     }
 
-    /// Returns to the best design, and forgets the curvature found elsewhere.
+    /// Returns to the best design.
     fn return_to_best(&mut self) {
         self.here = self.best.clone();
         self.at = self.problem.parts(&self.here.design);
     }
 
-    /// Damped Gauss-Newton steps under bounds and limits from the best design, as long as they gain.
+    /// Damped Gauss-Newton steps under bounds and limits from the best design, as long as they make progress.
     ///
-    /// Small misfits lie in narrow curved valleys, and on curved limits: a step along them leaves them. Up to
-    /// [`CORRECTIONS`] further steps with much greater damping lead back before the designs are compared.
+    /// Small misfits lie in narrow curved valleys and on curved limits, which a straight step leaves. Up to
+    /// [`CORRECTIONS`] further steps with much greater damping return to the valley before the designs are compared.
     fn polish(&mut self, search: &mut SearchResult, tell: &mut dyn FnMut(&Iteration)) {
         let n = self.at.len();
         let promise =
@@ -515,7 +515,7 @@ impl<'p> Descent<'p> {
                 if self.memory.interrupted() {
                     return;
                 }
-                if search.iterations.len() > self.problem.asked.iterations {
+                if search.iterations.len() > self.problem.settings.iterations {
                     self.ran_out = true;
                     return;
                 }
@@ -560,7 +560,7 @@ impl<'p> Descent<'p> {
         }
     }
 
-    /// Lets a solver run to its end; the first time, least squares only as long as they gain much.
+    /// Runs a solver to its end; in the first run, least squares end as soon as their progress is slow.
     fn descend(&mut self, run: usize, search: &mut SearchResult, tell: &mut dyn FnMut(&Iteration)) {
         let squares = run.is_multiple_of(2) && self.here.is_squares();
         let Some(mut solver) = self.solver(squares) else { return };
@@ -569,7 +569,7 @@ impl<'p> Descent<'p> {
         loop {
             if hands_over && search.iterations.len() >= since.0 + patience {
                 if self.best.objective() > HALVED * since.1 {
-                    let (slow, stands) = (self.best.objective(), (self.at.clone(), self.here.clone()));
+                    let (slow, state) = (self.best.objective(), (self.at.clone(), self.here.clone()));
                     self.polish(search, tell);
                     if self.best.objective() <= HALVED * slow {
                         self.return_to_best();
@@ -578,13 +578,13 @@ impl<'p> Descent<'p> {
                             None => return,
                         }
                     } else {
-                        (self.at, self.here) = stands;
+                        (self.at, self.here) = state;
                         patience *= 2;
                     }
                 }
                 since = (search.iterations.len(), self.best.objective());
             }
-            if search.iterations.len() > self.problem.asked.iterations {
+            if search.iterations.len() > self.problem.settings.iterations {
                 self.ran_out = true;
                 return;
             }
@@ -614,7 +614,7 @@ impl<'p> Descent<'p> {
         }
     }
 
-    /// Notes an iteration, given where it came from.
+    /// Records an iteration, given the previous point.
     fn note(
         &self,
         search: &mut SearchResult,
@@ -628,7 +628,7 @@ impl<'p> Descent<'p> {
             let [g0, g1] = [point, &self.here].map(|p| p.gradient(n));
             for v in 0..n {
                 let part = (self.at[v] - at[v]).abs();
-                let variable = self.problem.asked.variables[v];
+                let variable = self.problem.settings.variables[v];
                 let by = self.here.design[variable.0] - point.design[variable.0];
                 // df = grad f . db,  by the trapezoidal rule
                 search.work[v] += 0.5 * (g0[v] + g1[v]) * by;

@@ -4,8 +4,8 @@
 //! grad f + sum of lambda_i grad c_i = 0,    lambda_i >= 0,    lambda_i c_i = 0                   (Karush, Kuhn and Tucker)
 //! ```
 //!
-//! with goals that count by their largest value among the `c`: over all that attain it, the weights sum to one. The
-//! multipliers are found by least squares over the active constraints, independent of the solver.
+//! with goals on a maximum among the `c`: the weights of all points that attain it sum to one. The multipliers are
+//! found by least squares over the active constraints, independent of the solver.
 
 use crate::linalg::least_squares;
 
@@ -13,57 +13,57 @@ use super::problem::{Point, Problem, Rows};
 
 /// Distance from its end, as a fraction of its scale, below which a constraint is active.
 const BINDS: f64 = 1e-7;
-/// Misfits below this part of what the bounds of the strongest variable change them by are round-off: motions are
-/// solved to some 1e-14.
+/// Misfits below this fraction of their change over the bounds of the most influential variable are round-off: motions
+/// are solved to about 1e-14.
 const MET: f64 = 1e-12;
-/// The scale of goals that are no squares is at least this part of the gradient at the start: their value alone may
-/// pass through zero.
+/// Minimum scale of goals that are not squares, as a fraction of the gradient at the start, since their value may pass
+/// through zero.
 const LEAST_SCALE: f64 = 1e-6;
 
 /// A constraint that prevents a better design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ActiveConstraint {
-    /// The lower bound of a searched variable, by its place in
+    /// Lower bound of a searched variable, by its index in
     /// [`OptimizationSettings::variables`](crate::model::OptimizationSettings::variables).
     Lower(usize),
-    /// Upper bound.
+    /// Upper bound of a searched variable, by the same index.
     Upper(usize),
-    /// The lower end of a limit, by its place in
+    /// Lower end of a limit, by its index in
     /// [`OptimizationSettings::limits`](crate::model::OptimizationSettings::limits), in a motion.
     Least(usize, Option<usize>),
-    /// The upper end of a limit.
+    /// Upper end of a limit, by the same index, in a motion.
     Most(usize, Option<usize>),
 }
 
 /// Optimality of a design.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Optimality {
-    /// The part of the gradient that no active constraint balances, relative to the scale of the goals: 0 at an
-    /// optimum.
+    /// Part of the gradient that no active constraint balances, relative to the scale of the goals: 0 at an optimum.
     ///
     /// The scale of squares `f = r^T r` is `2 max |J_v| |r|`, so that the residual is the cosine between the misfits
-    /// and their derivatives; that of other goals is their value, and the gradient at the start where that is less.
+    /// and their derivatives. The scale of other goals is their value, but at least a fraction of the gradient at the
+    /// start.
     pub residual: f64,
-    /// The same relative to the gradient at the start.
+    /// Unbalanced gradient relative to the gradient at the start.
     pub left_of_start: f64,
-    /// True if all goals are squares that vanish to round-off: nothing is left to gain.
+    /// True if all goals are squares that vanish to round-off, so that no improvement is possible.
     pub met: bool,
     /// Active constraints, each with the decrease of the objective if it were relaxed by one SI unit (its Lagrange
     /// multiplier).
     pub binding: Vec<(ActiveConstraint, f64)>,
 }
 
-/// A row that may bind: its gradient by the parts of the bounds, and what it is.
+/// Row that may be active: its gradient by fractions of the bounds, and its constraint.
 struct Row {
     d: Vec<f64>,
-    /// The group of peaks that it belongs to.
+    /// Index of its group of peaks.
     peak: Option<usize>,
     equal: bool,
-    /// Active constraint, and the size of one of its SI units in the unit of its gradient.
+    /// Constraint, and the size of one of its SI units in the unit of its gradient.
     binding: Option<(ActiveConstraint, f64)>,
 }
 
-/// The derivatives of those that are greatest.
+/// Derivatives of the rows that attain the maximum.
 fn at_peak(rows: &Rows) -> Vec<&Vec<f64>> {
     let most = rows.greatest();
     let least = rows.values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -106,7 +106,7 @@ impl Optimality {
                     rows.push(Row { d, peak: None, equal: row.equal, binding: Some((binding, scale)) });
                 };
                 let spread = point.spreads.iter().find(|s| row.spread && s.of == row.of);
-                // Of a range, every pair of a highest and a lowest place.
+                // For a range, every pair of a maximum and a minimum.
                 let [high, low] =
                     spread.map_or([Vec::new(), Vec::new()], |s| [&s.ends[0], &s.ends[1]].map(at_peak));
                 for (a, b) in high.iter().flat_map(|a| low.iter().map(move |b| (a, b))) {
@@ -122,7 +122,7 @@ impl Optimality {
                 rows.push(Row { d: by_parts(d), peak: Some(group), equal: false, binding: None });
             }
         }
-        // Rows whose multipliers come out negative do not bind: the most negative one is let go, until none is.
+        // Rows with negative multipliers are not active: the most negative one is released until none is left.
         let mut active: Vec<usize> = (0..rows.len()).collect();
         let weight = gradient.iter().fold(steepest, |most, g| most.max(g.abs())).max(f64::MIN_POSITIVE);
         let met = point.is_met(&spans);
@@ -156,7 +156,7 @@ impl Optimality {
         let mut binding: Vec<(ActiveConstraint, f64)> = Vec::new();
         for (row, multiplier) in active.iter().zip(multipliers) {
             let Some((what, scale)) = rows[*row].binding else { continue };
-            // One limit may bind at several places of a curve at once.
+            // One limit may be active at several times of a curve at once.
             match binding.iter_mut().find(|(known, _)| *known == what) {
                 Some((_, worth)) => *worth += multiplier / scale,
                 None => binding.push((what, multiplier / scale)),
@@ -167,7 +167,7 @@ impl Optimality {
 }
 
 impl Point {
-    /// The greatest norm of a column of the misfits' derivatives, by the parts of the bounds.
+    /// Largest norm of a column of the misfits' derivatives, by fractions of the bounds.
     pub(super) fn strongest(&self, spans: &[f64]) -> f64 {
         let column = |(v, span): (usize, &f64)| {
             self.misfits.d.iter().map(|d| (d[v] * span).powi(2)).sum::<f64>().sqrt()
@@ -175,12 +175,12 @@ impl Point {
         spans.iter().enumerate().map(column).fold(0.0, f64::max)
     }
 
-    /// Returns whether all goals are squares that vanish to round-off.
+    /// True if all goals are squares that vanish to round-off.
     pub(super) fn is_met(&self, spans: &[f64]) -> bool {
         self.has_only_squares() && self.misfit() <= MET * self.strongest(spans)
     }
 
-    /// The gradient that the goals would have if nothing in it cancelled: what the gradient is compared with.
+    /// Scale of the gradient: its size if no terms cancelled.
     fn gradient_scale(&self, spans: &[f64], steepest: f64) -> f64 {
         let strongest = self.strongest(spans);
         let squares = 2.0 * strongest * self.misfit().max(MET * strongest);

@@ -6,32 +6,32 @@ use crate::number::Dual;
 use crate::study::evaluation::{DesignEvaluation, Motions, StudyCost};
 use crate::study::metric::{MetricParts, misfits, peaks};
 
-/// A search for the best design: goals, limits, and the motions that they are taken of.
+/// Goals and limits of an optimisation, and the motions that they are evaluated in.
 #[derive(Clone, Debug)]
 pub(super) struct Problem<'m> {
-    /// The model with all of its cases.
+    /// Model with all of its cases.
     pub model: &'m Model,
     pub motions: &'m Motions<'m>,
-    pub asked: &'m OptimizationSettings,
-    /// Per searched variable, its bounds, in its unit.
+    pub settings: &'m OptimizationSettings,
+    /// Bounds of each searched variable, in its unit.
     pub bounds: Vec<[f64; 2]>,
-    /// Goals in each motion: the goal, the motion, and the index of the metric there.
-    pub goals: Vec<Taken>,
-    /// The same of every limit, with no metric where it is on the design itself.
-    pub limits: Vec<(usize, Option<Taken>)>,
+    /// Goals in each motion.
+    pub goals: Vec<MotionMetric>,
+    /// Index and metric of each limit; no metric for a limit on the design itself.
+    pub limits: Vec<(usize, Option<MotionMetric>)>,
 }
 
 /// A metric in one motion.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Taken {
+pub(super) struct MotionMetric {
     /// Index of the goal or limit.
     pub of: usize,
     pub motion: usize,
-    /// Place in the metrics of that motion.
+    /// Index among the metrics of that motion.
     pub metric: usize,
 }
 
-/// Numbers with their derivatives by the searched variables, in SI and per unit of each.
+/// Numbers with their derivatives by the searched variables, SI and per unit of each.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
     pub values: Vec<f64>,
@@ -49,60 +49,61 @@ impl Rows {
     }
 }
 
-/// A design as a search sees it.
+/// Evaluated design of a search.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Point {
-    /// The values of all variables of the model.
+    /// Values of all variables of the model.
     pub design: Vec<f64>,
-    /// Weighted residuals of goals that count by their squares.
+    /// Weighted residuals of squared goals.
     pub misfits: Rows,
-    /// Weighted values of goals that count by themselves and depend smoothly on the design.
+    /// Weighted values of linear goals that depend smoothly on the design.
     pub plain: Rows,
-    /// Weighted candidates for the largest value, for goals that count by it.
+    /// Weighted candidates for the maximum, for goals on a maximum.
     pub peaks: Vec<Rows>,
-    /// Per row of a limit: which limit it belongs to, and by how much it is exceeded, in its unit.
+    /// Rows of the limits: index of the limit, and excess in its unit.
     pub limits: Vec<LimitRow>,
-    /// Candidates for the ends of curves with a limited range.
+    /// Candidates for both ends of curves with a limited range.
     pub spreads: Vec<Spread>,
-    /// Per goal taken, its value; per limit taken, likewise.
+    /// Values of the goals, in the order of [`Problem::goals`].
     pub goal_values: Vec<f64>,
+    /// Values of the limits, in the order of [`Problem::limits`].
     pub limit_values: Vec<f64>,
-    /// The least margin to a singular position in any motion, where it is known.
+    /// Minimum margin to a singular position over all motions, if known.
     pub margin: Option<f64>,
 }
 
-/// A limit, or one of several numbers that it holds for.
+/// Limit, or one of several numbers that it applies to.
 #[derive(Clone, Debug)]
 pub(super) struct LimitRow {
-    /// Place in [`Problem::limits`].
+    /// Index in [`Problem::limits`].
     pub of: usize,
-    /// At most 0 where the limit is kept; 0 where it asks for one value.
+    /// Excess over the limit, at most 0 if it is satisfied; for an equality, its deviation.
     pub exceeds: f64,
     pub d: Vec<f64>,
     pub equal: bool,
-    /// True if it is the upper one.
+    /// True for the upper end.
     pub upper: bool,
-    /// True if there is a [`Spread`] of it, which says more of how it goes with the design.
+    /// True if a [`Spread`] describes its dependence on the design in more detail.
     pub spread: bool,
 }
 
-/// Range of a curve and its limit: largest value minus smallest value.
+/// Range of a curve with a limit: maximum minus minimum.
 #[derive(Clone, Debug)]
 pub(super) struct Spread {
-    /// Place in [`Problem::limits`].
+    /// Index in [`Problem::limits`].
     pub of: usize,
     pub most: f64,
-    /// All that may be the greatest value, and all that may be the least one, negative.
+    /// Candidates for the maximum, and candidates for the minimum with negative sign.
     pub ends: [Rows; 2],
 }
 
-/// A design that cannot be judged.
+/// Reason why a design cannot be evaluated.
 #[derive(Clone, Debug)]
 pub(super) struct Refusal {
-    /// In which motion.
+    /// Index of the motion, if one failed.
     pub motion: Option<usize>,
     pub why: String,
-    /// True if it was the caller who ended it.
+    /// True if the caller ended the evaluation.
     pub interrupted: bool,
 }
 
@@ -114,22 +115,23 @@ impl Point {
         squares + plain + self.peaks.iter().map(Rows::greatest).sum::<f64>()
     }
 
-    /// Returns whether all goals are squares.
+    /// True if all goals are squares.
     pub fn has_only_squares(&self) -> bool {
         self.plain.values.is_empty() && self.peaks.is_empty()
     }
 
-    /// True if all goals are squares, and nothing but bounds limits the design.
+    /// True if all goals are squares and only bounds limit the design.
     pub fn is_squares(&self) -> bool {
         self.has_only_squares() && self.limits.is_empty()
     }
 
-    /// The norm of the misfits.
+    /// Norm of the misfits.
     pub fn misfit(&self) -> f64 {
         self.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt()
     }
 
-    /// Derivative by every searched variable, where it has one.
+    /// Gradient of the objective by the searched variables. For a goal on a maximum, it is that of the first candidate
+    /// that attains the maximum.
     pub fn gradient(&self, variables: usize) -> Vec<f64> {
         let mut g = vec![0.0; variables];
         let mut add = |by: f64, d: &[f64]| g.iter_mut().zip(d).for_each(|(g, d)| *g += by * d);
@@ -146,7 +148,7 @@ impl Point {
         g
     }
 
-    /// By how much the limit is exceeded that is exceeded most, each as a part of its scale; 0 where all are kept.
+    /// Largest violation of a limit as a fraction of its scale; 0 if all are satisfied.
     pub fn violation(&self, scale: impl Fn(usize) -> f64) -> f64 {
         let exceeds = |row: &LimitRow| if row.equal { row.exceeds.abs() } else { row.exceeds.max(0.0) };
         self.limits.iter().map(|row| exceeds(row) / scale(row.of)).fold(0.0, f64::max)
@@ -154,31 +156,38 @@ impl Point {
 }
 
 impl<'m> Problem<'m> {
-    pub fn new(model: &'m Model, motions: &'m Motions<'m>, asked: &'m OptimizationSettings) -> Self {
-        let taken = |of: usize, metric: usize| {
+    pub fn new(model: &'m Model, motions: &'m Motions<'m>, settings: &'m OptimizationSettings) -> Self {
+        let entry = |of: usize, metric: usize| {
             let Model { metrics, .. } = model;
             let wanted = &metrics[metric];
             let motion = move |motion: usize| {
                 let metric = motions.model(motion).metrics.iter().position(|m| m.name == wanted.name)?;
-                Some(Taken { of, motion, metric })
+                Some(MotionMetric { of, motion, metric })
             };
             (0..motions.len()).filter_map(motion)
         };
-        let goals = asked.goals.iter().enumerate().flat_map(|(k, goal)| taken(k, goal.metric)).collect();
+        let goals = settings.goals.iter().enumerate().flat_map(|(k, goal)| entry(k, goal.metric)).collect();
         let limit = |(k, limit): (usize, &Limit)| match limit.of {
-            LimitTarget::Metric(metric) => taken(k, metric).map(|t| (k, Some(t))).collect::<Vec<_>>(),
+            LimitTarget::Metric(metric) => entry(k, metric).map(|t| (k, Some(t))).collect::<Vec<_>>(),
             _ => vec![(k, None)],
         };
-        let limits = asked.limits.iter().enumerate().flat_map(limit).collect();
+        let limits = settings.limits.iter().enumerate().flat_map(limit).collect();
         let bounds = |v: &VariableId| model.variables[v.0].bounds.unwrap_or([0.0; 2]);
-        Self { bounds: asked.variables.iter().map(bounds).collect(), model, motions, asked, goals, limits }
+        Self {
+            bounds: settings.variables.iter().map(bounds).collect(),
+            model,
+            motions,
+            settings,
+            goals,
+            limits,
+        }
     }
 
-    /// The values of all variables where the searched ones are so far along their bounds, 0 at the lower one and 1 at
-    /// the upper one.
+    /// Values of all variables, with the searched ones given as fractions of their bounds: 0 at the lower and 1 at the
+    /// upper bound.
     pub fn design(&self, parts: &[f64]) -> Vec<f64> {
         let mut design = vec![0.0; self.model.variables.len()];
-        for ((v, [low, high]), part) in self.asked.variables.iter().zip(&self.bounds).zip(parts) {
+        for ((v, [low, high]), part) in self.settings.variables.iter().zip(&self.bounds).zip(parts) {
             design[v.0] = (low + (high - low) * part).clamp(*low, *high);
         }
         design
@@ -187,7 +196,7 @@ impl<'m> Problem<'m> {
     /// Searched variables as fractions of their bounds.
     pub fn parts(&self, design: &[f64]) -> Vec<f64> {
         let part = |(v, [low, high]): (&VariableId, &[f64; 2])| (design[v.0] - low) / (high - low);
-        self.asked.variables.iter().zip(&self.bounds).map(part).collect()
+        self.settings.variables.iter().zip(&self.bounds).map(part).collect()
     }
 
     /// Value and gradient of a limit on the design itself.
@@ -206,11 +215,11 @@ impl<'m> Problem<'m> {
                 LimitTarget::Metric(_) => unreachable!("it is taken of a motion"),
             }
         };
-        let found: Vec<Dual> = self.asked.variables.iter().map(|v| derivative(*v)).collect();
+        let found: Vec<Dual> = self.settings.variables.iter().map(|v| derivative(*v)).collect();
         (found.first().map_or(f64::NAN, |x| x.v), found.iter().map(|x| x.d).collect())
     }
 
-    /// A design, judged.
+    /// Evaluates a design.
     pub fn at(
         &self,
         design: Vec<f64>,
@@ -225,18 +234,18 @@ impl<'m> Problem<'m> {
         self.margins(&found)?;
         let margins = found.solutions.iter().filter_map(|s| Some(s.motion.least_margin()?.1.value));
         let mut point = Point { design, margin: margins.reduce(f64::min), ..Point::default() };
-        for taken in &self.goals {
-            self.add_goal(*taken, &found, &mut point)?;
+        for entry in &self.goals {
+            self.add_goal(*entry, &found, &mut point)?;
         }
-        for (place, (limit, taken)) in self.limits.iter().enumerate() {
-            self.add_limit(place, *limit, *taken, &found, &mut point)?;
+        for (place, (limit, entry)) in self.limits.iter().enumerate() {
+            self.add_limit(place, *limit, *entry, &found, &mut point)?;
         }
         Ok(point)
     }
 
-    /// True if all motions keep away from singular positions.
+    /// Checks the margins of all motions to singular positions.
     fn margins(&self, found: &DesignEvaluation) -> Result<(), Refusal> {
-        let Some(limit) = self.asked.margin else { return Ok(()) };
+        let Some(limit) = self.settings.margin else { return Ok(()) };
         for (motion, solution) in found.solutions.iter().enumerate() {
             let Some((k, Margin { value, .. })) = solution.motion.least_margin() else { continue };
             if !(value >= limit) {
@@ -250,11 +259,16 @@ impl<'m> Problem<'m> {
         Ok(())
     }
 
-    fn add_goal(&self, taken: Taken, found: &DesignEvaluation, point: &mut Point) -> Result<(), Refusal> {
-        let goal = &self.asked.goals[taken.of];
-        let (value, d) = self.metric(taken, found)?;
+    fn add_goal(
+        &self,
+        entry: MotionMetric,
+        found: &DesignEvaluation,
+        point: &mut Point,
+    ) -> Result<(), Refusal> {
+        let goal = &self.settings.goals[entry.of];
+        let (value, d) = self.metric(entry, found)?;
         point.goal_values.push(value);
-        let metric = &self.motions.model(taken.motion).metrics[taken.metric];
+        let metric = &self.motions.model(entry.motion).metrics[entry.metric];
         let by = |x: f64, d: &[f64]| (goal.weight * x, d.iter().map(|d| goal.weight * d).collect::<Vec<_>>());
         let parts = |parts: Option<MetricParts>, sign: f64| {
             let mut rows = Rows::default();
@@ -264,7 +278,7 @@ impl<'m> Problem<'m> {
             }
             rows
         };
-        let (model, solution) = (self.motions.model(taken.motion), &found.solutions[taken.motion]);
+        let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
         let peaks = |sign: f64| parts(peaks(model, solution, metric, sign), sign);
         match (&metric.take, goal.target) {
             (Reduction::Rms(_) | Reduction::RmsAtPoints(_), _) => {
@@ -285,43 +299,43 @@ impl<'m> Problem<'m> {
                 point.plain.push(x, d);
             }
         }
-        self.finite(taken.motion, &metric.name, point)
+        self.finite(entry.motion, &metric.name, point)
     }
 
     fn add_limit(
         &self,
         place: usize,
         limit: usize,
-        taken: Option<Taken>,
+        entry: Option<MotionMetric>,
         found: &DesignEvaluation,
         point: &mut Point,
     ) -> Result<(), Refusal> {
-        let asked = &self.asked.limits[limit];
-        let (value, d) = match taken {
-            Some(taken) => self.metric(taken, found)?,
-            None => self.of_design(asked, &point.design),
+        let settings = &self.settings.limits[limit];
+        let (value, d) = match entry {
+            Some(entry) => self.metric(entry, found)?,
+            None => self.of_design(settings, &point.design),
         };
         point.limit_values.push(value);
         let negative = |d: &[f64]| d.iter().map(|d| -d).collect::<Vec<_>>();
         let mut push = |exceeds: f64, d: Vec<f64>, equal: bool, upper: bool| {
             point.limits.push(LimitRow { of: place, exceeds, d, equal, upper, spread: false });
         };
-        if let (Some(least), Some(most)) = (asked.least, asked.most)
+        if let (Some(least), Some(most)) = (settings.least, settings.most)
             && least == most
         {
             push(value - most, d, true, true);
             return Ok(());
         }
-        // What is greatest changes its place from design to design: all that may be it are kept within the limit.
-        let parts = |asked: Reduction, sign: f64| {
-            let taken = taken?;
-            let (model, solution) = (self.motions.model(taken.motion), &found.solutions[taken.motion]);
-            let metric = &model.metrics[taken.metric];
-            let has = metric.take == asked && solution.motion.len() > 1;
+        // The time of a maximum varies with the design, so all candidates are kept within the limit.
+        let parts = |settings: Reduction, sign: f64| {
+            let entry = entry?;
+            let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
+            let metric = &model.metrics[entry.metric];
+            let has = metric.take == settings && solution.motion.len() > 1;
             if has { peaks(model, solution, metric, sign) } else { None }
         };
         let all = |sign: f64| parts(if sign > 0.0 { Reduction::Greatest } else { Reduction::Least }, sign);
-        for (end, sign) in [(asked.most, 1.0), (asked.least, -1.0)] {
+        for (end, sign) in [(settings.most, 1.0), (settings.least, -1.0)] {
             let Some(end) = end else { continue };
             match all(sign) {
                 Some(parts) => {
@@ -338,7 +352,7 @@ impl<'m> Problem<'m> {
             }
         }
         let ends = parts(Reduction::Range, 1.0).zip(parts(Reduction::Range, -1.0));
-        if let (Some(most), Some((high, low))) = (asked.most, ends) {
+        if let (Some(most), Some((high, low))) = (settings.most, ends) {
             let rows = |parts: MetricParts, sign: f64| Rows {
                 values: parts.values.iter().map(|x| sign * x).collect(),
                 d: parts.d.iter().map(|d| self.searched(d).iter().map(|d| sign * d).collect()).collect(),
@@ -352,10 +366,10 @@ impl<'m> Problem<'m> {
     }
 
     /// A metric with its derivatives by the searched variables.
-    fn metric(&self, taken: Taken, found: &DesignEvaluation) -> Result<(f64, Vec<f64>), Refusal> {
-        let value = &found.metrics[taken.motion][taken.metric];
-        let name = &self.motions.model(taken.motion).metrics[taken.metric].name;
-        let refusal = |why: String| Refusal { motion: Some(taken.motion), why, interrupted: false };
+    fn metric(&self, entry: MotionMetric, found: &DesignEvaluation) -> Result<(f64, Vec<f64>), Refusal> {
+        let value = &found.metrics[entry.motion][entry.metric];
+        let name = &self.motions.model(entry.motion).metrics[entry.metric].name;
+        let refusal = |why: String| Refusal { motion: Some(entry.motion), why, interrupted: false };
         let Some(x) = value.value else {
             return Err(refusal(format!(
                 "the motion does not reach the place where metric `{name}` is taken"
@@ -363,7 +377,7 @@ impl<'m> Problem<'m> {
         };
         let d = self.searched(&value.d);
         if let Some(v) = d.iter().position(|d| !d.is_finite()) {
-            let variable = &self.model.variables[self.asked.variables[v].0].name;
+            let variable = &self.model.variables[self.settings.variables[v].0].name;
             return Err(refusal(format!(
                 "metric `{name}` has no derivative by `{variable}`, which the mechanism cannot follow"
             )));
@@ -372,7 +386,7 @@ impl<'m> Problem<'m> {
     }
 
     fn searched(&self, d: &[f64]) -> Vec<f64> {
-        self.asked.variables.iter().map(|v| d[v.0]).collect()
+        self.settings.variables.iter().map(|v| d[v.0]).collect()
     }
 
     /// Rejects points with a number that is not finite.
@@ -396,12 +410,13 @@ mod tests {
     use crate::study::test_models::crank_rocker;
     use crate::topology::Formulation;
 
-    /// Central differences of a smooth function at this step, as a part of the bounds, hold to this part of the largest
-    /// number: `step^2` of the third derivative, and round-off by the step.
+    /// Step of central differences, as a fraction of the bounds. For a smooth function they are accurate to this
+    /// fraction of the largest number: truncation by `step^2` times the third derivative, and round-off divided by the
+    /// step.
     const STEP: f64 = 1e-5;
     const AGREES: f64 = 1e-7;
 
-    /// A crank-rocker, its coupler with a point, its rod a distance joint, in two cases, and metrics of every kind.
+    /// A crank-rocker in two cases: its coupler with a point, its rod a distance joint, and metrics of every kind.
     fn four_bar() -> Model {
         let mut draft = crank_rocker().times((0..=40).map(|k| 0.05 * f64::from(k)));
         for (k, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
@@ -470,8 +485,8 @@ mod tests {
         }
     }
 
-    /// All numbers of a point with their derivatives; of the misfits the sum of their squares, since their nodes are
-    /// where the design's own path turns.
+    /// All numbers of a point with their derivatives; for the misfits the sum of their squares, since their nodes are
+    /// the turning points of each design's own path.
     fn numbers(point: &Point) -> Vec<(f64, Vec<f64>)> {
         let rows = |rows: &Rows| rows.values.iter().copied().zip(rows.d.iter().cloned()).collect::<Vec<_>>();
         let squares = Point { misfits: point.misfits.clone(), ..Point::default() };
@@ -485,10 +500,10 @@ mod tests {
 
     #[test]
     fn every_kind_of_goal_and_limit_has_the_derivatives_of_differences() {
-        let (model, asked) = (four_bar(), everything());
+        let (model, settings) = (four_bar(), everything());
         let models = model.motions();
         let motions = Motions::of(&models, Formulation::Relative).unwrap();
-        let problem = Problem::new(&model, &motions, &asked);
+        let problem = Problem::new(&model, &motions, &settings);
         let at =
             |parts: &[f64]| problem.at(problem.design(parts), &mut StudyCost::default(), &|| true).unwrap();
         let parts = [0.37, 0.52, 0.61, 0.44];
@@ -501,7 +516,11 @@ mod tests {
                 numbers(&at(&parts))
             };
             let (more, less) = (moved(1.0), moved(-1.0));
-            assert_eq!([more.len(), less.len()], [here.len(); 2], "as many numbers for every design");
+            assert_eq!(
+                [more.len(), less.len()],
+                [here.len(); 2],
+                "the same number of values for every design"
+            );
             let span = 0.05;
             let largest = here.iter().map(|(_, d)| (d[v] * span).abs()).fold(0.0, f64::max);
             for (k, (_, d)) in here.iter().enumerate() {
@@ -518,7 +537,7 @@ mod tests {
 
     #[test]
     fn the_parts_of_a_metric_are_all_of_it() {
-        let (model, asked) = (four_bar(), everything());
+        let (model, settings) = (four_bar(), everything());
         let models = model.motions();
         let motions = Motions::of(&models, Formulation::Relative).unwrap();
         let found = motions.evaluate(&[], &mut StudyCost::default(), &|| true).unwrap();
@@ -539,10 +558,10 @@ mod tests {
         let (least, lowest) = value("least");
         let parts = peaks(one, solution, least, -1.0).unwrap();
         assert_eq!(parts.values.iter().copied().fold(f64::INFINITY, f64::min), lowest);
-        // A metric of one case is taken there alone, any other in each.
-        let problem = Problem::new(&model, &motions, &asked);
-        let taken =
+        // A metric of one case is evaluated in that case only, any other metric in each case.
+        let problem = Problem::new(&model, &motions, &settings);
+        let entry =
             |goal: usize| problem.goals.iter().filter(|t| t.of == goal).map(|t| t.motion).collect::<Vec<_>>();
-        assert_eq!((taken(0), taken(6)), (vec![0, 1], vec![1]));
+        assert_eq!((entry(0), entry(6)), (vec![0, 1], vec![1]));
     }
 }

@@ -1,7 +1,6 @@
-//! The solvers of basin, given a problem of Hardpoint's: bounded least squares, and sequential programming under
-//! limits.
+//! Solvers of basin applied to optimisation problems: bounded least squares, and sequential programming with limits.
 //!
-//! Both see the design as parts of its bounds, so that every variable goes from 0 to 1.
+//! Both use the design as fractions of its bounds, so that every variable ranges from 0 to 1.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -17,19 +16,18 @@ use crate::study::trust_region::{Recent, TrustRegion, next};
 
 use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
 
-/// The sequential solver takes objective and limits for settled where they change by less than this, with curvatures
-/// scaled to the order of one: the square of how near to stationary a design shall be. What round-off leaves of that is
-/// for the search to see.
+/// Convergence threshold of the sequential solver on changes of objective and limits, with curvatures scaled to order
+/// one: the square of the required distance from stationarity. The search itself detects round-off.
 const SETTLED: f64 = 1e-30;
-/// The least curvature that is assumed in any direction, as a part of the largest.
+/// Minimum curvature assumed in any direction, as a fraction of the largest.
 pub(super) const FLAT: f64 = 1e-4;
-/// A first step without any known curvature goes so far along the bounds.
+/// Length of a first step without known curvature, as a fraction of the bounds.
 const FIRST_STEP: f64 = 0.1;
 
 /// Result at a design.
 type Found = Result<Point, Refusal>;
 
-/// Designs that a search looked at: the last of them with their values, and all that were refused.
+/// Designs evaluated by a search: the most recent ones with their values, and all that failed.
 pub(super) struct Memory<'p> {
     pub problem: &'p Problem<'p>,
     more: &'p (dyn Fn() -> bool + Sync),
@@ -74,13 +72,13 @@ impl<'p> Memory<'p> {
     }
 }
 
-/// A solver under way.
+/// Solver between iterations.
 pub(super) trait Solver {
     /// Performs one iteration and returns the new point, as fractions of the bounds; `None` at the end.
     fn step(&mut self) -> Option<Vec<f64>>;
 }
 
-/// Goals that are all squares, and no limits but bounds.
+/// Solver for squared goals without limits other than bounds.
 pub(super) fn least_squares<'p>(
     memory: &'p Memory<'p>,
     start: &[f64],
@@ -101,8 +99,8 @@ pub(super) fn least_squares<'p>(
     TrustRegion::new(start.to_vec(), [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
 }
 
-/// The misfits of a design after their derivatives, `[J r]`, as one row for every variable and one more with the same
-/// squares and products: the number of misfits themselves depends on the times at which a design was solved.
+/// Misfits of a design with their derivatives, `[J r]`, reduced to one row for every variable plus one with the same
+/// squares and products, since the number of misfits depends on the times at which a design was solved.
 fn folded_misfits(memory: &Memory<'_>, spans: &[f64], scale: f64, x: &[f64]) -> Vec<Vec<f64>> {
     memory.at(x, |found| {
         let Ok(point) = found else { return vec![vec![f64::NAN; x.len() + 1]; x.len() + 1] };
@@ -120,7 +118,8 @@ impl Solver for TrustRegion<'_> {
     }
 }
 
-/// Any goals and limits, in coordinates in which the squares among the goals are about as curved in every direction.
+/// Problem with any goals and limits, in coordinates in which the squared goals have about the same curvature in every
+/// direction.
 ///
 /// ```text
 /// x = x0 + T z,   T = (2 J^T J + mu I)^-1/2        J: the misfits by x at the start
@@ -129,18 +128,17 @@ impl Solver for TrustRegion<'_> {
 ///                                                     high_k(x) <= u,  -low_k(x) <= v,  u + v <= most
 /// ```
 ///
-/// The last line is a limit on how far a curve ranges.
+/// The last line is a limit on the range of a curve.
 pub(super) struct Programming<'p> {
     memory: &'p Memory<'p>,
     spans: Vec<f64>,
     x0: Vec<f64>,
     /// Columns of T.
     t: Vec<Vec<f64>>,
-    /// Factor of the objective, and of every limit.
+    /// Factors of the objective and of every limit.
     scale: f64,
     limit_scales: Vec<f64>,
-    /// Number of groups of peaks and limited ranges, and how many rows of each kind: the same for every
-    /// design.
+    /// Number of groups of peaks and of limited ranges, and number of rows of each kind; equal for all designs.
     peaks: usize,
     spreads: usize,
     equal: usize,
@@ -158,12 +156,12 @@ impl Programming<'_> {
         (0..n).map(|i| (self.x0[i] + along(i)).clamp(0.0, 1.0)).collect()
     }
 
-    /// A gradient by the parts of the bounds, from one by the variables.
+    /// Gradient by fractions of the bounds, from a gradient by the variables.
     fn by_parts(&self, d: &[f64]) -> Vec<f64> {
         d.iter().zip(&self.spans).map(|(d, span)| d * span).collect()
     }
 
-    /// A gradient by z, and zeros for the peaks.
+    /// Gradient by z, with zeros for the peaks.
     fn by_z(&self, by_parts: &[f64]) -> Vec<f64> {
         let column = |t: &Vec<f64>| t.iter().zip(by_parts).map(|(t, g)| t * g).sum::<f64>();
         self.t.iter().map(column).chain(self.none()).collect()
@@ -174,7 +172,7 @@ impl Programming<'_> {
         std::iter::repeat_n(0.0, self.peaks + 2 * self.spreads)
     }
 
-    /// The place of u of a limited range; v is the next.
+    /// Index of u of a limited range; v is the next.
     fn ends(&self, spread: usize) -> usize {
         self.searched() + self.peaks + 2 * spread
     }
@@ -329,7 +327,7 @@ type Sqp<'p> = Stepper<Programming<'p>, SelectedFirstOrderState<Vec<f64>, f64>, 
 /// Sequential programming by basin's SLSQP.
 pub(super) struct Sequential<'p> {
     stepper: Sqp<'p>,
-    /// The same map from z to x that the problem has, which the stepper owns.
+    /// Map from z to x, copied from the problem because the stepper owns it.
     x0: Vec<f64>,
     t: Vec<Vec<f64>>,
 }

@@ -1,20 +1,20 @@
-//! Sobol's indices of sensitivity: what part of a metric's variance over the ranges each variable is to account for, by
-//! itself and with all that it does together with others.
+//! Sobol indices: the part of a metric's variance over the ranges that is due to each variable, alone and including its
+//! interactions with the others.
 
-/// The indices of one metric by one variable.
+/// Sobol indices of one metric with respect to one variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SobolIndex {
-    /// First order: the part of the variance that is gone where the variable is known. And its standard error.
+    /// First-order index and its standard error: part of the variance that vanishes if the variable is known.
     pub first: [f64; 2],
-    /// Total: the part that is left where all others are known. And its standard error.
+    /// Total index and its standard error: part of the variance that remains if all other variables are known.
     pub total: [f64; 2],
-    /// Pairs of designs that it was estimated from: those whose three designs all have the metric.
+    /// Number of pairs of designs used: all designs of a pair must have the metric.
     pub pairs: usize,
 }
 
-/// The indices of a metric by each of that many variables, from its values in the designs of
-/// [`SweepMethod::Indices`](crate::model::SweepMethod::Indices), NaN where a design has none. `None` where it does not
-/// vary, or fewer than two pairs have it.
+/// Indices of a metric with respect to each variable, from its values in the designs of
+/// [`SweepMethod::Indices`](crate::model::SweepMethod::Indices), NaN for designs without a value. `None` if the metric
+/// does not vary, or fewer than two pairs have it.
 ///
 /// ```text
 /// f0 = mean of f_A and f_B,   V = mean of ((f_A - f0)^2 + (f_B - f0)^2) / 2
@@ -22,9 +22,9 @@ pub struct SobolIndex {
 /// T_i = mean of (f_A - f_ABi)^2 / 2 / V                       (Jansen 1999)
 /// ```
 ///
-/// A, B: independent designs; ABi: A with variable i of B. Where a design failed, its pair says nothing of the
-/// variables that need it, and the indices are those over the part of the ranges where the mechanism moves. Standard
-/// errors are those of quotients of means over independent pairs; evenly spread ones do better.
+/// A, B: independent designs; ABi: A with variable i of B. A pair with a failed design is left out for the variables
+/// that need it: the indices then describe the part of the ranges where the mechanism moves. Standard errors are those
+/// of quotients of means over independent pairs; evenly spread pairs are more accurate.
 pub fn sobol_indices(values: &[f64], variables: usize) -> Vec<Option<SobolIndex>> {
     let width = variables + 2;
     let of = |i: usize| {
@@ -42,7 +42,7 @@ pub fn sobol_indices(values: &[f64], variables: usize) -> Vec<Option<SobolIndex>
         let mut sums = [0.0; 3];
         terms.clone().for_each(|t| sums.iter_mut().zip(t).for_each(|(sum, t)| *sum += t));
         let [first, total, variance] = sums.map(|sum| sum / n);
-        // What is only round-off of a constant does not vary.
+        // A constant with round-off does not vary.
         if !(variance > (ROUND_OFF * f0).powi(2)) {
             return None;
         }
@@ -59,7 +59,7 @@ pub fn sobol_indices(values: &[f64], variables: usize) -> Vec<Option<SobolIndex>
     (0..variables).map(of).collect()
 }
 
-/// A metric varies by less than this part of itself where only round-off does.
+/// A metric that varies by less than this fraction of itself varies by round-off only.
 const ROUND_OFF: f64 = 1e-12;
 
 #[cfg(test)]
@@ -68,7 +68,7 @@ mod tests {
     use crate::model::{SweepMethod, SweepRange, SweepSettings, VariableId};
     use crate::study::sweep::SweepPlan;
 
-    /// The values of a function in the designs that indices take.
+    /// Values of a function in the designs of Sobol indices.
     fn values(pairs: usize, ranges: &[[f64; 2]], f: impl Fn(&[f64]) -> f64) -> Vec<f64> {
         let range = |(k, [low, high]): (usize, &[f64; 2])| SweepRange {
             variable: VariableId(k),
@@ -76,7 +76,7 @@ mod tests {
             high: *high,
             levels: 2,
         };
-        let asked = SweepSettings {
+        let settings = SweepSettings {
             method: SweepMethod::Indices,
             ranges: ranges.iter().enumerate().map(range).collect(),
             listed: Vec::new(),
@@ -85,7 +85,7 @@ mod tests {
             metrics: Vec::new(),
             curves: Vec::new(),
         };
-        let plan = SweepPlan::of(&asked, ranges.len()).expect("a plan");
+        let plan = SweepPlan::of(&settings, ranges.len()).expect("a plan");
         (0..plan.count()).map(|k| f(&plan.swept(k))).collect()
     }
 
@@ -94,7 +94,7 @@ mod tests {
             let index = index.expect("it varies");
             for ([x, error], exact) in [(index.first, first[i]), (index.total, total[i])] {
                 assert!((x - exact).abs() < within, "variable {i}: {x} instead of {exact}");
-                // Evenly spread points are no worse than random ones, and no error is zero.
+                // Evenly spread points are at least as accurate as random ones, and no error estimate is zero.
                 assert!((x - exact).abs() < 4.0 * error + 1e-12, "variable {i}: {x} +- {error}, {exact}");
             }
         }
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn indices_of_a_sum_are_its_parts_and_those_of_a_product_are_not() {
-        // A sum with an idle variable: c_i^2 w_i^2 / sum, and 0.
+        // A sum with an idle variable: the indices are c_i^2 w_i^2 / sum, and 0.
         let ranges = [[-1.0, 1.0], [0.0, 4.0], [2.0, 3.0]];
         let parts = [4.0 * 4.0, 1.0 * 16.0, 0.0];
         let exact = parts.map(|p| p / 32.0);
@@ -124,7 +124,7 @@ mod tests {
         close(&found[..2], &exact[..2], &exact[..2], 2e-3);
         let idle = found[2].expect("others vary");
         assert_eq!((idle.first, idle.total), ([0.0; 2], [0.0; 2]));
-        // x y on [-1, 1]^2 is nothing by either alone.
+        // x y on [-1, 1]^2 has no first-order effects.
         let found = sobol_indices(&values(4096, &[[-1.0, 1.0]; 2], |x| x[0] * x[1]), 2);
         close(&found, &[0.0; 2], &[1.0; 2], 0.02);
     }
@@ -133,7 +133,7 @@ mod tests {
     fn designs_that_fail_leave_their_pairs_out() {
         let whole = values(4096, &[[0.0, 1.0]; 2], |x| 3.0 * x[0] + x[1]);
         let mut some = whole.clone();
-        // Every 16th pair loses one of its designs by turns, wherever it lies.
+        // Every 16th pair loses one of its designs in turn.
         some.iter_mut()
             .enumerate()
             .filter(|(k, _)| k / 4 % 16 == 0 && k % 4 == k / 64 % 4)

@@ -1,4 +1,4 @@
-//! Many designs over the whole of their ranges: the metrics of each, exactly.
+//! Sweep: exact metrics of many designs over the ranges of the variables.
 
 mod indices;
 mod plan;
@@ -20,94 +20,94 @@ pub use plan::{SweepPlan, SweepPlanError};
 pub(super) use statistics::quantile;
 pub use statistics::{Distribution, rank_correlation};
 
-/// A metric in one of the motions: a column of what is found.
+/// A metric in one of the motions: a column of the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SweptMetric {
-    /// The metric, by its place in [`Model::metrics`] of the whole model.
+    /// Index of the metric in [`Model::metrics`] of the whole model.
     pub metric: usize,
-    /// In which motion, by its place among those studied.
+    /// Index of the motion among those studied.
     pub motion: usize,
-    /// Place among the metrics of that motion.
+    /// Index among the metrics of that motion.
     place: usize,
 }
 
 /// Results of consecutive designs. SI.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SweptBlock {
-    /// Their numbers.
+    /// Numbers of the designs.
     pub numbers: Range<usize>,
-    /// Per metric, its value in each design; NaN where it has none.
+    /// Values of each metric in each design; NaN if it has none.
     pub metrics: Vec<Vec<f64>>,
-    /// Per motion, its curves; empty where none are requested.
+    /// Curves of each motion; empty if not requested.
     pub curves: Vec<SweptCurves>,
-    /// Designs that do not move to the end, motion by motion.
+    /// Designs that do not reach the end of a motion, motion by motion.
     pub failures: Vec<SweptFailure>,
     /// Cost of the designs.
     pub cost: StudyCost,
 }
 
-/// The curves of some designs in one motion.
+/// Curves of a block of designs in one motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SweptCurves {
-    /// Per design, how many output times were solved.
+    /// Number of solved output times of each design.
     pub steps: Vec<u32>,
-    /// Design by design, output time by output time, curve by curve.
+    /// Values by design, output time and curve.
     pub values: Vec<f64>,
 }
 
-/// A design that does not move to the end of a motion.
+/// A design that does not reach the end of a motion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SweptFailure {
-    /// Number.
+    /// Number of the design.
     pub number: usize,
-    /// In which motion, by its place among those studied.
+    /// Index of the motion among those studied.
     pub motion: usize,
-    /// Kind of failure: its code in `docs/diagnostics.md`.
+    /// Diagnostic code of the failure (`docs/diagnostics.md`).
     pub code: String,
     /// Description of the failure.
     pub why: String,
 }
 
-/// A sweep that is ready to be begun, at its beginning or wherever a former one ended.
+/// Sweep that is ready to start from any block.
 #[derive(Clone, Debug)]
 pub struct Sweep<'a> {
     motions: &'a Motions<'a>,
-    asked: &'a SweepSettings,
+    settings: &'a SweepSettings,
     plan: SweepPlan<'a>,
     metrics: Vec<SweptMetric>,
 }
 
 impl<'a> Sweep<'a> {
-    /// The sweep over the designs of a model in some of its motions; `numbers` says which these are.
+    /// Prepares the sweep over the designs of a model in some of its motions, given by `numbers`.
     ///
     /// # Errors
-    /// Where designs cannot be chosen so.
+    /// A [`SweepPlanError`] if the designs cannot be chosen.
     pub fn new(
         model: &Model,
         motions: &'a Motions<'a>,
         numbers: &[usize],
-        asked: &'a SweepSettings,
+        settings: &'a SweepSettings,
     ) -> Result<Self, SweepPlanError> {
-        let plan = SweepPlan::new(asked, model)?;
+        let plan = SweepPlan::new(settings, model)?;
         let of_motion = |(metric, (motion, number)): (usize, (usize, &usize))| {
             Some(SweptMetric { metric, motion, place: place_of(model, metric, *number)? })
         };
-        let pairs = asked.metrics.iter().flat_map(|m| numbers.iter().enumerate().map(|n| (*m, n)));
-        Ok(Self { motions, asked, plan, metrics: pairs.filter_map(of_motion).collect() })
+        let pairs = settings.metrics.iter().flat_map(|m| numbers.iter().enumerate().map(|n| (*m, n)));
+        Ok(Self { motions, settings, plan, metrics: pairs.filter_map(of_motion).collect() })
     }
 
-    /// Designs.
+    /// Designs of the sweep.
     pub fn plan(&self) -> &SweepPlan<'a> {
         &self.plan
     }
 
-    /// The columns of what is found.
+    /// Columns of the results.
     pub fn metrics(&self) -> &[SweptMetric] {
         &self.metrics
     }
 
-    /// The nominal design, as the only one of its block.
-    pub fn drawn(&self) -> SweptBlock {
+    /// Results of the nominal design, as the only one of its block.
+    pub fn nominal(&self) -> SweptBlock {
         let mut block = SweptBlock { numbers: 0..1, ..SweptBlock::default() };
         for (motion, analysis) in self.motions.analyses().iter().enumerate() {
             let solution = analysis.solve(Run::new().without_sensitivities());
@@ -116,8 +116,8 @@ impl<'a> Sweep<'a> {
         block
     }
 
-    /// Solves all designs from a number on, a multiple of [`BLOCK`](super::BLOCK). `done` is given what is found block
-    /// by block, in order, and may end the work; so may `more`.
+    /// Solves all designs from a number on, which must be a multiple of [`BLOCK`](super::BLOCK). `done` receives the
+    /// blocks in order and may end the run. The run also ends if `more` returns false.
     pub fn run(
         &self,
         from: usize,
@@ -129,12 +129,12 @@ impl<'a> Sweep<'a> {
         let see = |block: &mut SweptBlock, number: usize, motion: usize, solution: &Solution| {
             self.see(block, number, motion, solution);
         };
-        let mut told = |SampleBlock { numbers, found }: SampleBlock<SweptBlock>| {
+        let mut report = |SampleBlock { numbers, found }: SampleBlock<SweptBlock>| {
             let cost = StudyCost { designs: numbers.len(), ..found.cost };
             done(SweptBlock { numbers, cost, ..found })
         };
         let run = SampleRun { numbers: from..self.plan.count(), design: &design, threads, more };
-        self.motions.sample(&run, &see, &mut told);
+        self.motions.sample(&run, &see, &mut report);
     }
 
     fn see(&self, block: &mut SweptBlock, number: usize, motion: usize, solution: &Solution) {
@@ -147,12 +147,12 @@ impl<'a> Sweep<'a> {
             block.failures.push(SweptFailure { number, motion, code, why });
         }
         for (k, of) in self.metrics.iter().enumerate().filter(|(_, of)| of.motion == motion) {
-            // A part of a motion says nothing of the rest.
+            // An incomplete motion has no metrics.
             let whole = solution.stop.is_none();
             let value = whole.then(|| metric_number(&model.metrics[of.place], solution)).flatten();
             block.metrics[k].push(value.unwrap_or(f64::NAN));
         }
-        if self.asked.curves.is_empty() {
+        if self.settings.curves.is_empty() {
             return;
         }
         block.curves.resize_with(self.motions.len(), SweptCurves::default);
@@ -164,7 +164,7 @@ impl<'a> Sweep<'a> {
             measured.outputs.iter().position(|o| o.source == source)
         };
         for k in 0..measured.len() {
-            let values = self.asked.curves.iter().map(column);
+            let values = self.settings.curves.iter().map(column);
             curves.values.extend(values.map(|c| c.map_or(f64::NAN, |c| measured.value(k, c)[0])));
         }
     }

@@ -1,78 +1,78 @@
-//! The designs of a sweep, each by its number.
+//! Plan of a sweep: its designs by number.
 
 use crate::model::{Model, SweepMethod, SweepSettings};
 
 use super::sobol::{Sobol, mixed};
 
-/// The designs of a sweep. Each follows from its number alone, and from nothing that came before it.
+/// Designs of a sweep. A design depends only on its number.
 #[derive(Clone, Debug)]
 pub struct SweepPlan<'a> {
-    asked: &'a SweepSettings,
+    settings: &'a SweepSettings,
     variables: usize,
     count: usize,
     sobol: Option<Sobol>,
 }
 
-/// Reason why designs cannot be chosen so.
+/// Reason why the designs of a sweep cannot be chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SweepPlanError {
-    /// No variable changes.
+    /// No variable has a range.
     NoRanges,
-    /// There are none.
+    /// The number of designs is zero.
     NoDesigns,
-    /// There are more than [`SweepSettings::MOST`].
+    /// The number of designs exceeds [`SweepSettings::MOST`].
     TooMany,
-    /// There are no Sobol sequences of that many dimensions, but of that many.
+    /// Too many dimensions for a Sobol sequence; contains the maximum.
     TooManyDimensions(usize),
 }
 
 impl<'a> SweepPlan<'a> {
-    /// The designs that are requested.
+    /// Plans the requested designs.
     ///
     /// # Errors
-    /// Where they cannot be chosen.
-    pub fn new(asked: &'a SweepSettings, model: &Model) -> Result<Self, SweepPlanError> {
-        Self::of(asked, model.variables.len())
+    /// A [`SweepPlanError`] if the designs cannot be chosen.
+    pub fn new(settings: &'a SweepSettings, model: &Model) -> Result<Self, SweepPlanError> {
+        Self::of(settings, model.variables.len())
     }
 
-    /// The same of a model with that many variables.
-    pub(super) fn of(asked: &'a SweepSettings, variables: usize) -> Result<Self, SweepPlanError> {
-        let count = asked.count().ok_or(SweepPlanError::TooMany)?;
-        if asked.ranges.is_empty() {
+    /// Plans the designs of a model with a number of variables.
+    pub(super) fn of(settings: &'a SweepSettings, variables: usize) -> Result<Self, SweepPlanError> {
+        let count = settings.count().ok_or(SweepPlanError::TooMany)?;
+        if settings.ranges.is_empty() {
             return Err(SweepPlanError::NoRanges);
         }
         if count == 0 {
             return Err(SweepPlanError::NoDesigns);
         }
-        let dimensions = match asked.method {
-            SweepMethod::Sobol => asked.ranges.len(),
-            SweepMethod::Indices => 2 * asked.ranges.len(),
+        let dimensions = match settings.method {
+            SweepMethod::Sobol => settings.ranges.len(),
+            SweepMethod::Indices => 2 * settings.ranges.len(),
             _ => 0,
         };
         if dimensions > Sobol::MOST {
             return Err(SweepPlanError::TooManyDimensions(Sobol::MOST));
         }
-        let sobol = (dimensions > 0).then(|| Sobol::new(dimensions, asked.seed));
-        Ok(Self { asked, variables, count, sobol })
+        let sobol = (dimensions > 0).then(|| Sobol::new(dimensions, settings.seed));
+        Ok(Self { settings, variables, count, sobol })
     }
 
-    /// Total number.
+    /// Number of designs.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The swept variables of a design, in the order of the ranges, as changes.
+    /// Changes of the swept variables of a design, in the order of the ranges.
     pub fn swept(&self, number: usize) -> Vec<f64> {
-        // What fills up the last eight: the last design once more.
+        // The last batch is filled up with the last design.
         let number = number.min(self.count - 1);
-        let ranges = &self.asked.ranges;
-        if self.asked.method == SweepMethod::Listed {
-            return self.asked.listed[number].clone();
+        let ranges = &self.settings.ranges;
+        if self.settings.method == SweepMethod::Listed {
+            return self.settings.listed[number].clone();
         }
         let mut stride = self.count;
         let mut rest = number;
         let value = |(d, range): (usize, &crate::model::SweepRange)| {
-            let part = match self.asked.method {
+            let part = match self.settings.method {
                 SweepMethod::Factorial => {
                     stride /= range.levels;
                     let level = rest / stride;
@@ -81,16 +81,16 @@ impl<'a> SweepPlan<'a> {
                 }
                 _ => self.part(number, d),
             };
-            // The ends are met exactly.
+            // The ends of the range are exact.
             range.low * (1.0 - part) + range.high * part
         };
         ranges.iter().enumerate().map(value).collect()
     }
 
-    /// The values of all variables of a design.
+    /// Values of all variables of a design.
     pub fn design(&self, number: usize) -> Vec<f64> {
         let mut design = vec![0.0; self.variables];
-        for (range, x) in self.asked.ranges.iter().zip(self.swept(number)) {
+        for (range, x) in self.settings.ranges.iter().zip(self.swept(number)) {
             design[range.variable.0] = x;
         }
         design
@@ -98,12 +98,12 @@ impl<'a> SweepPlan<'a> {
 
     /// Position of a design's variable in its range, from 0 to 1.
     fn part(&self, number: usize, d: usize) -> f64 {
-        let (seed, variables) = (self.asked.seed, self.asked.ranges.len());
-        match (self.asked.method, &self.sobol) {
+        let (seed, variables) = (self.settings.seed, self.settings.ranges.len());
+        match (self.settings.method, &self.sobol) {
             (SweepMethod::Sobol, Some(sobol)) => sobol.at(number, d),
             (SweepMethod::Indices, Some(sobol)) => {
                 let (pair, role) = (number / (variables + 2), number % (variables + 2));
-                // A, B, then A with each variable of B.
+                // Roles within a pair: A, B, then A with each variable of B.
                 let second = role == 1 || role == d + 2;
                 sobol.at(pair, if second { variables + d } else { d })
             }

@@ -1,26 +1,25 @@
-//! Sobol's sequence: points that fill a cube of many dimensions evenly, any of them by its number, and evenly still
-//! after being scrambled.
+//! Sobol sequence: points that fill a cube of many dimensions evenly, addressable by number, with Owen scrambling.
 
-/// Primitive polynomials and first direction numbers for 512 dimensions: the beginning of `new-joe-kuo-6.21201` of S.
+/// Primitive polynomials and first direction numbers for 512 dimensions: the first lines of `new-joe-kuo-6.21201` of S.
 /// Joe and F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30
-/// (2008) 2635-2654, as they publish it.
+/// (2008) 2635-2654, as published.
 const JOE_KUO: &str = include_str!("joe_kuo.txt");
 const BITS: usize = 32;
 
-/// The sequence in some dimensions.
+/// Sobol sequence of a number of dimensions.
 #[derive(Clone, Debug)]
 pub(super) struct Sobol {
-    /// Per dimension, the direction numbers as fractions of 2^32.
+    /// Direction numbers of each dimension, as fractions of 2^32.
     directions: Vec<[u32; BITS]>,
-    /// Per dimension, what it is scrambled by.
+    /// Scrambling seed of each dimension.
     seeds: Vec<u32>,
 }
 
 impl Sobol {
-    /// As many as there are direction numbers for.
+    /// Maximum number of dimensions, limited by the table of direction numbers.
     pub(super) const MOST: usize = 512;
 
-    /// The sequence in at most [`MOST`](Self::MOST) dimensions, scrambled by a seed.
+    /// Sequence of at most [`MOST`](Self::MOST) dimensions, scrambled by a seed.
     pub(super) fn new(dimensions: usize, seed: u64) -> Self {
         let first: [u32; BITS] = std::array::from_fn(|k| 1 << (BITS - 1 - k));
         let others = JOE_KUO.lines().skip(1).map(directions);
@@ -30,20 +29,20 @@ impl Sobol {
         }
     }
 
-    /// Coordinate `d` of a point, from 0 to 1 and at neither end.
+    /// Coordinate `d` of a point, in the open interval from 0 to 1.
     pub(super) fn at(&self, number: usize, d: usize) -> f64 {
         let x = scrambled(self.exact(number, d), self.seeds[d]);
         (f64::from(x) + 0.5) / 2.0_f64.powi(BITS as i32)
     }
 
-    /// The same before it is scrambled, as a fraction of 2^32.
+    /// Coordinate `d` before scrambling, as a fraction of 2^32.
     fn exact(&self, number: usize, d: usize) -> u32 {
         let bits = (0..BITS).filter(|k| number >> k & 1 == 1);
         bits.fold(0, |x, k| x ^ self.directions[d][k])
     }
 }
 
-/// The direction numbers of a line `d s a m_1 ... m_s`.
+/// Direction numbers of a line `d s a m_1 ... m_s` of the table.
 ///
 /// ```text
 /// v_k = m_k / 2^k for k <= s,    v_k = a_1 v_k-1 ^ ... ^ a_s-1 v_k-s+1 ^ v_k-s ^ v_k-s / 2^s
@@ -63,9 +62,9 @@ fn directions(line: &str) -> [u32; BITS] {
     v
 }
 
-/// Owen's nested scrambling by a hash: every bit is turned over or not by what is above it (B. Burley, "Practical
-/// Hash-based Owen Scrambling", JCGT 9 (2020) no. 4, with the hash of N. Vegdahl, 2021). A point set that is evenly
-/// spread stays so.
+/// Owen's nested scrambling by a hash: every bit is flipped or not depending on the bits above it (B. Burley,
+/// "Practical Hash-based Owen Scrambling", JCGT 9 (2020) no. 4, with the hash of N. Vegdahl, 2021). It preserves the
+/// even distribution of a point set.
 fn scrambled(x: u32, seed: u32) -> u32 {
     let mut x = x.reverse_bits();
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -76,7 +75,7 @@ fn scrambled(x: u32, seed: u32) -> u32 {
     x.reverse_bits()
 }
 
-/// A number that looks random and follows from some others (the finaliser of SplitMix64, after each of them).
+/// Pseudo-random number determined by some others (the finaliser of SplitMix64, after each of them).
 pub(super) fn mixed(of: &[u64]) -> u64 {
     of.iter().fold(0, |state, x| {
         let mut z = (state ^ x).wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -92,7 +91,7 @@ mod tests {
 
     #[test]
     fn the_first_points_are_those_of_another_implementation() {
-        // scipy.stats.qmc.Sobol(25, scramble=False) depends on Gray's code; dimensions 0, 1, 2, 3, 10, 20, 24.
+        // scipy.stats.qmc.Sobol(25, scramble=False) uses Gray-code order; dimensions 0, 1, 2, 3, 10, 20, 24.
         const DIMENSIONS: [usize; 7] = [0, 1, 2, 3, 10, 20, 24];
         const POINTS: [[f64; 7]; 8] = [
             [0.0; 7],

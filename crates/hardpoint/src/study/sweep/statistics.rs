@@ -1,27 +1,27 @@
-//! Statistics of a metric over many designs.
+//! Statistics of a metric over many designs, and rank correlation.
 
 /// Distribution of a metric over the designs that have it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Distribution {
-    /// Number of have it.
+    /// Number of designs with a value.
     pub known: usize,
-    /// Mean.
+    /// Mean value.
     pub mean: f64,
-    /// Standard deviation; 0 of a single design.
+    /// Standard deviation; 0 for a single design.
     pub sigma: f64,
-    /// The value that each part of [`Distribution::PARTS`] of the designs is below.
+    /// Quantiles at the fractions [`Distribution::PARTS`].
     pub quantiles: [f64; 5],
-    /// The design with the least value, and that value; the first of several.
+    /// Design with the minimum value, and that value; the first of several.
     pub least: (usize, f64),
-    /// The design with the greatest.
+    /// Design with the maximum value, and that value; the first of several.
     pub greatest: (usize, f64),
 }
 
 impl Distribution {
-    /// The parts of the quantiles.
+    /// Fractions of the quantiles.
     pub const PARTS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
-    /// Distribution of the values of a metric in all designs, NaN for designs without; `None` if no design has it.
+    /// Distribution of a metric over all designs, with NaN for designs without a value; `None` if no design has it.
     pub fn of(values: &[f64]) -> Option<Self> {
         let known = || values.iter().copied().enumerate().filter(|(_, x)| x.is_finite());
         let mut sorted: Vec<f64> = known().map(|(_, x)| x).collect();
@@ -41,15 +41,15 @@ impl Distribution {
     }
 }
 
-/// The value that a part of sorted values is below; between the values on either side in proportion.
+/// Quantile of sorted values at a fraction, by linear interpolation.
 pub(in crate::study) fn quantile(sorted: &[f64], part: f64) -> f64 {
     let at = part * (sorted.len() - 1) as f64;
     let (k, rest) = (at.floor() as usize, at.fract());
     sorted[k] + rest * (sorted[usize::min(k + 1, sorted.len() - 1)] - sorted[k])
 }
 
-/// Spearman's rank correlation of two series, over where both are known: 1 where one always rises with the other, -1
-/// where it always falls. `None` where one of them does not vary.
+/// Spearman's rank correlation of two series, over entries that are known in both: 1 if one always rises with the
+/// other, -1 if it always falls. `None` if one of them does not vary.
 pub fn rank_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     let both: Vec<[f64; 2]> =
         a.iter().zip(b).map(|(a, b)| [*a, *b]).filter(|p| p.iter().all(|x| x.is_finite())).collect();
@@ -60,7 +60,7 @@ pub fn rank_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     (of_both > 0.0).then(|| product(&a, &b) / of_both)
 }
 
-/// The rank of every value; equal ones share the mean of their ranks.
+/// Rank of every value; equal values share their mean rank.
 fn ranks(values: Vec<f64>) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|i, j| values[*i].total_cmp(&values[*j]));

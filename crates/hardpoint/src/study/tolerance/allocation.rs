@@ -1,13 +1,13 @@
-//! The loosest tolerances that keep the limits, at given relative costs.
+//! Tolerance allocation: the loosest tolerances that satisfy the limits, at given relative costs.
 //!
 //! ```text
 //! minimise  sum c_a / t_a     subject to  k^2 t' Q_j t <= r_j^2  (squares)  or  w_j . t <= r_j  (worst case)
 //! ```
 //!
-//! with `t_a` the reaches, `r_j` the room between the value in the design configuration and a limit,
+//! with `t_a` the reaches, `r_j` the room between the nominal value and a limit,
 //! `Q_ab = sum over variables i of a, l of b of g_i g_l rho_il (s_i / t_a) (s_l / t_b)` and
-//! `w_a = |gradient by the variables of a|`. All of it is convex, so that what fulfils the conditions of optimality is
-//! the optimum. It is found by a barrier and Newton's method.
+//! `w_a = |gradient by the variables of a|`. The problem is convex, so a point that satisfies the optimality conditions
+//! is the optimum. It is found by a barrier method with Newton steps.
 
 use crate::linalg::semidefinite;
 use crate::model::{AllocationRule, AllocationSettings};
@@ -15,80 +15,84 @@ use crate::model::{AllocationRule, AllocationSettings};
 use super::monte_carlo::MonteCarlo;
 use super::{Study, ToleranceResult, dot};
 
-/// No tolerance is made looser than that many times what it is: beyond that no limit has a say in it, and no derivative
-/// either.
-const MOST: f64 = 1000.0;
-/// The barrier deflects by this factor ...
+/// Maximum factor by which a tolerance is loosened: beyond it no limit constrains the tolerance, and the derivatives
+/// are not valid.
+const MAX_FACTOR: f64 = 1000.0;
+/// Factor by which the barrier is weakened in each round ...
 const HARDER: f64 = 10.0;
-/// ... until what it costs is less than this part of the costs. Newton's equations are then of a condition near its
-/// inverse.
+/// ... until its cost is below this fraction of the total cost. The condition number of Newton's equations is then near
+/// the inverse.
 const SHARP: f64 = 1e-8;
-/// Newton's method ends where the cost would fall by less than this part, and after that many steps at the latest.
+/// Newton's method ends if the expected decrease is below this fraction of the cost, or after this number of steps.
 const STILL: f64 = 1e-18;
-/// Relative distance from the end below which a whole step is right, and the barrier's own value is round-off.
+/// Relative distance from the optimum below which a full step is correct, and the barrier's own value is round-off.
 const NEAR: f64 = 1e-4;
 const STEPS: usize = 100;
-/// A step that leaves what is allowed, or gains nothing, is halved that many times.
+/// Maximum number of halvings of a step that leaves the feasible region or gains nothing.
 const HALVINGS: usize = 60;
 
-/// The loosest tolerances.
+/// Result of a tolerance allocation.
 #[derive(Clone, Debug)]
 pub struct Allocation {
-    /// Rule that kept the limits.
+    /// Rule by which the limits are checked.
     pub rule: AllocationRule,
-    /// Per tolerance that has a cost.
+    /// Results of the tolerances that have a cost.
     pub tolerances: Vec<AllocatedTolerance>,
-    /// Per limit, in the order of [`ToleranceResult::limits`]: what it is worth, as the cost that would be saved if its
-    /// room grew by one SI unit; 0 where it does not bind.
+    /// Lagrange multiplier of each limit, in the order of [`ToleranceResult::limits`]: the cost saved per SI unit of
+    /// additional room; 0 if the limit is inactive.
     pub worth: Vec<f64>,
-    /// The sum of `cost / reach` before and after.
+    /// Sum of `cost / reach` before and after.
     pub cost: [f64; 2],
-    /// Remaining gradient of the costs that the limits do not balance, relative to the whole gradient.
+    /// Part of the cost gradient that the active limits do not balance, relative to the whole gradient.
     pub residual: f64,
-    /// Reason why there is none: a limit that no tolerances keep.
-    pub impossible: Option<AllocationError>,
-    /// Designs drawn from these tolerances.
+    /// Reason why the allocation is infeasible, if it is.
+    pub error: Option<AllocationError>,
+    /// Monte Carlo results with the allocated tolerances.
     pub sampled: Option<MonteCarlo>,
 }
 
-/// A tolerance that was sought.
+/// Allocated tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AllocatedTolerance {
     /// Index of the tolerance.
     pub tolerance: usize,
-    /// Reach before.
+    /// Original reach, in the unit of the tolerance.
     pub before: f64,
-    /// The loosest; `None` where no limit has a say in it.
+    /// Loosest reach; `None` if no limit constrains it.
     pub after: Option<f64>,
 }
 
-/// Reason why no tolerances keep the limits.
+/// Reason why a tolerance allocation is infeasible or cannot start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AllocationError {
-    /// Nothing has a cost.
+    /// No tolerance has a cost.
     NoCosts,
-    /// There is no limit.
+    /// No limits are given.
     NoLimits,
-    /// This limit (in the order of [`ToleranceResult::limits`]) is not kept by the nominal design.
-    AsDrawn(usize),
-    /// Tolerances without a cost use up the room of this one.
+    /// The nominal design violates this limit (index in [`ToleranceResult::limits`]).
+    NominalExceeds(usize),
+    /// Tolerances without a cost exhaust the room of this limit (index in [`ToleranceResult::limits`]).
     Fixed(usize),
 }
 
-/// Room of one limit for deviations.
+/// Room for deviations at one limit.
 struct Room {
     limit: usize,
-    /// Room, in SI.
+    /// Distance from the nominal value to the limit, SI.
     room: f64,
-    /// By squares: `k^2 t' Q t`, in parts of the tolerances as they are.
+    /// Root-sum-square rule: `k^2 t' Q t`, with tolerances as fractions of their original reach.
     q: Vec<Vec<f64>>,
-    /// At worst: `w . t`.
+    /// Worst-case rule: `w . t`.
     w: Vec<f64>,
 }
 
-/// Seeks them.
-pub(super) fn allocate(study: &Study<'_>, asked: AllocationSettings, found: &ToleranceResult) -> Allocation {
-    let tolerances = &study.asked.tolerances;
+/// Allocates the tolerances.
+pub(super) fn allocate(
+    study: &Study<'_>,
+    settings: AllocationSettings,
+    found: &ToleranceResult,
+) -> Allocation {
+    let tolerances = &study.settings.tolerances;
     let blocks = &study.deviations.blocks;
     let free: Vec<usize> =
         (0..blocks.len()).filter(|b| tolerances[blocks[*b].tolerance].cost.is_some()).collect();
@@ -100,28 +104,29 @@ pub(super) fn allocate(study: &Study<'_>, asked: AllocationSettings, found: &Tol
         })
         .collect();
     let mut allocation = Allocation {
-        rule: asked.rule,
+        rule: settings.rule,
         tolerances: Vec::new(),
         worth: vec![0.0; found.limits.len()],
         cost: [costs.iter().sum(), 0.0],
         residual: f64::NAN,
-        impossible: None,
+        error: None,
         sampled: None,
     };
-    let rooms = rooms(study, asked.rule, found);
+    let rooms = rooms(study, settings.rule, found);
     let problem =
-        Problem { costs: &costs, free: &free, rooms: &rooms, blocks: blocks.len(), rule: asked.rule };
-    allocation.impossible = match () {
+        Problem { costs: &costs, free: &free, rooms: &rooms, blocks: blocks.len(), rule: settings.rule };
+    allocation.error = match () {
         () if free.is_empty() => Some(AllocationError::NoCosts),
         () if rooms.is_empty() => Some(AllocationError::NoLimits),
         () => {
-            let missed = rooms.iter().find(|r| !(r.room > 0.0)).map(|r| AllocationError::AsDrawn(r.limit));
+            let missed =
+                rooms.iter().find(|r| !(r.room > 0.0)).map(|r| AllocationError::NominalExceeds(r.limit));
             let nothing = problem.whole(&vec![0.0; free.len()]);
             let used = |r: &&Room| !(problem.slack(r, &nothing) > 0.0);
             missed.or_else(|| rooms.iter().find(used).map(|r| AllocationError::Fixed(r.limit)))
         }
     };
-    if allocation.impossible.is_some() {
+    if allocation.error.is_some() {
         return allocation;
     }
     let (x, multipliers, residual) = problem.solve();
@@ -132,30 +137,31 @@ pub(super) fn allocate(study: &Study<'_>, asked: AllocationSettings, found: &Tol
     }
     let reach = |(b, x): (&usize, &f64)| {
         let (tolerance, before) = (blocks[*b].tolerance, blocks[*b].reach);
-        AllocatedTolerance { tolerance, before, after: (*x < 0.999 * MOST).then_some(before * x) }
+        AllocatedTolerance { tolerance, before, after: (*x < 0.999 * MAX_FACTOR).then_some(before * x) }
     };
     allocation.tolerances = free.iter().zip(&x).map(reach).collect();
     allocation
 }
 
 impl Allocation {
-    /// The reaches of all tolerances, those that no limit has a say in as they were; `None` where there are none.
+    /// Reaches of all tolerances after allocation; unconstrained tolerances keep theirs. `None` if the allocation is
+    /// infeasible.
     pub(super) fn reaches_of(&self, before: impl Iterator<Item = f64>) -> Option<Vec<f64>> {
         let mut reaches: Vec<f64> = before.collect();
         for one in &self.tolerances {
             reaches[one.tolerance] = one.after.unwrap_or(one.before);
         }
-        self.impossible.is_none().then_some(reaches)
+        self.error.is_none().then_some(reaches)
     }
 }
 
-/// Room of every limit: for a limit with two ends, the nearer one.
+/// Room of every limit; a limit with two ends uses the nearer one.
 fn rooms(study: &Study<'_>, rule: AllocationRule, found: &ToleranceResult) -> Vec<Room> {
     let deviations = study.deviations;
     let room = |(k, limit): (usize, &super::LimitYield)| {
-        let (asked, of) = (&study.asked.limits[limit.limit], &found.metrics[limit.spread]);
-        let above = asked.most.map_or(f64::INFINITY, |most| most - of.nominal);
-        let below = asked.least.map_or(f64::INFINITY, |least| of.nominal - least);
+        let (settings, of) = (&study.settings.limits[limit.limit], &found.metrics[limit.spread]);
+        let above = settings.most.map_or(f64::INFINITY, |most| most - of.nominal);
+        let below = settings.least.map_or(f64::INFINITY, |least| of.nominal - least);
         let part = |b: &super::deviations::Block| {
             let mut g = vec![0.0; of.d.len()];
             g[b.range()].copy_from_slice(&of.d[b.range()]);
@@ -178,7 +184,7 @@ fn rooms(study: &Study<'_>, rule: AllocationRule, found: &ToleranceResult) -> Ve
     found.limits.iter().enumerate().map(room).collect()
 }
 
-/// `minimise sum c / x` over the free tolerances, as parts x of what they are.
+/// `minimise sum c / x` over the free tolerances x, as fractions of their original reach.
 struct Problem<'a> {
     costs: &'a [f64],
     free: &'a [usize],
@@ -188,14 +194,14 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// All tolerances: those that are free as given, the others as they are.
+    /// All tolerances: free ones from `x`, the others unchanged.
     fn whole(&self, x: &[f64]) -> Vec<f64> {
         let mut t = vec![1.0; self.blocks];
         self.free.iter().zip(x).for_each(|(b, x)| t[*b] = *x);
         t
     }
 
-    /// Unused part of a room, relative to it (by squares: of its square).
+    /// Unused fraction of a room (for the root-sum-square rule: of its square).
     fn slack(&self, room: &Room, t: &[f64]) -> f64 {
         match self.rule {
             AllocationRule::Rss { .. } => {
@@ -206,7 +212,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Derivatives of the unused part by the free tolerances.
+    /// Derivatives of the used fraction by the free tolerances.
     fn use_of(&self, room: &Room, t: &[f64]) -> Vec<f64> {
         let one = |b: &usize| match self.rule {
             AllocationRule::Rss { .. } => 2.0 * dot(&room.q[*b], t) / (room.room * room.room),
@@ -215,7 +221,7 @@ impl Problem<'_> {
         self.free.iter().map(one).collect()
     }
 
-    /// The second derivative of the same.
+    /// Second derivative of the used fraction.
     fn bend(&self, room: &Room, i: usize, j: usize) -> f64 {
         match self.rule {
             AllocationRule::Rss { .. } => 2.0 * room.q[self.free[i]][self.free[j]] / (room.room * room.room),
@@ -223,7 +229,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Derivative of the used part by the size of the room, if all of it is used.
+    /// Derivative of the used fraction by the size of the room, if the room is used up.
     fn by_room(&self, room: &Room) -> f64 {
         match self.rule {
             AllocationRule::Rss { .. } => 2.0 / room.room,
@@ -231,19 +237,19 @@ impl Problem<'_> {
         }
     }
 
-    /// `h sum c / x - sum log slack - sum log (MOST - x)`, infinite outside.
+    /// `h sum c / x - sum log slack - sum log (MAX_FACTOR - x)`, infinite outside the feasible region.
     fn barrier(&self, x: &[f64], h: f64) -> f64 {
-        if x.iter().any(|x| !(*x > 0.0 && *x < MOST)) {
+        if x.iter().any(|x| !(*x > 0.0 && *x < MAX_FACTOR)) {
             return f64::INFINITY;
         }
         let t = self.whole(x);
         let slacks = self.rooms.iter().map(|r| self.slack(r, &t));
-        let walls = slacks.chain(x.iter().map(|x| 1.0 - x / MOST));
+        let walls = slacks.chain(x.iter().map(|x| 1.0 - x / MAX_FACTOR));
         let logs: f64 = walls.map(|s| if s > 0.0 { s.ln() } else { f64::NEG_INFINITY }).sum();
         h * self.costs.iter().zip(x).map(|(c, x)| c / x).sum::<f64>() - logs
     }
 
-    /// The tolerances, the multipliers of the rooms, and what is left of the gradient.
+    /// Optimal tolerances, multipliers of the rooms, and residual of the gradient.
     fn solve(&self) -> (Vec<f64>, Vec<f64>, f64) {
         let n = self.free.len();
         let mut x = vec![1.0; n];
@@ -263,9 +269,9 @@ impl Problem<'_> {
         let t = self.whole(&x);
         let multipliers: Vec<f64> = self.rooms.iter().map(|r| 1.0 / (h * self.slack(r, &t))).collect();
         let uses: Vec<Vec<f64>> = self.rooms.iter().map(|r| self.use_of(r, &t)).collect();
-        // -c / x^2 + sum lambda dg/dx = 0; what is at the wall is held by it.
+        // -c / x^2 + sum lambda dg/dx = 0; variables at the wall are left out.
         let (mut left, mut whole) = (0.0, 0.0);
-        for i in (0..n).filter(|i| x[*i] < 0.999 * MOST) {
+        for i in (0..n).filter(|i| x[*i] < 0.999 * MAX_FACTOR) {
             let slope = self.costs[i] / (x[i] * x[i]);
             let held: f64 = uses.iter().zip(&multipliers).map(|(u, m)| u[i] * m).sum();
             left += ((held - slope) * x[i]).powi(2);
@@ -275,16 +281,16 @@ impl Problem<'_> {
         (x, multipliers, residual)
     }
 
-    /// Newton's method on the barrier.
+    /// Newton's method on the barrier function.
     fn descend(&self, x: &mut Vec<f64>, h: f64) {
         let n = x.len();
         for _ in 0..STEPS {
             let t = self.whole(x);
             let mut g: Vec<f64> =
-                (0..n).map(|i| -h * self.costs[i] / x[i].powi(2) + 1.0 / (MOST - x[i])).collect();
+                (0..n).map(|i| -h * self.costs[i] / x[i].powi(2) + 1.0 / (MAX_FACTOR - x[i])).collect();
             let mut hessian = vec![vec![0.0; n]; n];
             for i in 0..n {
-                hessian[i][i] = 2.0 * h * self.costs[i] / x[i].powi(3) + (MOST - x[i]).powi(-2);
+                hessian[i][i] = 2.0 * h * self.costs[i] / x[i].powi(3) + (MAX_FACTOR - x[i]).powi(-2);
             }
             for room in self.rooms {
                 let (slack, by) = (self.slack(room, &t), self.use_of(room, &t));
@@ -295,7 +301,7 @@ impl Problem<'_> {
                     }
                 }
             }
-            // Scaled by x, since tolerances may differ by orders.
+            // Scaled by x, since tolerances may differ by orders of magnitude.
             let scaled: Vec<Vec<f64>> =
                 (0..n).map(|i| (0..n).map(|j| hessian[i][j] * x[i] * x[j]).collect()).collect();
             let Some(root) = semidefinite::root(&scaled).filter(|root| (0..n).all(|i| root[i][i] > 0.0))

@@ -1,21 +1,21 @@
-//! The part of the variance of a metric that each variable contributes, from the model of its spread.
+//! Contribution of each variable to the variance of a metric, from the model of its spread.
 
 use crate::model::{Model, ToleranceSettings};
 
 use super::{NONLINEAR, ToleranceResult};
 
-/// Drawn designs differ from a linear answer where this number of standard errors is between them.
+/// Sampled designs disagree with a linear result if the difference exceeds this number of standard errors.
 const ERRORS: f64 = 3.0;
-/// Designs that do not move are part of the spread where they are more than this part of all.
+/// Fraction of failed designs above which failures are a significant part of the spread.
 const FAILING: f64 = 1e-3;
-/// Contributions are taken of drawn designs from this number on: fewer leave whole percents to chance.
+/// Minimum number of sampled designs for contributions: fewer have errors of whole percents.
 const ENOUGH: usize = 1000;
-/// Groups of drawn designs with about the same deviation of a variable: least number of designs in each, and largest
-/// number of groups.
+/// Groups of sampled designs with about the same deviation of a variable: minimum number of designs in each, and
+/// maximum number of groups.
 const PER_GROUP: usize = 100;
 const MOST_GROUPS: usize = 50;
 
-/// The model of a metric that its spread is computed with.
+/// Model of the spread of a metric.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SpreadModel {
     /// First derivatives.
@@ -23,57 +23,58 @@ pub enum SpreadModel {
     Linear,
     /// First and second derivatives.
     SecondOrder,
-    /// Designs drawn and solved.
-    Drawn,
+    /// Sampled designs.
+    Sampled,
 }
 
 /// Contributions to the variance of a metric.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contributions {
-    /// Model that they are from.
+    /// Model that they are computed from.
     pub model: SpreadModel,
-    /// Per variable that may be off. Of drawn designs they are main effects: the variance of the mean at given
-    /// deviations of the variable.
+    /// Contribution of each toleranced variable as a fraction of the variance. For sampled designs these are main
+    /// effects: the variance of the mean at given deviations of the variable.
     pub shares: Vec<f64>,
-    /// The part that only several variables together bring; `None` where it is shared out among them.
+    /// Fraction due to interactions of several variables; `None` if it is distributed among them.
     pub together: Option<f64>,
 }
 
 impl ToleranceResult {
-    /// Returns whether linear statistics of a metric are off: by second derivatives, or by the designs drawn.
+    /// True if linear statistics of a metric are inaccurate, as indicated by second derivatives or by the sampled
+    /// designs.
     pub fn is_nonlinear(&self, metric: usize) -> bool {
-        self.metrics[metric].is_nonlinear() || self.drawn_differ(metric) || self.fails_often()
+        self.metrics[metric].is_nonlinear() || self.differs_from_samples(metric) || self.fails_often()
     }
 
-    /// Returns whether the standard deviation of the designs drawn is another than the linear one.
-    pub fn drawn_differ(&self, metric: usize) -> bool {
-        let Some(drawn) = self.sampled.as_ref().map(|s| &s.metrics[metric]) else { return false };
-        let [sigma, error] = drawn.sigma;
+    /// True if the standard deviation of the sampled designs differs significantly from the linear one.
+    pub fn differs_from_samples(&self, metric: usize) -> bool {
+        let Some(samples) = self.sampled.as_ref().map(|s| &s.metrics[metric]) else { return false };
+        let [sigma, error] = samples.sigma;
         (self.metrics[metric].sigma - sigma).abs() > (ERRORS * error).max(NONLINEAR * sigma)
     }
 
-    /// Returns whether designs that do not move to the end are part of the spread.
+    /// True if a significant part of the designs does not reach the end.
     pub fn fails_often(&self) -> bool {
         self.sampled.as_ref().is_some_and(|s| s.failed as f64 > FAILING * s.samples as f64)
     }
 
-    pub(super) fn add_contributions(&mut self, model: &Model, asked: &ToleranceSettings) {
+    pub(super) fn add_contributions(&mut self, model: &Model, settings: &ToleranceSettings) {
         let deviations: Option<Vec<Vec<f64>>> = self.sampled.as_ref().map(|sampled| {
-            let drawn = self.deviations(model, asked);
-            (0..sampled.samples).map(drawn).collect()
+            let deviation = self.deviations(model, settings);
+            (0..sampled.samples).map(deviation).collect()
         });
-        let correlated = !asked.correlations.is_empty();
+        let correlated = !settings.correlations.is_empty();
         self.contributions = (0..self.metrics.len())
             .map(|k| {
                 let of = &self.metrics[k];
-                let drawn = self.sampled.as_ref().map(|s| &s.metrics[k]).filter(|d| d.known >= ENOUGH);
-                match (self.is_nonlinear(k), drawn, &deviations, &of.second_shares) {
-                    (true, Some(drawn), Some(deviations), _) => {
-                        let effect = |v: usize| main_effect(&drawn.values, |n| deviations[n][v]);
+                let samples = self.sampled.as_ref().map(|s| &s.metrics[k]).filter(|d| d.known >= ENOUGH);
+                match (self.is_nonlinear(k), samples, &deviations, &of.second_shares) {
+                    (true, Some(samples), Some(deviations), _) => {
+                        let effect = |v: usize| main_effect(&samples.values, |n| deviations[n][v]);
                         let shares: Vec<f64> = (0..of.d.len()).map(effect).collect();
                         let rest = (1.0 - shares.iter().sum::<f64>()).max(0.0);
                         let together = (!correlated).then_some(rest);
-                        Contributions { model: SpreadModel::Drawn, shares, together }
+                        Contributions { model: SpreadModel::Sampled, shares, together }
                     }
                     (true, _, _, Some(shares)) => {
                         let shares = shares.clone();
@@ -86,8 +87,8 @@ impl ToleranceResult {
     }
 }
 
-/// The variance of the mean value at given deviations of a variable, as a part of all: over groups of about equal
-/// deviations, less what the scatter within groups makes of their means.
+/// Variance of the mean at given deviations of a variable, as a fraction of the total: from groups of about equal
+/// deviations, corrected for the scatter of their means.
 ///
 /// ```text
 /// V_i = sum n_b (m_b - m)^2 / n - (B - 1) s^2 / n,    S_i = V_i / V        b = 1..B,  s^2 the mean variance within groups
@@ -123,14 +124,14 @@ mod tests {
     use super::*;
     use crate::study::random::design_stream;
 
-    /// Chance leaves this of a part of 20,000 designs.
+    /// Statistical error with 20,000 designs, as a fraction.
     const CHANCE: f64 = 0.02;
 
     #[test]
     fn main_effects_of_a_sum_of_squares_and_products_are_those_of_theory() {
-        // y = 2 a + b^2 + c d of independent uniform deviations between -1 and 1:
-        // variances 4/3, 4/45 and 1/9, of which the last belongs to c and d together.
-        let drawn = |number: usize| {
+        // y = 2 a + b^2 + c d of independent uniform deviations between -1 and 1: variances 4/3, 4/45 and 1/9. The last
+        // is an interaction of c and d.
+        let sample = |number: usize| {
             let mut stream = design_stream(5, number as u64);
             let mut d = [0.0; 4];
             d.iter_mut().for_each(|x| {
@@ -140,7 +141,7 @@ mod tests {
             });
             d
         };
-        let all: Vec<[f64; 4]> = (0..20_000).map(drawn).collect();
+        let all: Vec<[f64; 4]> = (0..20_000).map(sample).collect();
         let values: Vec<f64> = all.iter().map(|[a, b, c, d]| 2.0 * a + b * b + c * d).collect();
         let total = 4.0 / 3.0 + 4.0 / 45.0 + 1.0 / 9.0;
         for (v, expected) in [4.0 / 3.0 / total, 4.0 / 45.0 / total, 0.0, 0.0].into_iter().enumerate() {

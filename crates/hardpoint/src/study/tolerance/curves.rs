@@ -1,46 +1,46 @@
-//! Bands along whole curves, from derivatives: exact first and second ones at every output time.
+//! Tolerance bands along whole curves, from exact first and second derivatives at every output time.
 
 use crate::model::OutputSource;
 
 use super::deviations::Deviations;
 use super::{SecondOrder, Study};
 
-/// Second derivatives of that many bytes are held for bands; of more variables and longer motions, bands are of first
-/// order.
+/// Maximum size of the second derivatives for bands, in bytes; with more variables or longer motions, bands are of
+/// first order.
 const MOST_BYTES: usize = 256 << 20;
-/// And that many while they are worked out.
+/// Maximum size of the second derivatives during their computation, in bytes.
 const PART_BYTES: usize = 16 << 20;
 
 /// Effect of tolerances on a measure along one motion.
 #[derive(Clone, Debug)]
 pub struct CurveBands {
-    /// Place in [`Model::measures`](crate::model::Model::measures).
+    /// Index in [`Model::measures`](crate::model::Model::measures).
     pub measure: usize,
-    /// The motion, by its place among those studied.
+    /// Index of the motion among those studied.
     pub motion: usize,
-    /// Column in [`MeasureResults`](crate::measure::MeasureResults).
+    /// Column of [`MeasureResults`](crate::measure::MeasureResults).
     pub column: usize,
     /// Output times, s.
     pub times: Vec<f64>,
-    /// One for each of them.
+    /// Bands at the output times.
     pub bands: Vec<BandPoint>,
 }
 
-/// The same at one output time, in SI.
+/// Effect of tolerances on a measure at one output time, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandPoint {
-    /// In the design configuration.
+    /// Nominal value.
     pub nominal: f64,
-    /// The standard deviation to first order.
+    /// First-order standard deviation.
     pub sigma: f64,
-    /// The least and the greatest value to first order.
+    /// Minimum and maximum to first order.
     pub worst: [f64; 2],
-    /// To second order, where second derivatives are known: of what follows from positions alone.
+    /// Second-order moments, if second derivatives are known: for outputs that depend on positions alone.
     pub second: Option<SecondOrder>,
 }
 
 impl CurveBands {
-    /// Mean and standard deviation at output time k, to the highest order that is known.
+    /// Mean and standard deviation at output time k, to the highest known order.
     pub fn moments(&self, k: usize) -> [f64; 2] {
         let BandPoint { nominal, sigma, second, .. } = self.bands[k];
         second.map_or([nominal, sigma], |s| [nominal + s.shift, s.sigma])
@@ -48,13 +48,13 @@ impl CurveBands {
 }
 
 impl Study<'_> {
-    /// The bands of all curves that are requested, as far as there is `more` time.
+    /// Bands of all requested curves; stops early if `more` returns false.
     pub(super) fn curves(&self, more: &(dyn Fn() -> bool + Sync)) -> Vec<CurveBands> {
         (0..self.motions.len()).flat_map(|motion| self.curves_of(motion, more)).collect()
     }
 
     fn curves_of(&self, motion: usize, more: &(dyn Fn() -> bool + Sync)) -> Vec<CurveBands> {
-        let measured = &self.drawn.solutions[motion].measured;
+        let measured = &self.nominal.solutions[motion].measured;
         let column = |measure: &usize| {
             measured
                 .outputs
@@ -62,12 +62,12 @@ impl Study<'_> {
                 .position(|o| o.source == OutputSource::Measure(*measure))
                 .map(|c| (*measure, c))
         };
-        let asked: Vec<(usize, usize)> = self.asked.curves.iter().filter_map(column).collect();
+        let settings: Vec<(usize, usize)> = self.settings.curves.iter().filter_map(column).collect();
         let bends: Vec<usize> =
-            asked.iter().map(|(_, c)| *c).filter(|c| measured.outputs[*c].known.by_position).collect();
+            settings.iter().map(|(_, c)| *c).filter(|c| measured.outputs[*c].known.by_position).collect();
         let seconds = self.seconds(motion, &bends, more);
         let deviations = self.deviations;
-        let times = self.drawn.solutions[motion].motion.times.clone();
+        let times = self.nominal.solutions[motion].motion.times.clone();
         let curve = |&(measure, column): &(usize, usize)| {
             let bend = bends.iter().position(|c| *c == column);
             let band = |k: usize| {
@@ -87,22 +87,22 @@ impl Study<'_> {
             let bands = (0..times.len()).map(band).collect();
             CurveBands { measure, motion, column, times: times.clone(), bands }
         };
-        asked.iter().map(curve).collect()
+        settings.iter().map(curve).collect()
     }
 
-    /// Exact second derivatives of some columns by all pairs of variables that may be off; `None` where they are too
-    /// many, or the time is up.
+    /// Exact second derivatives of some columns by all pairs of toleranced variables; `None` if they are too large, or
+    /// the caller ended the study.
     fn seconds(&self, motion: usize, columns: &[usize], more: &(dyn Fn() -> bool + Sync)) -> Option<Seconds> {
         let (analysis, variables) = (&self.motions.analyses()[motion], &self.deviations.variables);
         let n = variables.len();
-        let (steps, pairs) = (self.drawn.solutions[motion].motion.len(), n * (n + 1) / 2);
+        let (steps, pairs) = (self.nominal.solutions[motion].motion.len(), n * (n + 1) / 2);
         if columns.is_empty() || steps * pairs * columns.len() * size_of::<f64>() > MOST_BYTES {
             return None;
         }
         let mut values = vec![0.0; steps * pairs * columns.len()];
         let directions: Vec<Vec<f64>> = variables.iter().map(|v| self.model.alone(v.variable, 1.0)).collect();
         let all: Vec<[usize; 2]> = (0..n).flat_map(|i| (0..=i).map(move |j| [i, j])).collect();
-        let outputs = self.drawn.solutions[motion].measured.outputs.len();
+        let outputs = self.nominal.solutions[motion].measured.outputs.len();
         let per_pair = steps * (16 * outputs + 96 * self.model.bodies.len());
         let part = (PART_BYTES / per_pair.max(1)).max(1);
         for (chunk, some) in all.chunks(part).enumerate() {
@@ -126,7 +126,7 @@ impl Study<'_> {
     }
 }
 
-/// First-order worst case of the value: the sum over the tolerances of reach times gradient.
+/// First-order worst-case deviation: the sum over the tolerances of reach times norm of the gradient.
 fn reach(of: &Deviations, g: &[f64]) -> f64 {
     of.blocks.iter().map(|b| b.reach * g[b.range()].iter().map(|x| x * x).sum::<f64>().sqrt()).sum()
 }

@@ -1,5 +1,5 @@
-//! Deviations of the design variables: how they scatter, alone and together, and what that makes of a function with
-//! known derivatives.
+//! Deviations of the design variables: their distributions and correlations, and the resulting statistics of a function
+//! with known derivatives.
 
 use crate::linalg::semidefinite;
 use crate::model::{Model, Scatter, ToleranceSettings, VariableId};
@@ -7,22 +7,22 @@ use crate::study::random::{design_stream, draw, moments};
 
 use super::{SecondOrder, TolerancedVariable, dot};
 
-/// The variables that may be off, and how.
+/// Toleranced variables with their distributions.
 #[derive(Clone, Debug)]
 pub(super) struct Deviations {
     pub variables: Vec<TolerancedVariable>,
-    /// The coordinates of each tolerance stand together: where, with its reach and its scatter.
+    /// Coordinates of each tolerance, stored consecutively, with reach and scatter.
     pub blocks: Vec<Block>,
-    /// The root of the matrix of correlations, row by row; none where nothing is correlated.
+    /// Square root of the correlation matrix, row by row; `None` if nothing is correlated.
     root: Option<Vec<Vec<f64>>>,
 }
 
-/// Coordinates that are off together.
+/// Coordinates of one tolerance.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     /// Index of the tolerance.
     pub tolerance: usize,
-    /// The first of its variables, and how many there are.
+    /// First of its variables, and their number.
     pub first: usize,
     pub len: usize,
     pub reach: f64,
@@ -37,25 +37,25 @@ impl Block {
 }
 
 impl Deviations {
-    pub fn new(model: &Model, asked: &ToleranceSettings, left_out: &[VariableId]) -> Self {
-        assert!(asked.tolerances.iter().flat_map(|t| &t.variables).all(|v| v.0 < model.variables.len()));
-        let reaches: Vec<f64> = asked.tolerances.iter().map(|t| t.reach).collect();
-        Self::of(asked, &reaches, |v| !left_out.contains(&v))
+    pub fn new(model: &Model, settings: &ToleranceSettings, left_out: &[VariableId]) -> Self {
+        assert!(settings.tolerances.iter().flat_map(|t| &t.variables).all(|v| v.0 < model.variables.len()));
+        let reaches: Vec<f64> = settings.tolerances.iter().map(|t| t.reach).collect();
+        Self::of(settings, &reaches, |v| !left_out.contains(&v))
     }
 
-    /// The same variables with other reaches, one for each tolerance.
-    pub fn with_reaches(&self, asked: &ToleranceSettings, reaches: &[f64]) -> Self {
-        Self::of(asked, reaches, |v| self.variables.iter().any(|of| of.variable == v))
+    /// Deviations with other reaches, one for each tolerance.
+    pub fn with_reaches(&self, settings: &ToleranceSettings, reaches: &[f64]) -> Self {
+        Self::of(settings, reaches, |v| self.variables.iter().any(|of| of.variable == v))
     }
 
-    fn of(asked: &ToleranceSettings, reaches: &[f64], varies: impl Fn(VariableId) -> bool) -> Self {
+    fn of(settings: &ToleranceSettings, reaches: &[f64], varies: impl Fn(VariableId) -> bool) -> Self {
         let (mut variables, mut blocks) = (Vec::new(), Vec::new());
-        for (tolerance, one) in asked.tolerances.iter().enumerate() {
+        for (tolerance, one) in settings.tolerances.iter().enumerate() {
             let moved: Vec<VariableId> = one.variables.iter().copied().filter(|v| varies(*v)).collect();
             if moved.is_empty() {
                 continue;
             }
-            // A sphere of which a coordinate cannot be off is a disc.
+            // A sphere with one fixed coordinate is a disc.
             let (first, len, reach) = (variables.len(), moved.len(), reaches[tolerance]);
             let of = moments(one.scatter, len, reach);
             blocks.push(Block { tolerance, first, len, reach, scatter: one.scatter, kurtosis: of.kurtosis });
@@ -71,18 +71,18 @@ impl Deviations {
             let n = variables.len();
             let unit = |i: usize| (0..n).map(|j| f64::from(u8::from(i == j))).collect();
             let mut matrix: Vec<Vec<f64>> = (0..n).map(unit).collect();
-            for one in &asked.correlations {
+            for one in &settings.correlations {
                 if let [Some(i), Some(j)] = one.between.map(place) {
                     (matrix[i][j], matrix[j][i]) = (one.coefficient, one.coefficient);
                 }
             }
             semidefinite::root(&matrix).expect("the correlations of a model were checked")
         };
-        let root = (!asked.correlations.is_empty()).then(matrix);
+        let root = (!settings.correlations.is_empty()).then(matrix);
         Self { variables, blocks, root }
     }
 
-    /// Row i of the root of the matrix of covariances.
+    /// Row i of the square root of the covariance matrix.
     fn root_row(&self, i: usize) -> Vec<f64> {
         let sigma = self.variables[i].sigma;
         match &self.root {
@@ -95,7 +95,7 @@ impl Deviations {
         }
     }
 
-    /// A vector in coordinates in which deviations are uncorrelated and have standard deviation 1: `L' g`.
+    /// Vector in coordinates in which deviations are uncorrelated with standard deviation 1: `L' g`.
     pub fn whitened(&self, g: &[f64]) -> Vec<f64> {
         let mut white = vec![0.0; g.len()];
         for (i, g) in g.iter().enumerate() {
@@ -104,13 +104,13 @@ impl Deviations {
         white
     }
 
-    /// The root of the sum of squares: `sqrt(g' S g)`.
+    /// First-order standard deviation: `sqrt(g' S g)`.
     pub fn sigma(&self, g: &[f64]) -> f64 {
         let white = self.whitened(g);
         dot(&white, &white).sqrt()
     }
 
-    /// The part of the variance that each variable contributes: `g_i (S g)_i / g' S g`.
+    /// Contribution of each variable to the first-order variance: `g_i (S g)_i / g' S g`.
     pub fn shares(&self, g: &[f64]) -> Vec<f64> {
         let white = self.whitened(g);
         let variance = dot(&white, &white);
@@ -121,8 +121,7 @@ impl Deviations {
         (0..g.len()).map(share).collect()
     }
 
-    /// The part of the variance to second order that each variable contributes; what two of them bring together is
-    /// halved.
+    /// Contribution of each variable to the second-order variance; interactions of two variables are split equally.
     ///
     /// ```text
     /// g_i (S g)_i + (H S H S)_ii / 2 + (k/3 - 1) (sum over the block of G_ij^2 / 2 + tr(G_b) G_ii / 4),  over their sum
@@ -177,8 +176,8 @@ impl Deviations {
         SecondOrder { shift: 0.5 * trace(0..n), sigma: first.hypot(bend), bend }
     }
 
-    /// The deviations of the sample of a number.
-    pub fn drawn(&self, seed: u64, number: usize) -> Vec<f64> {
+    /// Deviations of the sample with a number.
+    pub fn sample(&self, seed: u64, number: usize) -> Vec<f64> {
         let mut stream = design_stream(seed, number as u64);
         let mut d = vec![0.0; self.variables.len()];
         for block in &self.blocks {
@@ -193,7 +192,7 @@ impl Deviations {
         d
     }
 
-    /// The values of all variables of the model, that many, with these deviations.
+    /// Values of all variables of the model with these deviations.
     pub fn design(&self, variables: usize, deviations: &[f64]) -> Vec<f64> {
         let mut design = vec![0.0; variables];
         self.variables.iter().zip(deviations).for_each(|(v, d)| design[v.variable.0] = *d);

@@ -1,9 +1,9 @@
 //! Tolerance study: effects of the tolerances of design variables on every metric and along whole curves.
 //!
-//! From exact derivatives, without sampling: worst case, root of the sum of squares, mean and variance to second order,
-//! what each variable contributes, yield (`docs/theory.md`, section on tolerances). Beside it the same from designs
-//! that are drawn and solved exactly, so that the error of the derivatives' answer is seen, and the loosest tolerances
-//! that keep the limits.
+//! Derivatives give, without sampling: worst case, root sum square, second-order mean and variance, contributions of
+//! the variables, and yield (`docs/theory.md`, section on tolerances). Sampled designs that are solved exactly give the
+//! same statistics and show the error of the derivatives. Allocation gives the loosest tolerances that satisfy the
+//! limits.
 
 mod allocation;
 mod contributions;
@@ -30,75 +30,75 @@ use deviations::Deviations;
 pub use monte_carlo::{FailureGroup, MonteCarlo, SampledCurve, SampledMetric, Yield};
 pub use worst::Extreme;
 
-/// Threshold for a warning about nonlinearity: the second-order part of a deviation, or the shift of its mean, relative
-/// to the first-order standard deviation.
+/// Threshold for a warning about nonlinearity: second-order part of a deviation, or shift of its mean, relative to the
+/// first-order standard deviation.
 pub const NONLINEAR: f64 = 0.1;
-/// Gradients are differenced over this part of a natural step to either side: the error of the difference, in h^2, and
-/// round-off, in 1/h, are then some 1e-8 of the second derivative.
+/// Step of gradient differences to either side, as a fraction of a natural step: truncation, in h^2, and round-off, in
+/// 1/h, are then about 1e-8 of the second derivative.
 const STEP: f64 = 1e-4;
 
 /// Result of a tolerance study.
 #[derive(Clone, Debug)]
 pub struct ToleranceResult {
-    /// The variables that may be off, in the order of the tolerances.
+    /// Toleranced variables, in the order of the tolerances.
     pub variables: Vec<TolerancedVariable>,
-    /// Variables with a tolerance that the mechanism cannot follow: they stay in the design configuration.
+    /// Toleranced variables that the mechanism cannot follow. They keep their design values.
     pub left_out: Vec<VariableId>,
-    /// Per metric and motion.
+    /// Spread of each metric in each motion.
     pub metrics: Vec<MetricSpread>,
-    /// Per metric and motion, what each variable contributes to its variance.
+    /// Contributions of the variables to the variance, per metric and motion.
     pub contributions: Vec<Contributions>,
-    /// Metrics that have no value in the design configuration: the metric, and the motion.
+    /// Metrics without a nominal value: index of the metric and of the motion.
     pub unknown: Vec<(usize, usize)>,
-    /// Per measure and motion.
+    /// Bands of each measure in each motion.
     pub curves: Vec<CurveBands>,
-    /// Per limit, and per motion that its metric is taken of.
+    /// Yields per limit and motion of its metric.
     pub limits: Vec<LimitYield>,
-    /// The designs that were drawn, if any were requested.
+    /// Monte Carlo results, if requested.
     pub sampled: Option<MonteCarlo>,
-    /// The loosest tolerances, if they were requested.
+    /// Tolerance allocation, if requested.
     pub allocation: Option<Allocation>,
     /// Cost of the study.
     pub cost: StudyCost,
-    /// True if it was ended before all was done.
+    /// True if the study was ended early.
     pub interrupted: bool,
 }
 
-/// A variable that may be off.
+/// Toleranced variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TolerancedVariable {
-    /// Which.
+    /// The variable.
     pub variable: VariableId,
-    /// By which of the tolerances.
+    /// Index of its tolerance.
     pub tolerance: usize,
-    /// Standard deviation, m, rad or a plain number.
+    /// Standard deviation of its deviation, m, rad or a plain number.
     pub sigma: f64,
-    /// The kurtosis of its deviation: 3 where it is normal.
+    /// Kurtosis of its deviation: 3 if it is normal.
     pub kurtosis: f64,
 }
 
 /// Effect of tolerances on a metric in one motion, from derivatives. SI.
 #[derive(Clone, Debug)]
 pub struct MetricSpread {
-    /// Place in [`Model::metrics`].
+    /// Index in [`Model::metrics`].
     pub metric: usize,
-    /// The motion, by its place among those studied.
+    /// Index of the motion among those studied.
     pub motion: usize,
-    /// In the design configuration.
+    /// Nominal value.
     pub nominal: f64,
-    /// Derivative by every variable that may be off.
+    /// Derivative by every toleranced variable.
     pub d: Vec<f64>,
-    /// Standard deviation to first order: the root of the sum of squares.
+    /// First-order standard deviation: root sum square.
     pub sigma: f64,
-    /// The part of the first-order variance that each variable contributes; they add up to 1. With correlated variables
-    /// one may be negative: it takes away from what another brings.
+    /// Contribution of each variable to the first-order variance; the sum is 1. With correlated variables a
+    /// contribution may be negative.
     pub shares: Vec<f64>,
-    /// The same of the variance to second order, where that is known.
+    /// Contributions to the second-order variance, if it is known.
     pub second_shares: Option<Vec<f64>>,
-    /// The least and the greatest value that the tolerances allow.
+    /// Minimum and maximum within the tolerances.
     pub worst: [Extreme; 2],
-    /// Second-order moments; `None` if a moved design near the nominal one does not reach the end, so that the gradient
-    /// has no difference there.
+    /// Second-order moments; `None` if a design near the nominal one does not reach the end, so that the gradient
+    /// cannot be differenced.
     pub second: Option<SecondOrder>,
     /// Threshold of a zero change.
     pub round_off: f64,
@@ -107,72 +107,75 @@ pub struct MetricSpread {
 /// Moments to second order, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondOrder {
-    /// By how much the mean is off the value in the design configuration.
+    /// Mean minus nominal value.
     pub shift: f64,
-    /// The standard deviation.
+    /// Standard deviation.
     pub sigma: f64,
-    /// The standard deviation of the second-order part alone.
+    /// Standard deviation of the second-order part alone.
     pub bend: f64,
 }
 
-/// True if a limit will be kept.
+/// Probability of keeping a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitYield {
-    /// Place in [`ToleranceSettings::limits`].
+    /// Index in [`ToleranceSettings::limits`].
     pub limit: usize,
-    /// The place of its metric and motion in [`ToleranceResult::metrics`].
+    /// Index of its metric and motion in [`ToleranceResult::metrics`].
     pub spread: usize,
-    /// The part of all made that keeps it, if the metric is normal with the moments that derivatives give.
+    /// Yield of a normal distribution with the moments from derivatives, 0 to 1.
     pub by_moments: f64,
-    /// The part of the designs drawn that keep it; those that do not move to the end do not.
+    /// Yield of the sampled designs; designs that do not reach the end violate the limit.
     pub sampled: Option<Yield>,
 }
 
 impl ToleranceResult {
-    /// The deviations of the variables that may be off in the sample of a number, for the tolerances that were asked.
-    pub fn deviations(&self, model: &Model, asked: &ToleranceSettings) -> impl Fn(usize) -> Vec<f64> + use<> {
-        let (deviations, seed) = (Deviations::new(model, asked, &self.left_out), asked.seed);
-        move |number| deviations.drawn(seed, number)
+    /// Deviations of the toleranced variables in the sample with a number, for the requested tolerances.
+    pub fn deviations(
+        &self,
+        model: &Model,
+        settings: &ToleranceSettings,
+    ) -> impl Fn(usize) -> Vec<f64> + use<> {
+        let (deviations, seed) = (Deviations::new(model, settings, &self.left_out), settings.seed);
+        move |number| deviations.sample(seed, number)
     }
 }
 
-/// The designs that are drawn within tolerances, by their numbers: all variables, in SI. Those that are left out stay
-/// in the design configuration.
+/// Sampled designs by number: all variables, SI. Variables that are left out keep their design values.
 pub fn toleranced_designs(
     model: &Model,
-    asked: &ToleranceSettings,
+    settings: &ToleranceSettings,
     left_out: &[VariableId],
 ) -> impl Fn(usize) -> Vec<f64> + use<> {
     let (deviations, seed, variables) =
-        (Deviations::new(model, asked, left_out), asked.seed, model.variables.len());
-    move |number| deviations.design(variables, &deviations.drawn(seed, number))
+        (Deviations::new(model, settings, left_out), settings.seed, model.variables.len());
+    move |number| deviations.design(variables, &deviations.sample(seed, number))
 }
 
-/// Reason why there is no result.
+/// Reason why a tolerance study has no result.
 #[derive(Clone, Debug)]
 pub enum ToleranceError {
-    /// The nominal design does not reach the end of some motion, or it was interrupted there.
-    Drawn(EvaluationError),
+    /// The nominal design does not reach the end of some motion, or the caller ended the study there.
+    Nominal(EvaluationError),
     /// The mechanism can follow none of the variables with a tolerance.
     NothingVaries,
 }
 
-/// Progress reports of a study.
+/// Progress of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToleranceStage {
-    /// Number of these gradients that are differenced.
+    /// Number of differenced gradients, of the total.
     Derivatives(usize, usize),
-    /// Number of these designs that were solved.
+    /// Number of sampled designs, of the total.
     Designs(usize, usize),
 }
 
 impl MetricSpread {
-    /// The mean to second order, or in the design configuration where that is not known.
+    /// Second-order mean; the nominal value if it is unknown.
     pub fn mean(&self) -> f64 {
         self.nominal + self.second.map_or(0.0, |s| s.shift)
     }
 
-    /// The standard deviation to the highest order that is known.
+    /// Standard deviation to the highest known order.
     pub fn best_sigma(&self) -> f64 {
         self.second.map_or(self.sigma, |s| s.sigma)
     }
@@ -185,43 +188,42 @@ impl MetricSpread {
         Some(if part <= self.round_off { 0.0 } else { part / self.sigma })
     }
 
-    /// True if the linear answer is off, as reported by the second derivatives.
+    /// True if the second derivatives indicate that the linear result is inaccurate.
     pub fn is_nonlinear(&self) -> bool {
         self.nonlinearity().is_none_or(|part| !(part <= NONLINEAR))
     }
 }
 
-/// Studies the tolerances of a design in some motions of the mechanism, each of which is the model's own of that number
-/// ([`Model::motions`]). `tell` is reported how far it is and may end it, `more` is asked at every output time of
-/// single designs.
+/// Studies the tolerances of a design in some motions of the mechanism, given by their numbers in [`Model::motions`].
+/// `tell` is called with the progress and may end the study; `more` is called at every output time of single designs.
 ///
 /// # Errors
-/// A [`ToleranceError`] where there is nothing to depend on.
+/// A [`ToleranceError`] if there is nothing to study.
 pub fn tolerance(
     model: &Model,
     motions: &Motions<'_>,
     numbers: &[usize],
-    asked: &ToleranceSettings,
+    settings: &ToleranceSettings,
     threads: NonZero<usize>,
     tell: &mut (dyn FnMut(ToleranceStage) -> ControlFlow<()> + Send),
     more: &(dyn Fn() -> bool + Sync),
 ) -> Result<ToleranceResult, ToleranceError> {
     let mut cost = StudyCost::default();
-    let drawn = motions.evaluate(&[], &mut cost, more).map_err(ToleranceError::Drawn)?;
-    let (deviations, left_out) = deviations(model, &drawn, asked);
+    let nominal = motions.evaluate(&[], &mut cost, more).map_err(ToleranceError::Nominal)?;
+    let (deviations, left_out) = deviations(model, &nominal, settings);
     if deviations.variables.is_empty() {
         return Err(ToleranceError::NothingVaries);
     }
-    let study = Study { model, motions, numbers, asked, deviations: &deviations, drawn: &drawn };
-    let (taken, unknown) = study.taken();
+    let study = Study { model, motions, numbers, settings, deviations: &deviations, nominal: &nominal };
+    let (studied, unknown) = study.studied();
     let mut interrupted = false;
     let mut tell = |stage: ToleranceStage| {
-        let told = tell(stage);
-        interrupted |= told.is_break();
-        told
+        let flow = tell(stage);
+        interrupted |= flow.is_break();
+        flow
     };
-    let hessians = study.hessians(&taken, &mut cost, &mut tell, more);
-    let metrics: Vec<MetricSpread> = taken
+    let hessians = study.hessians(&studied, &mut cost, &mut tell, more);
+    let metrics: Vec<MetricSpread> = studied
         .iter()
         .zip(hessians)
         .map(|(one, hessian)| study.spread(one, hessian.as_deref(), &mut cost))
@@ -241,105 +243,105 @@ pub fn tolerance(
         cost,
         interrupted: false,
     };
-    if asked.samples > 0 {
+    if settings.samples > 0 {
         let sampled = study.sample(&deviations, &found, threads, &mut tell, more);
         found.cost += sampled.cost;
-        // Nothing can be said of none, where the time is up before the first of them.
+        // Without samples there are no statistics.
         if sampled.samples > 0 {
             sampled.limits.iter().zip(&mut found.limits).for_each(|(y, limit)| limit.sampled = Some(*y));
             found.sampled = Some(sampled);
         }
     }
-    if let Some(rule) = asked.allocation {
+    if let Some(rule) = settings.allocation {
         let mut allocation = allocation::allocate(&study, rule, &found);
         if let Some(tolerances) = allocation
-            .reaches_of(asked.tolerances.iter().map(|t| t.reach))
-            .filter(|_| study.asked.samples > 0)
+            .reaches_of(settings.tolerances.iter().map(|t| t.reach))
+            .filter(|_| study.settings.samples > 0)
         {
-            let loose = deviations.with_reaches(study.asked, &tolerances);
+            let loose = deviations.with_reaches(study.settings, &tolerances);
             let sampled = study.sample(&loose, &found, threads, &mut tell, more);
             found.cost += sampled.cost;
             allocation.sampled = Some(sampled).filter(|s| s.samples > 0);
         }
         found.allocation = Some(allocation);
     }
-    found.add_contributions(model, asked);
+    found.add_contributions(model, settings);
     found.interrupted = interrupted || !more();
     Ok(found)
 }
 
-/// Tolerances of a design in some motions.
+/// Data of a tolerance study.
 struct Study<'s> {
     model: &'s Model,
     motions: &'s Motions<'s>,
-    /// Per motion, its number among those of the model.
+    /// Number of each motion among those of the model.
     numbers: &'s [usize],
-    asked: &'s ToleranceSettings,
+    settings: &'s ToleranceSettings,
     deviations: &'s Deviations,
-    drawn: &'s DesignEvaluation,
+    nominal: &'s DesignEvaluation,
 }
 
 /// A metric in one motion.
-struct Taken {
-    /// Place in [`Model::metrics`].
+struct StudiedMetric {
+    /// Index in [`Model::metrics`].
     metric: usize,
     motion: usize,
-    /// Place in the metrics of the motion.
+    /// Index among the metrics of the motion.
     place: usize,
 }
 
-/// The variables that may be off, and those of them that the mechanism cannot follow.
+/// Toleranced variables, and those of them that the mechanism cannot follow.
 fn deviations(
     model: &Model,
-    drawn: &DesignEvaluation,
-    asked: &ToleranceSettings,
+    nominal: &DesignEvaluation,
+    settings: &ToleranceSettings,
 ) -> (Deviations, Vec<VariableId>) {
     let cannot = |v: VariableId| {
         let known = |s: &crate::run::Solution| {
             matches!(s.sensitivities.admissibility.get(v.0), Some(Admissibility::CannotFollow { .. }))
         };
-        drawn.solutions.iter().any(known)
+        nominal.solutions.iter().any(known)
     };
-    let of_all = asked.tolerances.iter().flat_map(|t| t.variables.iter().copied());
+    let of_all = settings.tolerances.iter().flat_map(|t| t.variables.iter().copied());
     let left_out: Vec<VariableId> = of_all.filter(|v| cannot(*v)).collect();
-    (Deviations::new(model, asked, &left_out), left_out)
+    (Deviations::new(model, settings, &left_out), left_out)
 }
 
 impl Study<'_> {
     /// Metrics of each motion, and those without a value.
-    fn taken(&self) -> (Vec<Taken>, Vec<(usize, usize)>) {
-        let mut asked = self.asked.metrics.clone();
+    fn studied(&self) -> (Vec<StudiedMetric>, Vec<(usize, usize)>) {
+        let mut settings = self.settings.metrics.clone();
         let of_limit = |limit: &crate::model::Limit| match limit.of {
             LimitTarget::Metric(m) => Some(m),
             _ => None,
         };
-        asked.extend(self.asked.limits.iter().filter_map(of_limit));
-        asked.sort_unstable();
-        asked.dedup();
-        let (mut taken, mut unknown) = (Vec::new(), Vec::new());
-        for metric in asked {
+        settings.extend(self.settings.limits.iter().filter_map(of_limit));
+        settings.sort_unstable();
+        settings.dedup();
+        let (mut studied, mut unknown) = (Vec::new(), Vec::new());
+        for metric in settings {
             for (motion, &number) in self.numbers.iter().enumerate() {
                 let Some(place) = place_of(self.model, metric, number) else { continue };
-                match self.drawn.metrics[motion][place].value {
-                    Some(_) => taken.push(Taken { metric, motion, place }),
+                match self.nominal.metrics[motion][place].value {
+                    Some(_) => studied.push(StudiedMetric { metric, motion, place }),
                     None => unknown.push((metric, motion)),
                 }
             }
         }
-        (taken, unknown)
+        (studied, unknown)
     }
 
-    /// The second derivatives of every metric by the variables that may be off: differences of exact gradients.
+    /// Second derivatives of every metric by the toleranced variables, from differences of exact gradients.
     fn hessians(
         &self,
-        taken: &[Taken],
+        studied: &[StudiedMetric],
         cost: &mut StudyCost,
         tell: &mut dyn FnMut(ToleranceStage) -> ControlFlow<()>,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Vec<Option<Vec<Vec<f64>>>> {
         let variables = &self.deviations.variables;
         let n = variables.len();
-        let mut columns: Vec<Option<Vec<Vec<f64>>>> = taken.iter().map(|_| Some(Vec::new())).collect();
+        let mut columns: Vec<Option<Vec<Vec<f64>>>> = studied.iter().map(|_| Some(Vec::new())).collect();
         for (j, tolerated) in variables.iter().enumerate() {
             let h = STEP * self.model.natural_step(tolerated.variable);
             let sides = [h, -h].map(|by| {
@@ -348,7 +350,7 @@ impl Study<'_> {
                 }
                 self.motions.evaluate(&self.model.alone(tolerated.variable, by), cost, more).ok()
             });
-            for (one, columns) in taken.iter().zip(&mut columns) {
+            for (one, columns) in studied.iter().zip(&mut columns) {
                 let gradient = |side: &Option<DesignEvaluation>| {
                     let value = &side.as_ref()?.metrics[one.motion][one.place];
                     value.value.is_some().then(|| self.by_tolerated(&value.d))
@@ -373,8 +375,13 @@ impl Study<'_> {
         self.deviations.variables.iter().map(|v| d[v.variable.0]).collect()
     }
 
-    fn spread(&self, one: &Taken, hessian: Option<&[Vec<f64>]>, cost: &mut StudyCost) -> MetricSpread {
-        let value = &self.drawn.metrics[one.motion][one.place];
+    fn spread(
+        &self,
+        one: &StudiedMetric,
+        hessian: Option<&[Vec<f64>]>,
+        cost: &mut StudyCost,
+    ) -> MetricSpread {
+        let value = &self.nominal.metrics[one.motion][one.place];
         let nominal = value.value.expect("only metrics with a value are taken");
         let d = self.by_tolerated(&value.d);
         let sigma = self.deviations.sigma(&d);
@@ -393,7 +400,7 @@ impl Study<'_> {
         });
         let shares = self.deviations.shares(&d);
         let second_shares = hessian.map(|h| self.deviations.second_shares(&d, h));
-        let motion = &self.drawn.solutions[one.motion].motion;
+        let motion = &self.nominal.solutions[one.motion].motion;
         let dimension = self.model.metric_dimension(&self.model.metrics[one.metric]);
         let round_off = Magnitude::of_motion(self.model, motion).round_off(dimension, 0);
         MetricSpread {
@@ -412,7 +419,7 @@ impl Study<'_> {
 
     fn limits(&self, metrics: &[MetricSpread]) -> Vec<LimitYield> {
         let mut found = Vec::new();
-        for (k, limit) in self.asked.limits.iter().enumerate() {
+        for (k, limit) in self.settings.limits.iter().enumerate() {
             for (spread, of) in
                 metrics.iter().enumerate().filter(|(_, m)| limit.of == LimitTarget::Metric(m.metric))
             {
@@ -425,7 +432,7 @@ impl Study<'_> {
     }
 }
 
-/// The part of a normal distribution that is below x.
+/// Cumulative normal distribution at x.
 fn normal_below(x: f64, mean: f64, sigma: f64) -> f64 {
     if sigma == 0.0 {
         return if x >= mean { 1.0 } else { 0.0 };
@@ -433,7 +440,7 @@ fn normal_below(x: f64, mean: f64, sigma: f64) -> f64 {
     0.5 * libm::erfc((mean - x) / (sigma * std::f64::consts::SQRT_2))
 }
 
-/// A dot product.
+/// Dot product.
 fn dot<T: Real>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
 }

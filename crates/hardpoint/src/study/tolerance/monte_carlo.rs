@@ -1,4 +1,4 @@
-//! Designs drawn from the tolerances and solved exactly.
+//! Monte Carlo: designs sampled from the tolerances and solved exactly.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -11,7 +11,7 @@ use crate::study::evaluation::StudyCost;
 use crate::study::metric::{metric_numbers, place_of};
 use crate::study::samples::{SampleBlock, SampleRun};
 use crate::study::sweep::quantile;
-use crate::study::whatif::value_beside;
+use crate::study::whatif::unwrapped_value;
 
 use super::deviations::Deviations;
 use super::{CurveBands, MetricSpread, Study, ToleranceResult, ToleranceStage};
@@ -27,78 +27,77 @@ pub struct MonteCarlo {
     pub curves: Vec<SampledCurve>,
     /// Yields of the limits, in the order of [`ToleranceResult::limits`].
     pub limits: Vec<Yield>,
-    /// Those that keep all limits.
+    /// Yield of all limits together.
     pub all: Option<Yield>,
-    /// Designs that do not move to the end in some motion, by what happens there.
+    /// Designs that do not reach the end of some motion, grouped by cause.
     pub failures: Vec<FailureGroup>,
-    /// Number of these designs.
+    /// Number of failed designs.
     pub failed: usize,
     /// Cost of the designs.
     pub cost: StudyCost,
 }
 
-/// A metric of all designs drawn that have it.
+/// Statistics of a metric over the sampled designs that have it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SampledMetric {
     /// Values of each design, NaN if it has none.
     pub values: Vec<f64>,
-    /// Designs that have it.
+    /// Number of designs with a value.
     pub known: usize,
     /// Mean, and its standard error.
     pub mean: [f64; 2],
     /// Standard deviation, and its standard error.
     pub sigma: [f64; 2],
-    /// Skewness: 0 of a normal distribution.
+    /// Skewness: 0 for a normal distribution.
     pub skewness: f64,
-    /// Kurtosis: 3 of a normal distribution.
+    /// Kurtosis: 3 for a normal distribution.
     pub kurtosis: f64,
-    /// The least, the 0.135 % that are below, the median, the 0.135 % that are above, the greatest.
+    /// Minimum, 0.135 % quantile, median, 99.865 % quantile, maximum.
     pub quantiles: [f64; 5],
 }
 
-/// A curve of all designs drawn that move to the end in its motion.
+/// Statistics of a curve over the sampled designs that reach the end of its motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SampledCurve {
-    /// Per output time.
+    /// Mean at each output time.
     pub mean: Vec<f64>,
-    /// Standard deviation.
+    /// Standard deviation at each output time.
     pub sigma: Vec<f64>,
-    /// Least value.
+    /// Minimum at each output time.
     pub least: Vec<f64>,
-    /// Greatest value.
+    /// Maximum at each output time.
     pub greatest: Vec<f64>,
 }
 
-/// The part of designs that keep something.
+/// Yield: designs that satisfy a condition, of all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Yield {
-    /// Number of designs that keep it.
+    /// Number of designs that satisfy it.
     pub kept: usize,
-    /// Number of designs in all.
+    /// Number of all designs.
     pub of: usize,
 }
 
-/// Designs that failed alike.
+/// Designs that failed for the same reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FailureGroup {
-    /// In which motion, by its place among those studied.
+    /// Index of the motion among those studied.
     pub motion: usize,
     /// Description of the first failure.
     pub why: String,
-    /// Number.
+    /// Number of the first failed design.
     pub first: usize,
-    /// Total number.
+    /// Number of designs.
     pub count: usize,
 }
 
 impl Yield {
-    /// The part.
+    /// Yield as a fraction.
     pub fn part(self) -> f64 {
         self.kept as f64 / self.of as f64
     }
 
-    /// Standard error: that of a part with one more that keeps it and one more that does not, since none of many is not
-    /// never.
+    /// Standard error, computed with one more success and one more failure, since 0 of n does not mean never.
     pub fn error(self) -> f64 {
         let n = self.of as f64 + 2.0;
         let part = (self.kept as f64 + 1.0) / n;
@@ -106,7 +105,7 @@ impl Yield {
     }
 }
 
-/// Mean and sum of squares beside it, of a growing number of values.
+/// Running mean and sum of squared deviations.
 #[derive(Clone, Copy, Debug)]
 struct Growing {
     n: f64,
@@ -138,19 +137,19 @@ impl Growing {
     }
 }
 
-/// Results of a block of designs.
+/// Results of a block of sampled designs.
 #[derive(Default)]
 struct Block {
-    /// Per metric, its value in each design.
+    /// Values of each metric in each design.
     metrics: Vec<Vec<f64>>,
-    /// Per curve, per output time.
+    /// Statistics of each curve at each output time.
     curves: Vec<Vec<Growing>>,
     failures: Vec<(usize, usize, StopKind, String)>,
     cost: StudyCost,
 }
 
 impl Study<'_> {
-    /// Draws as many designs as requested and solves them, or as many as there is time for.
+    /// Samples and solves the requested number of designs, or fewer if the caller ends the study.
     pub(super) fn sample(
         &self,
         deviations: &Deviations,
@@ -159,9 +158,9 @@ impl Study<'_> {
         tell: &mut (dyn FnMut(ToleranceStage) -> ControlFlow<()> + Send),
         more: &(dyn Fn() -> bool + Sync),
     ) -> MonteCarlo {
-        let (seed, asked) = (self.asked.seed, self.asked.samples);
+        let (seed, settings) = (self.settings.seed, self.settings.samples);
         let design =
-            |number: usize| deviations.design(self.model.variables.len(), &deviations.drawn(seed, number));
+            |number: usize| deviations.design(self.model.variables.len(), &deviations.sample(seed, number));
         let places: Vec<usize> = found.metrics.iter().map(|m| self.place(m)).collect();
         let see = |block: &mut Block, number: usize, motion: usize, solution: &Solution| {
             block.metrics.resize(found.metrics.len(), Vec::new());
@@ -199,11 +198,11 @@ impl Study<'_> {
             for (all, some) in all.curves.iter_mut().zip(block.curves) {
                 all.iter_mut().zip(some).for_each(|(all, some)| all.join(&some));
             }
-            tell(ToleranceStage::Designs(samples, asked))
+            tell(ToleranceStage::Designs(samples, settings))
         };
-        let run = SampleRun { numbers: 0..asked, design: &design, threads, more };
+        let run = SampleRun { numbers: 0..settings, design: &design, threads, more };
         self.motions.sample(&run, &see, &mut done);
-        self.told(found, samples, all)
+        self.results(found, samples, all)
     }
 
     fn place(&self, of: &MetricSpread) -> usize {
@@ -212,12 +211,12 @@ impl Study<'_> {
     }
 
     fn add_curve(&self, curve: &CurveBands, solution: &Solution, to: &mut Vec<Growing>) {
-        let (drawn, c) = (&self.drawn.solutions[curve.motion], curve.column);
+        let (nominal, c) = (&self.nominal.solutions[curve.motion], curve.column);
         to.resize(curve.bands.len(), Growing::NONE);
-        let Output { dimension, .. } = &drawn.measured.outputs[c];
+        let Output { dimension, .. } = &nominal.measured.outputs[c];
         for (k, to) in to.iter_mut().enumerate().take(solution.measured.len()) {
             let x = match *dimension {
-                Dimension::ANGLE => value_beside(drawn, solution, k, c),
+                Dimension::ANGLE => unwrapped_value(nominal, solution, k, c),
                 _ => solution.measured.value(k, c)[0],
             };
             if x.is_finite() {
@@ -226,7 +225,7 @@ impl Study<'_> {
         }
     }
 
-    fn told(&self, found: &ToleranceResult, samples: usize, all: Block) -> MonteCarlo {
+    fn results(&self, found: &ToleranceResult, samples: usize, all: Block) -> MonteCarlo {
         let metrics: Vec<SampledMetric> = all.metrics.into_iter().map(SampledMetric::of).collect();
         let curve = |points: Vec<Growing>| SampledCurve {
             mean: points.iter().map(|p| p.mean).collect(),
@@ -234,9 +233,9 @@ impl Study<'_> {
             least: points.iter().map(|p| p.least).collect(),
             greatest: points.iter().map(|p| p.greatest).collect(),
         };
-        // NaN keeps nothing.
+        // NaN satisfies no limit.
         let keeps = |limit: usize, x: f64| {
-            let limit = &self.asked.limits[limit];
+            let limit = &self.settings.limits[limit];
             limit.least.is_none_or(|least| x >= least)
                 && limit.most.is_none_or(|most| x <= most)
                 && !x.is_nan()
@@ -303,5 +302,5 @@ impl SampledMetric {
     }
 }
 
-/// The part of a normal distribution that is more than three standard deviations to one side.
+/// Fraction of a normal distribution beyond three standard deviations on one side.
 const BEYOND: f64 = 0.001_349_898_031_630_094_6;

@@ -1,34 +1,32 @@
-//! The worst that tolerances allow: every deviation anywhere within its reach, whatever its likelihood.
+//! Worst case: every deviation anywhere within its reach, regardless of its probability.
 
 use super::deviations::{Block, Deviations};
 use super::dot;
 
-/// An ascent ends after that many rounds over all tolerances; it gains in each of them, and ends mostly after two or
-/// three.
+/// Maximum number of ascent rounds over all tolerances; most ascents end after two or three.
 const ROUNDS: usize = 50;
-/// Within a sphere the direction is improved that many times in each round.
+/// Number of direction updates of a sphere in each round.
 const TURNS: usize = 10;
 /// Relative gain below which the difference is round-off.
 const NO_MORE: f64 = 1e-12;
 
-/// The least or the greatest value that tolerances allow. All in SI.
+/// Minimum or maximum within the tolerances, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extreme {
-    /// To first order: `value +- sum over tolerances of reach * |gradient|`.
+    /// First-order value: `nominal +- sum over tolerances of reach * |gradient|`.
     pub first: f64,
-    /// To second order, where that is known: an extreme of the quadratic found by ascent from the first order's and its
-    /// neighbours.
+    /// Second-order value, if second derivatives are known: extreme of the quadratic, found by ascent from the
+    /// first-order extreme and its neighbours.
     pub second: Option<f64>,
     /// Deviations at the worst case, per toleranced variable: to second order if known, otherwise to first order.
     pub deviations: Vec<f64>,
-    /// The metric of the design there, solved exactly.
+    /// Exact metric of the design at the worst case.
     pub exact: Option<f64>,
-    /// Reason why there is none, if that design does not move to the end.
+    /// Reason why the exact metric is missing, if the design does not reach the end.
     pub why: Option<String>,
 }
 
-/// The extreme of a function with a gradient and, perhaps, second derivatives: the greatest for `sign` 1, the least for
-/// -1.
+/// Extreme of a function with a gradient and optional second derivatives: the maximum for `sign` 1, the minimum for -1.
 pub(super) fn extreme(of: &Deviations, value: f64, g: &[f64], h: Option<&[Vec<f64>]>, sign: f64) -> Extreme {
     let g: Vec<f64> = g.iter().map(|g| sign * g).collect();
     let corner = corner(of, &g);
@@ -58,7 +56,7 @@ pub(super) fn extreme(of: &Deviations, value: f64, g: &[f64], h: Option<&[Vec<f6
     }
 }
 
-/// Every tolerance at its end, the way the gradient points; what has no gradient goes up.
+/// Every tolerance at the end of its reach, along the gradient; without a gradient, at the upper end.
 fn corner(of: &Deviations, g: &[f64]) -> Vec<f64> {
     let mut d = vec![0.0; g.len()];
     for block in &of.blocks {
@@ -67,7 +65,7 @@ fn corner(of: &Deviations, g: &[f64]) -> Vec<f64> {
     d
 }
 
-/// The end of a reach in a direction.
+/// Point at the end of a reach in a direction.
 fn towards(direction: &[f64], reach: f64, to: &mut [f64]) {
     let norm = dot(direction, direction).sqrt();
     if norm > 0.0 {
@@ -77,7 +75,7 @@ fn towards(direction: &[f64], reach: f64, to: &mut [f64]) {
     }
 }
 
-/// `g' d + d' H d / 2`, each tolerance of d within its reach.
+/// `g' d + d' H d / 2`, with each tolerance of d within its reach.
 struct Quadratic<'a> {
     of: &'a Deviations,
     g: &'a [f64],
@@ -93,7 +91,7 @@ impl Quadratic<'_> {
         self.g[i] + dot(&self.h[i], d)
     }
 
-    /// Goes up, one tolerance after the other.
+    /// Coordinate ascent, one tolerance after the other.
     fn ascend(&self, mut d: Vec<f64>) -> Vec<f64> {
         for _ in 0..ROUNDS {
             let before = self.at(&d);
@@ -108,7 +106,7 @@ impl Quadratic<'_> {
         d
     }
 
-    /// The best value of one variable: at an end of its reach or, of a hill, at its top.
+    /// Best value of one variable: an end of its reach, or the vertex of a concave parabola.
     fn along(&self, block: &Block, d: &mut [f64]) {
         let (i, reach) = (block.first, block.reach);
         let (curvature, slope) = (self.h[i][i], self.slope(i, d) - self.h[i][i] * d[i]);
@@ -119,8 +117,8 @@ impl Quadratic<'_> {
         d[i] = best.expect("there is a candidate");
     }
 
-    /// The direction of a sphere's radius: the function with `mu |d|^2 / 2` added, which changes nothing on the sphere,
-    /// is convex, and goes up with every turn towards its gradient.
+    /// Direction of a sphere's radius. The function plus `mu |d|^2 / 2`, which is constant on the sphere, is convex and
+    /// increases with every turn towards its gradient.
     fn around(&self, block: &Block, d: &mut [f64]) {
         let square =
             block.range().flat_map(|i| block.range().map(move |j| (i, j))).map(|(i, j)| self.h[i][j].powi(2));
