@@ -8,12 +8,13 @@ use hardpoint::Analysis;
 use hardpoint::joint::Quantity::{Angle, Length};
 use hardpoint::measure::outputs;
 use hardpoint::model::{CaseId, Change, OutputSource, VariableId};
-use hardpoint::study::{Motions, add_coordinates, add_tilts};
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::variable_unit;
 use hardpoint_report::figures::{order_unit, symbol, unit};
+use hardpoint_study::Motions;
+use hardpoint_study::whatif::{add_coordinates, add_tilts};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 

@@ -7,11 +7,6 @@ use hardpoint::Analysis;
 use hardpoint::draft::did_you_mean;
 use hardpoint::model::{AllocationRule, AllocationSettings, ToleranceSettings, VariableId};
 use hardpoint::sensitivity::Admissibility;
-use hardpoint::study::{
-    CalibrationError, CalibrationRequest, DifferenceScheme, GridMap, Loss, OptimizationRequest,
-    SearchProgress, ToleranceError, ToleranceStage, VerifyOptions, calibrate, optimize, tolerance,
-    toleranced_designs, validity, verify, what_if,
-};
 use hardpoint::topology::Formulation;
 use hardpoint_report::calibrate::{CalibrateFacts, CalibrationInputs};
 use hardpoint_report::diagnose;
@@ -22,6 +17,14 @@ use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_report::verdict::Verdict;
 use hardpoint_report::whatif::WhatIfFacts;
+use hardpoint_study::calibrate::{CalibrationError, CalibrationRequest, Loss, calibrate};
+use hardpoint_study::difference::DifferenceScheme;
+use hardpoint_study::grid::GridMap;
+use hardpoint_study::optimize::{OptimizationRequest, SearchProgress, optimize};
+use hardpoint_study::tolerance::{ToleranceError, ToleranceStage, tolerance, toleranced_designs};
+use hardpoint_study::validity;
+use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::whatif::what_if;
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde_json::json;

@@ -6,9 +6,10 @@ use std::path::Path;
 
 use hardpoint::draft::did_you_mean;
 use hardpoint::model::{SweepMethod, SweepRange, SweepSettings, VariableId};
-use hardpoint::study::{BLOCK, Sweep as Designs, SweepPlanError, SweptBlock};
 use hardpoint_report::cells::Cells;
 use hardpoint_report::sweep::{SweepInputs, Tally};
+use hardpoint_study::BLOCK;
+use hardpoint_study::sweep::{Sweep as Designs, SweepPlanError, SweptBlock};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use serde::Deserialize;
@@ -40,7 +41,7 @@ struct Asked {
 pub(crate) struct Sweep {
     model: Py<Model>,
     asked: SweepSettings,
-    motions: hardpoint::study::Motions<'static>,
+    motions: hardpoint_study::Motions<'static>,
     numbers: Vec<usize>,
 }
 
@@ -124,7 +125,7 @@ impl Model {
         let motions = model.motions()?;
         let numbers: Vec<usize> =
             if asked.cases.is_empty() { (0..motions.len()).collect() } else { asked.cases.clone() };
-        let motions = hardpoint::study::Motions::from(
+        let motions = hardpoint_study::Motions::from(
             numbers.iter().map(|k| motions.analyses()[*k].clone()).collect::<Vec<_>>(),
         );
         let asked = model.sweeping(&asked)?;

@@ -15,8 +15,8 @@ use std::process::Command;
 
 use hardpoint::model::{BodyId, Model, VariableId};
 use hardpoint::motion::BodyState;
+use hardpoint::run::GradientMethod;
 use hardpoint::sensitivity::{Admissibility, BodySensitivity};
-use hardpoint::study::GradientMethod;
 use hardpoint::{Analysis, Run, Sink, Solution};
 use hardpoint_bench::workloads::{finished, timed};
 use hardpoint_bench::{chain_with_variables, truss_with_variables, workload_model};

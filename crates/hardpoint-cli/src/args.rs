@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use hardpoint::space::Angles;
-use hardpoint::study::DifferenceScheme;
 use hardpoint::topology::Formulation;
+use hardpoint_study::difference::DifferenceScheme;
 
 /// Maximum number of designs of a tolerance study or a sweep.
 pub const MOST_DRAWN: u32 = 10_000_000;

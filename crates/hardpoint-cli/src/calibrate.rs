@@ -3,11 +3,13 @@
 use std::io::Write;
 
 use hardpoint::model::VariableId;
-use hardpoint::study::{Calibration, CalibrationError, CalibrationRequest, FitStatus, Loss, calibrate};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::calibrate::{CalibrateFacts, CalibrationInputs};
 use hardpoint_report::figures::{number, some_of};
+use hardpoint_study::calibrate::{
+    Calibration, CalibrationError, CalibrationRequest, FitStatus, Loss, calibrate,
+};
 
 use crate::args::{Calibrate, LossKind};
 use crate::folder::{Folder, WriteError};

@@ -4,7 +4,6 @@ use std::io::Write;
 
 use hardpoint::Run;
 use hardpoint::draft::did_you_mean;
-use hardpoint::study::{add_coordinates, variable_named};
 use hardpoint_file::ModelFile;
 use hardpoint_report::compare::{CompareFacts, SolvedModel, are_alike};
 use hardpoint_report::course::Course;
@@ -12,6 +11,7 @@ use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
 use hardpoint_report::payload::{ChangedDesign, Request, report};
 use hardpoint_report::summary::Summary;
+use hardpoint_study::whatif::{add_coordinates, variable_named};
 
 use crate::args::Compare;
 use crate::folder::{Folder, of_case};

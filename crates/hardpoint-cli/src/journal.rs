@@ -7,7 +7,8 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use hardpoint::study::{StudyCost, SweptBlock, SweptCurves, SweptFailure};
+use hardpoint_study::StudyCost;
+use hardpoint_study::sweep::{SweptBlock, SweptCurves, SweptFailure};
 
 /// First bytes of a journal; another format gets another number.
 const HEAD: &[u8; 16] = b"hardpoint sweep1";

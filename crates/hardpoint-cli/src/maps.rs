@@ -3,11 +3,11 @@
 use std::io;
 use std::io::Write;
 
-use hardpoint::study::GridMap;
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 use hardpoint_report::maps::{MapFact, write_csv, write_sensitivity_csv};
 use hardpoint_report::summary::Summary;
+use hardpoint_study::grid::GridMap;
 
 use crate::folder::{Folder, WriteError};
 use crate::session::{Session, json_text};

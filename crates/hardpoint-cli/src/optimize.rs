@@ -7,11 +7,12 @@ use std::path::Path;
 
 use hardpoint::Solution;
 use hardpoint::model::OptimizationSettings;
-use hardpoint::study::{
-    DesignAssessment, Motions, OptimizationRequest, OptimizationResult, SearchProgress, judge, optimize,
-};
 use hardpoint_file::ModelFile;
 use hardpoint_report::optimize::{OptimizeFacts, iteration_line, start_line, to_save};
+use hardpoint_study::Motions;
+use hardpoint_study::optimize::{
+    DesignAssessment, OptimizationRequest, OptimizationResult, SearchProgress, judge, optimize,
+};
 
 use crate::args::Optimize;
 use crate::folder::{Folder, WriteError};

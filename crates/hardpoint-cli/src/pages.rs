@@ -4,7 +4,6 @@ use std::io::Write;
 use std::num::NonZero;
 
 use hardpoint::model::Model;
-use hardpoint::study::Motions;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
@@ -13,6 +12,7 @@ use hardpoint_report::optimize::case_name;
 use hardpoint_report::page::Payload;
 use hardpoint_report::payload::{ChangedDesign, Request, report};
 use hardpoint_report::summary::Summary;
+use hardpoint_study::Motions;
 
 use crate::folder::{Folder, WriteError, file_name};
 

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use hardpoint::model::{Model, VariableId};
-use hardpoint::study::{Difference, DifferenceScheme, finite_differences_each, validity};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
@@ -21,6 +20,8 @@ use hardpoint_report::page::Table;
 use hardpoint_report::payload::{Request, report, stride_of_marks};
 use hardpoint_report::summary::{RunStatus, Summary};
 use hardpoint_report::validity::ValidityFact;
+use hardpoint_study::difference::{Difference, DifferenceScheme, finite_differences_each};
+use hardpoint_study::validity;
 use serde::Serialize;
 
 use crate::args::Run;

@@ -8,11 +8,12 @@ use std::path::Path;
 use hardpoint::Solution;
 use hardpoint::draft::did_you_mean;
 use hardpoint::model::{Model, SweepMethod, SweepRange, SweepSettings, VariableId};
-use hardpoint::study::{Motions, Sweep as Designs, SweepPlanError};
 use hardpoint_file::ModelFile;
 use hardpoint_report::figures::some_of;
 use hardpoint_report::page::SweepPlot;
 use hardpoint_report::sweep::{SweepFacts, SweepInputs, Tally};
+use hardpoint_study::Motions;
+use hardpoint_study::sweep::{Sweep as Designs, SweepPlanError};
 
 use crate::args::{Method, Sweep, TableForm};
 use crate::folder::{Folder, WriteError};
@@ -252,7 +253,7 @@ fn solve(
     let from = journal.designs();
     let mut meter = session.meter("solving", "designs").with_rate(from);
     let mut failure = None;
-    let mut done = |block: hardpoint::study::SweptBlock| {
+    let mut done = |block: hardpoint_study::sweep::SweptBlock| {
         if let Err(error) = journal.add(&block) {
             failure = Some(error);
             return ControlFlow::Break(());

@@ -5,12 +5,13 @@ use std::num::NonZero;
 
 use hardpoint::Solution;
 use hardpoint::model::{AllocationRule, AllocationSettings, LimitTarget, Model, ToleranceSettings};
-use hardpoint::study::{Motions, ToleranceError, ToleranceResult, ToleranceStage, tolerance};
 use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::some_of;
 use hardpoint_report::optimize::case_name;
 use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs};
+use hardpoint_study::Motions;
+use hardpoint_study::tolerance::{ToleranceError, ToleranceResult, ToleranceStage, tolerance};
 
 use crate::args::{Allocate, Tolerance};
 use crate::folder::{Folder, WriteError};

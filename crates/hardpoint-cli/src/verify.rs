@@ -3,12 +3,12 @@
 use std::io::Write;
 use std::time::Instant;
 
-use hardpoint::study::{VerifyOptions, verify as verify_designs};
 use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::Facts;
 use hardpoint_report::figures::{count, error, seconds};
 use hardpoint_report::verdict::{Differences, Outcome as Agrees, Verdict};
+use hardpoint_study::verify::{VerifyOptions, verify as verify_designs};
 
 use crate::args::Verify;
 use crate::folder::{Folder, of_case};

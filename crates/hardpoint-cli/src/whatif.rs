@@ -4,9 +4,7 @@ use std::io::Write;
 
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
-use hardpoint::study::{
-    add_coordinates, add_tilts, nearest_admissible, variable_named, variable_names, what_if,
-};
+use hardpoint::run::nearest_admissible;
 use hardpoint::{draft::did_you_mean, model::Model};
 use hardpoint_file::{AngleUnit, Diagnostic, LengthUnit, ModelFile, Units};
 use hardpoint_report::course::Course;
@@ -15,6 +13,7 @@ use hardpoint_report::metric::MetricChange;
 use hardpoint_report::payload::{ChangedDesign, Request, report};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::{ChangeFact, WhatIfFacts};
+use hardpoint_study::whatif::{add_coordinates, add_tilts, variable_named, variable_names, what_if};
 
 use crate::args::Whatif;
 use crate::folder::{Folder, of_case};

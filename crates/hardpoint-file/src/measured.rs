@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hardpoint::measure::outputs;
 use hardpoint::model::{Dimension, DriverId};
-use hardpoint::study::{Measurements, Reading};
+use hardpoint::model::{Measurements, Reading};
 
 use crate::ModelFile;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, Source, closest, shown};

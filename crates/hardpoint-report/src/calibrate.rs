@@ -4,12 +4,13 @@ use std::io::Write;
 
 use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
+use hardpoint::model::Reading;
 use hardpoint::model::{DriverId, Model};
-use hardpoint::study::{
-    Calibration, FitStatus, FittedReading, Loss, NextReading, Reading, UnidentifiableChange,
-};
 use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{MeasuredData, ModelFile, Units};
+use hardpoint_study::calibrate::{
+    Calibration, FitStatus, FittedReading, Loss, NextReading, UnidentifiableChange,
+};
 use serde::Serialize;
 
 use crate::facts::variable_unit;
@@ -629,7 +630,7 @@ fn untold(of: &CalibrationInputs<'_>, untold: &UnidentifiableChange) -> Unidenti
 fn next(of: &CalibrationInputs<'_>, next: &NextReading, variables: &[CalibratedVariable]) -> NextFact {
     let improves = next.improves.as_ref();
     let variable = improves.map(|i| &variables[i.variable]);
-    let in_units = |i: &hardpoint::study::Improvement| {
+    let in_units = |i: &hardpoint_study::calibrate::Improvement| {
         let quantity: Quantity = of.model().variables[of.found.variables[i.variable].0].quantity;
         [i.before, i.after].map(|s| of.units().from_si(quantity, s))
     };

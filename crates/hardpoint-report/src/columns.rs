@@ -7,8 +7,8 @@ use hardpoint::Solution;
 use hardpoint::joint::Quantity::{self, Angle, Length};
 use hardpoint::measure::Output;
 use hardpoint::model::{Model, OrientationAngle, VariableId};
+use hardpoint::run::Jerks;
 use hardpoint::space::{Angles, Vec3};
-use hardpoint::study::Jerks;
 use hardpoint_file::Units;
 use serde::Serialize;
 

@@ -5,9 +5,10 @@ use std::io::Write;
 
 use hardpoint::Solution;
 use hardpoint::model::{Dimension, Model};
-use hardpoint::study::{Magnitude, metrics};
+use hardpoint::run::metrics;
 use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
+use hardpoint_study::Magnitude;
 use serde::Serialize;
 
 use crate::GENERATOR;

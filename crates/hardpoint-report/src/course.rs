@@ -4,8 +4,8 @@ use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint::motion::{Margin, Motion};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
-use hardpoint::study::Magnitude;
 use hardpoint::{Footprint, SampledResults, Sampling, Solution};
+use hardpoint_study::Magnitude;
 
 use crate::shifts::Shifts;
 

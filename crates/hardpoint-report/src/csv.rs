@@ -9,7 +9,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use csv::{ByteRecord, Reader};
 use hardpoint::Solution;
-use hardpoint::study::Jerks;
+use hardpoint::run::Jerks;
 use hardpoint_file::csv_table::{CsvWriter, neutral};
 
 use crate::columns::{Column, Columns};

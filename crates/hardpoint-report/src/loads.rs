@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use hardpoint::model::{Dimension, Model};
+use hardpoint::run::Loads;
 use hardpoint::space::Vec3;
-use hardpoint::study::Loads;
 use hardpoint_file::Units;
 use hardpoint_file::csv_table::CsvWriter;
 

@@ -4,9 +4,9 @@ use std::io::Write;
 
 use hardpoint::measure::Output;
 use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
-use hardpoint::study::{GridMap, GridStop};
 use hardpoint_file::Units;
 use hardpoint_file::csv_table::CsvWriter;
+use hardpoint_study::grid::{GridMap, GridStop};
 use serde::Serialize;
 
 use crate::facts::variable_unit;

@@ -2,8 +2,9 @@
 
 use hardpoint::Solution;
 use hardpoint::model::{Metric, Model, Reduction};
-use hardpoint::study::{MetricValue, WhatIf, metrics, metrics_beside};
+use hardpoint::run::{MetricValue, metrics, metrics_beside};
 use hardpoint_file::Units;
+use hardpoint_study::whatif::WhatIf;
 use serde::Serialize;
 
 use crate::facts::variable_unit;

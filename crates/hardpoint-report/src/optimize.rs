@@ -5,11 +5,12 @@ use hardpoint::measure::Output;
 use hardpoint::model::{
     Change, DesignVariable, Dimension, LimitTarget, Model, OptimizationSettings, OutputSource,
 };
-use hardpoint::study::{
-    ActiveConstraint, DesignAssessment, FailedDesign, Iteration, LIMIT_KEPT, Motions, OptimizationResult,
+use hardpoint_file::{Diagnostic, ModelFile, Units};
+use hardpoint_study::Motions;
+use hardpoint_study::optimize::{
+    ActiveConstraint, DesignAssessment, FailedDesign, Iteration, LIMIT_KEPT, OptimizationResult,
     OptimizationStatus, SearchResult, judge,
 };
-use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
 use crate::facts::variable_unit;

@@ -17,11 +17,13 @@ use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Driver, DriverId, Metric, Model, OutputSource, VariableId};
+use hardpoint::run::DriverRates;
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Comparison, Difference, DriverRates};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Appearance, ModelFile, Units};
+use hardpoint_study::Comparison;
+use hardpoint_study::difference::Difference;
 
 use crate::course::{Course, RoundOff, settled};
 use crate::encoding::{packed, size_in_page};

@@ -4,11 +4,11 @@ use std::io;
 
 use hardpoint::measure::Output;
 use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, SweepSettings, VariableId};
-use hardpoint::study::{
-    Distribution, Motions, SobolIndex, StudyCost, Sweep, SweptBlock, SweptMetric, rank_correlation,
-    sobol_indices,
-};
 use hardpoint_file::{ModelFile, Units};
+use hardpoint_study::sweep::{
+    Distribution, SobolIndex, Sweep, SweptBlock, SweptMetric, rank_correlation, sobol_indices,
+};
+use hardpoint_study::{Motions, StudyCost};
 use serde::Serialize;
 
 use crate::cells::Cells;

@@ -4,12 +4,12 @@ use std::io::Write;
 
 use hardpoint::measure::Output;
 use hardpoint::model::{AllocationRule, Dimension, LimitTarget, Model, OutputSource, ToleranceSettings};
-use hardpoint::study::{
+use hardpoint_file::csv_table::CsvWriter;
+use hardpoint_file::{ModelFile, Units};
+use hardpoint_study::tolerance::{
     Allocation, AllocationError, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric, SpreadModel,
     ToleranceResult, Yield,
 };
-use hardpoint_file::csv_table::CsvWriter;
-use hardpoint_file::{ModelFile, Units};
 use serde::{Serialize, Serializer};
 
 use crate::facts::variable_unit;
@@ -952,7 +952,7 @@ fn limit(studied: &ToleranceInputs<'_>, k: usize) -> YieldFact {
 }
 
 fn failures(studied: &ToleranceInputs<'_>, sampled: &MonteCarlo) -> Vec<FailureFact> {
-    let fact = |f: &hardpoint::study::FailureGroup| FailureFact {
+    let fact = |f: &hardpoint_study::tolerance::FailureGroup| FailureFact {
         case: studied.case(f.motion),
         why: f.why.clone(),
         first: f.first,

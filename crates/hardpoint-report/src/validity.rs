@@ -2,8 +2,8 @@
 
 use hardpoint::Solution;
 use hardpoint::model::{Model, OutputSource};
-use hardpoint::study::Validity;
 use hardpoint_file::Units;
+use hardpoint_study::Validity;
 use serde::Serialize;
 
 use crate::facts::variable_unit;

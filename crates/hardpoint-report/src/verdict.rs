@@ -1,8 +1,10 @@
 //! `verify.json`: exact sensitivities compared with re-solved designs.
 
 use hardpoint::Analysis;
-use hardpoint::study::{CheckOutcome, DifferenceScheme, StepError, Verification};
 use hardpoint_file::{ModelFile, Units};
+use hardpoint_study::StepError;
+use hardpoint_study::difference::DifferenceScheme;
+use hardpoint_study::verify::{CheckOutcome, Verification};
 use serde::Serialize;
 
 use crate::facts::variable_unit;
@@ -112,7 +114,7 @@ impl Verdict {
         // One-sided differences always have an error proportional to the step.
         let parts_later = verification.scheme == DifferenceScheme::Central
             && analysis.topology().redundant().next().is_some();
-        let check = |c: &hardpoint::study::VariableCheck| {
+        let check = |c: &hardpoint_study::verify::VariableCheck| {
             let variable = &model.variables[c.variable.0];
             let natural = model.natural_step(c.variable);
             let step = |s: &StepError| StepFact {

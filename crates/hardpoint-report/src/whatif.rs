@@ -5,10 +5,11 @@ use std::io::Write;
 
 use hardpoint::Solution;
 use hardpoint::model::{Model, OutputSource, VariableId};
-use hardpoint::study::{Magnitude, WhatIf, repeats_coordinate};
 use hardpoint::topology::Topology;
 use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
+use hardpoint_study::Magnitude;
+use hardpoint_study::whatif::{WhatIf, repeats_coordinate};
 use serde::Serialize;
 
 use crate::GENERATOR;

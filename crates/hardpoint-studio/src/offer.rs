@@ -3,11 +3,12 @@
 use hardpoint::model::{
     Dimension, Goal, Limit, LimitTarget, Model, OptimizationSettings, ToleranceSettings, VariableId,
 };
-use hardpoint::study::{Motions, metrics};
+use hardpoint::run::metrics;
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::facts::variable_unit;
 use hardpoint_report::figures::{number, order_unit, with_unit};
+use hardpoint_study::Motions;
 
 use crate::RequestError;
 use crate::protocol::{

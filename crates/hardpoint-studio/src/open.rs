@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use hardpoint::model::{HardpointId, Model};
 use hardpoint::space::Quat;
-use hardpoint::study::{add_coordinates, coordinate, variable_named};
 use hardpoint::topology::TopologyError;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::ModelFile;
@@ -13,6 +12,7 @@ use hardpoint_report::diagnose;
 use hardpoint_report::page::{Design, Detail, ModelText};
 use hardpoint_report::payload::{self, ChangedDesign, Request};
 use hardpoint_report::summary::Summary;
+use hardpoint_study::whatif::{add_coordinates, coordinate, variable_named};
 
 use crate::protocol::{
     Coordinate, DesignReply, DiagnosticMessage, MovableHardpoint, OpenReply, VariableSetting,

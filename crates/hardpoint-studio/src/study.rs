@@ -5,10 +5,6 @@ use std::ops::ControlFlow;
 
 use hardpoint::Analysis;
 use hardpoint::model::{Model, ToleranceSettings};
-use hardpoint::study::{
-    Motions, OptimizationRequest, SearchProgress, ToleranceError, ToleranceStage, optimize, tolerance,
-    validity,
-};
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
@@ -19,6 +15,9 @@ use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs};
 use hardpoint_report::validity::ValidityFact;
+use hardpoint_study::optimize::{OptimizationRequest, SearchProgress, optimize};
+use hardpoint_study::tolerance::{ToleranceError, ToleranceStage, tolerance};
+use hardpoint_study::{Motions, validity};
 
 use crate::protocol::{
     DiagnosticMessage, OptimizeRequest, ProgressReply, StudyReply, ToleranceRequest, VariableSetting,

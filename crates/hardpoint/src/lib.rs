@@ -47,7 +47,9 @@
 //! - [`Analysis`] is a model with its plan of solution ([`topology::Topology`]), ready to be run.
 //! - [`Run`] is a request, and [`Solution`] its result: [`motion::Motion`], [`sensitivity::Sensitivities`] and
 //!   [`measure::MeasureResults`].
-//! - [`study`] has the analyses that need many runs: optimisation, tolerances, calibration, sweeps, verification.
+//! - [`run`] has what else is computed at one design: [`run::Loads`], [`run::Gradients`], [`run::SecondDerivatives`], metrics.
+//! - The crate `hardpoint-study` has the analyses that need many runs: optimisation, tolerances, calibration, sweeps,
+//!   verification.
 //!
 //! Numerical outcomes are values with figures, not errors: [`motion::Stop`] describes why a run ended early,
 //! [`sensitivity::Admissibility`] why a mechanism cannot follow a design variable. Errors are for input that has no
@@ -62,7 +64,7 @@
 //!
 //! # Not supported
 //!
-//! - Dynamics: the motion follows from the drivers. Loads are computed along it ([`study::Loads`]), and small
+//! - Dynamics: the motion follows from the drivers. Loads are computed along it ([`run::Loads`]), and small
 //!   deflections about it (compliance).
 //! - Flexible bodies.
 //! - Contacts that open and close.
@@ -151,7 +153,7 @@
 //! ## Gradients of few outputs by many variables
 //!
 //! ```
-//! # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model, study::GradientMethod};
+//! # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model, run::GradientMethod};
 //! # fn pendulum() -> Draft {
 //! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
 //! #         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
@@ -195,64 +197,8 @@
 //! assert!((heights[9] - 2.9 * 0.5_f64.sin()).abs() < 1e-12);
 //! ```
 //!
-//! ## Optimisation: a length for a target
-//!
-//! ```
-//! # use std::{num::NonZero, ops::ControlFlow};
-//! # use hardpoint::{draft::Draft, law::Law};
-//! use hardpoint::draft::{GoalDraft, MetricDraft, OptimizationSettingsDraft};
-//! use hardpoint::model::{Model, Reduction};
-//! use hardpoint::study::{Motions, OptimizationRequest, optimize};
-//! use hardpoint::topology::Formulation;
-//! # fn pendulum() -> Draft {
-//! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
-//! #         .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
-//! #         .point("tip", "arm", "tip").variable_moving("longer", "tip", [1.0, 0.0, 0.0]).times([0.0, 0.5])
-//! # }
-//!
-//! let mut draft = pendulum();
-//! draft.design[0].bounds = Some([-1.0, 1.0]);
-//! draft.metrics.push(MetricDraft {
-//!     name: "height".into(),
-//!     of: "tip.y".into(),
-//!     over: None,
-//!     take: Reduction::Value(0.5),
-//!     window: None,
-//!     case: None,
-//!     per_metre: 1.0,
-//!     per_radian: 1.0,
-//! });
-//! let goal = GoalDraft {
-//!     name: "height".into(),
-//!     metric: "height".into(),
-//!     weight: 1.0,
-//!     target: Some(1.2),
-//!     per_metre: 1.0,
-//!     per_radian: 1.0,
-//! };
-//! draft.optimization = Some(OptimizationSettingsDraft {
-//!     variables: None,
-//!     goals: vec![goal],
-//!     limits: vec![],
-//!     margin: None,
-//!     starts: 1,
-//!     iterations: 50,
-//! });
-//! let model = Model::from_draft(&draft).unwrap();
-//! let models = model.motions();
-//! let motions = Motions::of(&models, Formulation::Relative).unwrap_or_else(|_| panic!("it can be driven"));
-//! let request = OptimizationRequest {
-//!     progress: &mut |_, _| ControlFlow::Continue(()),
-//!     more: &|| true,
-//!     threads: NonZero::<usize>::MIN,
-//!     first: 0,
-//! };
-//! let result = optimize(&model, &motions, model.optimization.as_ref().unwrap(), request);
-//! let best = result.searches[0].found.as_ref().unwrap();
-//! assert!((best.design[0] - (1.2 / 0.5_f64.sin() - 2.0)).abs() < 1e-6);
-//! ```
-//!
-//! Model files are read by the crate `hardpoint-file`.
+//! Studies (optimisation, tolerances, calibration, sweeps, verification) are in the crate `hardpoint-study`; model files are
+//! read by the crate `hardpoint-file`.
 
 mod blocks;
 pub mod constraint;
@@ -261,16 +207,15 @@ pub mod draft;
 pub mod expression;
 pub mod joint;
 pub mod law;
-mod linalg;
-mod load;
+pub mod linalg;
+pub mod load;
 pub mod measure;
 pub mod model;
 pub mod motion;
 pub mod number;
-mod run;
+pub mod run;
 pub mod sensitivity;
 pub mod space;
-pub mod study;
 pub mod topology;
 
 pub use run::{Analysis, Footprint, Progress, Run, SampledResults, Sampling, Sink, Solution, StreamSummary};

@@ -9,11 +9,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use hardpoint::model::Model;
-use hardpoint::study::Motions;
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 use hardpoint_report::page::Table;
 use hardpoint_report::tolerance::ToleranceInputs;
+use hardpoint_study::Motions;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use tokio::sync::broadcast;

@@ -3,13 +3,14 @@
 
 use std::path::Path;
 
+use hardpoint::model::{Measurements, Reading};
 use hardpoint::model::{Model, Scatter, VariableId};
-use hardpoint::study::{
-    Calibration, CalibrationError, CalibrationRequest, FitStatus, Loss, Measurements, Reading, calibrate,
-    design_stream, draw, values_in_postures,
-};
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
+use hardpoint_study::calibrate::{
+    Calibration, CalibrationError, CalibrationRequest, FitStatus, Loss, calibrate, values_in_postures,
+};
+use hardpoint_study::{design_stream, draw};
 
 /// A slider-crank: `x = r cos a + sqrt(l^2 - (r sin a - e)^2)`.
 const CRANK: &str = r#"

@@ -1,7 +1,7 @@
 //! Cases are the motions that they would be as files of their own.
 
 use hardpoint::model::{CaseId, Model};
-use hardpoint::study::metrics;
+use hardpoint::run::metrics;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{parse, read};
 

@@ -2,10 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use hardpoint::study::{CheckOutcome, VerifyOptions, verify};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::{ModelFile, parse};
+use hardpoint_study::verify::{CheckOutcome, VerifyOptions, verify};
 
 /// Residual that the solver leaves of a coordinate, deg or mm.
 const SAME: f64 = 1e-8;

@@ -2,10 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use hardpoint::study::{CheckOutcome, VerifyOptions, verify};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse};
+use hardpoint_study::verify::{CheckOutcome, VerifyOptions, verify};
 
 const BOTH: [Formulation; 2] = [Formulation::Relative, Formulation::Absolute];
 

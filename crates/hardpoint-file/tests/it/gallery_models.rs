@@ -12,10 +12,10 @@ use hardpoint::model::BodyId;
 use hardpoint::motion::BodyState;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Mat3, Vec3};
-use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, read};
+use hardpoint_study::verify::{VerifyOptions, verify};
 
 /// Known facts of a model.
 struct Entry {

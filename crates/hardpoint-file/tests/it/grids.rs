@@ -2,10 +2,10 @@
 
 use hardpoint::law::Law;
 use hardpoint::model::{Case, CaseId, Model, VariableId};
-use hardpoint::study::GridMap;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::parse;
+use hardpoint_study::grid::GridMap;
 
 use crate::diagnostics::{VALID, snapshot};
 

@@ -340,7 +340,7 @@ fn the_press_gives_over_a_turn_what_its_work_and_its_grease_take() {
     };
     model.metrics = vec![work("over_time", "power", None), work("over_angle", "torque", Some("angle"))];
     let solution = Analysis::new(&model).unwrap().run();
-    for (metric, known) in model.metrics.iter().zip(hardpoint::study::metrics(&model, &solution)) {
+    for (metric, known) in model.metrics.iter().zip(hardpoint::run::metrics(&model, &solution)) {
         assert_eq!(model.metric_dimension(metric), Dimension::MOMENT);
         // Both are the same sum, but for round-off.
         assert!((known.value.unwrap() - given).abs() < 1e-9 * given, "{}: {:?}", metric.name, known.value);

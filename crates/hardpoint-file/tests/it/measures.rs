@@ -7,9 +7,9 @@ use std::path::Path;
 use hardpoint::model::{DriverId, Model, VariableId};
 use hardpoint::motion::Execution;
 use hardpoint::space::Vec3;
-use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, parse};
+use hardpoint_study::verify::{VerifyOptions, verify};
 
 const MEASURES: &str = r#"
 [measures.mu]

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use hardpoint::model::VariableId;
-use hardpoint::study::{metrics, validity};
+use hardpoint::run::metrics;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::{ModelFile, parse};
+use hardpoint_study::validity;
 
 fn parsed(text: &str) -> ModelFile {
     parse(text, "metrics.toml").unwrap_or_else(|e| panic!("{e}"))

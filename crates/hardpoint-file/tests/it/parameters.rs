@@ -6,8 +6,8 @@ use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
 use hardpoint::model::{Change, VariableId, change};
 use hardpoint::space::Vec3;
-use hardpoint::study::{VerifyOptions, verify};
 use hardpoint_file::parse;
+use hardpoint_study::verify::{VerifyOptions, verify};
 
 /// Two swinging arms, left and right, and a screw; everything is given by parameters.
 const MODEL: &str = r#"

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use hardpoint::model::Model;
 use hardpoint::motion::StopKind;
+use hardpoint::run::{MetricValue, metrics};
 use hardpoint::space::Vec3;
-use hardpoint::study::{MetricValue, metrics};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{parse, read};

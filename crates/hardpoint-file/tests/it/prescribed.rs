@@ -1,10 +1,10 @@
 //! Drivers that prescribe the value of a measure, or count from zero.
 
 use hardpoint::model::{Model, VariableId};
-use hardpoint::study::GridMap;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::parse;
+use hardpoint_study::grid::GridMap;
 
 use crate::diagnostics::{VALID, snapshot};
 

@@ -5,12 +5,13 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::model::{Limit, LimitTarget, OptimizationSettings};
-use hardpoint::study::{
-    ActiveConstraint, Motions, OptimizationRequest, OptimizationResult, OptimizationStatus, SearchProgress,
-    SearchResult, StudyCost, optimize,
-};
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
+use hardpoint_study::optimize::{
+    ActiveConstraint, OptimizationRequest, OptimizationResult, OptimizationStatus, SearchProgress,
+    SearchResult, optimize,
+};
+use hardpoint_study::{Motions, StudyCost};
 
 /// Remainder of the gradient at an optimum, relative to that at the start.
 const OPTIMAL: f64 = 1e-8;

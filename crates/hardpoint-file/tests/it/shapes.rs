@@ -7,8 +7,8 @@ use hardpoint::Analysis;
 use hardpoint::model::VariableId;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
-use hardpoint::study::{VerifyOptions, verify};
 use hardpoint_file::{ModelFile, parse};
+use hardpoint_study::verify::{VerifyOptions, verify};
 
 const SHAPES: &str = r#"
 [design.translated]

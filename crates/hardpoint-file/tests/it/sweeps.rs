@@ -5,9 +5,11 @@ use std::ops::ControlFlow;
 
 use hardpoint::Run;
 use hardpoint::model::{Model, SweepMethod, SweepSettings};
-use hardpoint::study::{BLOCK, Motions, Sweep, SweptBlock, metrics, sobol_indices};
+use hardpoint::run::metrics;
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, parse};
+use hardpoint_study::sweep::{Sweep, SweptBlock, sobol_indices};
+use hardpoint_study::{BLOCK, Motions};
 
 /// A slider-crank: the slider's place over the crank's angle is `x = r cos a + sqrt(l^2 - (r sin a - e)^2)`.
 const CRANK: &str = r#"

@@ -8,11 +8,12 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use hardpoint::model::{OptimizationSettings, Reduction};
-use hardpoint::study::{
-    Motions, OptimizationRequest, OptimizationResult, OptimizationStatus, SearchResult, optimize,
-};
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, read, schema};
+use hardpoint_study::Motions;
+use hardpoint_study::optimize::{
+    OptimizationRequest, OptimizationResult, OptimizationStatus, SearchResult, optimize,
+};
 
 /// Remainder of the gradient at an optimum, relative to that at the start.
 const STATIONARY: f64 = 1e-8;

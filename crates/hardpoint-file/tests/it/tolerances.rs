@@ -5,12 +5,12 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::model::{AllocationRule, AllocationSettings, Limit, LimitTarget, Model, ToleranceSettings};
-use hardpoint::study::{
-    AllocationError, MetricSpread, MonteCarlo, Motions, StudyCost, ToleranceError, ToleranceResult,
-    ToleranceStage, tolerance,
-};
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, parse};
+use hardpoint_study::tolerance::{
+    AllocationError, MetricSpread, MonteCarlo, ToleranceError, ToleranceResult, ToleranceStage, tolerance,
+};
+use hardpoint_study::{Motions, StudyCost};
 
 const THREADS: NonZero<usize> = NonZero::<usize>::MIN;
 
@@ -465,8 +465,9 @@ fn nothing_depends_on_threads_or_on_how_many_are_drawn() {
         examined_on(threads, &file.model, &asked(samples)).unwrap().sampled.unwrap()
     };
     let bits = |found: &MonteCarlo| -> Vec<u64> {
-        let of =
-            |m: &hardpoint::study::SampledMetric| m.values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        let of = |m: &hardpoint_study::tolerance::SampledMetric| {
+            m.values.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
+        };
         found.metrics.iter().flat_map(of).chain(found.curves[0].mean.iter().map(|x| x.to_bits())).collect()
     };
     let one = drawn(1, 2500);

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use hardpoint::model::{VariableId, VehicleEnd, WheelMeasure, WheelRequirement};
 use hardpoint::space::Vec3;
-use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, parse};
+use hardpoint_study::verify::{VerifyOptions, verify};
 
 /// The knuckle's top mount is on the chassis.
 const STRUT: &str = r#"

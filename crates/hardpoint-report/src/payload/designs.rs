@@ -8,9 +8,10 @@ use std::iter;
 use hardpoint::Solution;
 use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Direction, Model, VariableId};
+use hardpoint::run::metrics_beside;
 use hardpoint::space::Vec3;
-use hardpoint::study::{WhatIf, metrics_beside, unwrapped_value};
 use hardpoint_file::ModelFile;
+use hardpoint_study::whatif::{WhatIf, unwrapped_value};
 
 use crate::course::settled;
 use crate::page::{BodyTrack, Curve, Design, DesignCurves, DesignKind, Value};

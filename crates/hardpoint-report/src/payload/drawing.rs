@@ -8,8 +8,8 @@ use hardpoint::model::{
     BodyId, Change, Coupler, Curve as PlanarCurve, Direction, Driver, DriverId, HardpointId, Joint, JointId,
     Measure, MeasureKind, PointId, Transmission, VariableId, Wheel,
 };
+use hardpoint::run::DriverRates;
 use hardpoint::space::{Pose, Vec3};
-use hardpoint::study::DriverRates;
 use hardpoint::topology::JointRole;
 use hardpoint_file::MeshFrame;
 

@@ -2,8 +2,8 @@
 
 use hardpoint::Analysis;
 use hardpoint::model::Model;
+use hardpoint::run::Loads;
 use hardpoint::space::Vec3;
-use hardpoint::study::Loads;
 
 use crate::course::settled;
 use crate::page::{BodyPlace, Curve, LoadMark};

@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use hardpoint::model::{BodyId, VariableId};
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Angles;
-use hardpoint::study::{DifferenceScheme, finite_differences};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::columns::Columns;
@@ -15,6 +14,7 @@ use hardpoint_report::facts::{Facts, VariableAdmissibility};
 use hardpoint_report::page;
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
+use hardpoint_study::difference::{DifferenceScheme, finite_differences};
 use serde_json::Value;
 
 const SLIDER: &str = include_str!("../../../hardpoint-cli/tests/models/slider.toml");

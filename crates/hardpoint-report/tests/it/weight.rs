@@ -5,13 +5,13 @@ use std::path::Path;
 
 use hardpoint::model::{BodyId, VariableId};
 use hardpoint::space::Vec3;
-use hardpoint::study::{Difference, DifferenceScheme, finite_differences};
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
 use hardpoint_report::page::{Payload, html};
 use hardpoint_report::payload::{Request, report};
 use hardpoint_report::summary::Summary;
+use hardpoint_study::difference::{Difference, DifferenceScheme, finite_differences};
 
 use crate::rockers::rockers;
 

@@ -5,7 +5,6 @@ use std::fs;
 use std::path::Path;
 
 use hardpoint::model::{Dimension, VariableId};
-use hardpoint::study::{Magnitude, WhatIf, add_coordinates, what_if};
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::course::Course;
@@ -14,6 +13,8 @@ use hardpoint_report::page::{Curve, Design, DesignKind, Payload, Table, html};
 use hardpoint_report::payload::{ChangedDesign, Request, payload};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::WhatIfFacts;
+use hardpoint_study::Magnitude;
+use hardpoint_study::whatif::{WhatIf, add_coordinates, what_if};
 
 fn gallery(name: &str) -> ModelFile {
     hardpoint_file::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models").join(name)).unwrap()
@@ -193,7 +194,7 @@ fn nothing_is_foreseen_of_what_cannot_be_followed() {
     let file = gallery("four_bar.toml");
     let file = {
         let mut file = file;
-        hardpoint::study::add_tilts(&mut file.model);
+        hardpoint_study::whatif::add_tilts(&mut file.model);
         file
     };
     let tilt = file.model.variables.iter().map(|v| v.name.clone()).find(|v| v.ends_with(".tilt_x")).unwrap();

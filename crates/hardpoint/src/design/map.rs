@@ -29,7 +29,7 @@ use super::formulas::Formulas;
 
 /// Entries of a model that its variables change, grouped by kind; collected once for many designs.
 #[derive(Clone, Debug)]
-pub(crate) struct DesignMap<'m> {
+pub struct DesignMap<'m> {
     held: SharedModel<'m>,
     /// Per hardpoint: variables that move it, and its velocity by each, m per unit.
     moves: Vec<Vec<(usize, Vec3)>>,
@@ -43,6 +43,7 @@ pub(crate) struct DesignMap<'m> {
 }
 
 impl<'m> DesignMap<'m> {
+    /// Collects the entries of a model.
     pub fn of(held: impl Into<SharedModel<'m>>) -> Self {
         let held = held.into();
         let model: &Model = &held;
@@ -103,7 +104,7 @@ impl<'m> DesignMap<'m> {
     }
 
     /// Returns the body-fixed data of the measures for these values of the variables.
-    pub fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
+    pub(crate) fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
         let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| match m.kind {
             MeasureKind::Coordinate { joint, .. } => Some([0, 1].map(|e| design.marker(joint.0, e))),

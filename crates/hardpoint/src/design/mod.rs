@@ -20,7 +20,7 @@ pub(crate) use change::Effect;
 pub use field::{DesignVelocity, MarkerVelocity};
 pub(crate) use geometry::BodyFixed;
 pub use geometry::{Geometry, JointConstants};
-pub(crate) use map::DesignMap;
+pub use map::DesignMap;
 pub(crate) use shape::{Interpolation, ShapeField};
 
 impl Model {
@@ -80,14 +80,14 @@ impl Model {
     }
 
     /// Returns a value for every variable: 0 except for one.
-    pub(crate) fn alone(&self, variable: VariableId, value: f64) -> Vec<f64> {
+    pub fn alone(&self, variable: VariableId, value: f64) -> Vec<f64> {
         let mut design = self.whole(&[]);
         design[variable.0] = value;
         design
     }
 
     /// Returns a value for every variable: the given ones, then 0.
-    pub(crate) fn whole(&self, design: &[f64]) -> Vec<f64> {
+    pub fn whole(&self, design: &[f64]) -> Vec<f64> {
         let given = design.iter().copied().chain(std::iter::repeat(0.0));
         given.take(self.variables.len()).collect()
     }

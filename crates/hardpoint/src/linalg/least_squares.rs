@@ -16,7 +16,7 @@ const ROUND_OFF: f64 = f64::EPSILON;
 /// x = P V (S^-T N^T c)      c: the first rows of Q^T b
 ///         (     0    )
 /// ```
-pub(crate) fn least_squares(
+pub fn least_squares(
     [m, n]: [usize; 2],
     entry: impl Fn(usize, usize) -> f64,
     right: &[Vec<f64>],
@@ -57,7 +57,7 @@ pub(crate) fn least_squares(
 
 /// Square matrix with the same products of columns as a matrix with any number of rows: the factor R of `A P = Q R`,
 /// its columns in their original order.
-pub(crate) fn folded_rows(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+pub fn folded_rows(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let n = columns.len();
     let mut rows = vec![vec![0.0; n]; n];
     let q = Triangular::of(columns, 0.0);

@@ -6,13 +6,12 @@ mod least_squares;
 mod matrix;
 mod monotone;
 mod rank;
-pub(crate) mod semidefinite;
+pub mod semidefinite;
 mod sparse;
 mod spline;
-pub(crate) mod svd;
 
 pub(crate) use factors::{Factors, LARGEST_DENSE};
-pub(crate) use least_squares::{folded_rows, least_squares};
+pub use least_squares::{folded_rows, least_squares};
 pub(crate) use matrix::{Elimination, MOST_GROWTH, Watched};
 pub(crate) use monotone::monotone;
 pub(crate) use rank::FullPivot;

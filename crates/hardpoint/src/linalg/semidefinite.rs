@@ -8,7 +8,7 @@ const LEFT: f64 = 1e-6;
 
 /// The lower triangle L with L L^T = A, row by row; columns without a pivot are zero. `None` if A is not positive
 /// semidefinite.
-pub(crate) fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+pub fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let n = a.len();
     let largest = (0..n).map(|k| a[k][k]).fold(0.0, f64::max);
     let mut l = vec![vec![0.0; n]; n];
@@ -31,7 +31,7 @@ pub(crate) fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
 }
 
 /// Solves `A x = b` in place by the root of A, which must have all its pivots.
-pub(crate) fn solve(root: &[Vec<f64>], b: &mut [f64]) {
+pub fn solve(root: &[Vec<f64>], b: &mut [f64]) {
     let n = b.len();
     for k in 0..n {
         b[k] = (b[k] - (0..k).map(|j| root[k][j] * b[j]).sum::<f64>()) / root[k][k];

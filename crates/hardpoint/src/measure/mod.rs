@@ -170,7 +170,7 @@ impl MeasureResults {
     }
 
     /// Stores derivatives, if they have a position.
-    pub(crate) fn set_d(&mut self, k: usize, b: VariableId, m: usize, numbers: [f64; 3]) {
+    pub fn set_d(&mut self, k: usize, b: VariableId, m: usize, numbers: [f64; 3]) {
         if let Some(place) = self.places[b.0 * self.outputs.len() + m] {
             self.d.set(k, place, numbers);
         }

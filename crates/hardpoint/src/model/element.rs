@@ -474,7 +474,7 @@ impl ElementKind {
 
 impl ElementKind {
     /// Magnitude of the force in the design configuration, N, if the element defines one: a given force or a preload.
-    pub(crate) fn push(&self, model: &Model) -> f64 {
+    pub fn push(&self, model: &Model) -> f64 {
         let of = |n: NumberId| model.numbers[n.0].value.abs();
         match self {
             Self::PointForce { force, .. } => of(force.0),

@@ -522,7 +522,7 @@ pub enum Ray {
 impl MeasureKind {
     /// Returns how far a value is from where the measure has no derivative because the vector that it is the magnitude
     /// of is zero, or two directions are parallel or perpendicular; `None` for measures that are no magnitudes.
-    pub(crate) fn distance_from_kink(&self, value: f64) -> Option<f64> {
+    pub fn distance_from_kink(&self, value: f64) -> Option<f64> {
         use std::f64::consts::{FRAC_PI_2, PI};
         match self {
             Self::Angle { about: None, .. } => Some(value.min(PI - value)),
@@ -569,7 +569,7 @@ impl MeasureKind {
     }
 
     /// Outputs that the measure is made of.
-    pub(crate) fn sources(&self) -> Vec<OutputSource> {
+    pub fn sources(&self) -> Vec<OutputSource> {
         match self {
             Self::Rate { of } | Self::Compliance { of, .. } => vec![*of],
             Self::Slope { of, over, .. } => vec![*of, *over],

@@ -10,6 +10,7 @@ mod curve;
 pub(crate) mod element;
 mod formula;
 mod measure;
+mod measured;
 mod metric;
 mod optimization;
 mod shared;
@@ -36,6 +37,7 @@ pub use measure::{
     Combination, Dimension, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource, Ray,
     ReactionPart,
 };
+pub use measured::{Measurements, Reading};
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, LimitTarget, OptimizationSettings};

@@ -101,8 +101,8 @@ impl<'m> Analysis<'m> {
         Self { end: Some(flag), ..self }
     }
 
-    /// Returns whether its flag asks it to end.
-    pub(crate) fn is_ended(&self) -> bool {
+    /// Returns whether the flag of [`Analysis::ended_by`] is set.
+    pub fn is_ended(&self) -> bool {
         self.end.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
@@ -187,8 +187,8 @@ impl<'m> Analysis<'m> {
         self.with_model(Model { times, ..self.model().clone() })
     }
 
-    /// The same, for who asks for no metric.
-    pub(crate) fn without_metrics(&self, times: Vec<f64>) -> Analysis<'static> {
+    /// Returns the same analysis at other output times, of a model without metrics.
+    pub fn without_metrics(&self, times: Vec<f64>) -> Analysis<'static> {
         self.with_model(Model { times, metrics: Vec::new(), ..self.model().clone() })
     }
 
@@ -206,7 +206,8 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    pub(crate) fn design_map(&self) -> &DesignMap<'m> {
+    /// Returns the places, laws and design velocities of the model as functions of the design.
+    pub fn design_map(&self) -> &DesignMap<'m> {
         &self.design_map
     }
 

@@ -44,7 +44,7 @@ pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<
     values.map(|(metric, found)| found.value.filter(|_| known(metric))).collect()
 }
 
-/// The same without derivatives, times and errors: what many designs are compared by.
+/// Returns the values of all metrics without derivatives, times and errors.
 pub fn metric_numbers<'m>(
     model: &'m Model,
     solution: &'m Solution,
@@ -52,14 +52,15 @@ pub fn metric_numbers<'m>(
     model.metrics.iter().map(|metric| metric_number(metric, solution))
 }
 
-/// The same of one metric.
-pub(crate) fn metric_number(metric: &Metric, solution: &Solution) -> Option<f64> {
+/// Returns the value of one metric; `None` where the motion does not reach the request.
+pub fn metric_number(metric: &Metric, solution: &Solution) -> Option<f64> {
     let (y, x) = curves(solution, metric)?;
     take(metric, &y, &x).map(|(value, _)| value)
 }
 
-/// The place that a metric of the whole model has among those of the motion of a number, if it is taken of that.
-pub(crate) fn place_of(model: &Model, metric: usize, number: usize) -> Option<usize> {
+/// Returns the index of a metric of the whole model among the metrics of one of its motions ([`Model::motions`]); `None` if the
+/// metric is taken of another motion.
+pub fn place_of(model: &Model, metric: usize, number: usize) -> Option<usize> {
     let counts =
         |m: &usize| model.metrics[*m].case.is_none_or(|case| model.cases.is_empty() || case.0 == number);
     counts(&metric).then(|| (0..metric).filter(counts).count())

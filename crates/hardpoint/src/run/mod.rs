@@ -7,16 +7,32 @@ mod analysis;
 mod between;
 mod curve;
 mod designs;
-pub(crate) mod metric;
+mod driver_rates;
+mod gradient;
+mod jerk;
+mod loads;
+mod metric;
+mod nearest;
 mod quadrature;
 mod request;
+mod second;
 mod sink;
 mod solution;
 mod walk;
 mod window;
 
 pub use analysis::Analysis;
+pub use driver_rates::DriverRates;
+pub use gradient::{GradientMethod, Gradients};
+pub use jerk::Jerks;
+pub use loads::{DriverLoad, JointLoad, Loads};
+pub use metric::{
+    MetricParts, MetricValue, metric_number, metric_numbers, metrics, metrics_beside, misfits, peaks,
+    place_of,
+};
+pub use nearest::{NearestAdmissible, nearest_admissible};
 pub use request::{Progress, Run};
+pub use second::SecondDerivatives;
 pub use sink::Sink;
 pub use solution::{Solution, StreamSummary};
 pub(crate) use walk::{PreparedDesign, Walk};

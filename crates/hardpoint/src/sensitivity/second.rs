@@ -296,7 +296,7 @@ fn parts<T: Real, At>(m: &MovingMarker<Dual<T>, At>) -> [Twist<T>; 2] {
     [part(|x| x.v), part(|x| x.d)]
 }
 
-/// The variables that a direction changes, and how fast.
+/// Returns the variables with a nonzero entry in a direction of the design space, with that entry.
 pub(crate) fn along(direction: &[f64]) -> Vec<(crate::model::VariableId, f64)> {
     let all = direction.iter().enumerate().map(|(k, d)| (crate::model::VariableId(k), *d));
     all.filter(|(_, d)| *d != 0.0).collect()

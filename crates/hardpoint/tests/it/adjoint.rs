@@ -1,9 +1,9 @@
 //! Gradients by the adjoint way against the direct one.
 
 use hardpoint::measure::outputs;
+use hardpoint::run::{GradientMethod, Gradients};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
-use hardpoint::study::{GradientMethod, Gradients};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint::{draft::*, model::*};

@@ -2,10 +2,10 @@
 
 use hardpoint::motion::{Closing, StopKind};
 use hardpoint::space::Vec3;
-use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
+use hardpoint_study::verify::{VerifyOptions, verify};
 
 use crate::workbench::*;
 

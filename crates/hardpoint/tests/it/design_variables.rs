@@ -6,9 +6,9 @@ use hardpoint::Analysis;
 use hardpoint::law::Law;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
-use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
 use hardpoint::{design::JointConstants, draft::*, model::*};
+use hardpoint_study::verify::{VerifyOptions, verify};
 
 use crate::workbench::*;
 
@@ -226,7 +226,8 @@ fn a_redundant_mechanism_follows_every_change_of_its_law() {
 /// A planar four-bar with a variable that moves one marker alone, which no other variable here can make up for.
 #[test]
 fn the_nearest_admissible_change_keeps_what_it_can_and_never_more_defects() {
-    use hardpoint::study::{add_coordinates, add_tilts, nearest_admissible};
+    use hardpoint::run::nearest_admissible;
+    use hardpoint_study::whatif::{add_coordinates, add_tilts};
     let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "t", &times(0.5, 20));
     let marker = |joint: &str, position: [f64; 3], rotation: [f64; 3]| {
         VariableDraft::new(

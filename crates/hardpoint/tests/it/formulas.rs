@@ -5,11 +5,11 @@ use std::ops::ControlFlow;
 use hardpoint::joint::Quantity;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
-use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint::{design::DesignVelocity, draft::*, model::*};
 use hardpoint::{expression::Expression, law::Law};
+use hardpoint_study::verify::{VerifyOptions, verify};
 
 use crate::workbench::*;
 

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use hardpoint::joint::ALL;
-use hardpoint::study::{VerifyOptions, verify};
 use hardpoint::topology::{Formulation, JointRole};
 use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
+use hardpoint_study::verify::{VerifyOptions, verify};
 
 use crate::workbench::*;
 

@@ -3,9 +3,9 @@
 use hardpoint::law::Law;
 use hardpoint::measure::outputs;
 use hardpoint::motion::Execution;
+use hardpoint::run::{GradientMethod, Gradients};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
-use hardpoint::study::{GradientMethod, Gradients};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{draft::*, model::*};

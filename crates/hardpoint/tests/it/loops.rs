@@ -2,10 +2,11 @@
 
 use hardpoint::motion::Execution;
 use hardpoint::space::Vec3;
-use hardpoint::study::{Comparison, DifferenceScheme, finite_differences};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint::{draft::*, model::*};
+use hardpoint_study::Comparison;
+use hardpoint_study::difference::{DifferenceScheme, finite_differences};
 
 use crate::workbench::*;
 

@@ -5,17 +5,17 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use hardpoint::motion::{Stop, StopKind};
+use hardpoint::run::GradientMethod;
 use hardpoint::sensitivity::BodySensitivity;
 use hardpoint::space::Vec3;
-use hardpoint::study::{
-    CheckOutcome, Comparison, DifferenceScheme, GradientMethod, Verification, VerifyOptions,
-    finite_differences, finite_differences_each, verify,
-};
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{
     draft::LocationDraft,
     model::{BodyId, Model, VariableId},
 };
+use hardpoint_study::Comparison;
+use hardpoint_study::difference::{DifferenceScheme, finite_differences, finite_differences_each};
+use hardpoint_study::verify::{CheckOutcome, Verification, VerifyOptions, verify};
 
 use crate::workbench::*;
 

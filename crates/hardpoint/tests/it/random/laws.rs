@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use hardpoint::motion::{Execution, StopKind};
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::{Pose, Vec3};
-use hardpoint::study::{Comparison, DifferenceScheme, finite_differences};
 use hardpoint::topology::{Formulation, JointRole, SetBy};
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint::{draft::*, model::*};
+use hardpoint_study::Comparison;
+use hardpoint_study::difference::{DifferenceScheme, finite_differences};
 
 use super::draw::Rng;
 use super::rank;

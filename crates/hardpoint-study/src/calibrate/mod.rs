@@ -1,0 +1,197 @@
+//! Calibration: fit of the geometry to measured data, with the accuracy of the result, unidentifiable changes, and
+//! proposed further readings.
+//!
+//! A reading i of an output y in a posture, with standard deviation s_i, has the residual `r_i = (y(b) - m_i) / s_i`.
+//! The fit minimises the sum of their squares or of a robust loss. With the exact Jacobian `J = dr/db` of the readings,
+//!
+//! ```text
+//! covariance = (J' W J)^-1,    W = the weights of the loss
+//! ```
+//!
+//! over the directions that the readings determine. All other directions are reported and keep their design values
+//! (`docs/theory.md`, section 13).
+
+mod certainty;
+mod fit;
+mod next;
+mod posture;
+
+use hardpoint::measure::{Output, outputs};
+use hardpoint::model::{Measurements, Model, Reading, VariableId};
+use hardpoint::run::Analysis;
+use hardpoint::topology::{Formulation, TopologyError};
+
+use super::evaluation::StudyCost;
+
+pub use certainty::{Certainty, UnidentifiableChange};
+pub use next::{Improvement, NextReading};
+
+/// Loss function of residuals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Loss {
+    /// Square of the residual.
+    #[default]
+    Squares,
+    /// Square up to 1.345 standard deviations, linear beyond.
+    Huber,
+    /// Logarithm of the square: residuals of many standard deviations have next to no influence.
+    Cauchy,
+}
+
+impl Loss {
+    /// Weight of a residual relative to least squares, from 0 to 1.
+    pub fn weight(self, r: f64) -> f64 {
+        // 95 % efficiency for normal residuals (Holland and Welsch 1977)
+        const HUBER: f64 = 1.345;
+        const CAUCHY: f64 = 2.385;
+        match self {
+            Self::Squares => 1.0,
+            Self::Huber => HUBER / r.abs().max(HUBER),
+            Self::Cauchy => 1.0 / (1.0 + (r / CAUCHY).powi(2)),
+        }
+    }
+}
+
+/// Status of a fit at its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FitStatus {
+    /// No small change of the design improves the fit.
+    Found,
+    /// The iteration limit was reached.
+    IterationLimit,
+    /// The caller ended the fit.
+    Interrupted,
+}
+
+/// Posture that the nominal design does not reach. Its readings are left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnreachedPosture {
+    /// Index of the posture.
+    pub posture: usize,
+    /// Description of the event.
+    pub why: String,
+}
+
+/// Reading with the values of the nominal and the fitted design.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FittedReading {
+    /// Value of the nominal design, SI.
+    pub before: f64,
+    /// Value of the fitted design, SI.
+    pub value: f64,
+    /// Fitted minus measured value, in standard deviations; in estimated ones if none are given.
+    pub residual: f64,
+    /// Weight in the fit, from 0 to 1.
+    pub weight: f64,
+}
+
+/// Result of a calibration, SI.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// Status at the end of the fit.
+    pub status: FitStatus,
+    /// Fitted variables.
+    pub variables: Vec<VariableId>,
+    /// Variables that the mechanism cannot follow. They keep their design values.
+    pub left_out: Vec<VariableId>,
+    /// Fitted design: change of every variable of the model.
+    pub design: Vec<f64>,
+    /// Columns of the outputs.
+    pub outputs: Vec<Output>,
+    /// Fitted values of every reading; `None` if its posture is not reached.
+    pub fitted: Vec<Option<FittedReading>>,
+    /// Postures whose readings were left out.
+    pub not_reached: Vec<UnreachedPosture>,
+    /// Objective of the nominal and the fitted design: sum of squared residuals in standard deviations, or of the loss.
+    /// Without given standard deviations, estimated ones are used.
+    pub objective: [f64; 2],
+    /// Objective after each iteration.
+    pub iterations: Vec<f64>,
+    /// Accuracy of the variables.
+    pub certainty: Certainty,
+    /// Proposed further readings, the most informative first.
+    pub next: Vec<NextReading>,
+    /// Cost of the study.
+    pub cost: StudyCost,
+}
+
+/// Reason why nothing can be fitted.
+#[derive(Clone, Debug)]
+pub enum CalibrationError {
+    /// The mechanism cannot be driven.
+    Topology(TopologyError),
+    /// The nominal design reaches none of the postures; contains the stop on the way to the first.
+    NothingReached(String),
+    /// The mechanism can follow none of the variables.
+    NothingVaries,
+    /// Without standard deviations there must be more readings than variables, since the accuracy cannot be estimated
+    /// otherwise.
+    TooFewReadings {
+        /// Number of compared readings.
+        readings: usize,
+        /// Number of variables.
+        variables: usize,
+    },
+}
+
+/// Measurements, variables and options of a calibration.
+#[derive(Clone, Copy, Debug)]
+pub struct CalibrationRequest<'a> {
+    /// Measurements to fit.
+    pub measured: &'a Measurements,
+    /// Variables to fit.
+    pub variables: &'a [VariableId],
+    /// Loss function of the residuals.
+    pub loss: Loss,
+    /// Formulation of the mechanism.
+    pub formulation: Formulation,
+    /// Maximum number of iterations.
+    pub iterations: usize,
+}
+
+/// Fits the design to measurements. `progress` is called with the objective after every iteration. `more` is called at
+/// every posture; if it returns false, the fit ends.
+///
+/// # Errors
+/// A [`CalibrationError`] if nothing can be fitted.
+pub fn calibrate(
+    model: &Model,
+    request: &CalibrationRequest<'_>,
+    progress: &mut dyn FnMut(usize, f64),
+    more: &dyn Fn() -> bool,
+) -> Result<Calibration, CalibrationError> {
+    let models: Vec<Model> =
+        request.measured.postures.iter().map(|p| posture::posture_model(model, p)).collect();
+    let analyses = posture::planned(&models, request.formulation).map_err(CalibrationError::Topology)?;
+    let mut workspace = fit::FitWorkspace::new(model, &analyses, request);
+    workspace.evaluate_nominal()?;
+    let search = workspace.search(progress, more);
+    let directions = workspace.directions(&search);
+    let certainty = workspace.certainty(&search, &directions);
+    let next = match search.status {
+        FitStatus::Found => workspace.next(&search, &directions, &certainty),
+        _ => Vec::new(),
+    };
+    Ok(workspace.calibration(search, certainty, next, outputs(model)))
+}
+
+/// Values of all outputs of a design in postures of the drivers, given as in [`Measurements::postures`], SI; the reason
+/// for each posture that is not reached.
+///
+/// # Errors
+/// A [`TopologyError`] if the mechanism cannot be driven.
+pub fn values_in_postures(
+    model: &Model,
+    design: &[f64],
+    postures: &[Vec<f64>],
+    formulation: Formulation,
+) -> Result<Vec<Result<Vec<f64>, String>>, TopologyError> {
+    let models: Vec<Model> = postures.iter().map(|p| posture::posture_model(model, p)).collect();
+    let values = |analysis: &Analysis<'_>| {
+        let solved = posture::solve_posture(analysis, design, &mut StudyCost::default());
+        let values =
+            |posture: posture::ReachedPosture| (0..outputs(model).len()).map(|m| posture.value(m)).collect();
+        solved.map(values).map_err(|stop| stop.headline(analysis.model()))
+    };
+    Ok(posture::planned(&models, formulation)?.iter().map(values).collect())
+}

@@ -1,0 +1,567 @@
+//! Optimisation problem of a search: goals and limits as numbers, with their exact derivatives.
+
+use crate::evaluation::{DesignEvaluation, Motions, StudyCost};
+use hardpoint::model::{Limit, LimitTarget, Model, OptimizationSettings, Reduction, VariableId};
+use hardpoint::motion::Margin;
+use hardpoint::number::Dual;
+use hardpoint::run::{MetricParts, misfits, peaks};
+
+/// Goals and limits of an optimisation, and the motions that they are evaluated in.
+#[derive(Clone, Debug)]
+pub(super) struct Problem<'m> {
+    /// Model with all of its cases.
+    pub model: &'m Model,
+    pub motions: &'m Motions<'m>,
+    pub settings: &'m OptimizationSettings,
+    /// Bounds of each searched variable, in its unit.
+    pub bounds: Vec<[f64; 2]>,
+    /// Goals in each motion.
+    pub goals: Vec<MotionMetric>,
+    /// Index and metric of each limit; no metric for a limit on the design itself.
+    pub limits: Vec<(usize, Option<MotionMetric>)>,
+}
+
+/// A metric in one motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MotionMetric {
+    /// Index of the goal or limit.
+    pub of: usize,
+    pub motion: usize,
+    /// Index among the metrics of that motion.
+    pub metric: usize,
+}
+
+/// Numbers with their derivatives by the searched variables, SI and per unit of each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows {
+    pub values: Vec<f64>,
+    pub d: Vec<Vec<f64>>,
+}
+
+impl Rows {
+    pub fn push(&mut self, value: f64, d: Vec<f64>) {
+        self.values.push(value);
+        self.d.push(d);
+    }
+
+    pub fn greatest(&self) -> f64 {
+        self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// Evaluated design of a search.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Point {
+    /// Values of all variables of the model.
+    pub design: Vec<f64>,
+    /// Weighted residuals of squared goals.
+    pub misfits: Rows,
+    /// Weighted values of linear goals that depend smoothly on the design.
+    pub plain: Rows,
+    /// Weighted candidates for the maximum, for goals on a maximum.
+    pub peaks: Vec<Rows>,
+    /// Rows of the limits: index of the limit, and excess in its unit.
+    pub limits: Vec<LimitRow>,
+    /// Candidates for both ends of curves with a limited range.
+    pub spreads: Vec<Spread>,
+    /// Values of the goals, in the order of [`Problem::goals`].
+    pub goal_values: Vec<f64>,
+    /// Values of the limits, in the order of [`Problem::limits`].
+    pub limit_values: Vec<f64>,
+    /// Minimum margin to a singular position over all motions, if known.
+    pub margin: Option<f64>,
+}
+
+/// Limit, or one of several numbers that it applies to.
+#[derive(Clone, Debug)]
+pub(super) struct LimitRow {
+    /// Index in [`Problem::limits`].
+    pub of: usize,
+    /// Excess over the limit, at most 0 if it is satisfied; for an equality, its deviation.
+    pub exceeds: f64,
+    pub d: Vec<f64>,
+    pub equal: bool,
+    /// True for the upper end.
+    pub upper: bool,
+    /// True if a [`Spread`] describes its dependence on the design in more detail.
+    pub spread: bool,
+}
+
+/// Range of a curve with a limit: maximum minus minimum.
+#[derive(Clone, Debug)]
+pub(super) struct Spread {
+    /// Index in [`Problem::limits`].
+    pub of: usize,
+    pub most: f64,
+    /// Candidates for the maximum, and candidates for the minimum with negative sign.
+    pub ends: [Rows; 2],
+}
+
+/// Reason why a design cannot be evaluated.
+#[derive(Clone, Debug)]
+pub(super) struct Refusal {
+    /// Index of the motion, if one failed.
+    pub motion: Option<usize>,
+    pub why: String,
+    /// True if the caller ended the evaluation.
+    pub interrupted: bool,
+}
+
+impl Point {
+    /// Value of the objective.
+    pub fn objective(&self) -> f64 {
+        let squares: f64 = self.misfits.values.iter().map(|r| r * r).sum();
+        let plain: f64 = self.plain.values.iter().sum();
+        squares + plain + self.peaks.iter().map(Rows::greatest).sum::<f64>()
+    }
+
+    /// True if all goals are squares.
+    pub fn has_only_squares(&self) -> bool {
+        self.plain.values.is_empty() && self.peaks.is_empty()
+    }
+
+    /// True if all goals are squares and only bounds limit the design.
+    pub fn is_squares(&self) -> bool {
+        self.has_only_squares() && self.limits.is_empty()
+    }
+
+    /// Norm of the misfits.
+    pub fn misfit(&self) -> f64 {
+        self.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt()
+    }
+
+    /// Gradient of the objective by the searched variables. For a goal on a maximum, it is that of the first candidate
+    /// that attains the maximum.
+    pub fn gradient(&self, variables: usize) -> Vec<f64> {
+        let mut g = vec![0.0; variables];
+        let mut add = |by: f64, d: &[f64]| g.iter_mut().zip(d).for_each(|(g, d)| *g += by * d);
+        for (r, d) in self.misfits.values.iter().zip(&self.misfits.d) {
+            add(2.0 * r, d);
+        }
+        self.plain.d.iter().for_each(|d| add(1.0, d));
+        for rows in &self.peaks {
+            let most = rows.greatest();
+            if let Some(k) = rows.values.iter().position(|v| *v == most) {
+                add(1.0, &rows.d[k]);
+            }
+        }
+        g
+    }
+
+    /// Largest violation of a limit as a fraction of its scale; 0 if all are satisfied.
+    pub fn violation(&self, scale: impl Fn(usize) -> f64) -> f64 {
+        let exceeds = |row: &LimitRow| if row.equal { row.exceeds.abs() } else { row.exceeds.max(0.0) };
+        self.limits.iter().map(|row| exceeds(row) / scale(row.of)).fold(0.0, f64::max)
+    }
+}
+
+impl<'m> Problem<'m> {
+    pub fn new(model: &'m Model, motions: &'m Motions<'m>, settings: &'m OptimizationSettings) -> Self {
+        let entry = |of: usize, metric: usize| {
+            let Model { metrics, .. } = model;
+            let wanted = &metrics[metric];
+            let motion = move |motion: usize| {
+                let metric = motions.model(motion).metrics.iter().position(|m| m.name == wanted.name)?;
+                Some(MotionMetric { of, motion, metric })
+            };
+            (0..motions.len()).filter_map(motion)
+        };
+        let goals = settings.goals.iter().enumerate().flat_map(|(k, goal)| entry(k, goal.metric)).collect();
+        let limit = |(k, limit): (usize, &Limit)| match limit.of {
+            LimitTarget::Metric(metric) => entry(k, metric).map(|t| (k, Some(t))).collect::<Vec<_>>(),
+            _ => vec![(k, None)],
+        };
+        let limits = settings.limits.iter().enumerate().flat_map(limit).collect();
+        let bounds = |v: &VariableId| model.variables[v.0].bounds.unwrap_or([0.0; 2]);
+        Self {
+            bounds: settings.variables.iter().map(bounds).collect(),
+            model,
+            motions,
+            settings,
+            goals,
+            limits,
+        }
+    }
+
+    /// Values of all variables, with the searched ones given as fractions of their bounds: 0 at the lower and 1 at the
+    /// upper bound.
+    pub fn design(&self, parts: &[f64]) -> Vec<f64> {
+        let mut design = vec![0.0; self.model.variables.len()];
+        for ((v, [low, high]), part) in self.settings.variables.iter().zip(&self.bounds).zip(parts) {
+            design[v.0] = (low + (high - low) * part).clamp(*low, *high);
+        }
+        design
+    }
+
+    /// Searched variables as fractions of their bounds.
+    pub fn parts(&self, design: &[f64]) -> Vec<f64> {
+        let part = |(v, [low, high]): (&VariableId, &[f64; 2])| (design[v.0] - low) / (high - low);
+        self.settings.variables.iter().zip(&self.bounds).map(part).collect()
+    }
+
+    /// Value and gradient of a limit on the design itself.
+    fn of_design(&self, limit: &Limit, design: &[f64]) -> (f64, Vec<f64>) {
+        let map = self.motions.analyses()[0].design_map();
+        let derivative = |v: VariableId| {
+            let mut values: Vec<Dual> = design.iter().map(|b| Dual::constant(*b)).collect();
+            values[v.0] = Dual::variable(design[v.0]);
+            match limit.of {
+                LimitTarget::Coordinate(h, axis) => map.places(&values)[h.0][axis],
+                LimitTarget::Distance(a, b) => {
+                    let places = map.places(&values);
+                    (places[a.0] - places[b.0]).norm()
+                }
+                LimitTarget::Length(joint) => map.geometry(&values).kept[joint.0].distance,
+                LimitTarget::Metric(_) => unreachable!("it is taken of a motion"),
+            }
+        };
+        let found: Vec<Dual> = self.settings.variables.iter().map(|v| derivative(*v)).collect();
+        (found.first().map_or(f64::NAN, |x| x.v), found.iter().map(|x| x.d).collect())
+    }
+
+    /// Evaluates a design.
+    pub fn at(
+        &self,
+        design: Vec<f64>,
+        cost: &mut StudyCost,
+        more: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Point, Refusal> {
+        let found = self.motions.evaluate(&design, cost, more).map_err(|rejected| Refusal {
+            motion: Some(rejected.motion),
+            interrupted: rejected.interrupted(),
+            why: rejected.why,
+        })?;
+        self.margins(&found)?;
+        let margins = found.solutions.iter().filter_map(|s| Some(s.motion.least_margin()?.1.value));
+        let mut point = Point { design, margin: margins.reduce(f64::min), ..Point::default() };
+        for entry in &self.goals {
+            self.add_goal(*entry, &found, &mut point)?;
+        }
+        for (place, (limit, entry)) in self.limits.iter().enumerate() {
+            self.add_limit(place, *limit, *entry, &found, &mut point)?;
+        }
+        Ok(point)
+    }
+
+    /// Checks the margins of all motions to singular positions.
+    fn margins(&self, found: &DesignEvaluation) -> Result<(), Refusal> {
+        let Some(limit) = self.settings.margin else { return Ok(()) };
+        for (motion, solution) in found.solutions.iter().enumerate() {
+            let Some((k, Margin { value, .. })) = solution.motion.least_margin() else { continue };
+            if !(value >= limit) {
+                let t = solution.motion.times[k];
+                let why = format!(
+                    "at t = {t:.6} s its margin to a singular position is {value:.3}, less than {limit}"
+                );
+                return Err(Refusal { motion: Some(motion), why, interrupted: false });
+            }
+        }
+        Ok(())
+    }
+
+    fn add_goal(
+        &self,
+        entry: MotionMetric,
+        found: &DesignEvaluation,
+        point: &mut Point,
+    ) -> Result<(), Refusal> {
+        let goal = &self.settings.goals[entry.of];
+        let (value, d) = self.metric(entry, found)?;
+        point.goal_values.push(value);
+        let metric = &self.motions.model(entry.motion).metrics[entry.metric];
+        let by = |x: f64, d: &[f64]| (goal.weight * x, d.iter().map(|d| goal.weight * d).collect::<Vec<_>>());
+        let parts = |parts: Option<MetricParts>, sign: f64| {
+            let mut rows = Rows::default();
+            for (x, d) in parts.iter().flat_map(|p| p.values.iter().zip(&p.d)) {
+                let (x, d) = by(sign * x, &self.searched(d).iter().map(|d| sign * d).collect::<Vec<_>>());
+                rows.push(x, d);
+            }
+            rows
+        };
+        let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
+        let peaks = |sign: f64| parts(peaks(model, solution, metric, sign), sign);
+        match (&metric.take, goal.target) {
+            (Reduction::Rms(_) | Reduction::RmsAtPoints(_), _) => {
+                let Rows { values, d } = parts(misfits(model, solution, metric), 1.0);
+                point.misfits.values.extend(values);
+                point.misfits.d.extend(d);
+            }
+            (_, Some(target)) => {
+                let (x, d) = by(value - target, &d);
+                point.misfits.push(x, d);
+            }
+            (Reduction::Greatest, None) if solution.motion.len() > 1 => point.peaks.push(peaks(1.0)),
+            (Reduction::Range, None) if solution.motion.len() > 1 => {
+                point.peaks.extend([peaks(1.0), peaks(-1.0)]);
+            }
+            _ => {
+                let (x, d) = by(value, &d);
+                point.plain.push(x, d);
+            }
+        }
+        self.finite(entry.motion, &metric.name, point)
+    }
+
+    fn add_limit(
+        &self,
+        place: usize,
+        limit: usize,
+        entry: Option<MotionMetric>,
+        found: &DesignEvaluation,
+        point: &mut Point,
+    ) -> Result<(), Refusal> {
+        let settings = &self.settings.limits[limit];
+        let (value, d) = match entry {
+            Some(entry) => self.metric(entry, found)?,
+            None => self.of_design(settings, &point.design),
+        };
+        point.limit_values.push(value);
+        let negative = |d: &[f64]| d.iter().map(|d| -d).collect::<Vec<_>>();
+        let mut push = |exceeds: f64, d: Vec<f64>, equal: bool, upper: bool| {
+            point.limits.push(LimitRow { of: place, exceeds, d, equal, upper, spread: false });
+        };
+        if let (Some(least), Some(most)) = (settings.least, settings.most)
+            && least == most
+        {
+            push(value - most, d, true, true);
+            return Ok(());
+        }
+        // The time of a maximum varies with the design, so all candidates are kept within the limit.
+        let parts = |settings: Reduction, sign: f64| {
+            let entry = entry?;
+            let (model, solution) = (self.motions.model(entry.motion), &found.solutions[entry.motion]);
+            let metric = &model.metrics[entry.metric];
+            let has = metric.take == settings && solution.motion.len() > 1;
+            if has { peaks(model, solution, metric, sign) } else { None }
+        };
+        let all = |sign: f64| parts(if sign > 0.0 { Reduction::Greatest } else { Reduction::Least }, sign);
+        for (end, sign) in [(settings.most, 1.0), (settings.least, -1.0)] {
+            let Some(end) = end else { continue };
+            match all(sign) {
+                Some(parts) => {
+                    for (x, d) in parts.values.iter().zip(&parts.d) {
+                        let d = self.searched(d);
+                        let d = if sign < 0.0 { negative(&d) } else { d };
+                        push(sign * (x - end), d, false, sign > 0.0);
+                    }
+                }
+                None => {
+                    let d = if sign < 0.0 { negative(&d) } else { d.clone() };
+                    push(sign * (value - end), d, false, sign > 0.0);
+                }
+            }
+        }
+        let ends = parts(Reduction::Range, 1.0).zip(parts(Reduction::Range, -1.0));
+        if let (Some(most), Some((high, low))) = (settings.most, ends) {
+            let rows = |parts: MetricParts, sign: f64| Rows {
+                values: parts.values.iter().map(|x| sign * x).collect(),
+                d: parts.d.iter().map(|d| self.searched(d).iter().map(|d| sign * d).collect()).collect(),
+            };
+            point.spreads.push(Spread { of: place, most, ends: [rows(high, 1.0), rows(low, -1.0)] });
+            if let Some(row) = point.limits.iter_mut().rfind(|row| row.of == place && row.upper) {
+                row.spread = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// A metric with its derivatives by the searched variables.
+    fn metric(&self, entry: MotionMetric, found: &DesignEvaluation) -> Result<(f64, Vec<f64>), Refusal> {
+        let value = &found.metrics[entry.motion][entry.metric];
+        let name = &self.motions.model(entry.motion).metrics[entry.metric].name;
+        let refusal = |why: String| Refusal { motion: Some(entry.motion), why, interrupted: false };
+        let Some(x) = value.value else {
+            return Err(refusal(format!(
+                "the motion does not reach the place where metric `{name}` is taken"
+            )));
+        };
+        let d = self.searched(&value.d);
+        if let Some(v) = d.iter().position(|d| !d.is_finite()) {
+            let variable = &self.model.variables[self.settings.variables[v].0].name;
+            return Err(refusal(format!(
+                "metric `{name}` has no derivative by `{variable}`, which the mechanism cannot follow"
+            )));
+        }
+        Ok((x, d))
+    }
+
+    fn searched(&self, d: &[f64]) -> Vec<f64> {
+        self.settings.variables.iter().map(|v| d[v.0]).collect()
+    }
+
+    /// Rejects points with a number that is not finite.
+    fn finite(&self, motion: usize, metric: &str, point: &Point) -> Result<(), Refusal> {
+        let Point { misfits, plain, peaks, .. } = point;
+        let mut all = [misfits, plain].into_iter().chain(peaks);
+        let finite = all.all(|rows| rows.values.iter().chain(rows.d.iter().flatten()).all(|x| x.is_finite()));
+        if finite {
+            return Ok(());
+        }
+        let why = format!("metric `{metric}` has parts without value or derivative");
+        Err(Refusal { motion: Some(motion), why, interrupted: false })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_models::crank_rocker;
+    use hardpoint::law::Law;
+    use hardpoint::model::{CaseId, Goal, HardpointId, JointId, Metric, OutputSource, PointId};
+    use hardpoint::topology::Formulation;
+
+    /// Step of central differences, as a fraction of the bounds. For a smooth function they are accurate to this
+    /// fraction of the largest number: truncation by `step^2` times the third derivative, and round-off divided by the
+    /// step.
+    const STEP: f64 = 1e-5;
+    const AGREES: f64 = 1e-7;
+
+    /// A crank-rocker in two cases: its coupler with a point, its rod a distance joint, and metrics of every kind.
+    fn four_bar() -> Model {
+        let mut draft = crank_rocker().times((0..=40).map(|k| 0.05 * f64::from(k)));
+        for (k, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
+            draft = draft.variable_moving(name, name, [1.0, 0.3 * k as f64, 0.0]);
+        }
+        let mut model = Model::from_draft(&draft).unwrap();
+        model.variables.iter_mut().for_each(|v| v.bounds = Some([-0.02, 0.03]));
+        let of = |k: usize| OutputSource::Point(PointId(0), k);
+        let metric = |name: &str, take: Reduction, over: Option<usize>| Metric {
+            name: name.into(),
+            of: of(0),
+            over: over.map(of),
+            take,
+            window: None,
+            case: None,
+        };
+        model.metrics = vec![
+            metric("fit", Reduction::Rms(vec![[0.0, 0.2], [2.0, 0.4]]), None),
+            metric("path", Reduction::Rms(vec![[0.3, 0.2], [0.6, 0.4]]), Some(1)),
+            metric("most", Reduction::Greatest, None),
+            metric("least", Reduction::Least, None),
+            metric("range", Reduction::Range, None),
+            metric("mean", Reduction::Mean, None),
+            metric("work", Reduction::Integral, Some(1)),
+            metric("at", Reduction::Value(0.73), None),
+            metric("slope", Reduction::Slope(0.31), None),
+        ];
+        let case = |name: &str, law: &str| hardpoint::model::Case {
+            formulas: Vec::new(),
+            name: name.into(),
+            laws: vec![Some(Law::parse(law).unwrap())],
+            times: model.times.clone(),
+            load_mode: None,
+        };
+        model.cases = vec![case("slow", "t"), case("fast", "3*t")];
+        model.metrics[6].case = Some(CaseId(1));
+        model
+    }
+
+    fn everything() -> OptimizationSettings {
+        let goal =
+            |metric: usize, target: Option<f64>| Goal { name: String::new(), metric, target, weight: 1.7 };
+        let limit = |of: LimitTarget, least: f64, most: f64| Limit {
+            name: String::new(),
+            of,
+            least: Some(least),
+            most: Some(most),
+        };
+        OptimizationSettings {
+            variables: (0..4).map(VariableId).collect(),
+            goals: (0..8)
+                .map(|k| goal(k, None))
+                .chain([goal(2, Some(0.1)), goal(4, Some(0.2)), goal(7, Some(0.3))])
+                .collect(),
+            limits: (2..8)
+                .map(|k| limit(LimitTarget::Metric(k), -0.4, 0.7))
+                .chain([
+                    limit(LimitTarget::Coordinate(HardpointId(1), 0), 0.0, 0.1),
+                    limit(LimitTarget::Distance(HardpointId(1), HardpointId(3)), 0.1, 0.2),
+                    limit(LimitTarget::Length(JointId(2)), 0.4, 0.4),
+                ])
+                .collect(),
+            margin: None,
+            starts: 1,
+            iterations: 1,
+        }
+    }
+
+    /// All numbers of a point with their derivatives; for the misfits the sum of their squares, since their nodes are
+    /// the turning points of each design's own path.
+    fn numbers(point: &Point) -> Vec<(f64, Vec<f64>)> {
+        let rows = |rows: &Rows| rows.values.iter().copied().zip(rows.d.iter().cloned()).collect::<Vec<_>>();
+        let squares = Point { misfits: point.misfits.clone(), ..Point::default() };
+        let mut all = vec![(squares.misfit().powi(2), squares.gradient(point.misfits.d[0].len()))];
+        all.extend(rows(&point.plain));
+        all.extend(point.peaks.iter().flat_map(rows));
+        all.extend(point.limits.iter().map(|l| (l.exceeds, l.d.clone())));
+        all.extend(point.spreads.iter().flat_map(|s| &s.ends).flat_map(rows));
+        all
+    }
+
+    #[test]
+    fn every_kind_of_goal_and_limit_has_the_derivatives_of_differences() {
+        let (model, settings) = (four_bar(), everything());
+        let models = model.motions();
+        let motions = Motions::of(&models, Formulation::Relative).unwrap();
+        let problem = Problem::new(&model, &motions, &settings);
+        let at =
+            |parts: &[f64]| problem.at(problem.design(parts), &mut StudyCost::default(), &|| true).unwrap();
+        let parts = [0.37, 0.52, 0.61, 0.44];
+        let here = numbers(&at(&parts));
+        assert!(here.len() > 300, "{} numbers", here.len());
+        for v in 0..4 {
+            let moved = |sign: f64| {
+                let mut parts = parts;
+                parts[v] += sign * STEP;
+                numbers(&at(&parts))
+            };
+            let (more, less) = (moved(1.0), moved(-1.0));
+            assert_eq!(
+                [more.len(), less.len()],
+                [here.len(); 2],
+                "the same number of values for every design"
+            );
+            let span = 0.05;
+            let largest = here.iter().map(|(_, d)| (d[v] * span).abs()).fold(0.0, f64::max);
+            for (k, (_, d)) in here.iter().enumerate() {
+                let difference = (more[k].0 - less[k].0) / (2.0 * STEP);
+                let error = (d[v] * span - difference).abs();
+                assert!(
+                    error <= AGREES * largest.max(1.0),
+                    "number {k} by variable {v}: {} and {difference}",
+                    d[v] * span
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_parts_of_a_metric_are_all_of_it() {
+        let (model, settings) = (four_bar(), everything());
+        let models = model.motions();
+        let motions = Motions::of(&models, Formulation::Relative).unwrap();
+        let found = motions.evaluate(&[], &mut StudyCost::default(), &|| true).unwrap();
+        let (solution, one) = (&found.solutions[0], motions.model(0));
+        let value = |name: &str| {
+            let k = one.metrics.iter().position(|m| m.name == name).unwrap();
+            (&one.metrics[k], found.metrics[0][k].value.unwrap())
+        };
+        for name in ["fit", "path"] {
+            let (metric, rms) = value(name);
+            let parts = misfits(one, solution, metric).unwrap();
+            let sum: f64 = parts.values.iter().map(|r| r * r).sum();
+            assert!((sum.sqrt() - rms).abs() <= 4.0 * f64::EPSILON * rms, "{name}");
+        }
+        let (most, greatest) = value("most");
+        let parts = peaks(one, solution, most, 1.0).unwrap();
+        assert_eq!(parts.values.iter().copied().fold(f64::NEG_INFINITY, f64::max), greatest);
+        let (least, lowest) = value("least");
+        let parts = peaks(one, solution, least, -1.0).unwrap();
+        assert_eq!(parts.values.iter().copied().fold(f64::INFINITY, f64::min), lowest);
+        // A metric of one case is evaluated in that case only, any other metric in each case.
+        let problem = Problem::new(&model, &motions, &settings);
+        let entry =
+            |goal: usize| problem.goals.iter().filter(|t| t.of == goal).map(|t| t.motion).collect::<Vec<_>>();
+        assert_eq!((entry(0), entry(6)), (vec![0, 1], vec![1]));
+    }
+}

@@ -1,0 +1,401 @@
+//! Solvers of basin applied to optimisation problems: bounded least squares, and sequential programming with limits.
+//!
+//! Both use the design as fractions of its bounds, so that every variable ranges from 0 to 1.
+
+use std::cell::RefCell;
+use std::convert::Infallible;
+
+use basin::{
+    ConstraintSolveError, CostFunction, DenseMatrix, Executor, Gradient, SelectedFirstOrderState, Slsqp,
+    Stepper,
+};
+
+use crate::evaluation::StudyCost;
+use crate::trust_region::{Recent, TrustRegion, next};
+use hardpoint::linalg::folded_rows;
+
+use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
+
+/// Convergence threshold of the sequential solver on changes of objective and limits, with curvatures scaled to order
+/// one: the square of the required distance from stationarity. The search itself detects round-off.
+const SETTLED: f64 = 1e-30;
+/// Minimum curvature assumed in any direction, as a fraction of the largest.
+pub(super) const FLAT: f64 = 1e-4;
+/// Length of a first step without known curvature, as a fraction of the bounds.
+const FIRST_STEP: f64 = 0.1;
+
+/// Result at a design.
+type Found = Result<Point, Refusal>;
+
+/// Designs evaluated by a search: the most recent ones with their values, and all that failed.
+pub(super) struct Memory<'p> {
+    pub problem: &'p Problem<'p>,
+    more: &'p (dyn Fn() -> bool + Sync),
+    recent: Recent<Found>,
+    pub refused: RefCell<Vec<(Vec<f64>, Refusal)>>,
+    pub cost: RefCell<StudyCost>,
+}
+
+impl<'p> Memory<'p> {
+    pub fn new(problem: &'p Problem<'p>, more: &'p (dyn Fn() -> bool + Sync)) -> Self {
+        Self {
+            problem,
+            more,
+            recent: Recent::default(),
+            refused: RefCell::default(),
+            cost: RefCell::default(),
+        }
+    }
+
+    /// Result at a design, given as fractions of the bounds.
+    pub fn at<X>(&self, parts: &[f64], of: impl FnOnce(&Found) -> X) -> X {
+        let find = || {
+            let design = self.problem.design(parts);
+            let found = self.problem.at(design.clone(), &mut self.cost.borrow_mut(), self.more);
+            if let Err(refusal) = &found
+                && !refusal.interrupted
+            {
+                self.refused.borrow_mut().push((design, refusal.clone()));
+            }
+            found
+        };
+        self.recent.at(parts, find, of)
+    }
+
+    pub fn interrupted(&self) -> bool {
+        !(self.more)()
+    }
+
+    /// Width of the bounds of every searched variable.
+    fn spans(&self) -> Vec<f64> {
+        self.problem.bounds.iter().map(|[low, high]| high - low).collect()
+    }
+}
+
+/// Solver between iterations.
+pub(super) trait Solver {
+    /// Performs one iteration and returns the new point, as fractions of the bounds; `None` at the end.
+    fn step(&mut self) -> Option<Vec<f64>>;
+}
+
+/// Solver for squared goals without limits other than bounds.
+pub(super) fn least_squares<'p>(
+    memory: &'p Memory<'p>,
+    start: &[f64],
+    point: &Point,
+) -> Option<TrustRegion<'p>> {
+    let spans = memory.spans();
+    let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
+    let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+    let same = spans.clone();
+    let residuals = move |x: &[f64]| {
+        let rows = folded_misfits(memory, &spans, scale, x);
+        rows.iter().map(|row| row[x.len()]).collect()
+    };
+    let derivatives = move |x: &[f64]| {
+        let rows = folded_misfits(memory, &same, scale, x);
+        DenseMatrix::from_fn(rows.len(), x.len(), |row, v| rows[row][v])
+    };
+    TrustRegion::new(start.to_vec(), [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
+}
+
+/// Misfits of a design with their derivatives, `[J r]`, reduced to one row for every variable plus one with the same
+/// squares and products, since the number of misfits depends on the times at which a design was solved.
+fn folded_misfits(memory: &Memory<'_>, spans: &[f64], scale: f64, x: &[f64]) -> Vec<Vec<f64>> {
+    memory.at(x, |found| {
+        let Ok(point) = found else { return vec![vec![f64::NAN; x.len() + 1]; x.len() + 1] };
+        let Rows { values, d } = &point.misfits;
+        let by = |v: usize| d.iter().map(|d| scale * spans[v] * d[v]).collect();
+        let mut columns: Vec<Vec<f64>> = (0..x.len()).map(by).collect();
+        columns.push(values.iter().map(|r| scale * r).collect());
+        folded_rows(columns)
+    })
+}
+
+impl Solver for TrustRegion<'_> {
+    fn step(&mut self) -> Option<Vec<f64>> {
+        self.step()
+    }
+}
+
+/// Problem with any goals and limits, in coordinates in which the squared goals have about the same curvature in every
+/// direction.
+///
+/// ```text
+/// x = x0 + T z,   T = (2 J^T J + mu I)^-1/2        J: the misfits by x at the start
+///
+/// min  squares(x) + plain(x) + sum of t    so that    peak_k(x) <= t,  limits(x) <= 0,  0 <= x <= 1,
+///                                                     high_k(x) <= u,  -low_k(x) <= v,  u + v <= most
+/// ```
+///
+/// The last line is a limit on the range of a curve.
+pub(super) struct Programming<'p> {
+    memory: &'p Memory<'p>,
+    spans: Vec<f64>,
+    x0: Vec<f64>,
+    /// Columns of T.
+    t: Vec<Vec<f64>>,
+    /// Factors of the objective and of every limit.
+    scale: f64,
+    limit_scales: Vec<f64>,
+    /// Number of groups of peaks and of limited ranges, and number of rows of each kind; equal for all designs.
+    peaks: usize,
+    spreads: usize,
+    equal: usize,
+    inequal: usize,
+}
+
+impl Programming<'_> {
+    fn searched(&self) -> usize {
+        self.x0.len()
+    }
+
+    fn x(&self, y: &[f64]) -> Vec<f64> {
+        let n = self.searched();
+        let along = |i: usize| (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
+        (0..n).map(|i| (self.x0[i] + along(i)).clamp(0.0, 1.0)).collect()
+    }
+
+    /// Gradient by fractions of the bounds, from a gradient by the variables.
+    fn by_parts(&self, d: &[f64]) -> Vec<f64> {
+        d.iter().zip(&self.spans).map(|(d, span)| d * span).collect()
+    }
+
+    /// Gradient by z, with zeros for the peaks.
+    fn by_z(&self, by_parts: &[f64]) -> Vec<f64> {
+        let column = |t: &Vec<f64>| t.iter().zip(by_parts).map(|(t, g)| t * g).sum::<f64>();
+        self.t.iter().map(column).chain(self.none()).collect()
+    }
+
+    /// Zeros for t, u and v.
+    fn none(&self) -> impl Iterator<Item = f64> {
+        std::iter::repeat_n(0.0, self.peaks + 2 * self.spreads)
+    }
+
+    /// Index of u of a limited range; v is the next.
+    fn ends(&self, spread: usize) -> usize {
+        self.searched() + self.peaks + 2 * spread
+    }
+
+    /// The inequalities `c <= 0`, in order: lower bounds, upper bounds, limits, peaks, limited ranges.
+    fn inequalities(&self, y: &[f64], point: &Point) -> Vec<f64> {
+        let n = self.searched();
+        let along = |i: usize| self.x0[i] + (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
+        let mut c: Vec<f64> = (0..n).map(|i| -along(i)).chain((0..n).map(|i| along(i) - 1.0)).collect();
+        for row in point.limits.iter().filter(|row| !row.equal && !row.spread) {
+            c.push(self.limit_scales[row.of] * row.exceeds);
+        }
+        for (group, rows) in point.peaks.iter().enumerate() {
+            c.extend(rows.values.iter().map(|v| self.scale * v - y[n + group]));
+        }
+        for (k, spread) in point.spreads.iter().enumerate() {
+            let (scale, ends) = (self.limit_scales[spread.of], self.ends(k));
+            for (end, rows) in spread.ends.iter().enumerate() {
+                c.extend(rows.values.iter().map(|v| scale * v - y[ends + end]));
+            }
+            c.push(y[ends] + y[ends + 1] - scale * spread.most);
+        }
+        c
+    }
+}
+
+impl basin::Constraints for Programming<'_> {
+    type Set = basin::ConstraintSet<
+        basin::NoBounds,
+        basin::NoLinearConstraints,
+        basin::NonlinearBlocks<basin::NonlinearBlock, basin::NonlinearBlock>,
+    >;
+    fn constraints(&self) -> <Self::Set as basin::ConstraintDescription>::Borrowed<'_> {
+        basin::ConstraintSet::new()
+            .with_nonlinear_equalities(self.equal)
+            .with_nonlinear_inequalities(self.inequal)
+    }
+}
+
+impl CostFunction for Programming<'_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+    type Error = Infallible;
+    fn cost(&self, y: &Vec<f64>) -> Result<f64, Infallible> {
+        let n = self.searched();
+        Ok(self.memory.at(&self.x(y), |found| match found {
+            Ok(Point { misfits, plain, .. }) => {
+                let squares: f64 = misfits.values.iter().map(|r| r * r).sum();
+                let plain: f64 = plain.values.iter().sum();
+                self.scale * (squares + plain) + y[n..n + self.peaks].iter().sum::<f64>()
+            }
+            Err(_) => f64::INFINITY,
+        }))
+    }
+}
+
+impl Gradient for Programming<'_> {
+    type Gradient = Vec<f64>;
+    fn gradient(&self, y: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
+        let n = self.searched();
+        Ok(self.memory.at(&self.x(y), |found| match found {
+            Ok(point) => {
+                let smooth = Point { peaks: Vec::new(), ..point.clone() };
+                let mut g = self.by_z(&self.by_parts(&smooth.gradient(n)));
+                g.iter_mut().for_each(|g| *g *= self.scale);
+                g[n..n + self.peaks].fill(1.0);
+                g
+            }
+            Err(_) => vec![f64::NAN; y.len()],
+        }))
+    }
+}
+
+impl basin::NonlinearInequalityValues for Programming<'_> {
+    type Param = Vec<f64>;
+    type Values = Vec<f64>;
+    type Error = Infallible;
+    fn nonlinear_inequalities(&self, y: &Vec<f64>) -> Result<Vec<f64>, ConstraintSolveError<Infallible>> {
+        Ok(self.memory.at(&self.x(y), |found| match found {
+            Ok(point) => self.inequalities(y, point),
+            Err(_) => vec![f64::NAN; self.inequal],
+        }))
+    }
+}
+
+impl basin::NonlinearEqualityValues for Programming<'_> {
+    type Param = Vec<f64>;
+    type Values = Vec<f64>;
+    type Error = Infallible;
+    fn nonlinear_equalities(&self, y: &Vec<f64>) -> Result<Vec<f64>, ConstraintSolveError<Infallible>> {
+        Ok(self.memory.at(&self.x(y), |found| match found {
+            Ok(point) => {
+                let rows = point.limits.iter().filter(|row| row.equal);
+                rows.map(|row| self.limit_scales[row.of] * row.exceeds).collect()
+            }
+            Err(_) => vec![f64::NAN; self.equal],
+        }))
+    }
+}
+
+impl basin::ConstraintJacobian for Programming<'_> {
+    type Param = Vec<f64>;
+    type Jacobian = DenseMatrix;
+    type Error = Infallible;
+    fn constraint_jacobian(&self, y: &Vec<f64>) -> Result<DenseMatrix, ConstraintSolveError<Infallible>> {
+        let n = self.searched();
+        Ok(self.memory.at(&self.x(y), |found| {
+            let Ok(point) = found else {
+                return DenseMatrix::from_fn(self.equal + self.inequal, y.len(), |_, _| f64::NAN);
+            };
+            let limit = |row: &LimitRow| {
+                let scale = self.limit_scales[row.of];
+                let d: Vec<f64> = self.by_parts(&row.d).iter().map(|d| scale * d).collect();
+                self.by_z(&d)
+            };
+            let mut rows: Vec<Vec<f64>> = point.limits.iter().filter(|r| r.equal).map(limit).collect();
+            for sign in [-1.0, 1.0] {
+                for i in 0..n {
+                    let by_z = (0..n).map(|j| sign * self.t[j][i]);
+                    rows.push(by_z.chain(self.none()).collect());
+                }
+            }
+            rows.extend(point.limits.iter().filter(|r| !r.equal && !r.spread).map(limit));
+            let below = |scale: f64, all: &Rows, end: usize| -> Vec<Vec<f64>> {
+                let row = |d: &Vec<f64>| {
+                    let d: Vec<f64> = self.by_parts(d).iter().map(|d| scale * d).collect();
+                    let mut row = self.by_z(&d);
+                    row[end] = -1.0;
+                    row
+                };
+                all.d.iter().map(row).collect()
+            };
+            for (k, peaks) in point.peaks.iter().enumerate() {
+                rows.extend(below(self.scale, peaks, n + k));
+            }
+            for (k, spread) in point.spreads.iter().enumerate() {
+                let (scale, ends) = (self.limit_scales[spread.of], self.ends(k));
+                for (end, all) in spread.ends.iter().enumerate() {
+                    rows.extend(below(scale, all, ends + end));
+                }
+                let mut row = vec![0.0; y.len()];
+                row[ends..ends + 2].fill(1.0);
+                rows.push(row);
+            }
+            DenseMatrix::from_fn(rows.len(), y.len(), |row, v| rows[row][v])
+        }))
+    }
+}
+
+type Sqp<'p> = Stepper<Programming<'p>, SelectedFirstOrderState<Vec<f64>, f64>, Slsqp<f64>>;
+
+/// Sequential programming by basin's SLSQP.
+pub(super) struct Sequential<'p> {
+    stepper: Sqp<'p>,
+    /// Map from z to x, copied from the problem because the stepper owns it.
+    x0: Vec<f64>,
+    t: Vec<Vec<f64>>,
+}
+
+impl<'p> Sequential<'p> {
+    pub fn new(memory: &'p Memory<'p>, start: &[f64], point: &Point, limit_scales: &[f64]) -> Option<Self> {
+        let (n, spans) = (start.len(), memory.spans());
+        let by_parts = |d: &[f64]| d.iter().zip(&spans).map(|(d, span)| d * span).collect::<Vec<f64>>();
+        let gradient = by_parts(&point.gradient(n));
+        let steepest = gradient.iter().fold(0.0, |most: f64, g| most.max(g.abs()));
+        let rows: Vec<Vec<f64>> = point.misfits.d.iter().map(|d| by_parts(d)).collect();
+        // 2 J^T J
+        let curved = |i: usize, j: usize| 2.0 * rows.iter().map(|d| d[i] * d[j]).sum::<f64>();
+        let most = (0..n).map(|i| curved(i, i)).fold(0.0, f64::max);
+        let scale = match (most > 0.0, steepest > 0.0) {
+            (true, _) => 1.0 / most,
+            (false, true) => FIRST_STEP / steepest,
+            _ => 1.0,
+        };
+        let t = match most > 0.0 {
+            true => inverse_root(n, |i, j| scale * curved(i, j) + if i == j { FLAT } else { 0.0 }),
+            false => (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect(),
+        };
+        let limit_scales: Vec<f64> = limit_scales.iter().map(|s| 1.0 / s).collect();
+        let mut y = vec![0.0; n];
+        y.extend(point.peaks.iter().map(|rows| scale * rows.greatest()));
+        for spread in &point.spreads {
+            y.extend(spread.ends.iter().map(|rows| limit_scales[spread.of] * rows.greatest()));
+        }
+        let equal = point.limits.iter().filter(|row| row.equal).count();
+        let (x0, t_too) = (start.to_vec(), t.clone());
+        let (peaks, spreads) = (point.peaks.len(), point.spreads.len());
+        let mut problem =
+            Programming { memory, spans, x0, t, scale, limit_scales, peaks, spreads, equal, inequal: 0 };
+        problem.inequal = problem.inequalities(&y, point).len();
+        let solver = Slsqp::new().with_absolute_accuracy_tolerance(SETTLED);
+        let run = Executor::new(problem, solver, SelectedFirstOrderState::new(y));
+        let stepper = run.into_stepper().ok()?;
+        Some(Self { stepper, x0: start.to_vec(), t: t_too })
+    }
+}
+
+impl Solver for Sequential<'_> {
+    fn step(&mut self) -> Option<Vec<f64>> {
+        let y = next(&mut self.stepper)?;
+        let n = self.x0.len();
+        let along = |i: usize| (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
+        Some((0..n).map(|i| (self.x0[i] + along(i)).clamp(0.0, 1.0)).collect())
+    }
+}
+
+/// The columns of `L^-T` for a positive definite matrix `L L^T`.
+fn inverse_root(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    let mut l = vec![vec![0.0; n]; n];
+    for i in 0..n {
+        for j in 0..=i {
+            let rest = entry(i, j) - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+            l[i][j] = if i == j { rest.max(FLAT * FLAT).sqrt() } else { rest / l[j][j] };
+        }
+    }
+    // L^T t_j = e_j
+    let column = |j: usize| {
+        let mut t = vec![0.0; n];
+        for i in (0..n).rev() {
+            let known: f64 = (i + 1..n).map(|k| l[k][i] * t[k]).sum();
+            t[i] = (f64::from(u8::from(i == j)) - known) / l[i][i];
+        }
+        t
+    };
+    (0..n).map(column).collect()
+}

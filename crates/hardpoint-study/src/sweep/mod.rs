@@ -1,0 +1,171 @@
+//! Sweep: exact metrics of many designs over the ranges of the variables.
+
+mod indices;
+mod plan;
+mod sobol;
+mod statistics;
+
+use std::num::NonZero;
+use std::ops::{ControlFlow, Range};
+
+use hardpoint::model::{Model, OutputSource, SweepSettings};
+use hardpoint::run::{Run, Solution};
+
+use super::evaluation::{Motions, StudyCost};
+use super::samples::{SampleBlock, SampleRun};
+use hardpoint::run::{metric_number, place_of};
+
+pub use indices::{SobolIndex, sobol_indices};
+pub use plan::{SweepPlan, SweepPlanError};
+pub(super) use statistics::quantile;
+pub use statistics::{Distribution, rank_correlation};
+
+/// A metric in one of the motions: a column of the results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SweptMetric {
+    /// Index of the metric in [`Model::metrics`] of the whole model.
+    pub metric: usize,
+    /// Index of the motion among those studied.
+    pub motion: usize,
+    /// Index among the metrics of that motion.
+    place: usize,
+}
+
+/// Results of consecutive designs. SI.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SweptBlock {
+    /// Numbers of the designs.
+    pub numbers: Range<usize>,
+    /// Values of each metric in each design; NaN if it has none.
+    pub metrics: Vec<Vec<f64>>,
+    /// Curves of each motion; empty if not requested.
+    pub curves: Vec<SweptCurves>,
+    /// Designs that do not reach the end of a motion, motion by motion.
+    pub failures: Vec<SweptFailure>,
+    /// Cost of the designs.
+    pub cost: StudyCost,
+}
+
+/// Curves of a block of designs in one motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SweptCurves {
+    /// Number of solved output times of each design.
+    pub steps: Vec<u32>,
+    /// Values by design, output time and curve.
+    pub values: Vec<f64>,
+}
+
+/// A design that does not reach the end of a motion.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SweptFailure {
+    /// Number of the design.
+    pub number: usize,
+    /// Index of the motion among those studied.
+    pub motion: usize,
+    /// Diagnostic code of the failure (`docs/diagnostics.md`).
+    pub code: String,
+    /// Description of the failure.
+    pub why: String,
+}
+
+/// Sweep that is ready to start from any block.
+#[derive(Clone, Debug)]
+pub struct Sweep<'a> {
+    motions: &'a Motions<'a>,
+    settings: &'a SweepSettings,
+    plan: SweepPlan<'a>,
+    metrics: Vec<SweptMetric>,
+}
+
+impl<'a> Sweep<'a> {
+    /// Prepares the sweep over the designs of a model in some of its motions, given by `numbers`.
+    ///
+    /// # Errors
+    /// A [`SweepPlanError`] if the designs cannot be chosen.
+    pub fn new(
+        model: &Model,
+        motions: &'a Motions<'a>,
+        numbers: &[usize],
+        settings: &'a SweepSettings,
+    ) -> Result<Self, SweepPlanError> {
+        let plan = SweepPlan::new(settings, model)?;
+        let of_motion = |(metric, (motion, number)): (usize, (usize, &usize))| {
+            Some(SweptMetric { metric, motion, place: place_of(model, metric, *number)? })
+        };
+        let pairs = settings.metrics.iter().flat_map(|m| numbers.iter().enumerate().map(|n| (*m, n)));
+        Ok(Self { motions, settings, plan, metrics: pairs.filter_map(of_motion).collect() })
+    }
+
+    /// Designs of the sweep.
+    pub fn plan(&self) -> &SweepPlan<'a> {
+        &self.plan
+    }
+
+    /// Columns of the results.
+    pub fn metrics(&self) -> &[SweptMetric] {
+        &self.metrics
+    }
+
+    /// Results of the nominal design, as the only one of its block.
+    pub fn nominal(&self) -> SweptBlock {
+        let mut block = SweptBlock { numbers: 0..1, ..SweptBlock::default() };
+        for (motion, analysis) in self.motions.analyses().iter().enumerate() {
+            let solution = analysis.solve(Run::new().without_sensitivities());
+            self.see(&mut block, 0, motion, &solution);
+        }
+        block
+    }
+
+    /// Solves all designs from a number on, which must be a multiple of [`BLOCK`](super::BLOCK). `done` receives the
+    /// blocks in order and may end the run. The run also ends if `more` returns false.
+    pub fn run(
+        &self,
+        from: usize,
+        threads: NonZero<usize>,
+        more: &(dyn Fn() -> bool + Sync),
+        done: &mut (dyn FnMut(SweptBlock) -> ControlFlow<()> + Send),
+    ) {
+        let design = |number: usize| self.plan.design(number);
+        let see = |block: &mut SweptBlock, number: usize, motion: usize, solution: &Solution| {
+            self.see(block, number, motion, solution);
+        };
+        let mut report = |SampleBlock { numbers, found }: SampleBlock<SweptBlock>| {
+            let cost = StudyCost { designs: numbers.len(), ..found.cost };
+            done(SweptBlock { numbers, cost, ..found })
+        };
+        let run = SampleRun { numbers: from..self.plan.count(), design: &design, threads, more };
+        self.motions.sample(&run, &see, &mut report);
+    }
+
+    fn see(&self, block: &mut SweptBlock, number: usize, motion: usize, solution: &Solution) {
+        let model = self.motions.model(motion);
+        block.metrics.resize_with(self.metrics.len(), Vec::new);
+        block.cost.motions += 1;
+        block.cost.steps += solution.motion.len();
+        if let Some(stop) = &solution.stop {
+            let (code, why) = (stop.code().to_owned(), stop.headline(model));
+            block.failures.push(SweptFailure { number, motion, code, why });
+        }
+        for (k, of) in self.metrics.iter().enumerate().filter(|(_, of)| of.motion == motion) {
+            // An incomplete motion has no metrics.
+            let whole = solution.stop.is_none();
+            let value = whole.then(|| metric_number(&model.metrics[of.place], solution)).flatten();
+            block.metrics[k].push(value.unwrap_or(f64::NAN));
+        }
+        if self.settings.curves.is_empty() {
+            return;
+        }
+        block.curves.resize_with(self.motions.len(), SweptCurves::default);
+        let curves = &mut block.curves[motion];
+        let measured = &solution.measured;
+        curves.steps.push(measured.len() as u32);
+        let column = |m: &usize| {
+            let source = OutputSource::Measure(*m);
+            measured.outputs.iter().position(|o| o.source == source)
+        };
+        for k in 0..measured.len() {
+            let values = self.settings.curves.iter().map(column);
+            curves.values.extend(values.map(|c| c.map_or(f64::NAN, |c| measured.value(k, c)[0])));
+        }
+    }
+}

@@ -1,0 +1,306 @@
+//! Monte Carlo: designs sampled from the tolerances and solved exactly.
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
+
+use crate::evaluation::StudyCost;
+use crate::samples::{SampleBlock, SampleRun};
+use crate::sweep::quantile;
+use crate::whatif::unwrapped_value;
+use hardpoint::measure::Output;
+use hardpoint::model::Dimension;
+use hardpoint::motion::StopKind;
+use hardpoint::run::Solution;
+use hardpoint::run::{metric_numbers, place_of};
+
+use super::deviations::Deviations;
+use super::{CurveBands, MetricSpread, Study, ToleranceResult, ToleranceStage};
+
+/// Results of the Monte Carlo designs. SI.
+#[derive(Clone, Debug, Default)]
+pub struct MonteCarlo {
+    /// Number of solved designs.
+    pub samples: usize,
+    /// Results of the metrics, in the order of [`ToleranceResult::metrics`].
+    pub metrics: Vec<SampledMetric>,
+    /// Results of the curves, in the order of [`ToleranceResult::curves`].
+    pub curves: Vec<SampledCurve>,
+    /// Yields of the limits, in the order of [`ToleranceResult::limits`].
+    pub limits: Vec<Yield>,
+    /// Yield of all limits together.
+    pub all: Option<Yield>,
+    /// Designs that do not reach the end of some motion, grouped by cause.
+    pub failures: Vec<FailureGroup>,
+    /// Number of failed designs.
+    pub failed: usize,
+    /// Cost of the designs.
+    pub cost: StudyCost,
+}
+
+/// Statistics of a metric over the sampled designs that have it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SampledMetric {
+    /// Values of each design, NaN if it has none.
+    pub values: Vec<f64>,
+    /// Number of designs with a value.
+    pub known: usize,
+    /// Mean, and its standard error.
+    pub mean: [f64; 2],
+    /// Standard deviation, and its standard error.
+    pub sigma: [f64; 2],
+    /// Skewness: 0 for a normal distribution.
+    pub skewness: f64,
+    /// Kurtosis: 3 for a normal distribution.
+    pub kurtosis: f64,
+    /// Minimum, 0.135 % quantile, median, 99.865 % quantile, maximum.
+    pub quantiles: [f64; 5],
+}
+
+/// Statistics of a curve over the sampled designs that reach the end of its motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SampledCurve {
+    /// Mean at each output time.
+    pub mean: Vec<f64>,
+    /// Standard deviation at each output time.
+    pub sigma: Vec<f64>,
+    /// Minimum at each output time.
+    pub least: Vec<f64>,
+    /// Maximum at each output time.
+    pub greatest: Vec<f64>,
+}
+
+/// Yield: designs that satisfy a condition, of all.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Yield {
+    /// Number of designs that satisfy it.
+    pub kept: usize,
+    /// Number of all designs.
+    pub of: usize,
+}
+
+/// Designs that failed for the same reason.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FailureGroup {
+    /// Index of the motion among those studied.
+    pub motion: usize,
+    /// Description of the first failure.
+    pub why: String,
+    /// Number of the first failed design.
+    pub first: usize,
+    /// Number of designs.
+    pub count: usize,
+}
+
+impl Yield {
+    /// Yield as a fraction.
+    pub fn part(self) -> f64 {
+        self.kept as f64 / self.of as f64
+    }
+
+    /// Standard error, computed with one more success and one more failure, since 0 of n does not mean never.
+    pub fn error(self) -> f64 {
+        let n = self.of as f64 + 2.0;
+        let part = (self.kept as f64 + 1.0) / n;
+        (part * (1.0 - part) / n).sqrt()
+    }
+}
+
+/// Running mean and sum of squared deviations.
+#[derive(Clone, Copy, Debug)]
+struct Growing {
+    n: f64,
+    mean: f64,
+    squares: f64,
+    least: f64,
+    greatest: f64,
+}
+
+impl Growing {
+    const NONE: Self =
+        Self { n: 0.0, mean: 0.0, squares: 0.0, least: f64::INFINITY, greatest: f64::NEG_INFINITY };
+
+    fn add(&mut self, x: f64) {
+        self.join(&Self { n: 1.0, mean: x, squares: 0.0, least: x, greatest: x });
+    }
+
+    fn join(&mut self, other: &Self) {
+        let n = self.n + other.n;
+        if other.n == 0.0 {
+            return;
+        }
+        let apart = other.mean - self.mean;
+        self.mean += apart * other.n / n;
+        self.squares += other.squares + apart * apart * self.n * other.n / n;
+        self.least = self.least.min(other.least);
+        self.greatest = self.greatest.max(other.greatest);
+        self.n = n;
+    }
+}
+
+/// Results of a block of sampled designs.
+#[derive(Default)]
+struct Block {
+    /// Values of each metric in each design.
+    metrics: Vec<Vec<f64>>,
+    /// Statistics of each curve at each output time.
+    curves: Vec<Vec<Growing>>,
+    failures: Vec<(usize, usize, StopKind, String)>,
+    cost: StudyCost,
+}
+
+impl Study<'_> {
+    /// Samples and solves the requested number of designs, or fewer if the caller ends the study.
+    pub(super) fn sample(
+        &self,
+        deviations: &Deviations,
+        found: &ToleranceResult,
+        threads: NonZero<usize>,
+        tell: &mut (dyn FnMut(ToleranceStage) -> ControlFlow<()> + Send),
+        more: &(dyn Fn() -> bool + Sync),
+    ) -> MonteCarlo {
+        let (seed, settings) = (self.settings.seed, self.settings.samples);
+        let design =
+            |number: usize| deviations.design(self.model.variables.len(), &deviations.sample(seed, number));
+        let places: Vec<usize> = found.metrics.iter().map(|m| self.place(m)).collect();
+        let see = |block: &mut Block, number: usize, motion: usize, solution: &Solution| {
+            block.metrics.resize(found.metrics.len(), Vec::new());
+            block.curves.resize(found.curves.len(), Vec::new());
+            block.cost.motions += 1;
+            block.cost.steps += solution.motion.len();
+            let stop = solution.stop.as_ref();
+            if let Some(stop) = stop {
+                let why = stop.headline(self.motions.model(motion));
+                block.failures.push((number, motion, stop.kind, why));
+            }
+            let numbers: Vec<Option<f64>> = match stop {
+                None => metric_numbers(self.motions.model(motion), solution).collect(),
+                Some(_) => Vec::new(),
+            };
+            for (k, of) in found.metrics.iter().enumerate().filter(|(_, of)| of.motion == motion) {
+                let number = numbers.get(places[k]).copied().flatten();
+                block.metrics[k].push(number.unwrap_or(f64::NAN));
+                assert!(of.motion == motion);
+            }
+            if stop.is_none() {
+                let of_motion =
+                    found.curves.iter().zip(&mut block.curves).filter(|(c, _)| c.motion == motion);
+                of_motion.for_each(|(curve, to)| self.add_curve(curve, solution, to));
+            }
+        };
+        let mut all = Block { metrics: vec![Vec::new(); places.len()], ..Block::default() };
+        all.curves = found.curves.iter().map(|c| vec![Growing::NONE; c.bands.len()]).collect();
+        let mut samples = 0;
+        let mut done = |SampleBlock { numbers, found: block }: SampleBlock<Block>| {
+            samples = numbers.end;
+            all.cost += StudyCost { designs: numbers.len(), ..block.cost };
+            all.failures.extend(block.failures);
+            all.metrics.iter_mut().zip(block.metrics).for_each(|(all, some)| all.extend(some));
+            for (all, some) in all.curves.iter_mut().zip(block.curves) {
+                all.iter_mut().zip(some).for_each(|(all, some)| all.join(&some));
+            }
+            tell(ToleranceStage::Designs(samples, settings))
+        };
+        let run = SampleRun { numbers: 0..settings, design: &design, threads, more };
+        self.motions.sample(&run, &see, &mut done);
+        self.results(found, samples, all)
+    }
+
+    fn place(&self, of: &MetricSpread) -> usize {
+        place_of(self.model, of.metric, self.numbers[of.motion])
+            .expect("a metric that is taken of the motion")
+    }
+
+    fn add_curve(&self, curve: &CurveBands, solution: &Solution, to: &mut Vec<Growing>) {
+        let (nominal, c) = (&self.nominal.solutions[curve.motion], curve.column);
+        to.resize(curve.bands.len(), Growing::NONE);
+        let Output { dimension, .. } = &nominal.measured.outputs[c];
+        for (k, to) in to.iter_mut().enumerate().take(solution.measured.len()) {
+            let x = match *dimension {
+                Dimension::ANGLE => unwrapped_value(nominal, solution, k, c),
+                _ => solution.measured.value(k, c)[0],
+            };
+            if x.is_finite() {
+                to.add(x);
+            }
+        }
+    }
+
+    fn results(&self, found: &ToleranceResult, samples: usize, all: Block) -> MonteCarlo {
+        let metrics: Vec<SampledMetric> = all.metrics.into_iter().map(SampledMetric::of).collect();
+        let curve = |points: Vec<Growing>| SampledCurve {
+            mean: points.iter().map(|p| p.mean).collect(),
+            sigma: points.iter().map(|p| (p.squares / (p.n - 1.0)).sqrt()).collect(),
+            least: points.iter().map(|p| p.least).collect(),
+            greatest: points.iter().map(|p| p.greatest).collect(),
+        };
+        // NaN satisfies no limit.
+        let keeps = |limit: usize, x: f64| {
+            let limit = &self.settings.limits[limit];
+            limit.least.is_none_or(|least| x >= least)
+                && limit.most.is_none_or(|most| x <= most)
+                && !x.is_nan()
+        };
+        let limits = found.limits.iter().map(|limit| {
+            let kept = metrics[limit.spread].values.iter().filter(|x| keeps(limit.limit, **x)).count();
+            Yield { kept, of: samples }
+        });
+        let limits = limits.collect();
+        let mut failed = vec![false; samples];
+        let mut failures: Vec<(std::mem::Discriminant<StopKind>, FailureGroup)> = Vec::new();
+        for (number, motion, kind, why) in all.failures {
+            failed[number] = true;
+            let kind = std::mem::discriminant(&kind);
+            match failures.iter_mut().find(|(k, f)| *k == kind && f.motion == motion) {
+                Some((_, failure)) => failure.count += 1,
+                None => failures.push((kind, FailureGroup { motion, why, first: number, count: 1 })),
+            }
+        }
+        let whole = |k: &usize| {
+            !failed[*k] && found.limits.iter().all(|l| keeps(l.limit, metrics[l.spread].values[*k]))
+        };
+        let all_kept = (!found.limits.is_empty())
+            .then(|| Yield { kept: (0..samples).filter(whole).count(), of: samples });
+        MonteCarlo {
+            samples,
+            curves: all.curves.into_iter().map(curve).collect(),
+            limits,
+            all: all_kept,
+            failed: failed.iter().filter(|f| **f).count(),
+            failures: failures.into_iter().map(|(_, f)| f).collect(),
+            cost: all.cost,
+            metrics,
+        }
+    }
+}
+
+impl SampledMetric {
+    fn of(values: Vec<f64>) -> Self {
+        let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
+        if sorted.is_empty() {
+            let none = [f64::NAN; 2];
+            return Self { values, mean: none, sigma: none, quantiles: [f64::NAN; 5], ..Self::default() };
+        }
+        let n = sorted.len() as f64;
+        let mean = sorted.iter().sum::<f64>() / n;
+        let central = |p: i32| sorted.iter().map(|x| (x - mean).powi(p)).sum::<f64>() / n;
+        let [second, third, fourth] = [2, 3, 4].map(central);
+        let spread = second > 0.0;
+        let kurtosis = if spread { fourth / (second * second) } else { 3.0 };
+        let skewness = if spread { third / second.powf(1.5) } else { 0.0 };
+        let sigma = (second * n / (n - 1.0)).sqrt();
+        sorted.sort_by(f64::total_cmp);
+        Self {
+            known: sorted.len(),
+            mean: [mean, sigma / n.sqrt()],
+            // var(s^2) = (kurtosis - 1) s^4 / n
+            sigma: [sigma, 0.5 * sigma * ((kurtosis - 1.0) / n).sqrt()],
+            skewness,
+            kurtosis,
+            quantiles: [0.0, BEYOND, 0.5, 1.0 - BEYOND, 1.0].map(|part| quantile(&sorted, part)),
+            values,
+        }
+    }
+}
+
+/// Fraction of a normal distribution beyond three standard deviations on one side.
+const BEYOND: f64 = 0.001_349_898_031_630_094_6;

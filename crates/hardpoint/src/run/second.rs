@@ -1,0 +1,142 @@
+//! Second design derivatives over a motion: Hessians, Hessian-vector products, and the curvature of curves along a
+//! change.
+
+use super::{Analysis, PreparedDesign, Walk};
+use crate::design::BodyFixed;
+use crate::measure::{Instant, Output, bodies_asked_for, outputs};
+use crate::model::{BodyId, GROUND};
+use crate::motion::Stop;
+use crate::motion::stepper::Stepper;
+use crate::number::Dual;
+use crate::sensitivity::{BodyCurvature, PairDirection, Seconds};
+use crate::space::Pose;
+
+/// Second derivatives of all bodies' positions and of the values of all outputs, for pairs of directions.
+#[derive(Clone, Debug, Default)]
+pub struct SecondDerivatives {
+    /// Output times that were solved, s.
+    pub times: Vec<f64>,
+    /// Requested pairs of directions.
+    pub pairs: Vec<[usize; 2]>,
+    /// Columns: measures, then components of points.
+    pub outputs: Vec<Output>,
+    /// Number of bodies, ground included.
+    pub bodies: usize,
+    /// `values[(k * pairs + p) * outputs + m]`: second derivatives of the outputs.
+    values: Vec<f64>,
+    /// First derivatives along the second direction of each pair, in the same layout.
+    firsts: Vec<f64>,
+    curvatures: Vec<BodyCurvature>,
+    /// Reason why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
+}
+
+impl SecondDerivatives {
+    /// Second derivative of the value of output m at time k along the directions of pair p, in the output's unit per
+    /// unit of both.
+    pub fn value(&self, k: usize, p: usize, m: usize) -> f64 {
+        self.values[(k * self.pairs.len() + p) * self.outputs.len() + m]
+    }
+
+    /// First derivative of the value of output m at time k along the second direction of pair p.
+    pub fn first(&self, k: usize, p: usize, m: usize) -> f64 {
+        self.firsts[(k * self.pairs.len() + p) * self.outputs.len() + m]
+    }
+
+    /// Second derivative of a body's position at time k along the directions of pair p.
+    pub fn body(&self, k: usize, p: usize, body: BodyId) -> &BodyCurvature {
+        &self.curvatures[(k * self.pairs.len() + p) * self.bodies + body.0]
+    }
+}
+
+impl Analysis<'_> {
+    /// Second derivatives at the design with variable k at `design[k]`, for pairs of directions, given by their
+    /// indices.
+    ///
+    /// A direction contains the rate of every variable (missing entries are 0). Unit vectors and all their pairs give
+    /// the Hessian. One further direction v, paired with every unit vector, gives the Hessian times v. One direction
+    /// paired with itself gives the curvature along a change. Each pair costs one solution with the existing factors.
+    ///
+    /// Results for directions that the mechanism cannot follow are meaningless: check
+    /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility) first.
+    ///
+    /// # Panics
+    /// If a pair contains an index that is out of range.
+    pub fn second(&self, design: &[f64], directions: &[Vec<f64>], pairs: &[[usize; 2]]) -> SecondDerivatives {
+        let design = self.design(design);
+        let directions: Vec<Vec<f64>> = directions.iter().map(|d| self.model().whole(d)).collect();
+        let model = self.model();
+        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
+        let mut result = SecondDerivatives {
+            pairs: pairs.to_vec(),
+            outputs: outputs(model),
+            bodies: model.bodies.len(),
+            ..SecondDerivatives::default()
+        };
+        let mut bends = SecondDerivativeSolver::new(self, &design, &directions, pairs);
+        let mut times = model.times.iter();
+        result.stop = walk.each(|one| {
+            if let Some(&t) = times.next() {
+                bends.add(one, t, &mut result);
+            }
+        });
+        result
+    }
+}
+
+/// Workspace of second derivatives, in addition to a stepper.
+struct SecondDerivativeSolver<'a> {
+    analysis: &'a Analysis<'a>,
+    seconds: Seconds,
+    /// Body-fixed data of measures, per pair.
+    fixed: Vec<BodyFixed<Dual<Dual>>>,
+    asked_for: Vec<usize>,
+    poses: Vec<Pose<Dual<Dual>>>,
+}
+
+impl<'a> SecondDerivativeSolver<'a> {
+    fn new(
+        analysis: &'a Analysis<'_>,
+        design: &PreparedDesign,
+        directions: &[Vec<f64>],
+        pairs: &[[usize; 2]],
+    ) -> Self {
+        let (model, design_map) = (analysis.model(), analysis.design_map());
+        let ways: Vec<PairDirection> = directions.iter().map(|d| PairDirection::Design(d.clone())).collect();
+        let fixed = |&[u, w]: &[usize; 2]| {
+            // b + eps_w w + eps_u u: at eps_w the derivative along w, at eps_u that along u, at both the second one
+            let value = |k: usize| Dual {
+                v: Dual { v: design.values[k], d: directions[w][k] },
+                d: Dual::constant(directions[u][k]),
+            };
+            let values: Vec<_> = (0..model.variables.len()).map(value).collect();
+            design_map.fixed(&values)
+        };
+        Self {
+            analysis,
+            seconds: Seconds::new(design_map, analysis.topology(), &design.values, &ways, pairs),
+            fixed: pairs.iter().map(fixed).collect(),
+            asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
+            poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
+        }
+    }
+
+    /// Appends the second derivatives at time t.
+    fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, result: &mut SecondDerivatives) {
+        self.seconds.solve(stepper, t);
+        let (model, state) = (self.analysis.model(), &stepper.state);
+        result.times.push(t);
+        for p in 0..self.seconds.len() {
+            for &b in &self.asked_for {
+                self.poses[b] = self.seconds.pose(state, p, b);
+            }
+            let instant = Instant::new(model, &self.fixed[p], &self.poses);
+            instant.all(|x| {
+                result.values.push(x.d.d);
+                result.firsts.push(x.v.d);
+            });
+            let body = |b: usize| self.seconds.curvature(state, p, b);
+            result.curvatures.extend((0..result.bodies).map(body));
+        }
+    }
+}
