@@ -1,7 +1,7 @@
 // Written by the tests of `crates/hardpoint-report/src/page.rs`; change the structs there.
 
 /**
- * One number per output step, kept as `f32`; NaN means "no value at this step" and is drawn as a gap.
+ * One number per output step, as `f32`; NaN means "no value at this step" and is drawn as a gap.
  *
  * In the page it is a list of tracks of the packed block, whose values follow each other in turn: see
  * [`crate::encoding`]. It cannot be serialised before it is packed.
@@ -16,7 +16,7 @@
 export type Curve = Array<number>;
 
 /**
- * Everything one report shows. Lengths, angles and times are in [`Payload::units`].
+ * All data of a report. Lengths, angles and times are in [`Payload::units`].
  */
 export type Payload = {
 /**
@@ -44,11 +44,11 @@ units: Units,
  */
 status: Status,
 /**
- * A handful of figures for the top of the page.
+ * Key figures for the top of the page.
  */
 summary: Array<Fact>,
 /**
- * Sentences about the model that are no errors.
+ * Notes on the model that are not errors, each a sentence.
  */
 notes: Array<string>,
 /**
@@ -60,7 +60,7 @@ times: Curve,
  */
 bodies: Array<BodyTrack>,
 /**
- * Joints and constraints that have a place to be drawn at.
+ * Joints and constraints that can be drawn at a location.
  */
 joints: Array<JointMark>,
 /**
@@ -76,15 +76,15 @@ drivers: Array<DriverMark>,
  */
 wheels: Array<WheelMark>,
 /**
- * Distances that are measured between two bodies: springs and dampers are often given so.
+ * Distances between two bodies that are measured: often springs and dampers.
  */
 distances: Array<DistanceMark>,
 /**
- * Forces on bodies, of joints first; of a model in which something has mass or pushes.
+ * Forces on bodies, those of joints first; only for models with masses or applied forces.
  */
 loads: Array<LoadMark>,
 /**
- * The vehicle's own axes in the world, where the mechanism belongs to one.
+ * Axes of the vehicle in the world, if the mechanism belongs to one.
  */
 vehicle: VehicleAxes | null,
 /**
@@ -92,20 +92,19 @@ vehicle: VehicleAxes | null,
  */
 quantities: Array<Quantity>,
 /**
- * Single numbers that the design is judged by: metrics, then the static values of measures.
+ * Single values that characterise the design: metrics, then the static values of measures.
  */
 values: Array<Value>,
 /**
- * The quantity that the page opens on, an index into [`Payload::quantities`].
+ * Quantity that the page shows first, an index into [`Payload::quantities`].
  */
 first: number | null,
 /**
- * The quantity over which the page draws that one at first, an index into [`Payload::quantities`]; over time where
- * there is none.
+ * Quantity on the abscissa of that first plot, an index into [`Payload::quantities`]; time if there is none.
  */
 over: number | null,
 /**
- * Other designs over the same motion, to be compared with this one: changed, predicted, re-solved.
+ * Other designs over the same motion for comparison: changed, predicted, re-solved.
  */
 designs: Array<Design>,
 /**
@@ -113,11 +112,11 @@ designs: Array<Design>,
  */
 maps: Array<GridMap>,
 /**
- * Designs that were swept over.
+ * Designs of a sweep.
  */
 sweep: SweepPlot | null,
 /**
- * Margin from singular positions over time, if anything is solved for.
+ * Margin to singular positions over time, if anything is solved for.
  */
 margin: Margin | null,
 /**
@@ -129,12 +128,12 @@ variables: Array<Variable>,
  */
 checks: Array<Table>,
 /**
- * The model's text: from it the page solves what the reader changes.
+ * Text of the model, from which the page solves changed designs.
  */
 model: ModelText | null, };
 
 /**
- * The text of a model, with all that is read besides it.
+ * Text of a model with all other files that it needs.
  */
 export type ModelText = {
 /**
@@ -142,19 +141,19 @@ export type ModelText = {
  */
 file: string,
 /**
- * The text.
+ * Contents of the file.
  */
 text: string,
 /**
- * The files that it names, but for meshes.
+ * Contents of the files that it names, except meshes.
  */
 files: { [key in string]: string },
 /**
- * The case whose motion this is, where the model has cases.
+ * Case of this motion, if the model has cases.
  */
 case: string | null,
 /**
- * Detail of the motion on the page; as much as fits if it is not given.
+ * Detail of the motion on the page; as much as fits if not given.
  */
 shown: Detail | null, };
 
@@ -163,40 +162,40 @@ shown: Detail | null, };
  */
 export type Detail = {
 /**
- * Every that many steps of those that are kept.
+ * Stride of the shown steps among the stored ones.
  */
 stride: number,
 /**
- * Curves of body origins.
+ * True if curves of body origins are shown.
  */
 origins: boolean,
 /**
- * Motion of bodies by the variables, and with that the sensitivities of their origins.
+ * True if the motion of bodies by the variables, and the sensitivities of their origins, are shown.
  */
 bodies: boolean,
 /**
- * Sensitivities of the velocities and accelerations of body origins.
+ * True if sensitivities of the velocities and accelerations of body origins are shown.
  */
 body_rates: boolean,
 /**
- * Comparison of the sensitivities of body origins with differences.
+ * True if the sensitivities of body origins are compared with differences.
  */
 body_differences: boolean, };
 
 /**
- * Unit symbols as the user writes them.
+ * Unit symbols of the user.
  */
 export type Units = {
 /**
- * For example `mm`.
+ * Length unit, for example `mm`.
  */
 length: string,
 /**
- * For example `deg`.
+ * Angle unit, for example `deg`.
  */
 angle: string,
 /**
- * For example `s`.
+ * Time unit, for example `s`.
  */
 time: string, };
 
@@ -205,17 +204,17 @@ time: string, };
  */
 export type Status = {
 /**
- * False when the motion, or that of a design beside it, stops before its last step; the page then says so in a
+ * False if the motion, or that of a design shown alongside, stops before its last step; the page then shows a
  * banner.
  */
 complete: boolean,
 /**
- * One sentence.
+ * Status in one sentence.
  */
 message: string, };
 
 /**
- * A labelled figure, already formatted with its unit.
+ * Labelled figure, formatted with its unit.
  */
 export type Fact = {
 /**
@@ -228,11 +227,11 @@ label: string,
 value: string, };
 
 /**
- * A body, its hardpoints and where it was.
+ * Body with its hardpoints and its motion.
  */
 export type BodyTrack = {
 /**
- * The user's name.
+ * Name of the body.
  */
 name: string,
 /**
@@ -252,12 +251,12 @@ labels: Array<string>,
  */
 roles: Array<PointRole>,
 /**
- * The body's own shape, where the model names a file of it.
+ * Shape of the body, if the model names a file of it.
  */
 mesh: Mesh | null, };
 
 /**
- * Role of a hardpoint of a body; of several roles the first.
+ * Role of a hardpoint of a body; the first one that applies.
  */
 export type PointRole = "joint" | "hinge" | "wheel" | "measured";
 
@@ -274,20 +273,20 @@ file: string,
  */
 positions: Curve,
 /**
- * Three vertices per triangle: numbers below 2^24, which `f32` holds exactly.
+ * Three vertices per triangle: integers below 2^24, which `f32` represents exactly.
  */
 triangles: Curve, };
 
 /**
- * A joint or constraint between two bodies.
+ * Joint or constraint between two bodies.
  */
 export type JointMark = {
 /**
- * The user's name.
+ * Name of the joint.
  */
 name: string,
 /**
- * `revolute`, `spherical`, `translational`, `distance`, ...; an unknown kind gets a neutral mark.
+ * Type: `revolute`, `spherical`, `translational`, `distance`, ...; an unknown type gets a neutral mark.
  */
 kind: string,
 /**
@@ -299,55 +298,54 @@ body_i: number,
  */
 body_j: number,
 /**
- * Place on body i, in its frame.
+ * Location on body i, in its frame.
  */
 at_i: [number, number, number],
 /**
- * Place on body j, in its frame.
+ * Location on body j, in its frame.
  */
 at_j: [number, number, number],
 /**
- * Unit vector along the joint's axis in the frame of body i, where the kind has one.
+ * Unit vector along the joint's axis in the frame of body i, if the type has one.
  */
 axis: [number, number, number] | null,
 /**
- * The same in the frame of body j; in the design configuration the two agree, but for kinds with an axis on each
- * body.
+ * Unit vector along the joint's axis in the frame of body j. In the design configuration both agree, except for
+ * types with an axis on each body.
  */
 axis_j: [number, number, number] | null,
 /**
- * Unit vector along the second axis, where there is one: in the frame of body j for `universal`,
- * `constant_velocity`, `dot1` and `angle`, in that of body i for others.
+ * Unit vector along the second axis, if there is one: in the frame of body j for `universal`, `constant_velocity`,
+ * `dot1` and `angle`, in that of body i for others.
  */
 axis2: [number, number, number] | null,
 /**
- * The two hardpoints that the axis passes through in the design configuration, in the frame of body i, where it is
- * given so.
+ * Hardpoints that define the axis in the design configuration, in the frame of body i, if it is defined by two.
  */
 hinge: [[number, number, number], [number, number, number]] | null,
 /**
- * Travel per turn of a screw.
+ * Travel per revolution of a screw.
  */
 lead: number | null,
 /**
- * The curve that a point of body j follows, as points in the frame of body i.
+ * Curve that a point of body j follows, as points in the frame of body i.
  */
 curve: JointCurve | null,
 /**
- * Shape in drawings, if the model gives one: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
+ * Shape in drawings, if the model defines one: `coilover`, `spring`, `damper`, `cylinder` or `rod`.
  */
 draw: string | null,
 /**
- * True if the joint closes a loop instead of carrying body j.
+ * True if the joint closes a loop (cut joint) instead of carrying body j (tree joint).
  */
 cut: boolean, };
 
 /**
- * A planar curve on a body, sampled finely enough to be drawn.
+ * Planar curve on a body, sampled finely enough for drawing.
  */
 export type JointCurve = {
 /**
- * True if its last point is followed by its first.
+ * True if the last point connects to the first.
  */
 closed: boolean,
 /**
@@ -360,28 +358,28 @@ points: Array<[number, number, number]>,
 normal: [number, number, number], };
 
 /**
- * A linear relation between joint coordinates: `sum of coefficient x coordinate = 0`.
+ * Linear relation between joint coordinates: `sum of coefficient x coordinate = 0`.
  */
 export type CouplerMark = {
 /**
- * The user's name.
+ * Name of the coupler.
  */
 name: string,
 /**
- * `gear`, `bevel`, `rack`, `belt`, `screw`, `linear`: as the model file says.
+ * Type in the model file: `gear`, `bevel`, `rack`, `belt`, `screw`, `linear`.
  */
 kind: string,
 /**
- * Terms: of a rack first the rack, then the pinion.
+ * Terms; for a rack the rack first, then the pinion.
  */
 terms: Array<CouplerTerm>,
 /**
- * Teeth of two gears, radii of two pulleys, radius of a rack's pinion, lead of a screw: as the model file says.
+ * Sizes in the model file: teeth of two gears, radii of two pulleys, radius of a rack's pinion, lead of a screw.
  */
 sizes: Array<number>, };
 
 /**
- * A joint coordinate with its factor.
+ * Joint coordinate with its factor.
  */
 export type CouplerTerm = {
 /**
@@ -393,16 +391,16 @@ joint: number,
  */
 turns: boolean,
 /**
- * Per length unit or per radian of the coordinate.
+ * Factor per length unit or per radian of the coordinate.
  */
 coefficient: number, };
 
 /**
- * Coordinate that a driver drives.
+ * Driven coordinate.
  */
 export type DriverMark = {
 /**
- * The user's name.
+ * Name of the driver.
  */
 name: string,
 /**
@@ -410,7 +408,7 @@ name: string,
  */
 law: string,
 /**
- * Index into [`Payload::joints`], where a joint is driven that is drawn.
+ * Index into [`Payload::joints`], if the driven joint is drawn.
  */
 joint: number | null,
 /**
@@ -418,26 +416,25 @@ joint: number | null,
  */
 turns: boolean,
 /**
- * The body whose point is driven, and the point in its frame, where that is so.
+ * Driven point in the frame of its body, if a point is driven.
  */
 point: BodyPlace | null,
 /**
- * Unit vector in the world along which the point is driven, or about which the body is turned at it.
+ * Unit vector in the world along which the point is driven, or about which the body is rotated.
  */
 along: [number, number, number] | null,
 /**
- * The driven coordinate, `n` steps, in the length unit or in radians, counted from the drawing.
+ * Driven coordinate, `n` steps, in the length unit or in radians, relative to the design configuration.
  */
 travel: Curve,
 /**
- * If several drivers move: rate of each of the first of [`Payload::quantities`] by this driver while the others
- * are at rest, in its unit per length unit or radian; empty for quantities that do not follow from positions
- * alone.
+ * If several drivers move: rate of each of the first [`Payload::quantities`] by this driver with the others at
+ * rest, in its unit per length unit or radian; empty for quantities that do not depend on positions alone.
  */
 alone: Array<Curve>, };
 
 /**
- * A place on a body.
+ * Point on a body.
  */
 export type BodyPlace = {
 /**
@@ -445,7 +442,7 @@ export type BodyPlace = {
  */
 body: number,
 /**
- * In the body's frame.
+ * Location in the body's frame.
  */
 at: [number, number, number], };
 
@@ -454,28 +451,28 @@ at: [number, number, number], };
  */
 export type WheelMark = {
 /**
- * The user's name.
+ * Name of the wheel.
  */
 name: string,
 /**
- * Centre, on the body that carries it.
+ * Centre, on the carrier body.
  */
 centre: BodyPlace,
 /**
- * Unit vector along its spin axis, outboard, in that body's frame.
+ * Unit vector along the spin axis, outboard, in the frame of the carrier body.
  */
 axis: [number, number, number],
 /**
- * From the centre to the ground.
+ * Distance from the centre to the ground.
  */
 radius: number,
 /**
- * Lower and upper point of the axis that it steers about, where there is one.
+ * Lower and upper point of the steering axis, if there is one.
  */
 kingpin: [BodyPlace, BodyPlace] | null, };
 
 /**
- * A distance that is measured between two places.
+ * Measured distance between two points.
  */
 export type DistanceMark = {
 /**
@@ -483,46 +480,46 @@ export type DistanceMark = {
  */
 name: string,
 /**
- * From where.
+ * First point.
  */
 from: BodyPlace,
 /**
- * To where.
+ * Second point.
  */
 to: BodyPlace,
 /**
- * Shape in drawings, if the model gives one; see [`JointMark::draw`].
+ * Shape in drawings, if the model defines one; see [`JointMark::draw`].
  */
 draw: string | null, };
 
 /**
- * A force on a body: what a joint puts on its second body, or what a spring or another force puts on a point.
+ * Force on a body: the reaction of a joint on body j, or an applied force of a spring or another element at a point.
  */
 export type LoadMark = {
 /**
- * The user's name of the joint or the force.
+ * Name of the joint or the force element.
  */
 name: string,
 /**
- * Index into [`Payload::joints`], where a joint puts it there.
+ * Index into [`Payload::joints`], for the reaction of a joint.
  */
 joint: number | null,
 /**
- * Point of action.
+ * Point of application.
  */
 at: BodyPlace,
 /**
- * Three numbers per step: the force in the world, N. What redundant constraints leave open is left out; not a
- * number where nothing is known.
+ * Three numbers per step: force in the world, N. Components that redundant constraints leave undetermined are
+ * omitted; NaN if the force is unknown.
  */
 force: Curve,
 /**
- * True if something is left out of it at any time.
+ * True if undetermined components are omitted at any time.
  */
 is_part: boolean, };
 
 /**
- * Unit vectors in the world.
+ * Unit vectors of the vehicle axes in the world.
  */
 export type VehicleAxes = {
 /**
@@ -530,16 +527,16 @@ export type VehicleAxes = {
  */
 forward: [number, number, number],
 /**
- * Upwards.
+ * Upward direction.
  */
 up: [number, number, number], };
 
 /**
- * Something that can be plotted over time, with its two time derivatives.
+ * Quantity that can be plotted over time, with its two time derivatives.
  */
 export type Quantity = {
 /**
- * The user's name, for example `toe`.
+ * Name of the quantity, for example `toe`.
  */
 name: string,
 /**
@@ -555,7 +552,7 @@ rate_unit: string,
  */
 accel_unit: string,
 /**
- * Heading under which it is offered: `measure`, `point`, `body` or `joint`.
+ * Heading in the list of quantities: `measure`, `point`, `body` or `joint`.
  */
 group: string,
 /**
@@ -576,11 +573,11 @@ accel: Curve,
 wanted: Curve, };
 
 /**
- * A single number that the design is judged by.
+ * Single value that characterises the design.
  */
 export type Value = {
 /**
- * The user's name of the metric or measure.
+ * Name of the metric or measure.
  */
 name: string,
 /**
@@ -592,28 +589,29 @@ what: string,
  */
 unit: string,
 /**
- * The number, where the motion reaches it.
+ * Value, if the motion reaches it.
  */
 value: number | null,
 /**
- * When it is taken, where it is taken at one time.
+ * Time of the value, if it is taken at one time.
  */
 time: number | null,
 /**
- * The quantity that it is taken of, an index into [`Payload::quantities`].
+ * Quantity that it is evaluated from, an index into [`Payload::quantities`].
  */
 quantity: number | null,
 /**
- * Least and largest value that is wanted, where the model says so.
+ * Required minimum and maximum, if the model defines them.
  */
 target: [number | null, number | null] | null,
 /**
- * Derivatives by every design variable, in the order of [`Payload::variables`]; none where one cannot be followed.
+ * Derivatives by every design variable, in the order of [`Payload::variables`]; empty if the mechanism cannot
+ * follow one.
  */
 sensitivities: Array<number | null>, };
 
 /**
- * Another design over the same output times. What is not known of it is empty.
+ * Another design over the same output times. Unknown curves are empty.
  */
 export type Design = {
 /**
@@ -625,11 +623,11 @@ name: string,
  */
 kind: DesignKind,
 /**
- * By how much each variable is changed, in the order of [`Payload::variables`], in their units.
+ * Change of each variable, in the order of [`Payload::variables`], in their units.
  */
 change: Array<number>,
 /**
- * A sentence on how the mechanism follows; may be empty.
+ * Sentence on the admissibility of the change; may be empty.
  */
 note: string,
 /**
@@ -653,7 +651,7 @@ quantities: Array<DesignCurves | null>,
  */
 values: Array<number | null>,
 /**
- * Distance from singular positions.
+ * Margin to singular positions.
  */
 margin: Curve | null, };
 
@@ -663,7 +661,7 @@ margin: Curve | null, };
 export type DesignKind = "exact" | "first_order" | "second_order" | "band";
 
 /**
- * A quantity of another design with its two time derivatives; what is not known is empty.
+ * Quantity of another design with its two time derivatives; unknown curves are empty.
  */
 export type DesignCurves = {
 /**
@@ -680,20 +678,20 @@ rate: Curve,
 accel: Curve, };
 
 /**
- * A case that sweeps two drivers over a grid. Tables have a row for each place of the second driver, with a number for
- * each of the first.
+ * Case that sweeps two drivers over a grid. Tables have a row for each position of the second driver and a column for
+ * each position of the first.
  */
 export type GridMap = {
 /**
- * The case's name.
+ * Name of the case.
  */
 name: string,
 /**
- * The two drivers.
+ * Drivers of the grid.
  */
 drivers: [GridDriver, GridDriver],
 /**
- * Number of positions that were reached, and why others were not.
+ * Number of positions reached, and reasons for the unreached ones.
  */
 note: string,
 /**
@@ -702,7 +700,7 @@ note: string,
 quantities: Array<GridQuantity>, };
 
 /**
- * A driver of a grid.
+ * Driver of a grid.
  */
 export type GridDriver = {
 /**
@@ -719,7 +717,7 @@ unit: string,
 places: Array<number>, };
 
 /**
- * A measure over a grid.
+ * Measure over a grid.
  */
 export type GridQuantity = {
 /**
@@ -735,29 +733,29 @@ unit: string,
  */
 values: Curve,
 /**
- * Derivatives by design variables; none where they would be too many for a page.
+ * Derivatives by design variables; empty if they would be too many for a page.
  */
 sensitivities: Array<GridSensitivity>, };
 
 /**
- * The derivative of a measure by a design variable over a grid.
+ * Derivative of a measure by a design variable over a grid.
  */
 export type GridSensitivity = {
 /**
- * The variable.
+ * Name of the variable.
  */
 variable: string,
 /**
- * The derivative's unit.
+ * Unit of the derivative.
  */
 unit: string,
 /**
- * The derivatives, row by row.
+ * Derivatives, row by row.
  */
 values: Curve, };
 
 /**
- * Designs that were swept over: some of them, each as a point over variables and metrics.
+ * Designs of a sweep, or a part of them, each as a point over variables and metrics.
  */
 export type SweepPlot = {
 /**
@@ -765,7 +763,7 @@ export type SweepPlot = {
  */
 what: string,
 /**
- * That many were solved.
+ * Number of solved designs.
  */
 designs: number,
 /**
@@ -773,20 +771,20 @@ designs: number,
  */
 step: number,
 /**
- * The swept variables, then the metrics.
+ * Swept variables, then metrics.
  */
 axes: Array<SweepAxis>,
 /**
- * Sobol's indices, where they were requested.
+ * Sobol indices, if requested.
  */
 indices: Array<SweepIndex>, };
 
 /**
- * A variable or a metric of swept designs.
+ * Variable or metric of a sweep.
  */
 export type SweepAxis = {
 /**
- * Name, and the case where there are several.
+ * Name, with the case if there are several.
  */
 name: string,
 /**
@@ -803,32 +801,32 @@ metric: boolean,
 values: Curve, };
 
 /**
- * Sobol's indices of a metric by a variable, each with its standard error.
+ * Sobol indices of a metric with respect to a variable, each with its standard error.
  */
 export type SweepIndex = {
 /**
- * The metric, an index into [`SweepPlot::axes`].
+ * Metric, an index into [`SweepPlot::axes`].
  */
 metric: number,
 /**
- * The variable, an index into [`SweepPlot::axes`].
+ * Variable, an index into [`SweepPlot::axes`].
  */
 variable: number,
 /**
- * First order.
+ * First-order index and its standard error.
  */
 first: [number, number],
 /**
- * Total.
+ * Total index and its standard error.
  */
 total: [number, number], };
 
 /**
- * Margin of the mechanism from singular positions: 1 is best, 0 is a singular position.
+ * Margin of the mechanism to singular positions: 1 is best, 0 is a singular position.
  */
 export type Margin = {
 /**
- * The margin, `n` steps.
+ * Margin, `n` steps.
  */
 value: Curve,
 /**
@@ -837,11 +835,11 @@ value: Curve,
 note: string, };
 
 /**
- * A design variable: what it moves, whether the mechanism can follow, and what follows from it.
+ * Design variable: its design velocities, admissibility and sensitivities.
  */
 export type Variable = {
 /**
- * The user's name.
+ * Name of the variable.
  */
 name: string,
 /**
@@ -853,41 +851,41 @@ description: string,
  */
 unit: string,
 /**
- * True if every joint stays intact under this design change.
+ * Admissibility of the change.
  */
 admissibility: Admissibility,
 /**
- * A sentence with the joints concerned and their defect; empty when there is nothing to say.
+ * Sentence with the joints concerned and their defects; empty if every joint stays closed.
  */
 note: string,
 /**
- * The design velocity at the hardpoints it moves.
+ * Design velocities of the hardpoints that it moves.
  */
 arrows: Array<Arrow>,
 /**
- * By how much it is typically changed, where the model says so.
+ * Typical change, if the model defines one.
  */
 typical: number | null,
 /**
- * By how much it may be made wrong, either way, where the model says so.
+ * Manufacturing tolerance in either direction, if the model defines one.
  */
 tolerance: number | null,
 /**
- * Least and largest change that is allowed, counted from the drawing, where the model says so.
+ * Lower and upper bound of the change from the nominal design, if the model defines them.
  */
 bounds: [number | null, number | null] | null,
 /**
- * Per body, how it moves with the variable: six numbers per step, dx dy dz in the length unit and a rotation
- * vector in rad, per unit of the variable; empty where that is not shown.
+ * First-order motion of each body per unit of the variable: six numbers per step, dx dy dz in the length unit and
+ * a rotation vector in rad; empty if it is not shown.
  */
 shifts: Array<Curve>,
 /**
- * Sensitivities, at most one per quantity; empty when the mechanism cannot follow.
+ * Sensitivities, at most one per quantity; empty if the mechanism cannot follow the variable.
  */
 sensitivities: Array<Sensitivity>, };
 
 /**
- * True if a mechanism can follow a design variable.
+ * Admissibility of a design variable.
  */
 export type Admissibility = "admissible" | "reassembled" | "cannot_follow";
 
@@ -913,7 +911,7 @@ v: [number, number, number],
 turn: [number, number, number], };
 
 /**
- * Total derivative of one quantity and of its rates with respect to one design variable.
+ * Total derivative of one quantity and its two time derivatives by one design variable.
  */
 export type Sensitivity = {
 /**
@@ -933,16 +931,16 @@ rate: Curve,
  */
 accel: Curve,
 /**
- * The same by re-solving a changed design, when that was requested.
+ * Difference quotients of re-solved designs, if requested.
  */
 fd: FiniteDifference | null, };
 
 /**
- * Central differences of re-solved designs, to be compared with a [`Sensitivity`].
+ * Central differences of re-solved designs, for comparison with a [`Sensitivity`].
  */
 export type FiniteDifference = {
 /**
- * The curves hold every that many of the `n` steps, from the first: they are drawn as a few marks.
+ * Stride of the curves among the `n` steps, starting with the first: they are drawn as a few marks.
  */
 stride: number,
 /**
@@ -971,7 +969,7 @@ step_unit: string,
 worst: [number, number, number], };
 
 /**
- * A table of facts, its cells already formatted.
+ * Table of facts with formatted cells.
  */
 export type Table = {
 /**
@@ -979,7 +977,7 @@ export type Table = {
  */
 title: string,
 /**
- * A sentence under the heading; may be empty.
+ * Sentence under the heading; may be empty.
  */
 note: string,
 /**

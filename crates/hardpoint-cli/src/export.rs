@@ -59,7 +59,7 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
     }
     let mut out = format!("{}: {}\n", to.display(), format.about);
     if !exported.unsupported.is_empty() {
-        out += "  not said, or said otherwise:\n";
+        out += "  not supported by the format, or written differently:\n";
         out.extend(exported.unsupported.iter().map(|u| format!("    {} `{}`: {}\n", u.kind, u.name, u.why)));
     }
     text::print(&out);

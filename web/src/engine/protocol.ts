@@ -7,11 +7,11 @@ import type { Design, ModelText, Table } from '../payload'
  */
 export type Request = { "ask": "check",
 /**
- * The text.
+ * Model text.
  */
 model: ModelText, } | { "ask": "open",
 /**
- * The model.
+ * Model.
  */
 model: ModelText, } | { "ask": "design",
 /**
@@ -19,8 +19,8 @@ model: ModelText, } | { "ask": "design",
  */
 change: Array<VariableSetting>,
 /**
- * A design that is solved already: where the changed one cannot be, what is given is as far on the way from
- * this one to it as can be.
+ * A solved design. If the changed design cannot be reached, the reply is the last design on the path from this
+ * one that can be solved.
  */
 from: Array<VariableSetting> | null, } | { "ask": "text",
 /**
@@ -28,40 +28,40 @@ from: Array<VariableSetting> | null, } | { "ask": "text",
  */
 change: Array<VariableSetting>, } | { "ask": "page",
 /**
- * The model.
+ * Model.
  */
 model: ModelText, } | { "ask": "beside",
 /**
- * The other model.
+ * Other model.
  */
 model: ModelText, } | { "ask": "optimize",
 /**
- * The model.
+ * Model.
  */
 model: ModelText,
 /**
- * Options besides those of the text.
+ * Options that replace those of the model text.
  */
 asked: OptimizeRequest, } | { "ask": "optimize_offer",
 /**
- * The model.
+ * Model.
  */
 model: ModelText, } | { "ask": "tolerance_offer",
 /**
- * The model.
+ * Model.
  */
 model: ModelText, } | { "ask": "tolerance",
 /**
- * The model.
+ * Model.
  */
 model: ModelText,
 /**
- * Options besides those of the text.
+ * Options that replace those of the model text.
  */
 asked: ToleranceRequest, };
 
 /**
- * Options of an optimisation; all others are those of the text.
+ * Options of an optimisation; all other options are those of the model text.
  */
 export type OptimizeRequest = {
 /**
@@ -73,16 +73,16 @@ variables: Array<VariableChoice>,
  */
 goals: Array<GoalChoice>,
 /**
- * From how many designs it starts.
+ * Number of start designs.
  */
 starts: number,
 /**
- * After that many iterations a search ends.
+ * Maximum number of iterations per start.
  */
 iterations: number, };
 
 /**
- * A variable that is searched over.
+ * Variable of an optimisation.
  */
 export type VariableChoice = {
 /**
@@ -90,12 +90,12 @@ export type VariableChoice = {
  */
 name: string,
 /**
- * Lowest and highest change, or value of a parameter.
+ * Lower and upper bound of the change, or of the value of a parameter.
  */
 bounds: [number, number], };
 
 /**
- * A metric that is made small.
+ * Metric to minimise, or to bring to a target.
  */
 export type GoalChoice = {
 /**
@@ -103,7 +103,7 @@ export type GoalChoice = {
  */
 metric: string,
 /**
- * Weight of one unit.
+ * Weight per unit of the metric.
  */
 weight: number,
 /**
@@ -112,7 +112,7 @@ weight: number,
 target: number | null, };
 
 /**
- * Options of an optimisation, with their values in the text: `[optimize]` and its possible entries.
+ * Options of an optimisation, with their values in the table `[optimize]` of the model text.
  */
 export type OptimizeOffer = {
 /**
@@ -124,15 +124,15 @@ variables: Array<SearchVariable>,
  */
 goals: Array<SearchGoal>,
 /**
- * Limits, a sentence each.
+ * Limits, one sentence each.
  */
 limits: Array<string>,
 /**
- * From how many designs it starts.
+ * Number of start designs.
  */
 starts: number,
 /**
- * After that many iterations a search ends.
+ * Maximum number of iterations per start.
  */
 iterations: number, };
 
@@ -149,16 +149,16 @@ name: string,
  */
 unit: string,
 /**
- * Lowest and highest change, or value of a parameter; none where the text has no bounds.
+ * Lower and upper bound of the change, or of the value of a parameter; `null` without bounds in the model text.
  */
 bounds: [number, number] | null,
 /**
- * True if the search of the text changes it.
+ * True if it is a variable of `[optimize]`.
  */
 chosen: boolean, };
 
 /**
- * A metric that an optimisation may make small, or bring to a target.
+ * Metric that an optimisation may minimise or bring to a target.
  */
 export type SearchGoal = {
 /**
@@ -170,11 +170,11 @@ metric: string,
  */
 unit: string,
 /**
- * The value of the design of the text, in the first case that it is taken in, where it is known.
+ * Value of the nominal design in the first case in which the metric is evaluated, if known.
  */
 value: number | null,
 /**
- * Weight of one unit.
+ * Weight per unit of the metric.
  */
 weight: number,
 /**
@@ -182,16 +182,16 @@ weight: number,
  */
 target: number | null,
 /**
- * True if its target is a curve, which the text has: then it has none of its own.
+ * True if the target is a curve in the model text; `target` is `null` then.
  */
 curve: boolean,
 /**
- * True if it is a goal of the text.
+ * True if it is a goal of `[optimize]`.
  */
 chosen: boolean, };
 
 /**
- * Options of a tolerance study, with their values in the text: `[tolerance]`.
+ * Options of a tolerance study, with their values in the table `[tolerance]` of the model text.
  */
 export type ToleranceOffer = {
 /**
@@ -203,7 +203,7 @@ tolerances: Array<ToleranceChoice>,
  */
 metrics: Array<string>,
 /**
- * Number of designs that are drawn.
+ * Number of sampled designs.
  */
 samples: number,
 /**
@@ -212,7 +212,7 @@ samples: number,
 seed: number, };
 
 /**
- * Something that may be off.
+ * Variable or group of variables with a tolerance.
  */
 export type ToleranceChoice = {
 /**
@@ -220,7 +220,7 @@ export type ToleranceChoice = {
  */
 name: string,
 /**
- * By so much either way.
+ * Half width of the tolerance.
  */
 tolerance: number,
 /**
@@ -233,11 +233,11 @@ unit: string,
 distribution: string, };
 
 /**
- * Options of a tolerance study; all others are those of the text.
+ * Options of a tolerance study; all other options are those of the model text.
  */
 export type ToleranceRequest = {
 /**
- * Number of designs that are drawn and solved exactly.
+ * Number of designs that are sampled and solved exactly.
  */
 samples: number,
 /**
@@ -246,20 +246,20 @@ samples: number,
 seed: number, };
 
 /**
- * A variable and its change.
+ * Change of a variable.
  */
 export type VariableSetting = {
 /**
- * A design variable of the model, or a coordinate of a hardpoint like `tie_rod_outer.z`.
+ * Design variable, or coordinate of a hardpoint such as `tie_rod_outer.z`.
  */
 name: string,
 /**
- * By how much it is changed, in the model's unit.
+ * Change from the nominal value, in the unit of the model.
  */
 by: number, };
 
 /**
- * A diagnostic of the text, in the words of the command line.
+ * Diagnostic of the model text, worded as on the command line.
  */
 export type DiagnosticMessage = {
 /**
@@ -271,15 +271,15 @@ severity: 'error' | 'warning' | 'note',
  */
 code: string,
 /**
- * The headline, enough alone.
+ * Headline, complete by itself.
  */
 message: string,
 /**
- * Name of the file; none for the text that the page shows.
+ * Name of the file; `null` for the displayed text.
  */
 file: string | null,
 /**
- * Line of the text, from 1; none where the text as a whole is meant.
+ * Line of the text, from 1; `null` for the text as a whole.
  */
 line: number | null,
 /**
@@ -295,7 +295,7 @@ length: number | null,
  */
 element: string | null,
 /**
- * Text at that place.
+ * Label of the underlined characters.
  */
 label: string | null,
 /**
@@ -308,7 +308,7 @@ notes: Array<string>,
 help: string | null, };
 
 /**
- * Diagnostics of a text.
+ * Diagnostics of a model text.
  */
 export type CheckReply = {
 /**
@@ -317,23 +317,23 @@ export type CheckReply = {
 messages: Array<DiagnosticMessage>, };
 
 /**
- * Abilities of a model that was opened.
+ * Properties of a model that was opened.
  */
 export type OpenReply = {
 /**
- * The cases of the file, of which one is open.
+ * Names of the cases of the file, one of which is open.
  */
 cases: Array<string>,
 /**
- * The hardpoints that can be taken hold of.
+ * Hardpoints that can be moved.
  */
 grips: Array<MovableHardpoint>,
 /**
- * Orientations of the bodies' frames in the design configuration, quaternions w x y z, ground first.
+ * Orientations of the body frames in the design configuration, quaternions w, x, y, z; ground first.
  */
 frames: Array<[number, number, number, number]>,
 /**
- * Reason of an early end of its motion.
+ * Reason why the motion ends early.
  */
 stop: DiagnosticMessage | null, };
 
@@ -346,7 +346,7 @@ export type MovableHardpoint = {
  */
 name: string,
 /**
- * Position in the design configuration, in the model's unit.
+ * Position in the design configuration, in the unit of the model, global.
  */
 place: [number, number, number],
 /**
@@ -355,45 +355,45 @@ place: [number, number, number],
 coordinates: [Coordinate, Coordinate, Coordinate], };
 
 /**
- * Variable of a coordinate of a hardpoint.
+ * Coordinate of a hardpoint, with its variable.
  */
 export type Coordinate = {
 /**
- * The variable.
+ * Name of the variable.
  */
 variable: string,
 /**
- * By how much the coordinate goes with one unit of it: 1 or -1.
+ * Derivative of the coordinate with respect to the variable: 1 or -1.
  */
 sign: number,
 /**
- * The bounds of the variable, where the model has it and gives them.
+ * Bounds of the variable, in the unit of the model, if the model defines them.
  */
 bounds: [number, number] | null, };
 
 /**
- * A design that was solved.
+ * Solved design.
  */
 export type DesignReply = {
 /**
- * The part of the way to the design that was requested, 0 to 1: 1 where it is that one.
+ * Fraction of the path to the requested design that was reached, 0 to 1.
  */
 part: number,
 /**
- * The design; `None` where nothing of its motion could be solved.
+ * Design; `null` if its motion is empty.
  */
 design: Design | null,
 /**
- * Reason why it is not the requested design, or of an early end of its motion.
+ * Reason why the requested design was not reached, or why its motion ends early.
  */
 why: DiagnosticMessage | null, };
 
 /**
- * A text.
+ * Model text.
  */
 export type Text = {
 /**
- * The text.
+ * Model text.
  */
 text: string, };
 
@@ -402,7 +402,7 @@ text: string, };
  */
 export type StudyReply = {
 /**
- * Sentence about its end.
+ * Summary in one line.
  */
 message: string,
 /**
@@ -410,20 +410,20 @@ message: string,
  */
 tables: Array<Table>,
 /**
- * The design found, where one was searched for.
+ * Optimised design, after an optimisation.
  */
 change: Array<VariableSetting> | null,
 /**
- * The model's text with it.
+ * Model text with the optimised design.
  */
 text: string | null, };
 
 /**
- * Reason why there is no answer.
+ * Failed request.
  */
 export type ErrorReply = {
 /**
- * Never none.
+ * Diagnostics; never empty.
  */
 failed: Array<DiagnosticMessage>, };
 
@@ -432,18 +432,18 @@ failed: Array<DiagnosticMessage>, };
  */
 export type ProgressReply = {
 /**
- * Amount that is done ...
+ * Number of completed steps.
  */
 done: number,
 /**
- * ... of so much, where that is known.
+ * Total number of steps, if known.
  */
 total: number | null,
 /**
- * Line about the last event.
+ * Description of the last step.
  */
 line: string,
 /**
- * The design that the study is at.
+ * Current design of the study.
  */
 change: Array<VariableSetting> | null, };

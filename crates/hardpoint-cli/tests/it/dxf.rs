@@ -101,7 +101,7 @@ fn a_skeleton_has_the_hardpoints_by_name_and_lines_for_bodies() {
     assert!(between("rod", b, c) && between("rod", c, tip) && between("rod", tip, b) && of("rod").len() == 3);
     assert_eq!(lines.len(), 4);
     assert!(
-        said.contains("body `slider`: it has a single place") && said.contains("driver `motor`"),
+        said.contains("body `slider`: it has a single point") && said.contains("driver `motor`"),
         "{said}"
     );
 }

@@ -213,10 +213,16 @@ fn the_page_opens_on_what_is_asked_for_and_ranks_each_variable_once() {
     let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
     assert_eq!((page.first, page.over), (quantity("camber"), quantity("wheel_travel")));
     let titles: Vec<&str> = page.checks.iter().map(|t| t.title.as_str()).collect();
-    let told =
-        ["The change", "What if tie_rod_inner_z by 20 mm", "What moves toe most", "What moves camber most"];
+    let told = [
+        "The change",
+        "What if tie_rod_inner_z by 20 mm",
+        "Most influential variables of toe",
+        "Most influential variables of camber",
+    ];
     assert_eq!(titles[..4], told);
-    assert!(!titles.contains(&"What moves half_track most") && titles.contains(&"Design variables"));
+    assert!(
+        !titles.contains(&"Most influential variables of half_track") && titles.contains(&"Design variables")
+    );
     let measures: Vec<&str> = page.checks[1].rows.iter().map(|row| row[0].as_str()).collect();
     assert_eq!(measures, ["toe", "camber"]);
 
