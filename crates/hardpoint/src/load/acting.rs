@@ -279,7 +279,8 @@ impl<T: Real> AppliedLoads<'_, T> {
         Some((joint.0, ends, j.kind.coordinates[coordinate].row))
     }
 
-    /// Magnitude of a force: the tension of a spring, the generalised force of a joint spring, the size of a given force.
+    /// Magnitude of a force: the tension of a spring, the generalised force of a joint spring, or the size of a given
+    /// force.
     pub fn size(&self, e: ElementId) -> T {
         let kind = &self.model.elements[e.0].kind;
         match kind {

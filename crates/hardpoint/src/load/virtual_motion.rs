@@ -24,8 +24,8 @@ pub(super) struct Weights<T> {
 }
 
 impl<T: Real> Weights<T> {
-    /// Weights of a measure, from derivatives of `objective`, a function of the transmitted wrenches. The objective also
-    /// depends on the wrenches of the joints `besides`.
+    /// Weights of a measure, from derivatives of `objective`, a function of the transmitted wrenches. The objective
+    /// also depends on the wrenches of the joints `besides`.
     pub fn of(
         kind: &MeasureKind,
         besides: impl Iterator<Item = JointId>,
