@@ -241,7 +241,7 @@ impl<'m> Analysis<'m> {
         *self.kernel.get_or_init(|| {
             let model = self.model();
             if model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Compliance { .. })) {
-                return Some("measures say how elastic joints deflect");
+                return Some("there are measures of compliance");
             }
             let of_loads = || load::hindrance(model, &self.topology).filter(|_| self.asks_for_loads());
             measure::hindrance(&self.design_map).or_else(of_loads)

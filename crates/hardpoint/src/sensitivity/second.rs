@@ -84,7 +84,7 @@ impl<T: Real> FirstOrder<T> {
     fn new(model: &Model, topology: &Topology, field: PlanVelocity<T>) -> Self {
         let mut direct = DirectDifferentiation::new(model, topology);
         // Along the design even the axes of joints on ground move: x^w = ad(z_w) x.
-        direct.flow.ground_stands = false;
+        direct.flow.ground_is_fixed = false;
         Self {
             field,
             direct,
