@@ -92,7 +92,7 @@ impl Triangular {
             let longer = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
             let lengths = (k..n).map(|c| (c, norm(&columns[c][k..])));
             let (longest, length) = lengths.reduce(longer).expect("a column is left");
-            // Written so that NaN propagates into all solutions.
+            // NaN propagates into all solutions.
             if length <= least {
                 break;
             }

@@ -54,7 +54,7 @@ impl Solid {
         let (mut volume, mut first, mut second) = (0.0, Vec3::ZERO, [0.0; 6]);
         let mut extent = 0.0_f64;
         for corners in triangles {
-            // From a corner of the surface: what is small counts from near by.
+            // Relative to a corner of the surface, to keep the digits of small solids.
             let [a, b, c] = corners.map(|k| vertices[k as usize] - origin);
             // A tetrahedron with the origin: V = a . (b x c) / 6,  sum V (a + b + c) / 4,
             // integral of x y = V/20 (sum x_i y_i + (sum x_i) (sum y_i))

@@ -7,7 +7,7 @@
 //! numbers that the tape evaluates ([`Tape::solve`](super::tape::Tape::solve)). If a decision differs, the results are
 //! discarded, and the kernel solves the step.
 //!
-//! Not recorded are mechanisms with curves; couplers whose angles depend on the expected turn; mechanisms so large that
+//! Not recorded are mechanisms with curves; mechanisms with couplers, which count turns; mechanisms so large that
 //! a program would cost more than it saves; and margins of sparse blocks.
 
 use std::sync::{Arc, OnceLock};
@@ -217,7 +217,7 @@ impl StepProgram {
     /// Reason why the steps of a plan cannot be recorded, with or without margins; `None` if they can.
     pub fn hindrance(topology: &Topology, margins: bool) -> Option<&'static str> {
         if !topology.coupled_rows.is_empty() {
-            Some("couplers count angles by the turn that is expected")
+            Some("couplers count angles by their predicted turns")
         } else if topology.closures.iter().any(|c| c.contact.is_some()) {
             Some("a point follows a curve")
         } else if margins && topology.blocks.iter().any(|b| b.unknowns.len() > LARGEST_DENSE) {
