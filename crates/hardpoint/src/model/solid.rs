@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_that_bound_nothing_are_refused() {
+    fn surfaces_that_are_not_closed_are_rejected() {
         let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vec3::from);
         let open = Solid::of(&vertices, &[[0, 2, 1], [0, 1, 3], [0, 3, 2]]);
         assert!(matches!(open, Err(OpenSurface::Edges(3, _))), "{open:?}");
