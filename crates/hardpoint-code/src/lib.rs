@@ -207,9 +207,9 @@ impl Code {
 
     /// Runs the program like [`run`](Self::run), with outputs in parts.
     ///
-    /// | array | length | where |
+    /// | array | length | position |
     /// |---|---|---|
-    /// | `outputs[p]` | groups x outputs of part `p` | output `j` of part `p` of group `g` at `g * outputs of part p + j` |
+    /// | `outputs[p]` | groups x outputs of part `p` | output `j` of group `g` at `g * outputs of part p + j` |
     ///
     /// # Panics
     ///

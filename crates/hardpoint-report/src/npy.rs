@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_array_is_what_the_format_says() {
+    fn an_array_follows_the_format() {
         let mut npy = Npy::new(&[2, 2], Cursor::new(Vec::new())).unwrap();
         npy.row(&[1.0, 2.0, 3.0, 4.0]).unwrap();
         npy.row(&[5.0, f64::INFINITY, 7.0, 8.0]).unwrap();

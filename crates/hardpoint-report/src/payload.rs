@@ -676,7 +676,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_are_told_apart_and_are_not_few() {
+    fn marks_are_distinct_and_numerous() {
         for steps in 1..=2 * MOST_STEPS {
             let marks = steps.div_ceil(stride_of_marks(steps));
             assert!(marks >= steps.min(2 * MARKS / 3) && 2 * marks <= 3 * MARKS, "{marks} of {steps}");

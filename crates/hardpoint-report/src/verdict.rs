@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_difference_that_falls_with_the_step_is_told_from_all_others() {
+    fn a_difference_that_decreases_with_the_step_is_distinguished() {
         assert!(falls_in_proportion(&sweep(|h| 3.0 * h)));
         // Higher-order terms dominate at large steps.
         assert!(falls_in_proportion(&sweep(|h| 3.0 * h + 4e3 * h * h)));

@@ -29,7 +29,7 @@
 //! |---|---|
 //! | run the kernel with numbers that record | [`record`], [`Number`] |
 //! | fold constants, merge common operations, remove dead ones, fuse, order | [`Recording::program`] |
-//! | split off operations that depend on uniforms alone, or on the first inputs alone | [`Program::hoisted`], [`Program::staged`] |
+//! | split off operations of uniforms or of the first inputs alone | [`Program::hoisted`], [`Program::staged`] |
 //! | split a long program into pieces that share their code | [`Program::in_pieces`] |
 //! | run, in lanes or as scalars | [`Interpreter`], [`Program::evaluate`] |
 //!

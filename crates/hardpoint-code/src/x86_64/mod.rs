@@ -110,10 +110,10 @@ impl Machine {
         let start = self.executable.start();
         // SAFETY: the pages hold, from their first byte on, a function of this type, and live as long as `self`.
         let entry = unsafe { std::mem::transmute::<*const c_void, Entry>(start) };
-        // SAFETY: the code reads and writes what `Entry` says and nothing else: the operands were checked when it was
-        // made. All is as long as that: the lengths were checked above, those of every part too, constants and scratch
-        // were made so. The parts are borrowed mutably, and outlive their addresses. The CPU has the instructions, which
-        // was checked when the code was made. There is at least one group.
+        // SAFETY: the code reads and writes only the arrays of `Entry`: the operands were checked when it was made. All
+        // arrays are long enough: the lengths of inputs and of every part of the outputs were checked above; constants
+        // and scratch were made with theirs. The parts are borrowed mutably, and outlive their addresses. The CPU has
+        // the instructions, which was checked when the code was made. There is at least one group.
         unsafe {
             entry(
                 inputs.as_ptr(),

@@ -63,7 +63,7 @@ fn is_available() -> bool {
 }
 
 #[test]
-fn random_programs_compute_what_they_say() {
+fn random_programs_compute_their_operations() {
     let mut random = Random(0);
     let (mut finite, mut all) = (0, 0);
     for (instructions, programs) in [

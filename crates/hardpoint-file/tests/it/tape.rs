@@ -17,7 +17,7 @@ const MEASURED: f64 = 1e-8;
 /// an acceleration that is none is a difference of squares of speeds.
 const OF_ONE_MOTION: f64 = 1e-10;
 
-/// Mechanisms that no program is recorded of: their couplers count angles by the turn that is expected, or a point
+/// Mechanisms that no program is recorded of: their couplers count angles by their predicted turns, or a point
 /// follows a curve.
 const BY_THE_KERNEL: [&str; 2] = ["cam", "gear_train"];
 

@@ -185,7 +185,7 @@ fn one_output_time_or_ten_thousand_are_a_page() {
 }
 
 #[test]
-fn names_are_text_whatever_they_hold() {
+fn names_are_escaped_as_text() {
     /// The address of a server, the data, the engine, the code and its loader.
     const SCRIPTS: usize = 5;
     for name in [
@@ -241,7 +241,7 @@ fn a_model_without_variables_or_measures_is_a_page() {
 }
 
 #[test]
-fn a_motion_that_stops_at_once_is_a_page_of_what_there_is() {
+fn a_motion_that_stops_at_once_has_a_page_of_its_results() {
     let text = slider_crank("mm", 1e3, "deg", 360.0);
     // Stretched, crank and rod reach 25 mm farther than in the design configuration.
     let pulled = |law: &str| {

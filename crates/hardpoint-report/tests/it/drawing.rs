@@ -46,7 +46,7 @@ fn pages() -> Vec<(String, ModelFile, Payload)> {
 }
 
 #[test]
-fn facts_of_every_model_refer_to_what_is_on_its_page() {
+fn facts_of_every_model_refer_to_items_on_its_page() {
     for (name, file, page) in pages() {
         let bodies = page.bodies.len();
         for body in &page.bodies {
@@ -179,7 +179,7 @@ fn axes_of_a_universal_joint_are_on_the_bodies_that_carry_them() {
 }
 
 #[test]
-fn static_values_are_those_of_the_drawing() {
+fn static_values_are_those_of_the_design_configuration() {
     let page = page_of(&model("macpherson"));
     let value = |name: &str| page.values.iter().find(|v| v.name == name).unwrap();
     // The model's own static toe and camber: atan(0.0035), -asin(0.0175 / abs(axis)).

@@ -182,7 +182,7 @@ fn arms() -> Draft {
 }
 
 #[test]
-fn drivers_on_no_joint_say_what_they_drive_and_add_no_joint() {
+fn drivers_without_a_joint_are_described_and_add_no_joint() {
     let file = file(&arms());
     let (_, summary) = solved(&file);
     let facts = &summary.model;
@@ -257,7 +257,7 @@ fn redundant_constraints_are_named_by_loop() {
 }
 
 #[test]
-fn the_margin_is_told_in_digits_with_its_loop() {
+fn the_margin_is_reported_in_digits_with_its_loop() {
     let file = file(&with_an_idle_rod());
     let (solution, summary) = solved(&file);
     let margin = summary.margin.as_ref().unwrap();
@@ -282,7 +282,7 @@ fn one_four_bar(pin: Vec3, law_of: impl Fn(f64) -> String) -> ModelFile {
 }
 
 #[test]
-fn a_singular_position_just_beyond_the_end_is_told() {
+fn a_singular_position_just_beyond_the_end_is_reported() {
     let file = one_four_bar(Vec3::new(0.2, 0.1, 0.0), |angle| format!("{:.17} * t", angle * (1.0 - 1e-5)));
     let (solution, summary) = solved(&file);
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
@@ -356,7 +356,7 @@ fn an_assembly_is_shown_with_gaps_and_moves() {
 }
 
 #[test]
-fn what_does_not_assemble_says_what_stays_open() {
+fn a_mechanism_that_does_not_assemble_reports_its_gaps() {
     let file = file(&with_a_rod_of(0.7));
     let (solution, summary) = solved(&file);
     insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None)));
@@ -367,7 +367,7 @@ fn what_does_not_assemble_says_what_stays_open() {
 }
 
 #[test]
-fn variables_of_lengths_and_laws_say_what_they_change_and_in_what_unit() {
+fn variables_of_lengths_and_laws_are_described_with_their_units() {
     let mut draft = with_a_rod_of(0.1125_f64.sqrt());
     let file_ = file(&draft);
     let (_, summary) = solved(&file_);
@@ -418,7 +418,7 @@ fn jumps_of_laws_are_notes_that_name_time_size_and_consequence() {
 }
 
 #[test]
-fn a_variable_that_changes_nothing_is_told() {
+fn a_variable_without_effect_is_reported() {
     let mut draft = four_bars();
     draft.hardpoints.push(HardpointDraft::new("spare", Vec3::ZERO));
     let velocity = Vec3::AXES[0];
@@ -489,7 +489,7 @@ fn joints_that_stay_open_visibly_are_warned_of() {
 }
 
 #[test]
-fn what_cannot_move_is_warned_of_with_a_fix() {
+fn bodies_that_cannot_move_are_warnings_with_a_fix() {
     let frame = |joints: &str| {
         format!(
             r#"

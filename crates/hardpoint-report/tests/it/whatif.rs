@@ -141,7 +141,7 @@ fn curves_of_the_changed_design_are_those_of_the_solver() {
 }
 
 #[test]
-fn what_a_change_leaves_alone_has_todays_numbers() {
+fn outputs_that_a_change_does_not_affect_have_todays_numbers() {
     let file = gallery("macpherson.toml");
     let WhatIfPage { page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
     let body = |name: &str| page.bodies.iter().position(|b| b.name == name).unwrap();
@@ -190,7 +190,7 @@ fn values_of_the_changed_design_are_those_of_its_curves() {
 }
 
 #[test]
-fn nothing_is_foreseen_of_what_cannot_be_followed() {
+fn inadmissible_variables_have_no_prediction() {
     let file = gallery("four_bar.toml");
     let file = {
         let mut file = file;
@@ -204,7 +204,7 @@ fn nothing_is_foreseen_of_what_cannot_be_followed() {
 }
 
 #[test]
-fn the_page_opens_on_what_is_asked_for_and_ranks_each_variable_once() {
+fn the_page_opens_on_the_requested_outputs_and_ranks_each_variable_once() {
     let mut file = gallery("macpherson.toml");
     add_coordinates(&mut file.model);
     let WhatIfPage { facts, page, .. } = changed(&file, &[("tie_rod_inner_z", 20.0)]);
@@ -276,7 +276,7 @@ fn known(curve: &Curve, parts: usize) -> Vec<bool> {
 }
 
 #[test]
-fn a_changed_design_that_locks_has_gaps_and_the_page_says_why() {
+fn a_changed_design_that_locks_has_gaps_and_the_page_has_the_reason() {
     let file = four_bar_with_metrics();
     // With its pivots 250 mm apart, the crank no longer turns round.
     let WhatIfPage { found, facts, page, .. } = changed(&file, &[("D_x", -150.0)]);
@@ -318,7 +318,7 @@ fn a_changed_design_that_locks_has_gaps_and_the_page_says_why() {
 }
 
 #[test]
-fn of_a_changed_design_that_cannot_be_assembled_the_page_has_nothing_but_the_reason() {
+fn a_changed_design_that_does_not_assemble_has_only_the_reason_on_its_page() {
     let file = gallery("double_wishbone.toml");
     let WhatIfPage { found, facts, page, .. } = changed(&file, &[("tie_rod_outer_y_fixed_length", 1000.0)]);
     assert!(found.exact.motion.is_empty() && found.is_empty());

@@ -170,7 +170,7 @@ fn the_same_is_computed_once() {
 }
 
 #[test]
-fn what_no_output_needs_is_left_out() {
+fn unused_operations_are_left_out() {
     let (program, counts) = of(
         |[x, y, z]| {
             let unread = (x * y + z).sqrt();

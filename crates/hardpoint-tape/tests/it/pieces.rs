@@ -24,7 +24,7 @@ fn in_pieces(pieces: &Pieces, inputs: &[Lanes], uniforms: &[f64], sizes: [usize;
         let mut found = vec![[0.0; 8]; pieces.shapes[shape].program.outputs.len()];
         interpreters[shape].run(inputs, uniforms, &mut found);
         let mut found = found.into_iter();
-        outputs.into_iter().flatten().for_each(|to| *to = found.next().expect("as many as there are"));
+        outputs.into_iter().flatten().for_each(|to| *to = found.next().expect("one value per output"));
         assert_eq!(found.next(), None);
     });
     areas.concat()

@@ -52,7 +52,7 @@ fn four_bar<T: Real>(turns: [[T; 2]; 3], lengths: [T; 4]) -> Vector<T> {
 }
 
 #[test]
-fn a_four_bar_in_space_comes_to_what_a_person_writes_for_the_plane() {
+fn a_spatial_four_bar_has_the_formulas_of_a_planar_one() {
     let recording = record(|| {
         let lengths = [0.1, 0.4, 0.3, 0.45].map(Number::constant);
         four_bar(from_fn(|_| [0.6, 0.8].map(Number::input)), lengths)
@@ -102,7 +102,7 @@ fn solved<T: Real>(mut m: [[T; 4]; 4], mut b: [T; 4]) -> [T; 4] {
 }
 
 #[test]
-fn elimination_of_a_sparse_matrix_does_what_its_pattern_needs() {
+fn sparse_elimination_takes_the_operations_of_its_pattern() {
     // An arrow: the diagonal, the last column and the last row.
     let filled = |i: usize, j: usize| i == j || i == 3 || j == 3;
     let sample = |i: usize, j: usize| if i == j { 4.0 + i as f64 } else { 1.0 + 0.1 * (i + 2 * j) as f64 };

@@ -99,9 +99,8 @@ impl Effect for change::Field {
         if joint.bodies[e] != self.body {
             return marker;
         }
-        // P = P_o + A (b V); the axes turn by R = C(theta_o + b U) C(theta_o)^-1 in the body's frame, A R A^T in
-        // global axes
-        //                                                                                                  (paper 3.1, 2.2)
+        // (paper 3.1, 2.2): P = P_o + A (b V); the axes turn by R = C(theta_o + b U) C(theta_o)^-1 in the body's frame,
+        // A R A^T in global axes
         let body = model.bodies[self.body.0].frame.rot.spread();
         let (theta, c) = model.euler_of(joint, e);
         let turned = [0, 1, 2].map(|n| T::constant(self.u[n]).times_plus(b, T::constant(theta[n])));

@@ -2,7 +2,7 @@
 //!
 //! | here | theory | paper | |
 //! |---|---|---|---|
-//! | `markers[j][e]`: `r`, `rot` | M_i, M_j = (s, C) | s (3.1), C (2.2) | position, m, and axes of a joint's marker in its body's frame |
+//! | `markers[j][e]`: `r`, `rot` | M_i, M_j = (s, C) | s (3.1), C (2.2) | marker in its body: position, m, and axes |
 //! | `kept[j]` | L, d0, c0, r0 | C of (4.10), squared there | constants of its rows |
 //! | `points[k]` | | `s_o` of any point of the body | m, in its body's frame |
 //! | `spin_axes[w]` | e' | | unit vector, in the frame of the wheel's body |

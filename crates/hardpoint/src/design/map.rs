@@ -10,7 +10,7 @@
 //! | [`PlacedDesign::place`] | | hardpoint `P = P_o + sum_k v_k b_k`, m, global |
 //! | [`PlacedDesign::marker`] | s, C of (3.1), (2.2) | marker in its body, `X_body^-1 X_marker` |
 //! | `position`, `v` of a change | `V_Omega` (3.2) | location design velocity, m per unit |
-//! | `rotation` of a change | `d(xi)/dtau = R U` (3.10) | orientation design velocity as a rotation vector, rad per unit |
+//! | `rotation` of a change | `d(xi)/dtau = R U` (3.10) | orientation design velocity (rotation vector), rad per unit |
 //! | `u` of a change | `U_theta` (3.3) | the same as rates of the 3-1-3 Euler angles, rad per unit |
 //! | [`DesignMap::field_along`] | `dD/dtau` (5.5) | `d/db` of all of it, by duals `b + eps` |
 

@@ -179,7 +179,7 @@ fn a_law_that_is_an_expression_shows_it() {
 }
 
 #[test]
-fn a_law_that_is_no_expression_says_what_it_is() {
+fn a_law_that_is_not_an_expression_displays_its_kind() {
     let shown = [
         (step(0.5, 2.0, 7), "smooth step of degree 7 from 0.5 at 0.5 s to 3 at 2 s"),
         (

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_derivatives_vanish_at_the_ends_as_the_degree_says() {
+    fn the_degree_determines_the_number_of_derivatives_that_vanish_at_the_ends() {
         for (degree, vanishing) in [(3, 1), (5, 2), (7, 3)] {
             let step = SmoothStep { from: 1.0, to: 4.0, start: 1.0, end: 3.0, degree };
             for (time, value) in [(Jet::<f64>::time(1.0), 1.0), (-Jet::<f64>::time(-3.0), 4.0)] {

@@ -92,7 +92,7 @@ impl Triangular {
             let longer = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
             let lengths = (k..n).map(|c| (c, norm(&columns[c][k..])));
             let (longest, length) = lengths.reduce(longer).expect("a column is left");
-            // Written so that NaN propagates into all solutions.
+            // NaN propagates into all solutions.
             if length <= least {
                 break;
             }
@@ -189,7 +189,7 @@ mod tests {
 
         /// A product of an m x rank and a rank x n matrix, over the whole range of magnitudes.
         #[test]
-        fn what_is_found_is_the_pseudo_inverse_whatever_the_rank_and_size(
+        fn the_result_is_the_pseudo_inverse_for_all_ranks_and_sizes(
             (left, right) in (1_usize..9, 0_usize..6, 1_usize..9).prop_flat_map(|(m, rank, n)| {
                 let row = |n| prop::collection::vec(-1.0..1.0_f64, n);
                 (prop::collection::vec(row(rank), m), prop::collection::vec(row(n), rank))

@@ -97,7 +97,7 @@ impl<T: Real> Elimination<T> {
             let watched = Watched { product: one, most: one, least: one, growth: one };
             return Factored { pivot_ratio: 1.0, positive: true, determinant: one, watched };
         }
-        // Written so that NaN also chooses the order again.
+        // NaN also selects the order again.
         let (found, growth) = self.eliminate();
         if growth <= self.most_growth {
             return found;

@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_together_has_no_root() {
+    fn incompatible_correlations_have_no_root() {
         // Two variables that are each correlated with a third, but against each other.
         assert!(
             root(&[vec![1.0, 0.9, 0.9], vec![0.9, 1.0, -0.9], vec![0.9, -0.9, 1.0]].map(|r| r)).is_none()

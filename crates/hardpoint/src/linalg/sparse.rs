@@ -146,7 +146,7 @@ impl<T: Real> SparseLu<T> {
     pub fn factor(&mut self) -> Factored<T> {
         if self.is_ordered() {
             let found = self.eliminate();
-            // Written so that NaN also chooses the order again.
+            // NaN also selects the order again.
             if found.watched.growth.decisive() <= MOST_GROWTH {
                 return found;
             }
@@ -449,7 +449,7 @@ impl Choice {
             return;
         }
         let size = self.size(row, column);
-        // Written so that NaN is never a pivot.
+        // NaN is never a pivot.
         // abs(l) <= 1 / IN_COLUMN = 2
         if !(size > 0.0 && size >= IN_COLUMN * self.largest(column)) {
             return;

@@ -12,35 +12,35 @@ use crate::model::{
 };
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
-/// A body as it moves.
+/// Pose, velocity and acceleration of a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MovingBody<T> {
     /// Pose of the body.
     pub pose: Pose<T>,
     /// Twist V.
     pub v: Twist<T>,
-    /// And A = dV/dt.
+    /// Acceleration A = dV/dt.
     pub a: Twist<T>,
 }
 
 impl<T: Real> MovingBody<T> {
-    /// One that is.
+    /// A body at rest, at the identity pose.
     pub fn still() -> Self {
         Self { pose: Pose::IDENTITY.spread(), v: Twist::zero(), a: Twist::zero() }
     }
 
-    /// Velocity of its point at `p`.
+    /// Velocity of the body point at `p`.
     fn velocity(&self, p: Vec3<T>) -> Vec3<T> {
         self.v.at(p)
     }
 
-    /// Acceleration of its point at `p`: A at p + omega x v.
+    /// Acceleration of the body point at `p`: A at p + omega x v.
     fn acceleration(&self, p: Vec3<T>) -> Vec3<T> {
         self.v.w.cross_plus(self.v.at(p), self.a.at(p))
     }
 }
 
-/// All that acts at an instant.
+/// Data of all applied loads at one time.
 #[derive(Clone, Copy)]
 pub(crate) struct AppliedLoads<'a, T> {
     pub model: &'a Model,
@@ -49,13 +49,13 @@ pub(crate) struct AppliedLoads<'a, T> {
     pub bodies: &'a [MovingBody<T>],
     /// Per element: the value of its law.
     pub laws: &'a [T],
-    /// Per element: about what the coordinate is that it acts on, to count angles through whole turns.
+    /// Per element: approximate value of the coordinate that it acts on, to count whole turns of angles.
     pub near: &'a [T],
-    /// Per element: the moment or force that friction exerts on its coordinate; of a ball per unit of its turn.
+    /// Per element: the moment or force of friction on its coordinate; for a ball joint, per unit of its rotation.
     pub friction: &'a [T],
 }
 
-/// A mass where it is.
+/// Mass properties at the current pose.
 pub(super) struct Solid<T> {
     pub body: BodyId,
     pub mass: T,
@@ -65,9 +65,9 @@ pub(super) struct Solid<T> {
 
 /// Moments of inertia about the centre.
 pub(super) enum Spread<T> {
-    /// A matrix along these axes.
+    /// Axes, and the matrix along them.
     Matrix(Mat3<T>, Mat3<T>),
-    /// Round about a line: about the line, and about any axis across.
+    /// Rotationally symmetric: the line, the moment about it, and the moment about any perpendicular axis.
     Line(Vec3<T>, T, T),
 }
 
@@ -83,7 +83,7 @@ impl<T: Real> Spread<T> {
 }
 
 impl<T: Real> AppliedLoads<'_, T> {
-    /// Per body, ground included: F = f - g, what joints have to put on it.
+    /// Computes per body, ground included, F = f - g: the wrench that its joints must apply.
     pub fn needed(&self, out: &mut [Wrench<T>]) {
         out.fill(Wrench::zero());
         for k in 0..self.model.elements.len() {
@@ -95,7 +95,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         self.geometry.numbers[n.0]
     }
 
-    /// A number that may be left out, for zero.
+    /// An optional number; zero by default.
     fn or_zero(&self, n: Option<NumberId>) -> T {
         n.map_or_else(T::zero, |n| self.number(n))
     }
@@ -109,16 +109,16 @@ impl<T: Real> AppliedLoads<'_, T> {
         self.bodies[self.body(point)].pose.point(self.geometry.points[point.0])
     }
 
-    /// The length at which a spring pulls nothing but its preload.
+    /// Length at which the tension of a spring is its preload.
     fn free_length(&self, from: PointId, to: PointId, given: Option<Length>) -> T {
         match given {
             Some(free) => self.number(free.0),
-            // L_o of the drawing, which a change of the design makes another
-            None => (self.as_drawn(to) - self.as_drawn(from)).norm(),
+            // L_o of the design configuration, which depends on the design
+            None => (self.design_position(to) - self.design_position(from)).norm(),
         }
     }
 
-    /// Length of the line between the ends of a spring, for its direction; NaN where they meet, for then it has none.
+    /// Distance between the ends of a spring; NaN if they coincide, since the direction is then undefined.
     fn apart(&self, d: Vec3<T>) -> T {
         let length = d.norm();
         let limit = T::constant(ENDS_MEET * self.geometry.size);
@@ -126,17 +126,17 @@ impl<T: Real> AppliedLoads<'_, T> {
     }
 
     /// Position of a point in the design configuration of this design.
-    fn as_drawn(&self, point: PointId) -> Vec3<T> {
+    fn design_position(&self, point: PointId) -> Vec3<T> {
         let frame: Pose<T> = self.model.bodies[self.body(point)].frame.spread();
         frame.point(self.geometry.points[point.0])
     }
 
-    /// The global axes in the design configuration, as they have turned with a body.
+    /// Global axes of the design configuration, rotated with a body.
     pub fn turned(&self, body: usize) -> Mat3<T> {
         self.bodies[body].pose.rot * self.model.bodies[body].frame.rot.transpose().spread()
     }
 
-    /// A mass, where it is.
+    /// Mass properties of an element at the current pose.
     pub fn solid(&self, kind: &ElementKind) -> Option<Solid<T>> {
         let zero = T::zero();
         let body = kind.mass_on(self.model)?;
@@ -146,7 +146,11 @@ impl<T: Real> AppliedLoads<'_, T> {
                 let given = [[ixx, iyy, izz].map(of), [ixy, iyz, izx].map(of)];
                 let mass = self.number(mass.0);
                 let [[a, b, c], [d, e, f]] = match about {
-                    Some(about) => about_centre(mass, self.as_drawn(*centre) - self.as_drawn(*about), given),
+                    Some(about) => about_centre(
+                        mass,
+                        self.design_position(*centre) - self.design_position(*about),
+                        given,
+                    ),
                     None => given.map(|list| list.map(|n| n.unwrap_or(zero))),
                 };
                 let cols = [Vec3::new(a, -d, -f), Vec3::new(-d, b, -e), Vec3::new(-f, -e, c)];
@@ -190,7 +194,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         })
     }
 
-    /// Adds to `f - g` of the bodies what an element needs or does.
+    /// Adds the contribution of an element to `f - g` of the bodies: its inertial wrench, or minus its applied wrench.
     pub fn add(&self, e: ElementId, out: &mut [Wrench<T>]) {
         let kind = &self.model.elements[e.0].kind;
         if let Some(Solid { body, mass, centre, inertia }) = self.solid(kind) {
@@ -256,7 +260,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         }
     }
 
-    /// A direction as it points now.
+    /// A direction in global axes at the current pose.
     fn along(&self, direction: Vec3, axes: Option<Axes>, body: usize) -> Vec3<T> {
         match axes.unwrap_or_default() {
             Axes::Global | Axes::Joint => direction.spread(),
@@ -275,8 +279,8 @@ impl<T: Real> AppliedLoads<'_, T> {
         Some((joint.0, ends, j.kind.coordinates[coordinate].row))
     }
 
-    /// Magnitude of a force at this instant: the tension of a spring, the generalised force of a joint spring, the size
-    /// of a given force.
+    /// Magnitude of a force: the tension of a spring, the generalised force of a joint spring, or the size of a given
+    /// force.
     pub fn size(&self, e: ElementId) -> T {
         let kind = &self.model.elements[e.0].kind;
         match kind {
@@ -302,7 +306,7 @@ impl<T: Real> AppliedLoads<'_, T> {
                 Some((_, turn)) => self.friction[e.0] * magnitude(self.heading(kind, turn), STILL),
                 None => self.friction[e.0],
             },
-            // Of no force there is no derivative.
+            // A zero force has no derivative.
             ElementKind::WheelForce { wheel, .. } => self.road(e, *wheel).1.norm(),
             ElementKind::PointForce { force, .. } => self.number(force.0) * self.laws[e.0],
             ElementKind::BodyMoment { moment, .. } => self.number(moment.0) * self.laws[e.0],
@@ -347,7 +351,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         (now.contact(), push * self.laws[e.0])
     }
 
-    /// A wheel where it is.
+    /// A wheel at the current pose.
     pub fn wheel(&self, wheel: WheelId) -> WheelAt<T> {
         let Wheel { body, centre, radius, side, .. } = &self.model.wheels[wheel.0];
         WheelAt {
@@ -370,12 +374,12 @@ impl<T: Real> AppliedLoads<'_, T> {
         of.coordinates.is_empty().then(|| (*joint, j - i))
     }
 
-    /// The direction that a ball turns in, shorter than 1 where that is slow: `omega / sqrt(omega^2 + w_0^2)`.
+    /// Direction of rotation in a ball joint, regularised at low speed: `omega / sqrt(omega^2 + w_0^2)`.
     fn heading(&self, kind: &ElementKind, turn: Vec3<T>) -> Vec3<T> {
         turn * (T::one() / magnitude_with(turn, self.transition_velocity(kind)))
     }
 
-    /// The wrench that works on what an element acts on, one unit of it: on a coordinate, or on the turn of a ball.
+    /// Unit wrench of an element, which does work on its coordinate or on the rotation of a ball joint; with its joint.
     pub fn unit(&self, e: ElementId) -> Option<(usize, Wrench<T>)> {
         let kind = &self.model.elements[e.0].kind;
         if let Some((joint, turn)) = self.ball(kind) {
@@ -385,14 +389,16 @@ impl<T: Real> AppliedLoads<'_, T> {
         Some((joint, row.wrench(&ends)))
     }
 
-    /// The speed below which friction goes smoothly to zero.
+    /// Transition velocity of a friction element, rad/s or m/s.
     fn transition_velocity(&self, kind: &ElementKind) -> T {
         let given = match kind {
-            ElementKind::Friction { transition_velocity, .. } => (transition_velocity.map(|n| n.0), FADES),
-            ElementKind::SlideFriction { transition_velocity, .. } => {
-                (transition_velocity.map(|n| n.0), SLIDE_FADES)
+            ElementKind::Friction { transition_velocity, .. } => {
+                (transition_velocity.map(|n| n.0), TRANSITION_VELOCITY)
             }
-            _ => (None, FADES),
+            ElementKind::SlideFriction { transition_velocity, .. } => {
+                (transition_velocity.map(|n| n.0), SLIDE_TRANSITION_VELOCITY)
+            }
+            _ => (None, TRANSITION_VELOCITY),
         };
         given.0.map_or_else(|| T::constant(given.1), |n| self.number(n))
     }
@@ -426,7 +432,7 @@ impl<T: Real> AppliedLoads<'_, T> {
     /// Normal forces at a friction element, from the reaction wrench of its joint on body j: the force across the axis,
     /// or the forces at both ends of a bearing with a length; the whole force for a ball joint. Returns them and their
     /// number.
-    pub fn presses(&self, e: ElementId, wrench: Wrench<T>) -> ([Vec3<T>; 2], usize) {
+    pub fn normal_forces(&self, e: ElementId, wrench: Wrench<T>) -> ([Vec3<T>; 2], usize) {
         let kind = &self.model.elements[e.0].kind;
         let (joint, length, normal) = match kind {
             ElementKind::Friction { joint, length, .. } => (*joint, length, None),
@@ -451,14 +457,14 @@ impl<T: Real> AppliedLoads<'_, T> {
         };
         let force = across(wrench.f);
         let Some(length) = length else { return ([force, Vec3::zero()], 1) };
-        // P = F/2 +- z x M / L, with M about the joint's place
+        // P = F/2 +- z x M / L, with M about the joint's location
         let moment = wrench.m - marker.r.cross(wrench.f);
         let couple = across(z.cross(moment)) * (T::one() / self.number(length.0));
         let half = force * T::constant(0.5);
         ([half + couple, half - couple], 2)
     }
 
-    /// tau = -k (chi - chi_o) - c chi.,  chi counted from the drawing.
+    /// tau = -k (chi - chi_o) - c chi.,  chi measured from the design configuration.
     fn on_coordinate(
         &self,
         e: ElementId,
@@ -502,7 +508,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         }
     }
 
-    /// The coordinate that an element acts on, counted from the drawing, and its rate.
+    /// Coordinate that an element acts on, measured from the design configuration, and its rate.
     pub fn coordinate(&self, e: ElementId) -> Option<[T; 2]> {
         let (joint, ends, row) = self.row_of(&self.model.elements[e.0].kind)?;
         let kept = self.geometry.kept[joint].by(row);
@@ -512,7 +518,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         Some([value, row.wrench(&ends).on(j - i)])
     }
 
-    /// Wrench of a bushing on its second body.
+    /// Wrench of a bushing on body j.
     fn bushing(&self, kind: &ElementKind) -> Wrench<T> {
         let ElementKind::Bushing { from, to, x, y, z, about_x, about_y, about_z, damping } = kind else {
             return Wrench::zero();
@@ -554,16 +560,16 @@ impl<T: Real> AppliedLoads<'_, T> {
     }
 }
 
-/// Below this speed, rad/s, friction goes smoothly to zero unless something else is said; of slides, m/s.
-const FADES: f64 = 0.01;
-const SLIDE_FADES: f64 = 0.001;
+/// Default transition velocity of friction, rad/s; of slides, m/s.
+const TRANSITION_VELOCITY: f64 = 0.01;
+const SLIDE_TRANSITION_VELOCITY: f64 = 0.001;
 
-/// Forces below this, N, are none: the size of a force has a derivative at zero.
+/// Regularisation of the size of a force, N, so that it has a derivative at zero.
 const NO_FORCE: f64 = 1e-9;
-/// The same of a direction.
+/// Regularisation of the length of a direction.
 const STILL: f64 = 1e-12;
 
-/// The size of a vector, which below some size has a derivative all the same.
+/// Norm of a vector, regularised so that it has a derivative at zero.
 pub(super) fn magnitude<T: Real>(v: Vec3<T>, none: f64) -> T {
     magnitude_with(v, T::constant(none))
 }
@@ -573,15 +579,15 @@ fn magnitude_with<T: Real>(v: Vec3<T>, a: T) -> T {
     (v.dot(v) + a * a).sqrt()
 }
 
-/// The size of a force.
-pub(super) fn pressing<T: Real>(force: Vec3<T>) -> T {
+/// Regularised size of a force.
+pub(super) fn force_size<T: Real>(force: Vec3<T>) -> T {
     magnitude(force, NO_FORCE)
 }
 
-/// Below this square of its sine an angle is its sine and a third power, to round-off.
+/// Square of the sine below which the series of the angle is accurate to round-off.
 const SMALL: f64 = 1e-6;
 
-/// The turn of a rotation: its axis, as long as its angle, rad, below half a turn.
+/// Rotation vector of a rotation by less than half a turn: its axis times its angle, rad.
 fn rotation_vector<T: Real>(rot: Mat3<T>) -> Vec3<T> {
     let [x, y, z] = rot.cols;
     let half = T::constant(0.5);

@@ -1,11 +1,11 @@
 //! Reactions of joints and driver loads at a position, and their derivatives by the design; over plain numbers, or
-//! while they are recorded.
+//! during recording.
 //!
-//! | here | theory | what |
+//! | here | theory | meaning |
 //! |---|---|---|
-//! | `needed` | F = f - g | what each body needs besides what acts on it (43), (44) |
-//! | `transmission` | T, mu | what joints transmit, and its derivative by a variable: (18) with F, and (45) |
-//! | `x`, `l` | x', l' | how unit twists and wrenches turn with the design |
+//! | `needed` | F = f - g | required wrench of each body (43) minus its applied wrench (44) |
+//! | `transmission` | T, mu | transmitted wrenches, and their derivative by a variable: (18) with F, and (45) |
+//! | `x`, `l` | x', l' | derivatives of unit twists and wrenches by the design |
 
 use crate::design::Geometry;
 use crate::model::{DriverId, ElementId, JointId, MeasureKind, Model};
@@ -32,7 +32,7 @@ pub(super) enum DriverAt {
 /// Rows of the plan that carry the wrench of a joint on its body j.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointAt {
-    /// A link, and whether it runs from body i to body j.
+    /// The link of a tree joint; true if it runs from body i to body j.
     pub link: Option<(LinkId, bool)>,
     /// Rows of a cut joint, and of drivers across it.
     pub closures: Vec<ClosureId>,
@@ -48,7 +48,7 @@ pub(super) struct Places {
 /// Loads at a position: over plain numbers, or with the derivative by a variable.
 #[derive(Clone, Debug)]
 pub(crate) struct Carried<T> {
-    /// Per joint: the wrench that it puts on its body j, about the world origin.
+    /// Per joint: its reaction wrench on body j, about the world origin.
     pub joints: Vec<Wrench<T>>,
     /// Per driver: its force or moment.
     pub drivers: Vec<T>,
@@ -61,16 +61,16 @@ pub(crate) struct Carried<T> {
 /// Self-stress: wrenches on the joints due to a unit force of a redundant constraint.
 pub(super) struct Stress<T> {
     pub carried: Carried<T>,
-    /// The largest force of a joint, moments by the size of the mechanism.
+    /// Largest joint reaction; moments are divided by the size of the mechanism.
     pub most: T,
 }
 
-/// A position with all that acts there, over plain numbers or with the derivative by a variable.
+/// A position with its applied loads and reactions, over plain numbers or with the derivative by a variable.
 pub(super) struct LoadedPosition<T> {
     pub bodies: Vec<MovingBody<T>>,
     /// Per element: the value of its law.
     pub laws: Vec<T>,
-    /// Per element: the coordinate that it acts on, counted through its turns.
+    /// Per element: the coordinate that it acts on, with whole turns counted.
     pub near: Vec<T>,
     /// Per element: the moment of friction.
     pub friction: Vec<T>,
@@ -97,7 +97,7 @@ impl<T: Real> LoadedPosition<T> {
     }
 }
 
-/// The balance of all bodies at a position.
+/// Equilibrium of all bodies at a position.
 pub(super) struct Equilibrium<T> {
     pub places: Places,
     pub now: LoadedPosition<T>,
@@ -107,7 +107,7 @@ pub(super) struct Equilibrium<T> {
     alone: Transmission<T>,
     x: Vec<Twist<T>>,
     l: Vec<Wrench<T>>,
-    /// Per body: the inertia of its masses, what of F' they need, and the body as it moves, whatever the design.
+    /// Per body: its spatial inertia, the inertial part of F', and its motion without derivative by the design.
     pub inertia: Vec<SpatialInertia<T>>,
     inertial: Vec<Wrench<T>>,
     pub still: Vec<MovingBody<Dual<T>>>,
@@ -133,7 +133,7 @@ impl<T: Real> Equilibrium<T> {
         }
     }
 
-    /// Takes the bodies as they move, and drivers of these speeds.
+    /// Sets the motion of the bodies and the speeds of the drivers.
     pub fn stand(&mut self, state: &State<T>, speed: impl Fn(usize) -> T) {
         let [v, a, _] = &state.motion.twists;
         for b in 1..self.now.bodies.len() {
@@ -142,7 +142,7 @@ impl<T: Real> Equilibrium<T> {
         self.now.found.speeds.iter_mut().enumerate().for_each(|(d, to)| *to = speed(d));
     }
 
-    /// Reactions to the wrenches that the bodies require now: T and mu of (18) with F.
+    /// Solves for the reactions to the required wrenches: T and mu of (18) with F.
     pub fn carry(
         &mut self,
         topology: &Topology,
@@ -166,7 +166,7 @@ impl<T: Real> Equilibrium<T> {
         now.needed = needed;
     }
 
-    /// Gets ready for what variables change; nothing does, as yet.
+    /// Prepares the derivatives by variables; they are zero at first.
     pub fn begin_changes(&mut self, (model, geometry): (&Model, &Geometry<T>)) {
         let Self { now, along, inertia, still, .. } = self;
         SpatialInertia::all(&now.acting(model, geometry), inertia);
@@ -184,7 +184,7 @@ impl<T: Real> Equilibrium<T> {
         along.found.keep(&now.found);
     }
 
-    /// Takes how a variable changes the motion.
+    /// Sets the derivative of the motion by a variable.
     pub fn go_along(&mut self, field: &PlanVelocity<T>, flow: &Flow<T>) {
         let Self { now, along, .. } = self;
         for b in 1..now.bodies.len() {
@@ -195,7 +195,7 @@ impl<T: Real> Equilibrium<T> {
         }
     }
 
-    /// The same with all that reactions depend on; friction is, as yet.
+    /// Sets the derivatives that reactions depend on; friction has none at first.
     pub fn change(&mut self, model: &Model, by: Differentiated<'_, T>) {
         let Differentiated { topology, state, field, flow, .. } = by;
         self.go_along(field, flow);
@@ -210,7 +210,7 @@ impl<T: Real> Equilibrium<T> {
         field.turn_axes(topology, state, flow, (x, l));
     }
 
-    /// Derivatives of the applied loads along the direction that was set, and of masses that change themselves.
+    /// Computes the derivatives of applied loads along the direction that was set, and of masses that depend on it.
     pub fn act(&mut self, model: &Model, geometry: &Geometry<Dual<T>>, masses: &[ElementId]) {
         let Self { along, still, .. } = self;
         let mut needed = std::mem::take(&mut along.needed);
@@ -218,13 +218,13 @@ impl<T: Real> Equilibrium<T> {
         let acting = along.acting(model, geometry);
         let forces = (0..model.elements.len()).filter(|e| !model.elements[*e].kind.has_mass());
         forces.for_each(|e| acting.add(ElementId(e), &mut needed));
-        // Masses that change need something else of the motion as it is; all of them of how that changes.
+        // Masses that depend on the variable act with the nominal motion; `inertial` has the derivative of the motion.
         let standing = AppliedLoads { bodies: still, ..acting };
         masses.iter().for_each(|e| standing.add(*e, &mut needed));
         along.needed = needed;
     }
 
-    /// T' and mu' along what was taken, where T and mu stand: the same equation differentiated (45), with x' and l'.
+    /// Computes T' and mu' along the direction that was set: the derivative (45) of the same equation, with x' and l'.
     pub fn carry_changed(
         &mut self,
         topology: &Topology,
@@ -258,8 +258,7 @@ impl<T: Real> Equilibrium<T> {
         along.needed = needed;
     }
 
-    /// Reactions of all joints to wrenches that are applied to some bodies, alone: `applied` reduces the required
-    /// wrenches.
+    /// Reactions of all joints to the applied wrenches alone; `applied` reduces the required wrenches.
     pub fn response(
         &mut self,
         topology: &Topology,
@@ -286,7 +285,7 @@ impl<T: Real> Equilibrium<T> {
             if stresses.is_empty() {
                 state.finish_wrenches(topology);
             }
-            // With mu_r = 1 row r puts l on body j, which needs so much less.
+            // With mu_r = 1 row r applies l to body j, whose required wrench is reduced by it.
             let pull = |RowTerm { row, factor }| {
                 (topology[row].closure, state.l[0][row.0].times_plus(T::constant(factor), Wrench::zero()))
             };
@@ -318,14 +317,14 @@ pub(super) fn excess<T: Real>(kind: &MeasureKind, acting: &AppliedLoads<'_, T>, 
     stresses.iter().fold(none, |most, stress| most.larger(of(stress)))
 }
 
-/// True if they leave it alone.
+/// True if no self-stress contributes to the measure.
 pub(super) fn is_known(kind: &MeasureKind, acting: &AppliedLoads<'_, f64>, stresses: &[Stress<f64>]) -> bool {
-    // Written so that NaN is not known.
+    // A NaN compares as undetermined.
     excess(kind, acting, stresses) <= 0.0
 }
 
 impl<T: Real> Carried<Dual<T>> {
-    /// Takes what is carried as it is, whatever changes.
+    /// Copies the values of `now`, without derivatives.
     fn keep(&mut self, now: &Carried<T>) {
         let constant = |v: Vec3<T>| v.map(Dual::constant);
         let held = |l: &Wrench<T>| Wrench { m: constant(l.m), f: constant(l.f) };
@@ -348,7 +347,7 @@ impl<T: Real> Carried<T> {
     }
 }
 
-/// Unit twists and wrenches of a position, and how they change; nothing where no change is requested.
+/// Unit twists and wrenches of a position, and their derivatives; empty if none are requested.
 struct Derived<'s, T> {
     x: &'s [Twist<T>],
     x_changed: &'s [Twist<T>],
@@ -377,7 +376,7 @@ fn joint_at(topology: &Topology, joint: JointId) -> JointAt {
     }
 }
 
-/// The wrench that a joint puts on its body j; `number` makes one of a value and its derivative.
+/// Reaction wrench of a joint on body j; `number` combines a value and its derivative.
 fn joint_wrench<T: Real, N>(
     at: &JointAt,
     topology: &Topology,
@@ -390,7 +389,7 @@ fn joint_wrench<T: Real, N>(
     let (mut sum, mut change) = (Wrench::<T>::zero(), Wrench::<T>::zero());
     if let Some((k, forward)) = at.link {
         let sign = T::constant(if forward { 1.0 } else { -1.0 });
-        // T_k is what the parent puts on the child.
+        // T_k is the wrench of the parent on the child.
         sum = links[0][k.0].times_plus(sign, sum);
         if is_changed {
             change = links[1][k.0].times_plus(sign, change);
@@ -398,7 +397,7 @@ fn joint_wrench<T: Real, N>(
     }
     for &c in &at.closures {
         for r in topology[c].row_ids().filter(|&r| topology[r].has_wrench()) {
-            // mu_r l_r is what row r puts on body j; its derivative mu' l + mu l'
+            // Row r applies mu_r l_r to body j; the derivative is mu' l + mu l'
             sum = of.l[r.0].times_plus(rows[0][r.0], sum);
             if is_changed {
                 change = of.l[r.0].times_plus(rows[1][r.0], change);
@@ -410,7 +409,7 @@ fn joint_wrench<T: Real, N>(
     Wrench { m: vector(sum.m, change.m), f: vector(sum.f, change.f) }
 }
 
-/// A driver's force or moment, and its derivative.
+/// Driver load and its derivative.
 fn driver_force<T: Real>(
     at: DriverAt,
     topology: &Topology,
@@ -440,7 +439,7 @@ fn both<T: Real>(v: Vec3<T>, d: Vec3<T>) -> Vec3<Dual<T>> {
     Vec3::new(Dual { v: v.x, d: d.x }, Dual { v: v.y, d: d.y }, Dual { v: v.z, d: d.z })
 }
 
-/// A body's motion with its derivative, from its design twist and that's first two rates:
+/// Motion of a body with its derivative, from its design twist and the first two rates of it:
 /// `A' = W_w x A, r' = W at r` and (14) for V' and A'.
 pub(super) fn changed<T: Real>(body: &MovingBody<T>, [w0, w1, w2]: [Twist<T>; 3]) -> MovingBody<Dual<T>> {
     let twist = |t: Twist<T>, d: Twist<T>| Twist { w: both(t.w, d.w), v: both(t.v, d.v) };

@@ -1,8 +1,8 @@
 //! Compliance of the mechanism: small deflections about the kinematic position, (47) of `docs/theory.md`.
 //!
-//! Every direction in which an elastic joint opens is a way to go like a change of the design: a twist of its marker.
-//! What bodies do along it solves (11) with the factors at hand, and how that changes with the design is the second
-//! derivative along both (15). Stiffnesses meet in a matrix as large as the number of ways, whatever the size of the
+//! Every compliant direction of an elastic joint is a direction like a change of the design: a twist of its marker.
+//! The twists of the bodies along it solve (11) with the factors at hand; their derivatives by the design are the
+//! second derivative along both (15). The stiffness matrix has one row per direction, independent of the size of the
 //! mechanism.
 
 use crate::design::{BodyFixed, DesignMap, Geometry};
@@ -19,15 +19,15 @@ use crate::topology::{RowId, Topology};
 
 use super::acting::{AppliedLoads, MovingBody};
 
-/// A number with its derivative along a way (the outer one) and by a variable (the inner one).
+/// A number with its derivatives along a direction (outer) and by a variable (inner).
 type Number = Dual<Dual>;
 
-/// A way to deflect.
+/// A direction of deflection.
 #[derive(Clone, Debug)]
 enum Way {
     /// An elastic joint opens, against this stiffness.
     Opening(NumberId),
-    /// A driver is released: it holds nothing.
+    /// A driver is released: its load is zero.
     Released(DriverId),
 }
 
@@ -37,19 +37,19 @@ struct Changed {
     geometry: Geometry<Number>,
 }
 
-/// Evaluates compliances where a stepper is, in one design.
+/// Evaluates compliances at the position of a stepper, for one design.
 pub(crate) struct Compliances<'a> {
     model: &'a Model,
     asked: Vec<usize>,
     ways: Vec<Way>,
     variables: usize,
     seconds: Seconds,
-    /// Per variable; the last is that of no change.
+    /// Per variable; the last entry has no derivative.
     changed: Vec<Changed>,
     bodies: Vec<usize>,
-    /// Per way: how redundant constraints resist it; none where the mechanism follows.
+    /// Per direction: resistance of the redundant constraints; empty if the mechanism follows.
     resistance: Vec<Vec<(RowId, f64)>>,
-    /// Per way.
+    /// Poses per direction and body.
     poses: Vec<Vec<Pose<Number>>>,
     moving: Vec<MovingBody<Number>>,
     laws: Vec<Number>,
@@ -58,8 +58,8 @@ pub(crate) struct Compliances<'a> {
 }
 
 impl<'a> Compliances<'a> {
-    /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model
-    /// without such measures.
+    /// Compliances of the design with these values, with derivatives by the variables if requested; `None` if the model
+    /// has no measure of compliance.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,
@@ -128,10 +128,10 @@ impl<'a> Compliances<'a> {
         })
     }
 
-    /// Enters what is found at time t; `near` is about what the coordinates are that elements act on.
+    /// Adds the results at time t; `near` are approximate coordinates of the elements, for counting turns.
     pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, near: &[f64], out: &mut StepValues) {
         self.seconds.solve(stepper, t);
-        // Of the rows as well that the motion is not solved with.
+        // Includes the redundant rows, which the motion is not solved with.
         stepper.state.finish_wrenches(&stepper.topology);
         for (way, resistance) in self.resistance.iter_mut().enumerate() {
             *resistance = self.seconds.resistance(stepper, way);
@@ -152,11 +152,11 @@ impl<'a> Compliances<'a> {
         }
     }
 
-    /// Enters values, or derivatives by a variable.
+    /// Writes values, or derivatives by a variable.
     fn enter(&mut self, by: usize, out: &mut StepValues) {
         let Changed { fixed, geometry } = &self.changed[by];
         let model = self.model;
-        // Per way: how far everything elastic besides the joints gives, each with its stiffness.
+        // Per direction: deflections of springs and bushings, each with its stiffness.
         let mut given: Vec<Vec<(Dual, Dual)>> = Vec::new();
         for poses in &self.poses {
             for &b in &self.bodies {
@@ -182,10 +182,11 @@ impl<'a> Compliances<'a> {
             let chosen = (0..self.ways.len()).filter(|w| counts(&self.ways[*w]));
             let (chosen, resisted): (Vec<usize>, Vec<usize>) =
                 chosen.partition(|w| self.resistance[*w].is_empty());
-            // Sum over the ways y_a r_a = 0, r_a how the redundant constraints resist: where all r_a are independent, no such joint
-            // opens at all, for the others are rigid. Else some may open together, by forces that nobody knows.
+            // Sum over the directions y_a r_a = 0, with r_a the resistance of the redundant constraints. If all r_a are
+            // independent, none of these joints opens, since the others are rigid. Otherwise some may open together,
+            // and the forces are not determined.
             let is_known = are_independent(resisted.iter().map(|w| &self.resistance[*w][..]));
-            // L . Y of the output, and what a unit of force works
+            // L . Y of the output, and the work of a unit force
             let mut gives: Vec<Dual> = Vec::new();
             let mut works: Vec<Dual> = Vec::new();
             for &w in &chosen {
@@ -212,7 +213,7 @@ impl<'a> Compliances<'a> {
                     stiffness.row_mut(r)[c] = sum;
                 }
             }
-            // Without any stiffness against a released driver there is no end to it.
+            // Without stiffness against a released driver the compliance is infinite.
             let x = if !is_known {
                 Dual::constant(f64::NAN)
             } else if chosen.is_empty() {
@@ -229,8 +230,8 @@ impl<'a> Compliances<'a> {
 }
 
 impl Compliances<'_> {
-    /// Contact point of a wheel as the body point that is there now, moved along a deflection: the road acts on this
-    /// point, while the contact point itself moves over the wheel.
+    /// Body point at the contact of a wheel, moved along a deflection. The road acts on this material point, while the
+    /// contact point itself moves over the wheel.
     fn contact(&self, poses: &[Pose<Number>], geometry: &Geometry<Number>, wheel: WheelId) -> Vec3<Number> {
         let body = self.model.wheels[wheel.0].body.0;
         let now = |x: Number| Dual::constant(x.v);
@@ -245,8 +246,7 @@ impl Compliances<'_> {
     }
 }
 
-/// Returns whether no sum of these vectors, each by its own factor, is zero; of each its entries that are not zero, in
-/// the order of the rows.
+/// Returns true if these vectors are linearly independent; each is given by its nonzero entries, in the order of rows.
 fn are_independent<'a>(vectors: impl Iterator<Item = &'a [(RowId, f64)]>) -> bool {
     let norm = |v: &[(RowId, f64)]| v.iter().map(|(_, x)| x * x).sum::<f64>().sqrt();
     let mut basis: Vec<Vec<(RowId, f64)>> = Vec::new();
@@ -274,11 +274,11 @@ fn are_independent<'a>(vectors: impl Iterator<Item = &'a [(RowId, f64)]>) -> boo
     true
 }
 
-/// Ways that differ by less than this part from a sum of others depend on them: what a mechanism's redundant
-/// constraints resist is found to some 1e-9, and typed coordinates are off by 1e-6.
+/// Relative tolerance of linear dependence: resistances are found to about 1e-9, and coordinates typed into a file are
+/// off by 1e-6.
 const DEPENDENT: f64 = 1e-5;
 
-/// Stiffnesses whose pivots differ by more hold some way by nothing.
+/// Pivot ratio below which the stiffness matrix is singular: no stiffness acts in some direction.
 const SINGULAR: f64 = 1e-14;
 
 fn released_by(model: &Model, measure: usize) -> Option<DriverId> {

@@ -1,35 +1,36 @@
-//! Coulomb friction in joints: from the forces that press there, which it changes itself; (46) of `docs/theory.md`.
+//! Coulomb friction in joints, from normal forces that depend on the friction itself; (46) of `docs/theory.md`.
 //!
-//! With M the friction moments of hinges and friction forces of slides, the joints carry `T(M) = T_0 + B M`, since
-//! loads superpose. Each satisfies `M = -c N(T(M)) - d`, with N the normal force, c the friction coefficient (`mu r s`
-//! of a hinge) and d the viscous part. These equations, one per joint with friction, are solved by Newton's method.
+//! With M the friction moments of hinges and friction forces of slides, the joint wrenches are `T(M) = T_0 + B M`,
+//! since loads superpose. Each satisfies `M = -c N(T(M)) - d`, with N the normal force, c the friction coefficient
+//! (`mu r s` of a hinge) and d the viscous part. Newton's method solves these equations, one per friction element.
 
 use crate::linalg::Elimination;
 use crate::model::{ElementId, ElementKind, JointId, Model};
 use crate::number::Dual;
 use crate::space::{Real, Vec3, Wrench};
 
-use super::acting::{AppliedLoads, pressing};
+use super::acting::{AppliedLoads, force_size};
 use super::carry::{Carried, Stress};
 use super::measures::Instant;
 use super::solver::LoadSolver;
 
-/// Newton from no friction takes 3 to 7 steps where there is a solution; joints that have none after that many jam.
+/// Maximum number of Newton iterations. Newton's method from zero friction takes 3 to 7 of them if there is a solution;
+/// otherwise the joints jam.
 const MOST_STEPS: usize = 40;
-/// Moments and forces are solved to this part of the largest term.
+/// Relative tolerance of friction moments and forces, per largest term.
 const SOLVED: f64 = 1e-13;
-/// Other solutions are looked for from this many times the largest friction without the forces that friction itself
-/// makes.
+/// Starting point of the search for other solutions, as a multiple of the largest friction that the normal forces
+/// without friction cause.
 const FAR: f64 = 1e3;
-/// Solutions that differ by more than this part of the friction are two: the same one is found to 1e-13.
+/// Two solutions are different if they differ by more than this fraction of the friction; a solution is found to 1e-13.
 const ANOTHER: f64 = 1e-6;
 
-/// The joints that rub.
+/// Friction elements of a model, with their equations.
 pub(super) struct Friction {
-    rubs: Vec<FrictionElement>,
-    /// `1 + diag(c) dN/dM` where it was solved.
+    elements: Vec<FrictionElement>,
+    /// `1 + diag(c) dN/dM` at the solution.
     matrix: Elimination<f64>,
-    /// Per joint that has friction: the moment or force, and its derivative by a variable.
+    /// Per friction element: the moment or force, and its derivative by a variable.
     moments: Vec<f64>,
     changes: Vec<f64>,
 }
@@ -40,12 +41,12 @@ struct FrictionElement {
     /// Friction coefficient c, viscous part d, and normal forces without friction.
     grip: f64,
     viscous: f64,
-    presses: ([Vec3; 2], usize),
-    /// Normal forces here per unit friction moment of every joint with friction.
+    normal_forces: ([Vec3; 2], usize),
+    /// Normal forces of this element per unit friction moment of every friction element.
     per_moment: Vec<[Vec3; 2]>,
     /// True if redundant constraints share the normal force.
     is_shared: bool,
-    /// True if the friction has another solution besides the one that was found.
+    /// True if the friction has more than one solution.
     is_ambiguous: bool,
 }
 
@@ -56,13 +57,13 @@ impl FrictionElement {
         else {
             return None;
         };
-        let (presses, per_moment) = (([Vec3::ZERO; 2], 0), Vec::new());
+        let (normal_forces, per_moment) = (([Vec3::ZERO; 2], 0), Vec::new());
         Some(Self {
             element,
             joint,
             grip: 0.0,
             viscous: 0.0,
-            presses,
+            normal_forces,
             per_moment,
             is_shared: false,
             is_ambiguous: false,
@@ -73,24 +74,24 @@ impl FrictionElement {
 impl Friction {
     pub fn new(model: &Model) -> Self {
         let elements = (0..model.elements.len()).map(ElementId);
-        let rubs: Vec<FrictionElement> = elements.filter_map(|e| FrictionElement::of(model, e)).collect();
-        let n = rubs.len();
-        Self { rubs, matrix: Elimination::new(n), moments: vec![0.0; n], changes: vec![0.0; n] }
+        let elements: Vec<FrictionElement> = elements.filter_map(|e| FrictionElement::of(model, e)).collect();
+        let n = elements.len();
+        Self { elements, matrix: Elimination::new(n), moments: vec![0.0; n], changes: vec![0.0; n] }
     }
 
     pub fn is_empty(&self) -> bool {
-        self.rubs.is_empty()
+        self.elements.is_empty()
     }
 
-    /// Takes what joints carry without friction; `responses` say what all of them carry of a unit moment in each that
-    /// has friction.
+    /// Sets the joint wrenches without friction; `responses` are the wrenches of all joints due to a unit moment of
+    /// each friction element.
     pub fn set(&mut self, acting: &AppliedLoads<'_, f64>, carried: &Carried<f64>, responses: &[Vec<Wrench>]) {
-        for rub in &mut self.rubs {
-            [rub.grip, rub.viscous] = acting.grip(rub.element);
-            rub.presses = acting.presses(rub.element, carried.joints[rub.joint.0]);
+        for friction in &mut self.elements {
+            [friction.grip, friction.viscous] = acting.grip(friction.element);
+            friction.normal_forces = acting.normal_forces(friction.element, carried.joints[friction.joint.0]);
             // Normal forces are linear in the joint's wrench.
-            let per = |all: &Vec<Wrench>| acting.presses(rub.element, all[rub.joint.0]).0;
-            rub.per_moment = responses.iter().map(per).collect();
+            let per = |all: &Vec<Wrench>| acting.normal_forces(friction.element, all[friction.joint.0]).0;
+            friction.per_moment = responses.iter().map(per).collect();
         }
     }
 
@@ -98,82 +99,86 @@ impl Friction {
     /// the normal forces.
     pub fn solve(&mut self, acting: &AppliedLoads<'_, f64>, stresses: &[Stress<f64>]) {
         self.moments.fill(0.0);
-        for rub in &mut self.rubs {
-            let leaves = |Stress { carried, most }: &Stress<f64>| {
-                Instant { acting, carried }.presses_nothing(rub.element, rub.joint, *most)
+        for friction in &mut self.elements {
+            let is_independent = |Stress { carried, most }: &Stress<f64>| {
+                Instant { acting, carried }.has_no_normal_force(friction.element, friction.joint, *most)
             };
-            rub.is_shared = !stresses.iter().all(leaves);
+            friction.is_shared = !stresses.iter().all(is_independent);
         }
         let known = self.shared().next().is_none();
-        self.rubs.iter_mut().for_each(|rub| rub.is_ambiguous = false);
+        self.elements.iter_mut().for_each(|friction| friction.is_ambiguous = false);
         let solved = known && (0..MOST_STEPS).any(|_| self.newton());
         if !solved || self.look_for_others() {
             self.moments.fill(f64::NAN);
         }
     }
 
-    /// Searches for other solutions, and notes which friction differs between them.
+    /// Searches for other solutions, and marks the elements whose friction differs between them.
     ///
-    /// `M -> -c N(T_0 + B M) - d` contracts where the sum of `abs(c B)` is below 1 in every row, and has one solution
-    /// then. Elsewhere Newton starts far out, where normal forces are as large as friction alone makes them.
+    /// If the sum of `abs(c B)` is below 1 in every row, `M -> -c N(T_0 + B M) - d` is a contraction with one solution.
+    /// Otherwise Newton's method starts far out, where friction alone determines the normal forces.
     fn look_for_others(&mut self) -> bool {
-        let gain = |rub: &FrictionElement| {
-            let (_, count) = rub.presses;
-            let all = rub.per_moment.iter().map(|b| b.iter().take(count).map(|f| f.norm()).sum::<f64>());
-            rub.grip.abs() * all.sum::<f64>()
+        let gain = |friction: &FrictionElement| {
+            let (_, count) = friction.normal_forces;
+            let all = friction.per_moment.iter().map(|b| b.iter().take(count).map(|f| f.norm()).sum::<f64>());
+            friction.grip.abs() * all.sum::<f64>()
         };
-        if self.rubs.iter().all(|rub| gain(rub) < 1.0) {
+        if self.elements.iter().all(|friction| gain(friction) < 1.0) {
             return false;
         }
-        let (found, n) = (self.moments.clone(), self.rubs.len());
-        let size =
-            |rub: &FrictionElement| rub.presses.0.iter().map(|f| f.norm()).sum::<f64>() * rub.grip.abs();
-        let scale = self.rubs.iter().map(size).chain(found.iter().map(|m| m.abs())).fold(0.0, f64::max);
+        let (found, n) = (self.moments.clone(), self.elements.len());
+        let size = |friction: &FrictionElement| {
+            friction.normal_forces.0.iter().map(|f| f.norm()).sum::<f64>() * friction.grip.abs()
+        };
+        let scale = self.elements.iter().map(size).chain(found.iter().map(|m| m.abs())).fold(0.0, f64::max);
         let (mut others, far) = (false, FAR * scale);
-        // One far out either way, the others as they are; then all.
+        // First each moment alone is far out, in either direction; then all.
         for (one, sign) in (0..=n).flat_map(|one| [(one, 1.0), (one, -1.0)]) {
             self.moments.copy_from_slice(&found);
             for (k, m) in self.moments.iter_mut().enumerate().filter(|(k, _)| one == n || *k == one) {
-                *m = sign * far * if self.rubs[k].grip < 0.0 { -1.0 } else { 1.0 };
+                *m = sign * far * if self.elements[k].grip < 0.0 { -1.0 } else { 1.0 };
             }
             if !(0..MOST_STEPS).any(|_| self.newton()) {
                 continue;
             }
-            for ((m, first), rub) in self.moments.iter().zip(&found).zip(&mut self.rubs) {
+            for ((m, first), friction) in self.moments.iter().zip(&found).zip(&mut self.elements) {
                 if (m - first).abs() > ANOTHER * scale {
-                    (rub.is_ambiguous, others) = (true, true);
+                    (friction.is_ambiguous, others) = (true, true);
                 }
             }
         }
-        // The matrix of the one that was found.
+        // Restores the matrix of the first solution.
         self.moments.copy_from_slice(&found);
         self.newton();
         others
     }
 
-    /// One step; whether the moments were solved before it.
+    /// One Newton iteration; returns true if the moments were solved before it.
     fn newton(&mut self) -> bool {
-        let n = self.rubs.len();
+        let n = self.elements.len();
         let mut rhs = vec![0.0; n];
         let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
-        for (k, rub) in self.rubs.iter().enumerate() {
-            let (presses, count) = rub.presses;
+        for (k, friction) in self.elements.iter().enumerate() {
+            let (normal_forces, count) = friction.normal_forces;
             let row = self.matrix.row_mut(k);
             row.iter_mut().enumerate().for_each(|(c, entry)| *entry = f64::from(u8::from(c == k)));
             let mut size = 0.0;
-            for (end, force) in presses.into_iter().enumerate().take(count) {
-                let here = rub.per_moment.iter().map(|b| b[end]);
+            for (end, force) in normal_forces.into_iter().enumerate().take(count) {
+                let here = friction.per_moment.iter().map(|b| b[end]);
                 let force = here.clone().zip(&self.moments).fold(force, |f, (b, m)| f + b * *m);
-                let pressed = pressing(force);
-                size += pressed;
+                let normal = force_size(force);
+                size += normal;
                 for (entry, b) in row.iter_mut().zip(here) {
-                    *entry += rub.grip * force.dot(b) / pressed;
+                    *entry += friction.grip * force.dot(b) / normal;
                 }
             }
             // M + c N + d = 0
-            rhs[k] = -(self.moments[k] + rub.grip * size + rub.viscous);
+            rhs[k] = -(self.moments[k] + friction.grip * size + friction.viscous);
             worst = worst.max(rhs[k].abs());
-            largest = largest.max(self.moments[k].abs()).max((rub.grip * size).abs()).max(rub.viscous.abs());
+            largest = largest
+                .max(self.moments[k].abs())
+                .max((friction.grip * size).abs())
+                .max(friction.viscous.abs());
         }
         self.matrix.factor();
         if worst <= SOLVED * largest {
@@ -186,33 +191,35 @@ impl Friction {
 
     /// Derivatives of the friction moments, from the joint wrenches at constant moments.
     pub fn differentiate(&mut self, acting: &AppliedLoads<'_, Dual>, carried: &Carried<Dual>) {
-        for (change, rub) in self.changes.iter_mut().zip(&self.rubs) {
+        for (change, friction) in self.changes.iter_mut().zip(&self.elements) {
             // (1 + diag(c) dN/dM) M' = -(c' N + c N' + d')
-            *change = -resistance(acting, rub, carried).d;
+            *change = -resistance(acting, friction, carried).d;
         }
         self.matrix.solve(&mut self.changes);
     }
 
     /// Elements whose friction is not determined, because redundant constraints share the normal force.
     pub fn shared(&self) -> impl Iterator<Item = ElementId> {
-        self.rubs.iter().filter(|rub| rub.is_shared).map(|rub| rub.element)
+        self.elements.iter().filter(|friction| friction.is_shared).map(|friction| friction.element)
     }
 
-    /// Those that have more than one solution: grip so high that the friction itself makes the forces that it needs.
+    /// Elements whose friction has more than one solution: the friction coefficient is so high that friction causes its
+    /// own normal forces.
     pub fn ambiguous(&self) -> impl Iterator<Item = ElementId> {
-        self.rubs.iter().filter(|rub| rub.is_ambiguous).map(|rub| rub.element)
+        self.elements.iter().filter(|friction| friction.is_ambiguous).map(|friction| friction.element)
     }
 
-    /// The elements that rub, and their joints.
+    /// Friction elements.
     pub fn elements(&self) -> impl Iterator<Item = ElementId> {
-        self.rubs.iter().map(|h| h.element)
+        self.elements.iter().map(|h| h.element)
     }
 
+    /// Joints of the friction elements.
     pub fn joints(&self) -> impl Iterator<Item = JointId> {
-        self.rubs.iter().map(|h| h.joint)
+        self.elements.iter().map(|h| h.joint)
     }
 
-    /// By how much each equation `M + c N + d = 0` counts for a load with these derivatives by the moments:
+    /// Lagrange multipliers of the equations `M + c N + d = 0` for a load with these derivatives by the moments:
     /// `E_M^T lambda = -y_M`.
     pub fn multipliers(&self, by_moments: Vec<f64>) -> Vec<f64> {
         let mut lambda: Vec<f64> = by_moments.iter().map(|x| -x).collect();
@@ -220,43 +227,50 @@ impl Friction {
         lambda
     }
 
-    /// By how much the equations miss, each as much as it counts.
-    pub fn misses(&self, acting: &AppliedLoads<'_, Dual>, carried: &Carried<Dual>, counts: &[f64]) -> Dual {
-        let of = |(rub, counts): (&FrictionElement, &f64)| {
+    /// Residuals of the equations, each times its multiplier; the sum.
+    pub fn weighted_residual(
+        &self,
+        acting: &AppliedLoads<'_, Dual>,
+        carried: &Carried<Dual>,
+        multipliers: &[f64],
+    ) -> Dual {
+        let of = |(friction, multiplier): (&FrictionElement, &f64)| {
             // M + c N + d
-            (acting.friction[rub.element.0] + resistance(acting, rub, carried)) * *counts
+            (acting.friction[friction.element.0] + resistance(acting, friction, carried)) * *multiplier
         };
-        self.rubs.iter().zip(counts).map(of).fold(Dual::zero(), |sum, x| sum + x)
+        self.elements.iter().zip(multipliers).map(of).fold(Dual::zero(), |sum, x| sum + x)
     }
 
-    /// Enters the moments by element.
+    /// Writes the moments by element.
     pub fn enter(&self, out: &mut [f64]) {
-        self.rubs.iter().zip(&self.moments).for_each(|(rub, m)| out[rub.element.0] = *m);
+        self.elements.iter().zip(&self.moments).for_each(|(friction, m)| out[friction.element.0] = *m);
     }
 
-    /// The same with their derivatives.
+    /// Writes the moments with their derivatives by element.
     pub fn enter_changed(&self, out: &mut [Dual]) {
         let both = self.moments.iter().zip(&self.changes);
-        self.rubs.iter().zip(both).for_each(|(rub, (v, d))| out[rub.element.0] = Dual { v: *v, d: *d });
+        self.elements
+            .iter()
+            .zip(both)
+            .for_each(|(friction, (v, d))| out[friction.element.0] = Dual { v: *v, d: *d });
     }
 }
 
 impl LoadSolver<'_> {
-    /// Friction that is not determined at the step that was solved, because redundant constraints share the normal
-    /// force.
+    /// Elements whose friction is not determined at this step, because redundant constraints share the normal force.
     pub fn shared_friction(&self) -> impl Iterator<Item = ElementId> {
         self.friction.shared()
     }
 
-    /// Friction that has more than one solution at the step that was solved.
+    /// Elements whose friction has more than one solution at this step.
     pub fn ambiguous_friction(&self) -> impl Iterator<Item = ElementId> {
         self.friction.ambiguous()
     }
 }
 
 /// `c N + d`.
-fn resistance<T: Real>(acting: &AppliedLoads<'_, T>, rub: &FrictionElement, carried: &Carried<T>) -> T {
-    let [grip, viscous] = acting.grip(rub.element);
-    let (presses, count) = acting.presses(rub.element, carried.joints[rub.joint.0]);
-    presses.into_iter().take(count).fold(viscous, |sum, force| sum + grip * pressing(force))
+fn resistance<T: Real>(acting: &AppliedLoads<'_, T>, friction: &FrictionElement, carried: &Carried<T>) -> T {
+    let [grip, viscous] = acting.grip(friction.element);
+    let (normal_forces, count) = acting.normal_forces(friction.element, carried.joints[friction.joint.0]);
+    normal_forces.into_iter().take(count).fold(viscous, |sum, force| sum + grip * force_size(force))
 }

@@ -1,13 +1,13 @@
-//! Gradient of one load by all variables: its own loads on the bodies, carried to ground once.
+//! Gradient of one load by all variables, by the adjoint method: one propagation to ground per load.
 //!
-//! Every load is `y = sum F . Y`, with Y what opening its joint, or moving its driver alone, makes of the bodies. So
-//! `y' = sum F' . Y + sum F . Y'` is linear in the design twists W, W., W.. and in what the frames of joints do, and
-//! its coefficients are loads like those of any output (`docs/theory.md` (48)).
+//! Every load is `y = sum F . Y`, with Y the twists of the bodies when its joint opens, or its driver moves alone. So
+//! `y' = sum F' . Y + sum F . Y'` is linear in the design twists W, W., W.. and in the twists of the joint frames, and
+//! its coefficients are adjoint loads like those of any output (`docs/theory.md` (48)).
 //!
-//! | here | theory | what |
+//! | here | theory | meaning |
 //! |---|---|---|
-//! | [`Weights`] | C, w | how the load goes with the wrenches of joints, forces of drivers, and what ground takes |
-//! | [`VirtualMotion`] | Y, S_Y | what these weights move |
+//! | [`Weights`] | C, w | derivatives of the load by joint wrenches, driver forces, and the wrench on ground |
+//! | [`VirtualMotion`] | Y, S_Y | virtual motion due to these weights |
 //! | `loads` | P | `sum F' . Y` by W, W., W.. of each body |
 //! | [`VirtualMotion::turning`] | | `sum F . Y'` by the twists of the frames that unit twists and wrenches turn with |
 
@@ -25,9 +25,9 @@ use super::measures::Instant;
 use super::solver::LoadSolver;
 use super::virtual_motion::{VirtualMotion, Weights, set, unit_twist};
 
-/// Gradients of loads where a stepper is; nothing but a few weights is allocated per step.
+/// Gradients of loads at the position of a stepper. A step allocates only a few weights.
 pub(crate) struct LoadGradients {
-    /// Y, and what turns.
+    /// Y, and the loads on the frames of joints.
     virtual_motion: VirtualMotion<f64>,
     /// Motion of the bodies with derivatives.
     bodies: Vec<MovingBody<Dual>>,
@@ -36,19 +36,19 @@ pub(crate) struct LoadGradients {
     friction: Vec<Dual>,
     carried: Carried<Dual>,
     needed: Vec<Wrench<Dual>>,
-    /// Per body: the forces that know of it.
+    /// Per body: the force elements that depend on its motion.
     felt: Vec<Vec<ElementId>>,
-    /// Per variable: whether it changes a load with all bodies where they are.
+    /// Per variable: true if it changes a load while all bodies stay in place.
     touches: Vec<bool>,
-    /// By how much the equations of friction count, in the order of its hinges.
-    rubs: Vec<f64>,
+    /// Multipliers of the friction equations, in the order of the friction elements.
+    multipliers: Vec<f64>,
     loads: Vec<(usize, Load)>,
     support: Support,
     work: Vec<[f64; 3]>,
 }
 
 impl LoadGradients {
-    /// By the variables of an adjoint.
+    /// Gradients by the variables of an adjoint.
     pub fn new(solver: &LoadSolver<'_>, topology: &Topology, adjoint: &Adjoint) -> Self {
         let model = solver.model;
         let bodies = model.bodies.len();
@@ -70,14 +70,14 @@ impl LoadGradients {
             needed: vec![Wrench::zero(); bodies],
             felt,
             touches: solver.changed.iter().map(|c| touches(model, &c.geometry)).collect(),
-            rubs: Vec::new(),
+            multipliers: Vec::new(),
             loads: moving.iter().map(|b| (*b, [Wrench::zero(); 3])).collect(),
             support: adjoint.support(topology, &moving),
             work: vec![[0.0; 3]; model.variables.len()],
         }
     }
 
-    /// Derivatives by all variables of measure m, which `solver` has found where a state is with its rates.
+    /// Derivatives of measure m by all variables. `solver` has evaluated the measure at this state.
     pub fn trace(
         &mut self,
         solver: &LoadSolver<'_>,
@@ -92,14 +92,14 @@ impl LoadGradients {
         }
         let kind = &solver.model.measures[m].kind;
         self.stand(solver);
-        self.rubs.clear();
+        self.multipliers.clear();
         let mut weights = self.weights(solver, kind);
         self.virtual_motion.go(&solver.bodies.places, topology, state, &weights);
         if !solver.friction.is_empty() {
-            // y_M, and with it what the equations of friction count for: then the load is one that friction represents.
+            // y_M gives the multipliers of the friction equations; with them the moments need no derivative.
             let by_moments = solver.friction.elements().map(|e| self.by_friction(solver, kind, &weights, e));
             let by_moments: Vec<f64> = by_moments.collect();
-            self.rubs = solver.friction.multipliers(by_moments);
+            self.multipliers = solver.friction.multipliers(by_moments);
             weights = self.weights(solver, kind);
             self.virtual_motion.go(&solver.bodies.places, topology, state, &weights);
         }
@@ -112,8 +112,7 @@ impl LoadGradients {
                 twists[order] = unit_twist(unit);
                 self.bodies[body] = changed(&solver.bodies.now.bodies[body], twists);
                 let by = self.goes(solver, &solver.constant, kind, ground, Some(body));
-                // (F . W).. = F . W.. + 2 F. . W. + F.. . W: with these in the place of F and its rates that is what W
-                // makes of y.
+                // (F . W).. = F . W.. + 2 F. . W. + F.. . W: the coefficients take the place of F and its rates.
                 let factor = [1.0, 0.5, 1.0][order];
                 set(&mut self.loads[n].1[2 - order], unit, by * factor);
             }
@@ -149,7 +148,7 @@ impl LoadGradients {
         }
     }
 
-    /// Takes over where everything is.
+    /// Copies the position and the loads of the solver, without derivatives.
     fn stand(&mut self, solver: &LoadSolver<'_>) {
         for b in 1..self.bodies.len() {
             self.bodies[b] = changed(&solver.bodies.now.bodies[b], [Twist::ZERO; 3]);
@@ -163,8 +162,7 @@ impl LoadGradients {
         self.carried.shaking = found.shaking.spread();
     }
 
-    /// The load itself and the equations of friction that it counts with, from what is carried; its derivative along
-    /// what has been set.
+    /// Derivative of the load, with the weighted friction equations, along the direction that was set.
     fn objective(
         &self,
         solver: &LoadSolver<'_>,
@@ -174,7 +172,7 @@ impl LoadGradients {
     ) -> f64 {
         let acting = self.acting(solver, geometry);
         let load = Instant { acting: &acting, carried }.measure(kind);
-        load.d + solver.friction.misses(&acting, carried, &self.rubs).d
+        load.d + solver.friction.weighted_residual(&acting, carried, &self.multipliers).d
     }
 
     fn acting<'s>(
@@ -186,8 +184,8 @@ impl LoadGradients {
         AppliedLoads { model: solver.model, geometry, bodies, laws, near, friction }
     }
 
-    /// Derivative of the load along the direction that was set, by itself and through the required wrenches, on Y: of
-    /// forces that act on a body, or of all elements.
+    /// Derivative of the load along the direction that was set: explicit, and through the required wrenches on Y. The
+    /// elements are those that act on `body`, or all.
     fn goes(
         &mut self,
         solver: &LoadSolver<'_>,
@@ -213,7 +211,7 @@ impl LoadGradients {
         sum
     }
 
-    /// The derivative by the moment of a hinge that has friction, all else standing.
+    /// Partial derivative by the moment of a friction element.
     fn by_friction(
         &mut self,
         solver: &LoadSolver<'_>,
@@ -227,7 +225,7 @@ impl LoadGradients {
         by
     }
 
-    /// By what is carried.
+    /// Derivatives of the load by the transmitted wrenches.
     fn weights(&mut self, solver: &LoadSolver<'_>, kind: &MeasureKind) -> Weights<f64> {
         let mut carried = std::mem::replace(&mut self.carried, Carried::new(solver.model));
         let objective = |carried: &Carried<Dual>| self.objective(solver, &solver.constant, kind, carried);

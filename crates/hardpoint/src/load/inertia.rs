@@ -1,8 +1,8 @@
 //! Wrench that the motion of a body's masses requires, as one matrix, and its derivative by the motion.
 //!
 //! `f = M (A - [0; g0]) + ad*(V) M V` of `docs/theory.md` (43) in twists, M the spatial inertia in the world. Masses
-//! that stay where they are in their body turn with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' is a few
-//! products of each body's (49), whatever they are made of.
+//! fixed in their body move with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' takes a few products per
+//! body (49), independent of the number of masses.
 
 use crate::design::Geometry;
 use crate::model::{ElementId, LoadMode, Model};
@@ -11,7 +11,7 @@ use crate::space::{Mat3, Twist, Vec3, Wrench};
 
 use super::acting::{AppliedLoads, MovingBody, Solid};
 
-/// The spatial inertia M of a body: its mass, and the first and second moments of that about the world origin.
+/// Spatial inertia M of a body: mass, and its first and second moments about the world origin.
 #[derive(Clone, Copy)]
 pub(super) struct SpatialInertia<T> {
     mass: T,
@@ -22,12 +22,12 @@ pub(super) struct SpatialInertia<T> {
 }
 
 impl<T: Real> SpatialInertia<T> {
-    /// Inertia of no mass.
+    /// Zero inertia.
     pub fn zero() -> Self {
         Self { mass: T::zero(), first: Vec3::zero(), second: Mat3 { cols: [Vec3::zero(); 3] } }
     }
 
-    /// Those of all bodies, as they stand.
+    /// Computes the inertias of all bodies at the current position.
     pub fn all(acting: &AppliedLoads<'_, T>, out: &mut [Self]) {
         out.fill(Self::zero());
         for element in &acting.model.elements {
@@ -56,14 +56,14 @@ impl<T: Real> SpatialInertia<T> {
         }
     }
 
-    /// Derivatives of `f' . Y` by W, W' and W'' of a body with this Y: the result of [`SpatialInertia::changed`] on Y,
+    /// Coefficients of W, W' and W'' in `f' . Y` of a body with this Y: the power of [`SpatialInertia::changed`] on Y,
     /// term by term.
     ///
     /// ```text
     /// P2  =  M Y,    P1  =  ad(Y)^T M V - ad(V)^T M Y - M ad(V) Y,    P0  =  ad(Y)^T f + [g0 x (M Y)_f; 0]
     /// ```
     ///
-    /// Static loads leave P0 only, with the weight alone as f.
+    /// Static loads have P0 only, with the weight alone as f.
     pub fn weights(&self, model: &Model, body: &MovingBody<T>, y: Twist<T>) -> [Wrench<T>; 3] {
         let MovingBody { v, .. } = *body;
         let moved = self.on(y);
@@ -88,14 +88,14 @@ impl<T: Real> SpatialInertia<T> {
         }
     }
 
-    /// f' of masses that stay where they are in their body, where its design twists are W, W., W..:
+    /// Derivative f' of masses that are fixed in their body, for the design twists W, W., W..:
     ///
     /// ```text
     /// f'  =  ad*(W) f  +  M (W.. + ad(W.) V + [0; W_w x g0])  +  ad*(W.) M V  +  ad*(V) M W.
     /// ```
     ///
-    /// which is what somebody who turns with the body sees, whose V changes by W. and whose A by W.. + ad(W.) V, and
-    /// that turned (14). V, W. and W.. have no part in static loads.
+    /// This is the derivative in body axes, where V changes by W. and A by W.. + ad(W.) V, rotated with the body (14).
+    /// Static loads do not depend on V, W. and W...
     pub fn changed(&self, model: &Model, body: &MovingBody<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
         let MovingBody { v, .. } = *body;
         let needed = self.needed(model, body);
@@ -114,7 +114,7 @@ impl<T: Real> SpatialInertia<T> {
 /// Body-fixed data with the derivative by a variable.
 pub(super) struct Changed<T> {
     pub geometry: Geometry<Dual<T>>,
-    /// The masses that change, or move within their bodies.
+    /// Masses that depend on the variable, or move within their bodies.
     pub masses: Vec<ElementId>,
 }
 

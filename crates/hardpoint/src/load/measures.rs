@@ -1,4 +1,4 @@
-//! The measures of loads, over any number.
+//! Evaluation of load measures, for any number type.
 
 use crate::model::{Axes, BodyId, ElementId, JointId, MeasureKind, ReactionPart};
 use crate::space::{Mat3, Real, Vec3, Wrench};
@@ -6,14 +6,14 @@ use crate::space::{Mat3, Real, Vec3, Wrench};
 use super::acting::AppliedLoads;
 use super::carry::Carried;
 
-/// Loads at an instant.
+/// All loads at one time.
 pub(super) struct Instant<'a, T> {
     pub acting: &'a AppliedLoads<'a, T>,
     pub carried: &'a Carried<T>,
 }
 
 impl<T: Real> Instant<'_, T> {
-    /// Formulas and signs: `docs/loads.md`.
+    /// Value of a measure; for formulas and signs see `docs/loads.md`.
     pub fn measure(&self, kind: &MeasureKind) -> T {
         let Carried { drivers, speeds, shaking, .. } = self.carried;
         match kind {
@@ -52,7 +52,7 @@ impl<T: Real> Instant<'_, T> {
         let Wrench { m, f } = if end == 1 { wrench } else { Wrench::zero() - wrench };
         let body = [i, j][end];
         let marker = bodies[body.0].pose.compose(geometry.markers[joint.0][end]);
-        // About the joint's place on that body.
+        // About the joint's location on that body.
         let m = m - marker.r.cross(f);
         let axes = match axes {
             Axes::Global => Mat3::IDENTITY.spread(),
@@ -74,8 +74,8 @@ impl<T: Real> Instant<'_, T> {
     }
 }
 
-/// A reaction is known if no redundant constraint that pulls by itself adds more than this part of what it adds
-/// anywhere.
+/// A reaction is determined if the self-stress of every redundant constraint contributes less than this fraction of its
+/// largest reaction.
 const KNOWN: f64 = 1e-8;
 
 impl<T: Real> Instant<'_, T> {
@@ -90,7 +90,7 @@ impl<T: Real> Instant<'_, T> {
         self.measure(kind).abs() - scale * KNOWN
     }
 
-    /// The largest force that a joint carries, moments by the size of the mechanism.
+    /// Largest joint reaction; moments are divided by the size of the mechanism.
     pub fn most(&self) -> T {
         let size = self.acting.model.size();
         let joints = (0..self.acting.model.joints.len()).map(JointId);
@@ -103,13 +103,13 @@ impl<T: Real> Instant<'_, T> {
 
 impl Instant<'_, f64> {
     /// True if a friction element has no normal force.
-    pub fn presses_nothing(&self, e: ElementId, joint: JointId, most: f64) -> bool {
-        let (presses, count) = self.acting.presses(e, self.carried.joints[joint.0]);
-        presses.iter().take(count).all(|force| force.norm() <= KNOWN * most)
+    pub fn has_no_normal_force(&self, e: ElementId, joint: JointId, most: f64) -> bool {
+        let (forces, count) = self.acting.normal_forces(e, self.carried.joints[joint.0]);
+        forces.iter().take(count).all(|force| force.norm() <= KNOWN * most)
     }
 }
 
-/// The component of a vector along a unit vector, or its magnitude.
+/// Component of a vector along a unit vector, or its magnitude.
 fn component<T: Real>(v: Vec3<T>, along: Option<Vec3>) -> T {
     along.map_or_else(|| v.norm(), |along| along.spread().dot(v))
 }

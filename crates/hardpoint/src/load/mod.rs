@@ -1,21 +1,23 @@
-//! Loads: what drives the mechanism, and what its joints carry.
+//! Loads: inverse dynamics and statics of the mechanism, with driver loads and joint reactions.
 //!
-//! A mechanism whose motion is prescribed needs no integration for that (`docs/theory.md`, section 14): what its bodies
-//! need is known from where they are and how they move, and what of it comes through which joint is the response to a
-//! load, the equation of order n transposed, with the factors that the motion left.
+//! A mechanism whose motion is prescribed needs no time integration (`docs/theory.md`, section 14): the required
+//! wrenches of its bodies follow from pose, velocity and acceleration. Joint reactions and driver loads solve the
+//! transposed equation of order n, with the factors that the motion has computed.
 //!
-//! | here | theory | what |
+//! | here | theory | meaning |
 //! |---|---|---|
-//! | [`acting`] | F = f - g | per body, what it needs less what already acts on it; over any number |
-//! | [`carry`] | T, mu, nu | what joints and drivers put on the bodies, and how that changes with the design; over any number |
+//! | [`acting`] | F = f - g | per body, required wrench minus applied wrench |
+//! | [`carry`] | T, mu, nu | reactions of joints and driver loads, and their derivatives by the design |
 //! | [`solver`] | | loads step after step |
-//! | [`program`] | | the same as part of a step's program |
-//! | [`inertia`] | M | what masses need, as one matrix of each body, and how that changes |
-//! | [`compliance`] | C = Y K^-1 Y^T | how elastic joints deflect |
-//! | [`gradient`] | dy/db | one load by all variables |
-//! | [`virtual_motion`] | Y | what a load moves, and what of it turns with the design |
-//! | [`friction`] | M = -c N(T) | what has friction, from the forces that it changes itself |
-//! | [`measures`] | | the measures of loads, over any number |
+//! | [`program`] | | loads as part of a step's program |
+//! | [`inertia`] | M | spatial inertia per body, and derivatives of the inertial wrench |
+//! | [`compliance`] | C = Y K^-1 Y^T | deflections with elastic joints |
+//! | [`gradient`] | dy/db | gradient of one load by all variables |
+//! | [`virtual_motion`] | Y | virtual motion of a load |
+//! | [`friction`] | M = -c N(T) | Coulomb friction in joints |
+//! | [`measures`] | | evaluation of load measures |
+//!
+//! `acting`, `carry`, `virtual_motion` and `measures` are generic over the number type.
 
 mod acting;
 mod carry;

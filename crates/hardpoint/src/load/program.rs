@@ -1,9 +1,8 @@
-//! Loads as part of a step's program: what joints and drivers carry is recorded where the position is, with its
-//! factors.
+//! Loads as part of a step's program: reactions and driver loads are recorded with the position and its factors.
 //!
-//! Not recorded are joints that rub, with forces that are iterated, springs by tables, bushings that resist turning,
-//! and elements on angles that are counted along the path: these depend on the kernel. Which reactions are known is a
-//! result like others: in some positions redundant constraints share what they do not in others.
+//! The kernel evaluates the others: models with joint friction (iterative), springs with tables, bushings with
+//! torsional stiffness, and elements on angles that are counted along the path. Whether a reaction is determined is a
+//! result like others, because it depends on the position.
 
 use hardpoint_tape::Number;
 
@@ -25,8 +24,8 @@ use super::solver::{asked, asks_for_reactions, geometry_along};
 use super::turns::Turns;
 use super::virtual_motion::{VirtualMotion, Weights};
 
-/// Maximum number of pairs of a body or element with a variable for which loads are recorded: each takes some hundred
-/// operations.
+/// Maximum number of pairs of a body or element with a variable for which loads are recorded. Each pair takes some
+/// hundred operations.
 const MOST_PAIRS: usize = 10_000;
 
 /// Reason why the loads of a model are not recorded, if they are not.
@@ -36,37 +35,37 @@ pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static s
     }
     let kinds = || model.elements.iter().map(|e| &e.kind);
     if kinds().any(ElementKind::rubs) {
-        return Some("joints rub, with forces that are iterated");
+        return Some("joints have friction, which is solved iteratively");
     }
     if !kinds().all(ElementKind::is_arithmetic) {
-        return Some("a spring has a table, or a bushing a stiffness against turning");
+        return Some("a spring has a table, or a bushing a torsional stiffness");
     }
     let counted = (0..model.elements.len())
         .any(|e| matches!(Turns::of(model, topology, ElementId(e)), Turns::Path(_) | Turns::Length));
     counted.then_some("a force acts on an angle that is counted along the path")
 }
 
-/// Loads while they are recorded.
+/// Loads during recording.
 ///
-/// Their derivatives depend on what each load moves (`virtual_motion.rs`): how it goes with W, W. and W.. of every body
-/// is worked out once, and a variable, whose W are there, takes a few products for each. That is less than what joints
-/// carry of each variable's F' as long as there are fewer loads than some dozen.
+/// Their derivatives use the virtual motion of each load (`virtual_motion.rs`): the coefficients of W, W. and W.. of
+/// every body are computed once, and each variable takes a few products. For fewer than a few dozen loads this is
+/// cheaper than the reactions to F' of every variable.
 pub(crate) struct RecordedLoads<'a> {
     model: &'a Model,
     bodies: Equilibrium<Number>,
-    /// As it goes with each variable, and with none.
+    /// Geometry with the derivative by each variable; the last entry has none.
     changed: Vec<Changed<Number>>,
     loads: Vec<RecordedLoad<'a>>,
-    /// Per load: how much redundant constraints make of it; its value, and its derivatives by the variables so far.
+    /// Per load: the excess due to self-stress.
     excess: Vec<Number>,
+    /// Values per load, followed by the derivatives by the variables so far.
     found: Vec<Vec<Number>>,
 }
 
-/// A load, and how it goes with what bodies need, with their design twists, and with what unit twists and wrenches turn
-/// with.
+/// A load with its derivatives by required wrenches, by design twists, and by the twists of the joint frames.
 struct RecordedLoad<'a> {
     kind: &'a MeasureKind,
-    /// Per body: Y, and the wrenches that go with W, W., W...
+    /// Per body: Y, and the coefficients of W, W., W...
     moves: Vec<Twist<Number>>,
     loads: Vec<[Wrench<Number>; 3]>,
     turning: Turning<Number>,
@@ -108,7 +107,7 @@ impl<'a> RecordedLoads<'a> {
         recorded
     }
 
-    /// Derivative of a load by all that a variable may change.
+    /// Derivatives of a load by all quantities that a variable may change.
     fn load(
         &mut self,
         kind: &'a MeasureKind,
@@ -133,7 +132,7 @@ impl<'a> RecordedLoads<'a> {
         RecordedLoad { kind, moves, loads, turning: virtual_motion.turning }
     }
 
-    /// Their derivatives by the next variable.
+    /// Records the derivatives by the next variable.
     pub fn differentiate(&mut self, by: Differentiated<'_, Number>) {
         let Self { model, bodies, changed, loads, found, .. } = self;
         let Changed { geometry, masses } = &changed[by.variable.0];
@@ -143,7 +142,7 @@ impl<'a> RecordedLoads<'a> {
         let acting = bodies.along.acting(model, geometry);
         let instant = Instant { acting: &acting, carried: &bodies.along.found };
         let derivative = |load: &RecordedLoad<'_>| {
-            // y' = sum (P2 . W.. + P1 . W. + P0 . W) + what turns + sum F' . Y of all else + dy/db                 (48)
+            // y' = sum (P2 . W.. + P1 . W. + P0 . W) + turning of frames + sum F' . Y of force elements + dy/db    (48)
             let mut sum = field.work((topology, state), flow, &load.loads, &load.turning);
             for (needed, y) in bodies.along.needed.iter().zip(&load.moves) {
                 sum += Wrench { m: needed.m.map(|x| x.d), f: needed.f.map(|x| x.d) }.on(*y);
@@ -154,7 +153,7 @@ impl<'a> RecordedLoads<'a> {
         found.push(derivatives);
     }
 
-    /// All of them, each with how much redundant constraints make of it.
+    /// Recorded loads, each with its excess due to self-stress.
     pub fn values(self) -> RecordedValues {
         let Self { excess, found, .. } = self;
         let value = |(n, measure): (usize, usize)| RecordedValue {

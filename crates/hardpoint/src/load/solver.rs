@@ -1,4 +1,4 @@
-//! Loads step after step, in one design.
+//! Loads of one design, step after step.
 
 use crate::design::{DesignMap, Geometry};
 use crate::measure::StepValues;
@@ -17,29 +17,30 @@ use super::inertia::Changed;
 use super::measures::Instant;
 use super::turns::Turns;
 
-/// Evaluates loads where a stepper is, in one design.
+/// Evaluates loads at the position of a stepper, for one design.
 pub(crate) struct LoadSolver<'a> {
     pub(super) model: &'a Model,
-    /// The measures of loads.
+    /// Measures of loads.
     asked: Vec<usize>,
     geometry: Geometry,
-    /// The same as it goes with each variable, and with none.
+    /// Geometry with the derivative by each variable.
     pub(super) changed: Vec<Changed<f64>>,
+    /// Geometry with derivative zero.
     pub(super) constant: Geometry<Dual>,
     turns: Vec<Turns>,
     pub(super) friction: Friction,
     pub(super) bodies: Equilibrium<f64>,
-    /// True if reactions are to be judged: with redundant constraints not all are known.
+    /// True if reactions are checked against self-stress: with redundant constraints some are not determined.
     judges: bool,
-    /// Per redundant row: what joints carry where that row pulls by itself.
+    /// Self-stresses, one per redundant row.
     stresses: Vec<Stress<f64>>,
-    /// Per measure: its value, and by variable and measure its derivative; NaN for those of no load.
+    /// Per measure: its value; NaN if it is not a load. Derivatives per variable and measure.
     pub(super) values: Vec<f64>,
     derivatives: Vec<f64>,
 }
 
 impl<'a> LoadSolver<'a> {
-    /// For the design with these values, with derivatives by the variables if they are wanted.
+    /// Solver for the design with these values, with derivatives by the variables if requested.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,
@@ -67,22 +68,22 @@ impl<'a> LoadSolver<'a> {
         }
     }
 
-    /// The same for those who want all reactions, requested or not.
+    /// Checks all reactions against self-stress, requested or not.
     pub fn judging(self) -> Self {
         Self { judges: true, ..self }
     }
 
-    /// Loads at the output time: joints and drivers.
+    /// Loads of joints and drivers at the output time.
     pub fn found(&self) -> &Carried<f64> {
         &self.bodies.now.found
     }
 
-    /// Per element, about what the coordinate is that it acts on.
+    /// Per element: approximate value of the coordinate that it acts on.
     pub fn near(&self) -> &[f64] {
         &self.bodies.now.near
     }
 
-    /// Loads where a stepper is at time t, with velocity and acceleration.
+    /// Evaluates the loads at the position of a stepper at time t, from velocity and acceleration.
     pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) {
         let (topology, state) = (&one.topology, &mut one.state);
         let model = self.model;
@@ -117,7 +118,7 @@ impl<'a> LoadSolver<'a> {
         self.bodies.now.acting(self.model, &self.geometry)
     }
 
-    /// Lets friction act, from the forces that it makes itself.
+    /// Solves for friction, whose normal forces depend on the friction itself.
     fn rub(&mut self, topology: &Topology, state: &mut State<f64>) {
         let Self { model, geometry, bodies, friction, stresses, .. } = self;
         let acting = bodies.now.acting(model, geometry);
@@ -130,7 +131,7 @@ impl<'a> LoadSolver<'a> {
         let responses: Vec<_> = units.into_iter().map(response).collect();
         let acting = bodies.now.acting(model, geometry);
         friction.set(&acting, &bodies.now.found, &responses);
-        // Where constraints share the force across a pin nobody knows its friction.
+        // If redundant constraints share the force across a pin, its friction is not determined.
         friction.solve(&acting, stresses);
         friction.enter(&mut bodies.now.friction);
         bodies.carry(topology, state, (model, geometry));
@@ -156,12 +157,12 @@ impl<'a> LoadSolver<'a> {
         })
     }
 
-    /// Determined part of the force that a joint applies to its body j, global, and the number of its directions: the
-    /// part that self-stresses can change is left out.
+    /// Determined part of the reaction force on body j, global, and the number of its directions. The part that
+    /// self-stresses can change is left out.
     pub fn known_force(&self, joint: JointId) -> (Vec3, usize) {
         let acting = self.acting();
         let force_of = |carried| Instant { acting: &acting, carried }.wrench(joint)[1];
-        // A basis of what they change: each less what is in those before it.
+        // Orthogonal basis of the forces that self-stresses change.
         let mut open: Vec<Vec3> = Vec::new();
         for Stress { carried, most } in &self.stresses {
             let kind = MeasureKind::Reaction { joint, part: ReactionPart::Force, on: None, axes: None };
@@ -184,7 +185,7 @@ impl<'a> LoadSolver<'a> {
         -needed[self.model.points[at.0].body.0].f
     }
 
-    /// Takes the turns of the coordinates that elements act on, from the tree or as the path has counted them.
+    /// Updates the turns of the coordinates that elements act on, from the tree or from the count along the path.
     fn follow_turns(&mut self, q: &[f64], counted: &[f64]) {
         for (near, turns) in self.bodies.now.near.iter_mut().zip(&self.turns) {
             match *turns {
@@ -195,7 +196,7 @@ impl<'a> LoadSolver<'a> {
         }
     }
 
-    /// Enters what was found among the measures of the output time.
+    /// Writes the loads to the measures of the output time.
     pub fn enter(&self, out: &mut StepValues) {
         let measures = self.values.len();
         for &m in &self.asked {
@@ -206,7 +207,7 @@ impl<'a> LoadSolver<'a> {
         }
     }
 
-    /// Their derivatives by a variable, for which the motion has been solved.
+    /// Computes the derivatives by a variable, whose sensitivities have been solved.
     pub fn differentiate(&mut self, by: Differentiated<'_>) {
         let Differentiated { variable: VariableId(v), topology, state, field, flow } = by;
         let Self { model, changed, bodies, friction, .. } = self;
@@ -229,12 +230,12 @@ impl<'a> LoadSolver<'a> {
     }
 }
 
-/// The measures of loads.
+/// Measures of loads.
 pub(super) fn asked(model: &Model) -> Vec<usize> {
     (0..model.measures.len()).filter(|m| model.measures[*m].kind.is_load()).collect()
 }
 
-/// True if what joints put on bodies is requested: with redundant constraints not all of that is known.
+/// True if the model has a measure of reactions: with redundant constraints some are not determined.
 pub(super) fn asks_for_reactions(model: &Model) -> bool {
     model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Reaction { .. }))
 }
@@ -250,7 +251,7 @@ pub(super) fn geometry_along<T: Real>(
     design_map.geometry(&duals)
 }
 
-/// Two directions are one where no more than this part of one is across the other.
+/// Sine of the angle below which two directions are parallel.
 const PARALLEL: f64 = 1e-7;
 
 /// Component of a vector perpendicular to these unit vectors, which are perpendicular to each other.

@@ -1,4 +1,4 @@
-//! Angles that elements act on, counted through whole turns.
+//! Whole turns of the angles that elements act on.
 
 use crate::measure::is_counted_of_element;
 use crate::model::{ElementId, Model};
@@ -7,18 +7,18 @@ use crate::topology::{CoordinateId, Topology};
 /// Source of the number of turns of an element's coordinate.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Turns {
-    /// It acts on none.
+    /// The element does not act on a coordinate.
     None,
-    /// A length of a joint that the tree does not carry, which has no turns.
+    /// A length of a cut joint, which has no turns.
     Length,
-    /// The coordinate of the tree, which is the angle itself.
+    /// A generalised coordinate, which is the angle itself.
     Coordinate(CoordinateId),
-    /// The path, where the angle is counted in this place.
+    /// An angle that is counted along the path, at this index.
     Path(usize),
 }
 
 impl Turns {
-    /// Returns those of all elements.
+    /// Returns the sources of all elements.
     pub fn of_all(model: &Model, topology: &Topology) -> Vec<Self> {
         let mut turns: Vec<Self> =
             (0..model.elements.len()).map(|e| Self::of(model, topology, ElementId(e))).collect();
@@ -31,7 +31,7 @@ impl Turns {
         turns
     }
 
-    /// Returns those of one element; the place of an angle on the path is not known.
+    /// Returns the source of one element; the index of an angle on the path is not set.
     pub fn of(model: &Model, topology: &Topology, e: ElementId) -> Self {
         let Some((joint, coordinate)) = model.elements[e.0].kind.coordinate(model) else { return Self::None };
         let link = topology.links.iter().find(|link| link.joint == Some(joint));

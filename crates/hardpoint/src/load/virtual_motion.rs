@@ -1,5 +1,5 @@
 //! Virtual motion of a load: every load is `y = sum F . Y`, with Y the twists of the bodies when its joint opens, or
-//! its driver alone moves (`docs/theory.md`, section 14); over any number.
+//! its driver moves alone (`docs/theory.md`, section 14); for any number type.
 
 use crate::constraint::{MarkerPairRates, Row};
 use crate::model::{BodyId, DriverId, GROUND, JointId, MeasureKind};
@@ -15,17 +15,17 @@ use super::carry::{Carried, DriverAt, Places};
 /// Derivatives of a load by the transmitted wrenches.
 #[derive(Debug)]
 pub(super) struct Weights<T> {
-    /// By the wrenches that joints put on their bodies j.
+    /// By the reaction wrenches of joints on body j.
     joints: Vec<(JointId, Twist<T>)>,
-    /// By the forces of drivers.
+    /// By the driver loads.
     drivers: Vec<(DriverId, T)>,
-    /// By the wrench on ground; zero of most.
+    /// By the wrench on ground; zero for most loads.
     pub ground: Twist<T>,
 }
 
 impl<T: Real> Weights<T> {
-    /// Weights of a measure that is `objective` of the transmitted wrenches, one number after the other; the wrenches
-    /// of some joints count `besides`.
+    /// Weights of a measure, from derivatives of `objective`, a function of the transmitted wrenches. The objective
+    /// also depends on the wrenches of the joints `besides`.
     pub fn of(
         kind: &MeasureKind,
         besides: impl Iterator<Item = JointId>,
@@ -71,7 +71,7 @@ fn slopes<T: Real>(
     Twist { w: Vec3::new(a, b, c), v: Vec3::new(x, y, z) }
 }
 
-/// Lets one number of a wrench go, and no other.
+/// Sets the derivative of one component of a wrench to one, and of the others to zero.
 fn seed<T: Real>(wrench: &mut Wrench<Dual<T>>, unit: Option<usize>) {
     let numbers = [&mut wrench.m, &mut wrench.f].into_iter().flat_map(|v| [&mut v.x, &mut v.y, &mut v.z]);
     for (k, x) in numbers.enumerate() {
@@ -79,7 +79,7 @@ fn seed<T: Real>(wrench: &mut Wrench<Dual<T>>, unit: Option<usize>) {
     }
 }
 
-/// Y and S_Y, and what the turning of unit twists and wrenches makes of the load.
+/// Y and S_Y, and the part of the load's derivative that is due to the turning of unit twists and wrenches.
 pub(super) struct VirtualMotion<T> {
     flow: Flow<T>,
     pub turning: Turning<T>,
@@ -90,12 +90,12 @@ impl<T: Real> VirtualMotion<T> {
         Self { flow: Flow::new(topology, bodies, true).with_moves(), turning: Turning::new(topology) }
     }
 
-    /// Per body: Y.
+    /// Virtual twist Y per body.
     pub fn twists(&self) -> &[Twist<T>] {
         &self.flow.twists[0]
     }
 
-    /// Markers i of the joints depend on their weights, drivers by theirs, and all else follows: (11).
+    /// Solves for Y by (11): the weights prescribe the motion of markers i of the joints, and the speeds of drivers.
     pub fn go(&mut self, places: &Places, topology: &Topology, state: &mut State<T>, weights: &Weights<T>) {
         let Self { flow, .. } = self;
         flow.moves[0].fill(Twist::zero());
@@ -121,8 +121,8 @@ impl<T: Real> VirtualMotion<T> {
         }
     }
 
-    /// `sum F . Y' = sum_k T_k . x'_a S_Y,a - sum_r mu_r l'_r . (Y_j - Y_i - C)`, as loads on the twists of the frames
-    /// that x and l turn with, and on the coordinates before them; `on` gets those on bodies.
+    /// Computes `sum F . Y' = sum_k T_k . x'_a S_Y,a - sum_r mu_r l'_r . (Y_j - Y_i - C)` as loads on the twists of the
+    /// frames that x and l turn with, and on the coordinates before them. Calls `on` for the loads on bodies.
     pub fn turn(
         &mut self,
         (places, transmission): (&Places, &Transmission<T>),
@@ -169,7 +169,7 @@ impl<T: Real> VirtualMotion<T> {
                 set(&mut turning.ends[c.0][end], unit, driving.map(works).fold(T::zero(), |sum, x| sum + x));
             }
         }
-        // D = W + z: what turns with a body's W as well; ground has none.
+        // D = W + z: the frames turn with W of their body; ground has none.
         let mut on = |body: BodyId, load: Wrench<T>| {
             if body != GROUND {
                 on(body, load);
@@ -184,13 +184,13 @@ impl<T: Real> VirtualMotion<T> {
     }
 }
 
-/// A turn about x, y or z through the world origin, then a slide.
+/// Unit rotations about x, y and z through the world origin, followed by unit translations.
 pub(super) fn unit_twist(unit: usize) -> Twist {
     let axis = Vec3::AXES[unit % 3];
     if unit < 3 { Twist::turn(axis, Vec3::ZERO) } else { Twist::slide(axis) }
 }
 
-/// Sets the number of a wrench that a unit twist meets.
+/// Sets the component of a wrench that does work on a unit twist.
 pub(super) fn set<T>(wrench: &mut Wrench<T>, unit: usize, to: T) {
     let half = if unit < 3 { &mut wrench.m } else { &mut wrench.f };
     *[&mut half.x, &mut half.y, &mut half.z][unit % 3] = to;

@@ -1,4 +1,4 @@
-//! Measures and followed points: numbers that a person asks for, with rates and sensitivities.
+//! Measures and followed points, with rates and sensitivities.
 //!
 //! A measure is written once, over any [`Real`]; its rate, acceleration and the design derivatives of all three follow
 //! by the product and chain rules where it runs on [`Rates`].
@@ -83,7 +83,7 @@ pub struct MeasureResults {
     values: Blocks,
     /// Derivatives of those by the variables at fixed t.
     d: Blocks,
-    /// `places[b * outputs + m]`: where the derivatives of output m by variable b begin; none where they are all zero.
+    /// `places[b * outputs + m]`: index of the first derivative of output m by variable b; `None` if they are all zero.
     places: Vec<Option<usize>>,
     /// Variables that there are no derivatives by.
     unknown: Vec<bool>,
@@ -371,7 +371,7 @@ impl<'a> FormulaEvaluator<'a> {
             laws,
             motion,
             slopes,
-            // What is fixed in the bodies has no rates: they are all in the poses.
+            // Body-fixed data have no rates: all rates are in the poses.
             fixed: design_map.fixed(values).map(Jet::constant),
             bodies: bodies_asked_for(model),
             poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
@@ -456,7 +456,7 @@ fn only(x: f64) -> Rates {
 /// Derivatives of some outputs by the variables that the mechanism follows: of those that are listed, in the order of
 /// blocks of eight output times that begin there. `out` is given output time, variable, output and the derivatives.
 ///
-/// Variable by variable, so that what is fixed in the bodies is worked out once for each.
+/// Evaluates variable by variable, so that body-fixed data are computed once for each.
 pub(crate) fn derivatives(
     design: &MeasuredDesign<'_>,
     outputs: &[Output],
@@ -608,7 +608,7 @@ fn is_counted(model: &Model, output: &Output) -> bool {
     }
 }
 
-/// Counts angles through whole turns, and says of each what these are.
+/// Counts whole turns of angles.
 fn unwrap_angles(
     laws: &[Law],
     motion: &Motion,
@@ -798,13 +798,13 @@ impl<'a, T: Real> Instant<'a, T> {
         let half = T::constant(0.5);
         let wheelbase = || T::constant(self.model.vehicle.wheelbase.unwrap_or(f64::NAN));
         let track = left.contact().y - right.contact().y;
-        // Headings to the left are a = -toe_L and b = toe_R, the mean one (a + b) / 2. Into the turn the inner wheel heads by
-        // i = (abs(a + b) + a - b) / 2 and the outer one by o = (abs(a + b) - a + b) / 2, whichever way the axle turns.
+        // Headings to the left are a = -toe_L and b = toe_R, with mean (a + b) / 2. In a turn of either direction the
+        // heading of the inner wheel is i = (abs(a + b) + a - b) / 2, of the outer one o = (abs(a + b) - a + b) / 2.
         let turning = || {
             let (a, b) = (-toe(&left), toe(&right));
             let (sum, apart) = ((a + b).abs(), (a - b) * half);
-            // Straight ahead the two wheels change places, a kink: derivatives by the design are the mean of those of both sides,
-            // and where the axle steers across there are no rates.
+            // Straight ahead inner and outer wheel change, which is a kink: derivatives by the design are the mean of
+            // those of both sides, and while the axle steers through it there are no rates.
             let mean = if sum.exceeds(T::constant(KINK)) {
                 sum * half
             } else if (a + b).rate().abs().exceeds(T::constant(KINK)) {

@@ -1,16 +1,17 @@
-//! All outputs at eight output times as a straight-line program: from the results of the motion, where they stand side
-//! by side, to those of the measures.
+//! Straight-line program of all outputs at eight output times, from the batched results of the motion to those of the
+//! measures.
 //!
-//! The formulas are recorded once, whatever the motion. How an output goes with the six ways in which a body can go,
-//! with the first two time derivatives of that, is recorded once for each body that it depends on; its derivative by a
-//! variable is then a sum of products with how the variable moves these bodies. That is six evaluations for a body
-//! instead of one for each variable, and what a formula is about does not count: a point knows three ways, a direction
-//! two or three.
+//! The formulas are recorded once, independent of the motion. The derivatives of an output by the six degrees of
+//! freedom of a body, with their first two time derivatives, are recorded once for each body that it depends on. The
+//! derivative by a variable is then a sum of products with the sensitivities of these bodies. That is six evaluations
+//! per body instead of one per variable, and only for the degrees of freedom that matter: three for a point, two or
+//! three for a direction.
 //!
-//! What formulas decide by values is recorded as a limit. Where one does not hold, or any number is none, the formulas
-//! themselves are asked again ([`MeasureRun::fits`]).
+//! Decisions that formulas make by values are recorded as limits. If a limit is violated, or a number is NaN, the
+//! formulas themselves are evaluated again ([`MeasureRun::fits`]).
 //!
-//! With g_k how an output y goes with way k of a body, and a_k how far the body goes that way per unit of a variable b,
+//! With g_k the derivative of an output y by direction k of a body, and a_k the displacement of the body in this
+//! direction per unit of a variable b,
 //!
 //! ```text
 //! y_b    =  sum_k g_k a_k
@@ -18,7 +19,7 @@
 //! (y..)_b  =  sum_k (g_k.. a_k + 2 g_k. a_k. + g_k a_k..)
 //! ```
 //!
-//! and a = (dr, pi') with their rates: slides of the frame's origin, turns about it.
+//! and a = (dr, pi') with their rates: translations of the frame's origin, rotations about it.
 
 use std::ops::Range;
 
@@ -81,7 +82,7 @@ pub(crate) struct MeasureProgram {
     /// Index of the design values among the inputs.
     design_at: usize,
     outputs: usize,
-    /// By variable and output: where its derivatives begin; none where they are all zero.
+    /// By variable and output: index of its first derivative; `None` if they are all zero.
     places: Vec<Option<usize>>,
     /// Number of values.
     derivatives: usize,
@@ -112,7 +113,8 @@ impl MeasureProgram {
             for &b in &bodies {
                 let numbers: Vec<Number> =
                     BodyState::at_design(model, BodyId(b)).numbers().map(&mut input).collect();
-                // r, A, v, omega, a, alpha of every body: a pose with its rates, and what it turns with
+                // r, A, v, omega, a, alpha of every body: a pose with its rates, and its angular velocity and
+                // acceleration
                 let vectors = std::array::from_fn(|k| vector(&numbers[3 * k..]));
                 (turns[b], poses[b]) = ([vectors[5], vectors[7]], moving(vectors));
             }
@@ -179,7 +181,7 @@ fn moving_bodies(model: &Model) -> Vec<usize> {
     bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect()
 }
 
-/// Measures that formulas may ask for with all their turns.
+/// Measures that formulas may use with all their turns.
 fn turning(model: &Model, outputs: &[Output]) -> Vec<usize> {
     let formulas = model.measures.iter().filter_map(|m| match &m.kind {
         MeasureKind::Combination { expression } => Some(expression),
@@ -207,7 +209,8 @@ fn ways_of(
     [dr, dpi, dv, domega, da, dalpha]: [Vec3<Number>; 6],
     [omega, alpha]: [Vec3<Number>; 2],
 ) -> [[Number; 3]; WAYS] {
-    // Of the rotation vector pi':  (pi'). = d(omega)/db + omega x pi',    (pi').. = d(alpha)/db + alpha x pi' + omega x (pi').
+    // Rotation vector pi':  (pi'). = d(omega)/db + omega x pi',
+    // (pi').. = d(alpha)/db + alpha x pi' + omega x (pi').
     let first = omega.cross_plus(dpi, domega);
     let second = omega.cross_plus(first, alpha.cross_plus(dpi, dalpha));
     let way = |[x, y, z]: [Vec3<Number>; 3]| [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]];
@@ -353,7 +356,7 @@ impl Recorder<'_> {
     }
 }
 
-/// True if an output goes, itself or by what it is made of, by more of a step than where its bodies are.
+/// True if an output, or one that it uses, depends on more of a step than the motion of its bodies.
 fn depends_on_step(model: &Model, output: OutputSource) -> bool {
     let OutputSource::Measure(m) = output else { return false };
     model.depends_on_step(m)
@@ -366,7 +369,7 @@ fn depends_on_step(model: &Model, output: OutputSource) -> bool {
         }
 }
 
-/// Per output, the bodies that it depends on, and the variables that move what it is measured with.
+/// Per output: the bodies that it depends on, and the variables that change its body-fixed data.
 ///
 /// A derivative that is not a number makes one of everything that depends on it. A formula that took the larger of two
 /// numbers would hide it: measures are smooth.
@@ -453,7 +456,7 @@ impl<'p> MeasureRun<'p> {
 
     /// True if an output counts, in that many lanes.
     pub fn fits(&self, output: usize, lanes: usize) -> bool {
-        // Written so that NaN does not.
+        // NaN does not fit.
         self.guards[output].0[..lanes].iter().all(|x| *x <= 0.0)
     }
 
@@ -464,7 +467,7 @@ impl<'p> MeasureRun<'p> {
         for (m, lanes) in self.turns() {
             for (lane, to) in lanes.iter_mut().enumerate() {
                 let now = counted(m, usize::min(times.start + lane, times.end - 1));
-                // Bit by bit, so that what is no number is the same again.
+                // Compared bit by bit, so that NaN equals NaN.
                 differ |= now.to_bits() != to.to_bits();
                 *to = now;
             }

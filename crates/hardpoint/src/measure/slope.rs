@@ -84,7 +84,7 @@ impl<'a> Slopes<'a> {
         Some(Self::along(design_map, values, ways, seconds))
     }
 
-    /// Enters what is found at time t, the one that was begun last.
+    /// Writes the results at time t, the one that was begun last.
     pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, out: &mut StepValues) {
         self.seconds.solve(stepper, t);
         let variables = self.variables;
@@ -201,7 +201,7 @@ pub(crate) fn hindrance(design_map: &DesignMap<'_>) -> Option<&'static str> {
     let model = design_map.model();
     let pairs = drivers_of(model).len() * (1 + model.variables.len()) * model.bodies.len();
     if pairs > MOST_PAIRS {
-        return Some("the program of what single drivers do would be too long");
+        return Some("the program for the motion of single drivers would be too long");
     }
     let slopes = model.measures.iter().filter_map(|m| match m.kind {
         MeasureKind::Slope { of, over, .. } => Some([of, over]),
@@ -265,7 +265,7 @@ impl<T: Real> DriverAlone<'_, T> {
         });
         let wheel = |instant: &Instant<'_, Dual<T>>, d: usize, wheel: WheelId| TravellingWheel {
             wheel: instant.wheel(k, d, wheel),
-            // The twist w, v per unit of q, which is what a pose with `d` along q splits into
+            // The twist w, v per unit of q, from a pose with its derivative `d` along q
             carrier: instant.poses[model.wheels[wheel.0].body.0].split().1,
             drive: model.wheels[wheel.0].drive,
             brakes: model.wheels[wheel.0].brakes,

@@ -103,7 +103,7 @@ impl StepValues {
     pub fn take_recorded(&mut self, found: &[AlignedLanes], lanes: Range<usize>) {
         let (excess, found) = found.split_at(self.measures.len());
         let to = self.numbers.block_mut(self.steps);
-        // Written so that NaN is not known.
+        // NaN is not known.
         let all_known = excess.iter().all(|excess| excess.0.iter().fold(true, |all, x| all & (*x <= 0.0)));
         if all_known && lanes.len() == LANES {
             to.iter_mut().zip(found).for_each(|(to, from)| *to = from.0);

@@ -8,7 +8,7 @@
 //! | `kingpin` | L, U, k = U - L | lower and upper point, global, m |
 //! | `contact()`, `outboard()`, `forward()` | C, o, f | |
 //! | `off_kingpin(P)` | d(P) | |
-//! | `.d` of a number of [`TravellingWheel`], `carrier` | X', w and v | per unit of the driver q, (11) of `docs/theory.md` with `L_u = 1` |
+//! | `.d` of a number of [`TravellingWheel`], `carrier` | X', w and v | per unit of the driver q, (11) with `L_u = 1` |
 
 use crate::model::{TorqueReaction, Vehicle, VehicleEnd, WheelMeasure, WheelRequirement};
 use crate::number::{Dual, Real};

@@ -382,7 +382,7 @@ impl ElementKind {
         matches!(self, Self::Rigid { .. } | Self::Bar { .. } | Self::Block { .. } | Self::Mesh { .. })
     }
 
-    /// True if it has friction: by a force that the reactions say, which it changes.
+    /// True if it is a friction element: its force depends on joint reactions, which it changes.
     pub fn rubs(&self) -> bool {
         matches!(self, Self::Friction { .. } | Self::SlideFriction { .. })
     }

@@ -54,7 +54,7 @@ impl Solid {
         let (mut volume, mut first, mut second) = (0.0, Vec3::ZERO, [0.0; 6]);
         let mut extent = 0.0_f64;
         for corners in triangles {
-            // From a corner of the surface: what is small counts from near by.
+            // Relative to a corner of the surface, to keep the digits of small solids.
             let [a, b, c] = corners.map(|k| vertices[k as usize] - origin);
             // A tetrahedron with the origin: V = a . (b x c) / 6,  sum V (a + b + c) / 4,
             // integral of x y = V/20 (sum x_i y_i + (sum x_i) (sum y_i))
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_that_bound_nothing_are_refused() {
+    fn surfaces_that_are_not_closed_are_rejected() {
         let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vec3::from);
         let open = Solid::of(&vertices, &[[0, 2, 1], [0, 1, 3], [0, 3, 2]]);
         assert!(matches!(open, Err(OpenSurface::Edges(3, _))), "{open:?}");

@@ -27,14 +27,14 @@ pub struct SweepSettings {
 pub enum SweepMethod {
     /// Every combination of evenly spaced values.
     Factorial,
-    /// At random, so that each of as many slices of every range has one design.
+    /// Latin hypercube: every range is divided into N slices for N designs, and each slice has one design at random.
     LatinHypercube,
-    /// Points that fill the ranges evenly, however many there are: a scrambled Sobol sequence.
+    /// Points that fill the ranges uniformly for any number of designs: a scrambled Sobol sequence.
     Sobol,
-    /// Pairs of such points, and for every variable the first of a pair with that variable of the second: what Sobol's
-    /// indices of sensitivity are estimated from.
+    /// Pairs of such points, and for every variable the first of a pair with that variable of the second, for estimating
+    /// Sobol indices.
     Indices,
-    /// As they are listed.
+    /// The listed designs.
     Listed,
 }
 

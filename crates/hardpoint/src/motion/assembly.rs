@@ -1,11 +1,11 @@
-//! Closing a mechanism whose joints are open in the drawing.
+//! Assembly of a mechanism whose joints are open in the design configuration.
 //!
-//! Lengths and places that don't fit leave gaps in the configuration in the design configuration. The gaps are closed
-//! along a path: the part of them that is still open runs from 1 to 0 while every driver stays at zero, in steps that
-//! watch for limits and branches like those of any motion. So the mechanism closes on the branch that was drawn, and an
-//! assembled one stays as it is. Where the path ends before the gaps are closed, as it does from a drawing in a
-//! singular position (bars in line), the nominal design is also assembled from positions around the drawing, by least
-//! squares; of all assemblies found, the nearest is taken. If there is none, least squares give the smallest gaps.
+//! Lengths and points that do not fit leave gaps in the design configuration. The gaps are closed along a path: their
+//! open fraction runs from 1 to 0 while every driver stays at zero, in steps that check for limits and branches like
+//! those of any motion. So the mechanism closes on the branch of the design configuration, and an assembled one stays
+//! unchanged. The path may end before the gaps are closed, as from a singular design configuration (bars in line). Then
+//! the nominal design is also assembled from positions around it, by least squares, and the nearest assembly is taken.
+//! If there is none, least squares give the smallest gaps.
 
 use crate::joint::Quantity;
 use crate::linalg::Elimination;
@@ -19,26 +19,26 @@ use super::stepper::{AcceptedPosition, Stepper};
 use super::walk::Path;
 use super::{Stop, StopKind};
 
-/// A gap below this part of the mechanism's size (or, for a cosine, below this) is round-off of the drawing.
+/// Gaps below this fraction of the mechanism's size (or, for a cosine, below this) are round-off.
 const CLOSED: f64 = 1e-12;
-/// A gap that is worth telling: typed coordinates agree to about this part of the size.
-const WORTH_TELLING: f64 = 1e-7;
-/// The least-squares search ends when a step improves its sum of squares by less than this part.
+/// Smallest reported gap: coordinates typed into a file agree to about this fraction of the size.
+const REPORTED_GAP: f64 = 1e-7;
+/// The least-squares search ends when a step reduces its sum of squares by less than this fraction.
 const NO_BETTER: f64 = 1e-12;
-/// ... or after that many steps.
+/// Maximum number of steps of the search.
 const MAX_SEARCH: usize = 200;
-/// A drawing counts as singular if its path ends before this part of the gaps is closed. A path that ends later ends at
-/// a limit of the mechanism, beyond which positions around the drawing are no better.
+/// A design configuration is singular if its path ends before this fraction of the gaps is closed. A path that ends
+/// later ends at a limit of the mechanism; starting from nearby positions does not help then.
 pub(super) const SINGULAR_DRAWING: f64 = 0.05;
-/// A search that leaves no scaled residual above this has found an assembly; Newton's method closes the rest.
+/// Scaled residual below which a search has found an assembly; Newton's method closes the rest.
 const FOUND: f64 = 1e-7;
-/// Assemblies that differ by less than this, rad or sizes, are one, and so are distances from the drawing.
+/// Assemblies, and distances from the design configuration, are equal if they differ by less than this, rad or sizes.
 const ONE_ASSEMBLY: f64 = 1e-5;
-/// Starts of a search deviate from the drawing by up to this, rad or sizes; each is tried in [`DIRECTIONS`] directions
-/// and their opposites.
+/// Deviations from the design configuration at which searches start, rad or sizes; each is tried in [`DIRECTIONS`]
+/// directions and their opposites.
 const DEVIATIONS: [f64; 3] = [0.03, 0.2, 0.8];
 const DIRECTIONS: usize = 3;
-/// A search solves dense systems: larger ones are not tried, so that a failure is reported within seconds.
+/// Largest dense system of a search, so that a failure is reported within seconds.
 const LARGEST_SEARCH: usize = 150;
 
 /// Assembly of a mechanism that was open in the design configuration.
@@ -46,19 +46,19 @@ const LARGEST_SEARCH: usize = 150;
 pub struct Assembly {
     /// Open constraints of the design configuration, largest gaps first.
     pub gaps: Vec<Gap>,
-    /// The bodies that moved, as far as they did.
+    /// Bodies that moved, with their displacements.
     pub moved: Vec<AssemblyShift>,
     /// Number of assemblies found around the design configuration if the path from it leads to none; the nearest was
     /// chosen. 0 if the path closed the mechanism.
     pub found_nearby: usize,
 }
 
-/// A constraint that is open.
+/// Gap of an open constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// Open constraint.
     pub of: Closing,
-    /// By how much, m or as a cosine.
+    /// Size, m or as a cosine.
     pub size: f64,
     /// Quantity of the gap.
     pub quantity: Quantity,
@@ -71,7 +71,7 @@ pub enum Closing {
     Joint(JointId),
     /// A driver across a cut joint.
     Driver(DriverId),
-    /// A coupler, by its place in the model.
+    /// A coupler, by its index in the model.
     Coupler(usize),
 }
 
@@ -80,17 +80,17 @@ pub enum Closing {
 pub struct AssemblyShift {
     /// The body.
     pub body: BodyId,
-    /// By how much its frame's origin moved, m.
+    /// Displacement of the origin of its frame, m.
     pub distance: f64,
-    /// By how much it turned, rad.
+    /// Angle of its rotation, rad.
     pub angle: f64,
 }
 
-/// An assembly that was found around a drawing.
+/// An assembly that was found around the design configuration.
 struct FoundAssembly {
-    /// Distance of the bodies from the drawing, in sizes and rad.
+    /// Distance of the bodies from the design configuration, in sizes and rad.
     distance: f64,
-    /// To which side they went: it decides between assemblies that are equally near.
+    /// Side to which they moved; it decides between assemblies at the same distance.
     side: f64,
     q: Vec<f64>,
     balls: Vec<Quat<f64>>,
@@ -98,7 +98,7 @@ struct FoundAssembly {
 }
 
 impl FoundAssembly {
-    /// Returns whether bodies are as far, and on the same side.
+    /// Returns true if distance and side are the same.
     fn is_same(&self, other: &Self) -> bool {
         (self.distance - other.distance).abs() <= ONE_ASSEMBLY
             && (self.side - other.side).abs() <= ONE_ASSEMBLY
@@ -106,7 +106,7 @@ impl FoundAssembly {
 }
 
 impl State<f64> {
-    /// The largest gap of the drawing, in sizes or as a cosine.
+    /// Largest gap of the design configuration, in sizes or as a cosine.
     pub(super) fn largest_gap(&self, topology: &Topology) -> f64 {
         // max over the rows of abs(phi_0) / unit
         let scaled = self.gap.iter().zip(&topology.rows).map(|(gap, place)| gap.abs() / place.unit);
@@ -115,16 +115,16 @@ impl State<f64> {
 }
 
 impl Stepper<'_> {
-    /// Closes the mechanism in the design configuration, all drivers at zero, and is on its branch.
+    /// Assembles the mechanism in the design configuration, with all drivers at zero, on its branch.
     pub(super) fn assemble(&mut self) -> Result<(), Box<Stop>> {
-        // phi_0 at q = 0; what is round-off of the drawing counts as closed.
+        // phi_0 at q = 0; round-off counts as closed.
         self.measure_gaps();
         if !(self.state.largest_gap(&self.topology) > CLOSED) {
             self.state.gap.fill(0.0);
             return self.assemble_along_path();
         }
         let drawn = (self.saved.clone(), self.topology.clone());
-        let gaps = self.gaps(|s, r| s.state.gap[r.0], WORTH_TELLING);
+        let gaps = self.gaps(|s, r| s.state.gap[r.0], REPORTED_GAP);
         let mut found_nearby = 0;
         if let Err(stop) = self.assemble_along_path() {
             found_nearby = match self.is_searched(&stop) {
@@ -136,25 +136,25 @@ impl Stepper<'_> {
             }
         }
         if !gaps.is_empty() {
-            self.assembly = Some(Assembly { gaps, moved: self.moved(WORTH_TELLING), found_nearby });
+            self.assembly = Some(Assembly { gaps, moved: self.moved(REPORTED_GAP), found_nearby });
         }
         self.state.gap.fill(0.0);
         self.state.gap_left = [0.0; 2];
         Ok(())
     }
 
-    /// Closes the gaps along the path from the drawing.
+    /// Closes the gaps along the path from the design configuration.
     fn assemble_along_path(&mut self) -> Result<(), Box<Stop>> {
         self.time = 0.0;
-        // s = 0: phi - phi_0 = 0 holds where it is drawn, and the signs of the determinants there say which branch this
-        // is.
+        // s = 0: phi - phi_0 = 0 holds in the design configuration; the signs of the determinants there define the
+        // branch.
         let drawn = self.drive(Path::Assembly, 0.0).and_then(|()| {
             self.restore();
             self.solve_within(f64::INFINITY)
         });
         self.settle_branch();
         let is_open = self.state.largest_gap(&self.topology) > 0.0;
-        // Where the drawing itself is singular, none of its gaps can be closed along the path.
+        // If the design configuration is singular, none of its gaps can be closed along the path.
         let of_assembly = |mut stop: Box<Stop>| {
             if is_open && !matches!(stop.kind, StopKind::Locked { .. }) {
                 stop.kind = StopKind::DoesNotAssemble;
@@ -171,8 +171,9 @@ impl Stepper<'_> {
         self.walk(Path::Assembly, 1.0).map_err(of_assembly)
     }
 
-    /// Returns whether an assembly is searched for around the drawing: where it is singular, and the path closes its
-    /// gaps of no design. A changed design is on the branch of the nominal one, or does not assemble.
+    /// Returns true if an assembly is searched for around the design configuration: if that is singular, and the path
+    /// does not close the nominal design either. A changed design is on the branch of the nominal one, or does not
+    /// assemble.
     fn is_searched(&self, stop: &Stop) -> bool {
         if matches!(
             stop.kind,
@@ -189,8 +190,8 @@ impl Stepper<'_> {
         nominal.state.gap == self.state.gap || nominal.assemble_along_path().is_err()
     }
 
-    /// Assembles the mechanism from positions around the drawing, and is where the bodies are nearest to it. Returns
-    /// the number of assemblies found; 0 where there is none.
+    /// Assembles the mechanism from positions around the design configuration, and moves to the nearest assembly.
+    /// Returns the number of assemblies found, or 0.
     fn assemble_nearby(&mut self, drawn: &(AcceptedPosition, Topology)) -> usize {
         let unknowns: Vec<CoordinateId> = self.topology.unknown_coordinates().collect();
         if unknowns.len() > LARGEST_SEARCH {
@@ -209,7 +210,7 @@ impl Stepper<'_> {
                 found.push(assembly);
             }
         }
-        // The nearest; of equally near ones that on the positive side.
+        // The nearest assembly; on equal distance that on the positive side.
         let nearest = found.iter().map(|a| a.distance).fold(f64::INFINITY, f64::min) + ONE_ASSEMBLY;
         let near = found.iter().filter(|a| a.distance <= nearest);
         let Some(taken) = near.max_by(|a, b| a.side.total_cmp(&b.side)) else {
@@ -222,7 +223,7 @@ impl Stepper<'_> {
         if self.stand_assembled() { found.len() } else { 0 }
     }
 
-    /// Back to the drawing, with the rows that it is solved with.
+    /// Returns to the design configuration, with its selected rows.
     fn set_drawn(&mut self, (drawn, topology): &(AcceptedPosition, Topology)) {
         let blocks: Vec<BlockId> = self.topology.block_ids().collect();
         let changed = blocks.into_iter().filter(|b| self.topology[*b].selected != topology[*b].selected);
@@ -233,7 +234,7 @@ impl Stepper<'_> {
         self.restore();
     }
 
-    /// Deviates from the drawing, in one of several directions that no symmetry hides.
+    /// Deviates from the design configuration, in one of several directions without symmetry.
     fn deviate(&mut self, drawn: &(AcceptedPosition, Topology), unknowns: &[CoordinateId], start: usize) {
         self.set_drawn(drawn);
         let deviation =
@@ -249,8 +250,8 @@ impl Stepper<'_> {
         self.state.turn_balls(&self.topology, self.topology.link_ids());
     }
 
-    /// Is where a search ended, closed, with rows that are independent there; returns whether that is a regular
-    /// position.
+    /// Closes the mechanism at the end of a search, with rows that are independent there; returns true if the position
+    /// is regular.
     fn stand_assembled(&mut self) -> bool {
         self.time = 1.0;
         if self.drive(Path::Assembly, 1.0).is_err() {
@@ -261,7 +262,7 @@ impl Stepper<'_> {
             self.state.l[0][r.0] = self.state.wrench_of(&self.topology, r);
         }
         self.try_others.fill(f64::INFINITY);
-        // Before rows are chosen, and after: the sign of each determinant is that of this branch.
+        // The signs of the determinants define this branch, before and after the selection of rows.
         if self.reselect().is_err() || self.solve_within(f64::INFINITY).is_err() {
             return false;
         }
@@ -269,7 +270,7 @@ impl Stepper<'_> {
         for r in self.topology.coupler_terms() {
             self.state.near[r.0] = self.state.coordinate_of_row(&self.topology, r)[0];
         }
-        // A pivot that vanishes to round-off of the search marks bars in line: no motion is defined there.
+        // A pivot that is zero within round-off of the search means bars in line: no motion is defined there.
         let regular = self.state.pivots.iter().all(|(ratio, _)| *ratio > FOUND);
         if !regular || self.examine_position().is_err() {
             return false;
@@ -278,13 +279,13 @@ impl Stepper<'_> {
         true
     }
 
-    /// The assembly where it is, and how far that is from the drawing.
+    /// Assembly at the current position, with its distance from the design configuration.
     fn found_assembly(&self) -> FoundAssembly {
         let size = self.model.size();
         let (mut distance, mut side) = (0.0, 0.0);
         for (body, pose) in self.model.bodies.iter().zip(&self.state.pose).skip(1) {
             for at in Vec3::AXES {
-                // Three points of each body, a size from its origin, weighted so that no two sides weigh the same.
+                // Three points of each body, one size from its origin, with different weights for different sides.
                 let moved = (pose.point(at * size) - body.frame.point(at * size)) * (1.0 / size);
                 distance += moved.dot(moved);
                 side += moved.x + 0.618_033_988_749_895 * moved.y + 0.381_966_011_250_105 * moved.z;
@@ -299,7 +300,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// By how much every row fails where the tree's joints are closed in the design configuration.
+    /// Computes the residual of every row in the design configuration, with closed tree joints.
     fn measure_gaps(&mut self) {
         let zero = 0.0;
         self.drivers.fill([zero; 3]);
@@ -315,7 +316,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// The gaps that a value per row gives, summed up per joint, driver or coupler; small ones left out.
+    /// Gaps per joint, driver or coupler, from a value per row; those below `least` are left out.
     fn gaps(&self, of_row: impl Fn(&Self, RowId) -> f64, least: f64) -> Vec<Gap> {
         let mut gaps: Vec<(Gap, f64)> = Vec::new();
         for (r, place) in RowId::each(&self.topology.rows).filter(|(_, p)| !p.is_term) {
@@ -331,7 +332,7 @@ impl Stepper<'_> {
             }
             let quantity = closure.rows[place.index].into();
             match gaps.iter_mut().find(|(g, _)| g.of == of && g.quantity == quantity) {
-                // Of a joint with several open rows the length of all of them together.
+                // The norm over several open rows of a joint.
                 Some((gap, _)) => gap.size = gap.size.hypot(size),
                 None => gaps.push((Gap { of, size: size.abs(), quantity }, place.unit)),
             }
@@ -374,10 +375,10 @@ impl Stepper<'_> {
             self.search(&rows, &unknowns);
             let (residuals, _) = self.scaled_rows(&rows, &unknowns);
             let squares = residuals.iter().map(|r| r * r).sum::<f64>();
-            // A start that is better by round-off only decides nothing.
+            // An improvement within round-off is ignored.
             if best.as_ref().is_none_or(|(least, _)| squares < (1.0 - ONE_ASSEMBLY) * least) {
                 let of_row = |s: &Self, r: RowId| s.state.residual_of(&s.topology, &s.parts, &s.drivers, r);
-                best = Some((squares, self.gaps(of_row, WORTH_TELLING)));
+                best = Some((squares, self.gaps(of_row, REPORTED_GAP)));
             }
         }
         best.map_or_else(Vec::new, |(_, gaps)| gaps)
@@ -386,7 +387,7 @@ impl Stepper<'_> {
     /// Moves these unknowns to where the residuals of these rows are smallest, by least squares; returns the largest
     /// scaled residual.
     ///
-    /// Levenberg's and Marquardt's method on the scaled rows; it need not be fast.
+    /// This is the Levenberg-Marquardt method for the scaled rows; it need not be fast.
     fn search(&mut self, rows: &[RowId], unknowns: &[CoordinateId]) -> f64 {
         self.state.gap_left = [0.0; 2];
         let n = unknowns.len();
@@ -413,8 +414,7 @@ impl Stepper<'_> {
             self.state.turn_balls(&self.topology, self.topology.link_ids());
             let (now, jacobian_now) = self.scaled_rows(rows, unknowns);
             let (old, new) = (squares(&residuals), squares(&now));
-            // A step that helps makes the next one more like Newton's, one that does not more like a short one
-            // downhill.
+            // A successful step reduces the damping (Gauss-Newton), another one increases it (gradient descent).
             if new < old {
                 (residuals, jacobian) = (now, jacobian_now);
                 damping *= 0.3;

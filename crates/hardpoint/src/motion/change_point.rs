@@ -1,10 +1,10 @@
-//! Passing a change point: the position where two motions meet, as where a parallelogram lies in line.
+//! Crossing of a change point: the position in which two motions meet, such as a parallelogram with all bars in line.
 //!
-//! There J is singular, and each of two motions goes on smoothly. With [`ChangePointPolicy::Continue`] the one is
-//! followed that continues the path: from a position b before the change point that of f behind it is predicted by q'
-//! and q'', and accepted where its own q' is the predicted one. Positions between b and f are found from the
-//! polynomials through both ends; at the change point itself, where nothing can be solved, position, velocity and
-//! acceleration are those of the polynomials, and what is solved with J has no number.
+//! J is singular there, and both motions continue smoothly. With [`ChangePointPolicy::Continue`] the solver follows the
+//! one that continues the path: from a position b before the change point, a position f behind it is predicted by q'
+//! and q'', and accepted if its own q' agrees with the prediction. Positions between b and f are predicted by the
+//! polynomials through both ends. At the change point itself position, velocity and acceleration are those of the
+//! polynomials, and everything that is solved with J is NaN.
 
 use crate::linalg::{hermite, segment_at};
 use crate::model::ChangePointPolicy;
@@ -15,28 +15,28 @@ use super::stepper::{AcceptedPosition, Lookahead, StepRejection, Stepper};
 use super::walk::Path;
 use super::{Stop, StopKind};
 
-/// The stretch that is crossed at once reaches this far to both sides, rad or sizes of driver travel: near enough that
-/// the predicted position is nearer to its own motion than to the other, far enough that accelerations keep ten digits.
+/// Half the length of the crossing, rad or sizes of driver travel: short enough that the predicted position is nearer
+/// to its own motion than to the other, long enough that accelerations keep ten digits.
 const REACH: f64 = 1e-2;
-/// A stretch that takes more halvings than this is left alone.
+/// Maximum number of bisections of a stretch.
 const HALVINGS: usize = 60;
-/// Slopes q' behind the change point may differ from the predicted ones by this part of the largest, or of the drivers'
-/// own: on the other motion they differ by as much as they are.
+/// Relative tolerance of the slopes q' behind the change point, compared with the predicted ones; on the other motion
+/// the difference is 100 %.
 const SAME_MOTION: f64 = 0.05;
-/// Output times nearer to the change point than this part of the stretch are at it: nearer by, solutions lose more
-/// digits than the polynomials.
+/// Output times nearer to the change point than this fraction of the stretch use the polynomials, because solutions
+/// lose more digits there.
 const AT_IT: f64 = 0.2;
 
-/// The first step back from the change point is no shorter than this part of the stretch.
+/// Minimum length of the first step back from the change point, as a fraction of the stretch.
 const SHORTEST_BACK: f64 = 1e-6;
 
 /// A stretch around a change point.
 #[derive(Clone)]
 pub(super) struct Crossing {
-    /// When it begins and ends, and when the change point is passed.
+    /// First and last time of the stretch, and time of the change point.
     times: [f64; 2],
     at: f64,
-    /// The block that is singular there.
+    /// Path on which it was crossed.
     path: Path,
     /// The blocks that are singular there.
     blocks: Vec<BlockId>,
@@ -46,16 +46,15 @@ pub(super) struct Crossing {
 }
 
 impl Stepper<'_> {
-    /// Crosses the change point that stopped the walk, where the model asks for it and the motion goes on smoothly; the
-    /// stepper is behind it then. Returns the stop where it does not.
+    /// Crosses the change point that stopped the walk, if the model requests it and the motion continues smoothly; the
+    /// stepper is behind it then. Otherwise returns the stop.
     pub(super) fn cross(&mut self, path: Path, stop: Box<Stop>) -> Result<(), Box<Stop>> {
         let asked = self.model.at_change_points == ChangePointPolicy::Continue && path != Path::Assembly;
         let (StopKind::BranchChange, true, Some(block)) = (stop.kind, asked, stop.block) else {
             return Err(stop);
         };
         let here = (self.saved.clone(), self.time, self.branch.clone());
-        // On a straight path the stop indicates the time of all of it; the parameter is that of the position where it
-        // ended.
+        // On a straight path all positions have the same time; the parameter is that of the last position.
         let at =
             if path == Path::Laws { stop.failed_time } else { self.nearest_ahead(path).unwrap_or(self.time) };
         match self.cross_at(path, at, block) {
@@ -110,8 +109,7 @@ impl Stepper<'_> {
         for (b, branch) in self.branch.iter_mut().enumerate() {
             branch.0 = self.state.pivots[b].1;
         }
-        // The determinants that change their sign are those that vanish on the way; several loops may lie in line at
-        // once.
+        // The determinants that change sign are zero at the change point; several loops may be in line at once.
         let mut blocks: Vec<BlockId> = self.topology.block_ids().collect();
         blocks.retain(|b| *b == block || signs[b.0] != self.branch[b.0].0);
         let selections = self.selections;
@@ -155,7 +153,7 @@ impl Stepper<'_> {
         (self.saved.clone(), channels.iter().map(|c| c.of(&self.state)).collect())
     }
 
-    /// Is at an output time within the stretch that was crossed last, if it is there.
+    /// Moves to an output time within the stretch that was crossed last, if it is there.
     pub(super) fn stand_within_crossing(&mut self, t: f64) -> Option<Result<(), Box<Stop>>> {
         let crossing = self.crossing.take()?;
         if !(t < crossing.times[1]) {
@@ -201,8 +199,8 @@ impl Stepper<'_> {
             self.state.motion.speeds[1][c.0] = acceleration;
         }
         for (k, channel) in channels.iter().enumerate() {
-            // Of all but balls, whose speeds are no rates of their components, the polynomials of degree five know
-            // more.
+            // Polynomials of degree five are more accurate; ball joints have none, since their speeds are not rates of
+            // components.
             if let Channel::Coordinate(c) = channel {
                 let [a, b] = [crossing.values[0][k], crossing.values[1][k]];
                 let [_, speed, acceleration] = between([a, b], h, s);
@@ -217,8 +215,8 @@ impl Stepper<'_> {
     }
 }
 
-/// Value and first two derivatives, at a part s of a stretch h, of the polynomial through what is known at both ends:
-/// the value, and N - 1 derivatives.
+/// Value and first two derivatives, at the fraction s of a stretch h, of the polynomial through the value and N - 1
+/// derivatives at both ends.
 fn between<const N: usize>(ends: [[f64; N]; 2], h: f64, s: f64) -> [f64; 3] {
     segment_at(&hermite(h, N - 1, |end, order| ends[end][order]), s * h)
 }

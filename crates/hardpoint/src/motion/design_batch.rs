@@ -1,7 +1,7 @@
-//! Up to eight designs side by side, from one output time to the next, by a straight-line program.
+//! Batch of up to eight designs, solved from one output time to the next by a straight-line program.
 //!
-//! They start from where the nominal design does, and every check of a single design's step is made in every lane.
-//! Where one fails, nobody knows which design goes another way: each is then solved alone.
+//! All designs start from the first position of the nominal design, and every check of a single design's step is made
+//! in every lane. If a check fails, each design is solved alone.
 
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use super::time_batch::ProgramOf;
 use super::walk::Path;
 use super::{Motion, SolverStatistics};
 
-/// A forecast that was so good at the last step will be good enough for one correction at the next one.
+/// Error of the last prediction below which one correction is enough at the next step.
 const GOOD: f64 = 0.1 * QUADRATIC;
 
 /// Values of the drivers up to an output time: the same for all designs.
@@ -28,11 +28,11 @@ const GOOD: f64 = 0.1 * QUADRATIC;
 struct Drive {
     /// Since the output time before.
     h: f64,
-    /// Speed of the fastest driver (rad, or sizes, per s), there or before.
+    /// Speed of the fastest driver (rad, or sizes, per s), now or before.
     fastest: f64,
 }
 
-/// Designs on their way through time.
+/// Solver of a batch of designs.
 pub(crate) struct DesignBatch<'m> {
     /// Stepper of the nominal design, at the first output time.
     nominal: Stepper<'m>,
@@ -41,19 +41,19 @@ pub(crate) struct DesignBatch<'m> {
     drivers: Vec<[f64; ORDERS]>,
     /// Source of programs.
     programs: ProgramOf<'m>,
-    /// With one correction and two; and whether they know the present designs.
+    /// Tapes with one and two corrections; true if the present designs are set.
     tapes: [Option<(Tape, bool)>; MOST_CORRECTIONS],
     /// Index of the program that solved the last step, and the error of its prediction.
     by: usize,
     missed: f64,
     designs: Vec<Vec<f64>>,
     weights: Weights,
-    /// Per channel: what is known of it.
+    /// Per channel: its node values.
     known: Vec<[Lanes; NODES * ORDERS]>,
     /// Times of these positions, the newest first, and how many there are.
     times: [f64; NODES],
     count: usize,
-    /// Per block: the last determinant, and by what part it changed.
+    /// Per block: the last determinant, and its relative change.
     determinants: Vec<Lanes>,
     changes: Vec<Lanes>,
     /// Numbers of all bodies, and the coordinates of the tree, output time after output time, or of the last one; the
@@ -72,9 +72,9 @@ pub(crate) struct BatchResults<'f> {
 }
 
 impl<'m> DesignBatch<'m> {
-    /// By these programs. None where there is none, and where the nominal design is not in the design configuration at
-    /// its first output time, where `nominal` is: designs could have gone other ways till there. `keeps` says whether
-    /// the results of all output times are kept.
+    /// Solver by these programs. Returns `None` if there is no program, or if the nominal design is not in the design
+    /// configuration at its first output time (the position of `nominal`), because designs could have taken different
+    /// branches before. If `keeps` is true, the results of all output times are stored.
     pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
         if nominal.saved.drivers.iter().any(|f| f[0] != 0.0) {
             return None;
@@ -111,7 +111,7 @@ impl<'m> DesignBatch<'m> {
         })
     }
 
-    /// Gives one of the designs that were solved its results.
+    /// Moves the results of one design to its motion.
     pub fn hand_over(&self, lane: usize, motion: &mut Motion) {
         let of_design =
             |lines: &Arc<Vec<AlignedLanes>>, width| Blocks::of_design(Arc::clone(lines), width, lane);
@@ -130,9 +130,8 @@ impl<'m> DesignBatch<'m> {
         self.tape().moved().to_vec()
     }
 
-    /// These designs at all output times, one per lane; `each(k, ...)` sees the results of output time k, and may end
-    /// it. None where a step does not go as expected in some lane, and where `each` ends it before the last output
-    /// time.
+    /// Solves these designs at all output times, one per lane. Calls `each(k, ...)` with the results of output time k,
+    /// which may end the run. Returns `None` if a step fails in some lane, or if `each` ends the run early.
     pub fn run(
         &mut self,
         designs: &[Vec<f64>],
@@ -147,7 +146,7 @@ impl<'m> DesignBatch<'m> {
         let steps = if self.keeps { model.times.len() } else { 1 };
         let widths = [self.tape().sizes()[0], self.nominal.topology.coordinates.len()];
         for (lines, width) in [&mut self.states, &mut self.coordinates].into_iter().zip(widths) {
-            // Who still reads the results of former designs keeps them.
+            // Results of former designs that are still in use are not overwritten.
             if Arc::get_mut(lines).is_none_or(|lines| lines.len() != width * steps) {
                 *lines = Arc::new(vec![AlignedLanes::default(); width * steps]);
             }
@@ -183,19 +182,19 @@ impl<'m> DesignBatch<'m> {
         first..first + width
     }
 
-    /// All designs at the first output time, from where the nominal one is.
+    /// Solves all designs at the first output time, from the position of the nominal one.
     fn start(&mut self, t: f64) -> Option<SolveQuality> {
         let saved = &self.nominal.saved;
         for n in 0..self.known.len() {
             let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
             self.known[n] = [[0.0; LANES]; NODES * ORDERS];
-            // q of the nominal design, in every lane; what is predicted 0 beyond it is q itself
+            // q of the nominal design, in every lane, which is also the prediction at distance 0
             self.known[n][0] = [x; LANES];
         }
         (self.times, self.count) = ([t; NODES], 1);
         let solved = self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES])?;
         for b in 0..self.determinants.len() {
-            // det of the design over det of the nominal one, as in (28) over a step: what is so near is on the same
+            // det of the design over det of the nominal one, as in (28) over a step: a design this near is on the same
             // branch.
             let (now, before) = (self.tape().determinant(b), self.nominal.saved.determinants[b]);
             let factors = &self.nominal.state.factors[b];
@@ -209,10 +208,10 @@ impl<'m> DesignBatch<'m> {
         Some(solved)
     }
 
-    /// All designs at the next output time, k.
+    /// Solves all designs at the next output time, k.
     fn step(&mut self, k: usize, t: f64) -> Option<SolveQuality> {
         let ahead = [self.course.get(k)?.h; LANES];
-        // abs(dq_0) <= 1e-9 at the last step: by (26) one correction will leave round-off at the next, too.
+        // abs(dq_0) <= 1e-9 at the last step: by (26) one correction reaches round-off at the next, too.
         let is_good = self.count == NODES && self.missed <= GOOD;
         let solved = self.solve(if is_good { 1 } else { MOST_CORRECTIONS }, k, &ahead)?;
         if !self.tape().speeds_are_smooth(self.course[k].fastest) || !self.determinants_are_even(k) {
@@ -222,7 +221,7 @@ impl<'m> DesignBatch<'m> {
         Some(solved)
     }
 
-    /// Tries the tape with that many corrections at output time k, so long beyond the newest position.
+    /// Tries the tape with this number of corrections at output time k, `ahead` of the newest position.
     fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes) -> Option<SolveQuality> {
         self.weights.set((self.times.map(|t| t - self.times[0]), self.count), ahead);
         let states_at = self.states_at(k);
@@ -250,7 +249,7 @@ impl<'m> DesignBatch<'m> {
         Some(solved)
     }
 
-    /// True if every determinant has changed by little up to output time k, and about as much as over the step before.
+    /// True if the change of every determinant up to output time k is small and similar to that of the step before.
     fn determinants_are_even(&mut self, k: usize) -> bool {
         let beside = self.course[k].h / self.course[k - 1].h;
         let mut even = true;
@@ -260,7 +259,7 @@ impl<'m> DesignBatch<'m> {
                 let factors = &self.nominal.state.factors[b];
                 let ratio = factors.ratio(now[lane], self.determinants[b][lane]);
                 let change = ratio - 1.0;
-                // Written so that NaN is not even.
+                // NaN is not even.
                 even &= (MILD[0]..=MILD[1]).contains(&ratio);
                 if k > 1 {
                     // (28) in every lane, h_k / h_k-1 being the same for all designs
@@ -272,7 +271,7 @@ impl<'m> DesignBatch<'m> {
         even
     }
 
-    /// Goes on from where the designs are at time t.
+    /// Accepts the positions of the designs at time t.
     fn save(&mut self, t: f64) {
         let Some((tape, _)) = &self.tapes[self.by] else { return };
         for (channel, known) in self.known.iter_mut().enumerate() {
@@ -288,8 +287,8 @@ impl<'m> DesignBatch<'m> {
     }
 }
 
-/// Values of the drivers, as long as they show all that happens between two output times and no singular position is
-/// known to be near the start; value, speed and acceleration of each driver at every output time.
+/// Values of the drivers, up to the first interval that the output times do not resolve, and none if a singular
+/// position is near the start; value, speed and acceleration of each driver at every output time.
 fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
     let (mut course, mut drivers) = (Vec::new(), Vec::new());
     for (k, &t) in nominal.model.times.iter().enumerate() {

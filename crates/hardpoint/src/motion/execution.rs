@@ -1,4 +1,4 @@
-//! Straight-line programs as they are run: by machine code or interpreted, whole or in pieces that share their code.
+//! Execution of straight-line programs: by machine code or an interpreter, whole or in pieces that share their code.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,23 +9,22 @@ use hardpoint_tape::{Interpreter, LANES, Lanes, Operand, Pieces, PiecesRoom, Pro
 
 use crate::blocks::{AlignedLanes, lanes_of};
 
-/// A program of that many instructions does not stay in the fast memory of a core: where its pieces are alike, they
-/// share their code ...
+/// Number of instructions above which a program exceeds the cache of a core; identical pieces then share their code.
 const LONG: usize = 10_000;
-/// ... if that makes it shorter by this factor.
+/// Factor by which sharing must shorten the program.
 const SHORTER: usize = 2;
 
 /// Solver of smooth steps: the kernel, which traverses the plan, or a straight-line program recorded from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Execution {
-    /// By what pays: programs where there are steps enough, as machine code where there can be any.
+    /// Fastest method: programs if there are enough steps, as machine code if the machine supports it.
     #[default]
     Fastest,
-    /// By the kernel alone.
+    /// The kernel alone.
     Kernel,
-    /// By programs that are interpreted, from the first step on.
+    /// Interpreted programs, from the first step on.
     Interpreted,
-    /// By programs as machine code, from the first step on; interpreted where there can be none.
+    /// Programs as machine code, from the first step on; interpreted if the machine does not support it.
     Compiled,
 }
 
@@ -44,11 +43,11 @@ impl Execution {
 /// Method that solves the smooth steps of a motion, eight output times at once or one by one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StepMethod {
-    /// By programs as machine code.
+    /// Programs as machine code.
     Code(Width),
-    /// By programs that are interpreted, and why there is no machine code.
+    /// Interpreted programs, with the reason why there is no machine code.
     Interpreter(String),
-    /// By the kernel, one by one, and why.
+    /// The kernel, one by one, with the reason.
     Kernel(String),
 }
 
@@ -62,7 +61,7 @@ impl fmt::Display for StepMethod {
     }
 }
 
-/// Programs, each recorded when it is first requested; none where it cannot be.
+/// Programs, each recorded on first use; `None` for those that cannot be recorded.
 #[derive(Debug)]
 pub(crate) struct Cache<K, P>(Mutex<BTreeMap<K, Option<Arc<P>>>>);
 
@@ -73,14 +72,14 @@ impl<K, P> Default for Cache<K, P> {
 }
 
 impl<K: Ord, P> Cache<K, P> {
-    /// The program for this, which `record` makes if it was not requested before.
+    /// Returns the program for this key; `record` makes it on first use.
     pub fn get(&self, key: K, record: impl FnOnce(&K) -> Option<P>) -> Option<Arc<P>> {
         let mut programs = self.0.lock().expect("no one panics while recording");
         programs.entry(key).or_insert_with_key(|key| record(key).map(Arc::new)).clone()
     }
 }
 
-/// A program, as machine code where there is any; a long one in pieces that share their code.
+/// A program, as machine code if possible; a long one in pieces that share their code.
 #[derive(Debug)]
 pub(crate) struct Runnable {
     inputs: usize,
@@ -94,7 +93,7 @@ enum Form {
     Pieces(Pieces, Vec<Executable>),
 }
 
-/// A program that is run as it is, with outputs in parts.
+/// An executable program with its outputs in parts.
 #[derive(Debug)]
 struct Executable {
     program: Program,
@@ -135,12 +134,12 @@ impl Executable {
 }
 
 impl Runnable {
-    /// Outputs in parts that end there.
+    /// Makes a program executable, with outputs in parts that end there.
     pub fn new(program: Program, ends: [usize; PARTS - 1], execution: Execution) -> Self {
         Self::in_pieces(program, ends, execution, |_| 0)
     }
 
-    /// The same; `piece_of` says which piece of a long program an input or uniform belongs to.
+    /// Makes a program executable in pieces; `piece_of` returns the piece of a long program for an input or uniform.
     pub fn in_pieces(
         program: Program,
         ends @ [first, second]: [usize; PARTS - 1],
@@ -173,7 +172,7 @@ impl Runnable {
     }
 }
 
-/// A program in two: what depends on the design alone, and is worked out once for it, and what does not.
+/// A program in two parts: one that depends on the design alone and runs once per design, and the rest.
 #[derive(Debug)]
 pub(crate) struct Staged {
     design: Runnable,
@@ -181,7 +180,8 @@ pub(crate) struct Staged {
 }
 
 impl Staged {
-    /// Inputs from `design_at` on are those of the design; `runnable` makes the second part of it one that is run.
+    /// Splits a program; inputs from `design_at` on are those of the design. `runnable` makes the second part
+    /// executable.
     pub fn new(
         program: Program,
         design_at: usize,
@@ -196,8 +196,7 @@ impl Staged {
         Self { design: Runnable::new(design, [all; PARTS - 1], execution), step: runnable(step) }
     }
 
-    /// Works out, behind the inputs that stand in these lines, those of the second part that depend on the design
-    /// alone.
+    /// Computes the inputs of the second part that depend on the design alone, and stores them behind the others.
     pub fn take_design(&self, inputs: &mut [AlignedLanes]) {
         let (given, found) = inputs.split_at_mut(inputs.len() - self.design.sizes[0]);
         let given = &lanes_of(given)[..self.design.inputs];

@@ -15,7 +15,7 @@ pub struct BodyJerk {
 }
 
 impl BodyJerk {
-    /// Those of all bodies where a stepper is with velocity and acceleration, at time t.
+    /// Jerks of all bodies at the position of a stepper, at time t.
     pub(crate) fn all(stepper: &mut Stepper<'_>, t: f64) -> impl Iterator<Item = Self> {
         let Stepper { state, topology, parts, .. } = stepper;
         state.jerk(topology, |d| parts.law_of(d.0).at(t).ddd());
@@ -28,7 +28,8 @@ impl BodyJerk {
         let [v, a, b] = [0, 1, 2].map(|n| state.motion.twists[n][body]);
         let r = state.pose[body].r;
         // r.   = V at r,    r..  = A at r + omega x r.
-        // r... = B at r + 2 alpha x r. + omega x r..: the rate of r.., with B at r = B_v + B_w x r                      (21)
+        // The rate of r.., with B at r = B_v + B_w x r:
+        // r... = B at r + 2 alpha x r. + omega x r..                                                              (21)
         let velocity = v.at(r);
         let acceleration = a.at(r) + v.w.cross(velocity);
         let jerk = b.at(r) + a.w.cross(velocity) * 2.0 + v.w.cross(acceleration);

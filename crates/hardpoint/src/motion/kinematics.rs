@@ -1,7 +1,7 @@
-//! One step: position by Newton, then velocity and acceleration from the same factors.
+//! One step: position by Newton's method, then velocity and acceleration from the same factors.
 //!
-//! This is the hot path. It is generic over its scalar, allocates nothing, and walks the lists of
-//! [`Topology`]; the sensitivities solve the same equation ([`Flow`]) with the same factors.
+//! This is the hot path. It is generic over its scalar, allocates nothing, and traverses the lists of [`Topology`]; the
+//! sensitivities solve the same equation ([`Flow`]) with the same factors.
 //!
 //! Written in the symbols of `docs/theory.md`, a step for drivers at f, f., f.. is
 //!
@@ -11,7 +11,7 @@
 //! J q.. = f.. - l. . (V_j - V_i) - l . (A_j - A_i  as if q.. were 0)                            (10)
 //! ```
 //!
-//! which is the paper's `phi(Z, D, t) = 0` (5.1) at one time, D standing, and its first two time derivatives. The
+//! This is the paper's `phi(Z, D, t) = 0` (5.1) at one time, with D fixed, and its first two time derivatives. The
 //! paper's Z, poses of bodies, are `pose`; q are the coordinates of the tree, all six of every body in the absolute
 //! formulation.
 
@@ -29,12 +29,12 @@ use super::parts::PlanGeometry;
 pub(super) const QUADRATIC: f64 = 1e-8;
 /// A correction below this is round-off itself: nothing is applied.
 pub(super) const ROUND_OFF: f64 = 1e-14;
-/// Newton from a good prediction needs 1 to 3 iterations; one that needs this many is lost.
+/// Maximum number of Newton iterations; from a good prediction 1 to 3 are enough.
 const MAX_ITERATIONS: usize = 12;
 /// A pivot ratio below this is a singular position: velocities would lose all their digits.
 const SINGULAR: f64 = 1e-12;
 
-/// Everything that one step computes.
+/// Results of one step.
 #[derive(Clone, Debug)]
 pub(crate) struct State<T> {
     /// Per coordinate: value (unused for balls).
@@ -64,19 +64,18 @@ pub(crate) struct State<T> {
     /// Per block: `P J = L U`, J with rows `selected` and columns `unknowns`, where the position was solved last.
     pub factors: Vec<Factors<T>>,
     /// Right-hand side of a block.
-    /// Before a solution what the rows miss, after it the unknowns: dq, q.(n), S(n).
+    /// Before a solution the right-hand side, after it the unknowns: dq, q.(n), S(n).
     pub rhs: Vec<T>,
-    /// Per row: by how much it failed where the Jacobian was formed last.
+    /// Per row: residual at the last position at which the Jacobian was formed.
     /// phi, m or rad; (5) says how it changes.
     pub residual: Vec<T>,
-    /// Per row of a coupler's term: about what its coordinate is, to count angles through whole turns.
+    /// Per row of a coupler's term: approximate value of its coordinate, to count whole turns of angles.
     pub near: Vec<T>,
-    /// Per row: by how much it failed in the design configuration in the design configuration, and how much of that is
-    /// still allowed, with its rate: an assembly takes it from 1 to 0. phi_0, and 1 - s with its rate: an assembly
-    /// holds `phi - (1 - s) phi_0 = 0`.
+    /// Per row: residual phi_0 in the design configuration. Its remaining fraction 1 - s, with its rate by s: an
+    /// assembly solves `phi - (1 - s) phi_0 = 0` from s = 0 to 1.
     pub gap: Vec<T>,
     pub gap_left: [f64; 2],
-    /// Per curve: where the point that follows it touches.
+    /// Per curve: contact of its follower.
     /// u, and C with its derivatives by u.
     pub contacts: Vec<Contact<T>>,
     /// Per block: smallest over largest pivot, and the sign of the determinant.
@@ -84,9 +83,9 @@ pub(crate) struct State<T> {
     /// Per block: its determinant, to be compared by [`Factors::ratio`].
     /// abs(det J), or its logarithm where the factors are sparse.
     pub determinants: Vec<T>,
-    /// Per block: what is watched of its factors.
+    /// Per block: monitored quantities of its factors.
     pub watched: Vec<Watched<T>>,
-    /// Per block: its first, second and last correction, rad or sizes, and how many passes that took.
+    /// Per block: its first, second and last correction, rad or sizes, and the number of passes.
     pub corrections: Vec<([T; CORRECTIONS], usize)>,
     pub iterations: usize,
 }
@@ -94,7 +93,7 @@ pub(crate) struct State<T> {
 /// Number of corrections whose sizes are recorded separately.
 pub(super) const CORRECTIONS: usize = 3;
 
-/// By how much the constraints fail.
+/// Largest residuals of the constraints.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Residuals {
     /// Largest residual, m or rad.
@@ -108,12 +107,12 @@ pub(crate) struct Residuals {
 pub(crate) enum PositionFailure {
     /// The Jacobian of this block is singular.
     Singular { block: BlockId },
-    /// Newton did not converge, or would have gone further than the prediction can be trusted.
+    /// Newton's method did not converge, or its first correction exceeds the trusted range of the prediction.
     NoConvergence { block: BlockId },
 }
 
 impl<T: Real> State<T> {
-    /// The design configuration.
+    /// State in the design configuration.
     pub fn new(model: &Model, topology: &Topology) -> Self {
         let (n, o) = (topology.coordinates.len(), T::zero());
         let frame = Pose::IDENTITY.spread();
@@ -208,7 +207,7 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// The points of a closure's markers alone.
+    /// Updates the points of a closure's markers alone.
     #[inline(always)]
     fn place_end_points(&mut self, topology: &Topology, parts: &PlanGeometry<T>, c: ClosureId) {
         let [i, j] = topology[c].bodies;
@@ -218,54 +217,53 @@ impl<T: Real> State<T> {
         self.turn_base(topology, parts, c);
     }
 
-    /// The axes of the body on which a closure's loop is.
+    /// Updates the axes of the base body of a closure's loop.
     #[inline(always)]
     fn turn_base(&mut self, topology: &Topology, parts: &PlanGeometry<T>, c: ClosureId) {
         let Closure { base, base_link, .. } = topology[c];
         if base != GROUND {
             self.ends[c.0].axes = match base_link {
-                // Its pose is that of the step before until the block is solved: wrenches along those axes would not go
-                // with their rates.
+                // Its pose is that of the last step until the block is solved: wrenches along those axes would not
+                // match their rates.
                 Some(k) => self.frame[base.0].rot * parts.child_from_marker[k.0].rot,
                 None => self.pose[base.0].rot,
             };
         }
     }
 
-    /// Lets marker i of a closure walk along its curve to where it is next to marker j.
+    /// Moves marker i of a closure along its curve to the point nearest to marker j.
     #[inline(never)]
     fn touch(&mut self, parts: &PlanGeometry<T>, c: ClosureId, k: usize) {
         let MarkerPair { i, j, .. } = self.ends[c.0];
-        // p = P_j as seen from marker i; the foot u of the perpendicular on the curve, (p - C(u)) . C'(u) = 0; marker i goes there,
-        // x along C'.
+        // p = P_j in axes of marker i; u is the foot of the perpendicular on the curve, (p - C(u)) . C'(u) = 0. Marker
+        // i moves there, with x along C'.
         let p = i.inverse().point(j.r);
         self.contacts[k] = Contact::nearest(&parts.curves[k], p, self.contacts[k].u);
         self.ends[c.0].i = i.compose(self.contacts[k].frame());
     }
 
-    /// Rates of a marker i that walks along its curve: those of its body and its own turning.
+    /// Rates of a marker i that moves along its curve: those of its body plus its own rotation.
     #[inline(never)]
     pub fn walk(&self, c: ClosureId, k: usize, rates: &MarkerPairRates<T>) -> MarkerPairRates<T> {
         let (v, (z, p)) = (rates.v_i, self.follower(c, k, rates));
         let [turn, turn_rate] = self.contacts[k].turning(p);
-        // omega of the walking marker = omega_i + (k u.) z,    its rate = alpha_i + (k u.). z + omega_i x z (k u.).
-        // The row is a Dot-2: of marker i it asks for an axis only, so the angular parts will do.
+        // omega of the moving marker = omega_i + (k u.) z,    its rate = alpha_i + (k u.). z + omega_i x z (k u.).
+        // The row is a Dot-2 and uses only an axis of marker i, so the angular parts are enough.
         let mut walking = *rates;
         walking.v_i.w += z * turn;
         walking.a_i.w += z * turn_rate + v.w.cross(z) * turn;
         walking
     }
 
-    /// The z axis of the marker that carries curve k, and the point that follows it, seen from that marker, with its
-    /// first two rates.
+    /// z axis of the marker that carries curve k, and its follower relative to that marker, with first two rates.
     #[inline(always)]
     fn follower(&self, c: ClosureId, k: usize, rates: &MarkerPairRates<T>) -> (Vec3<T>, [Vec3<T>; 3]) {
         let MarkerPair { i: foot, j, .. } = &self.ends[c.0];
         let (v, a, contact) = (rates.v_i, rates.a_i, &self.contacts[k]);
-        // The marker that carries the curve, and the follower's motion seen from it.
+        // The marker that carries the curve, and the motion of the follower relative to it.
         let i = foot.compose(contact.frame().inverse());
-        // p.  = A_i^T (v_j - v_i),    p.. = A_i^T (a_j - a_i - 2 omega_i x (v_j - v_i)),  with A_i the axes of that marker, v and a those
-        // of the points of both bodies at P_j:  v = V at P_j,  a = V. at P_j + omega x v
+        // p.  = A_i^T (v_j - v_i),    p.. = A_i^T (a_j - a_i - 2 omega_i x (v_j - v_i)),  with A_i the axes of that
+        // marker, and v and a of the points of both bodies at P_j:  v = V at P_j,  a = V. at P_j + omega x v
         let relative = rates.v_j.at(j.r) - v.at(j.r);
         let acceleration = |v: Twist<T>, a: Twist<T>| a.at(j.r) + v.w.cross(v.at(j.r));
         let coriolis = v.w.cross(relative) * T::constant(2.0);
@@ -281,7 +279,7 @@ impl<T: Real> State<T> {
         self.contacts[k].sliding(self.follower(c, k, &rates).1)
     }
 
-    /// By how much constraint row r fails.
+    /// Residual of constraint row r.
     #[inline(always)]
     pub(super) fn residual(
         &self,
@@ -296,14 +294,14 @@ impl<T: Real> State<T> {
         let gap = self.gap[r.0] * T::constant(self.gap_left[0]);
         if place.terms.is_empty() {
             let driven = closure.driver.map_or(T::zero(), |d| drivers[d.0][0]);
-            // phi = what the row measures - what it keeps - f - (1 - s) phi_0
+            // phi = measured value - constant - f - (1 - s) phi_0
             row.residual(ends, parts.kept[r.0] + driven) - gap
         } else {
             self.coupled(topology, parts, r) - gap
         }
     }
 
-    /// Places everything where the coordinates say, the drivers' own values included.
+    /// Updates all poses from the coordinates and the values of the drivers.
     #[inline(never)]
     pub fn stand(&mut self, topology: &Topology, parts: &PlanGeometry<T>) {
         self.place(topology, parts, topology.link_ids());
@@ -313,7 +311,7 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// [`State::residual`] for callers that are not in a hurry.
+    /// [`State::residual`] for callers that are not time-critical.
     #[inline(never)]
     pub fn residual_of(
         &self,
@@ -325,12 +323,12 @@ impl<T: Real> State<T> {
         self.residual(topology, parts, drivers, r)
     }
 
-    /// The sum of a coupler's terms. Kept out of the way of the other rows, which are many.
+    /// Residual of a coupler: the sum of its terms. It is not inlined, because other rows are far more frequent.
     #[inline(never)]
     fn coupled(&self, topology: &Topology, parts: &PlanGeometry<T>, r: RowId) -> T {
         let mut sum = T::zero();
         for RowTerm { row, factor } in topology.parts_of_row(r) {
-            // phi = sum c_k chi_k, each chi_k counted from its design value
+            // phi = sum c_k chi_k, each chi_k measured from its design value
             let value = self.value(topology, row) - parts.kept[row.0];
             sum += value * T::constant(factor);
         }
@@ -362,13 +360,13 @@ impl<T: Real> State<T> {
         self.factors[b.0].set_row(k, entries, zero);
     }
 
-    /// The wrench of a row where its markers stand.
+    /// Wrench of a row at the current position of its markers.
     #[inline(never)]
     pub(super) fn wrench_of(&self, topology: &Topology, r: RowId) -> Wrench<T> {
         topology.constraint(r).wrench(&self.ends[topology[r].closure.0])
     }
 
-    /// Residuals, wrenches and factors of block b where it is.
+    /// Computes residuals, wrenches and factors of block b at the current position.
     #[inline(always)]
     pub(super) fn linearise(
         &mut self,
@@ -412,9 +410,8 @@ impl<T: Real> State<T> {
         self.watched[b.0] = found.watched;
     }
 
-    /// Position, velocity and acceleration of all bodies for the drivers' values and their derivatives, from the
-    /// prediction in `q` and `balls`; block by block, so that what a block has laid out is still at hand when its rates
-    /// follow.
+    /// Solves position, velocity and acceleration of all bodies for the drivers' values and their derivatives, from the
+    /// prediction in `q` and `balls`; block by block, so that the data of a block are still in the cache for its rates.
     ///
     /// `trust` bounds the first correction (rad, or sizes): a longer one may land on another branch.
     pub fn solve(
@@ -425,20 +422,20 @@ impl<T: Real> State<T> {
         trust: f64,
     ) -> Result<(), PositionFailure> {
         for (c, d) in topology.driven_coordinates() {
-            // q, q., q.. = f, f., f.. of what drivers prescribe in the tree
+            // q, q., q.. = f, f., f.. of driven coordinates in the tree
             [self.q[c.0], self.motion.speeds[0][c.0], self.motion.speeds[1][c.0]] = drivers[d.0];
         }
         self.place(topology, parts, topology.driven_links());
         self.place_bodies(topology, parts, topology.driven_links());
         self.rates_of_driven(topology);
         for b in topology.block_ids() {
-            // Block after block: J is block lower triangular, so all that a block is on is known by now.
+            // Block after block: J is block lower triangular, so the bodies that a block depends on are solved.
             self.newton(topology, parts, drivers, b, trust)?;
             self.place_bodies(topology, parts, topology[b].link_ids());
             self.rates_of_block(topology, parts, drivers, b);
         }
         for (c, closure) in ClosureId::each(&topology.closures) {
-            // Closures between bodies that drivers alone place: no unknown moves them, and their rows are watched.
+            // Closures between bodies that drivers alone place: no unknown moves them, and their rows are monitored.
             if closure.block.is_none() {
                 self.place_ends(topology, parts, c);
                 self.finish_closure(topology, c);
@@ -479,12 +476,12 @@ impl<T: Real> State<T> {
             if correction <= ROUND_OFF {
                 return Ok(());
             }
-            // Written so that NaN fails. Newton must contract; the first step must be within trust.
+            // NaN fails. The corrections must contract; the first must be within trust.
             if !(correction <= before) {
                 return Err(PositionFailure::NoConvergence { block: b });
             }
             self.apply(topology, b);
-            // abs(dq_k+1) <= abs(dq_k) / 2. After abs(dq) <= 1e-8 what is left, its square, is round-off: once more
+            // abs(dq_k+1) <= abs(dq_k) / 2. After abs(dq) <= 1e-8 the error, its square, is round-off: one more pass is
             // only for the factors.
             before = if correction <= QUADRATIC { correction } else { 0.5 * correction };
         }
@@ -512,7 +509,7 @@ impl<T: Real> State<T> {
         self.turn_balls(topology, topology[b].link_ids());
     }
 
-    /// Moves the increments that stand in the `q` of balls into their rotations.
+    /// Applies the increments in the `q` of balls to their rotations.
     #[inline(always)]
     pub fn turn_balls(&mut self, topology: &Topology, links: impl Iterator<Item = LinkId>) {
         let zero = T::zero();
@@ -527,7 +524,7 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Velocity and acceleration of the bodies that drivers alone place.
+    /// Solves velocity and acceleration of the bodies that drivers alone place.
     #[inline(always)]
     fn rates_of_driven(&mut self, topology: &Topology) {
         // q, q., q.. = f, f., f..:  V_c = V_p + sum x q.,  then x. and  A_c = A_p + sum (x q.. + x. q.)       (9), (10)
@@ -537,7 +534,7 @@ impl<T: Real> State<T> {
         self.motion.follow::<1>(topology, links, &self.x);
     }
 
-    /// Velocity and acceleration of the bodies of block b, with the factors that its position left (`docs/theory.md`
+    /// Solves velocity and acceleration of the bodies of block b, with the factors of its position (`docs/theory.md`
     /// (9), (10)).
     #[inline(always)]
     fn rates_of_block(
@@ -565,9 +562,9 @@ impl<T: Real> State<T> {
         self.solve_order::<1>(topology, b, |d| drivers[d.0][2]);
     }
 
-    /// Velocity, acceleration or jerk of the bodies of block b: (24) of `docs/theory.md` with U = V, u = q. and z = 0,
-    /// where f is a driver's speed in its row, `demand` its n-th rate; while an assembly closes its gaps, their rates
-    /// in all others.
+    /// Solves velocity, acceleration or jerk of the bodies of block b: (24) of `docs/theory.md` with U = V, u = q. and
+    /// z = 0. In the row of a driver f is its speed, and `demand` its n-th rate; in all other rows f is the rate of the
+    /// gap while an assembly closes it.
     #[inline(always)]
     fn solve_order<const N: usize>(
         &mut self,
@@ -588,9 +585,9 @@ impl<T: Real> State<T> {
         motion.solve::<N>(topology, b, Linear { x, l, factors, rhs });
     }
 
-    /// Velocity and acceleration of all bodies where they stand, and first and second rates of all twists and wrenches,
-    /// for speeds of the drivers other than those that the position was solved with; those of driven coordinates stand
-    /// in `motion`.
+    /// Solves velocity and acceleration of all bodies at the current position, and first and second rates of all twists
+    /// and wrenches, for driver speeds other than those that the position was solved with. The speeds of driven
+    /// coordinates are in `motion`.
     #[inline(never)]
     pub(super) fn all_rates(&mut self, topology: &Topology, parts: &PlanGeometry<T>, drivers: &[[T; 3]]) {
         self.rates_of_driven(topology);
@@ -603,8 +600,8 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Places everything, with velocity and acceleration, where coordinates, speeds and accelerations are given: at a
-    /// change point. What is solved with the factors of singular blocks has no number there.
+    /// Sets position, velocity and acceleration from given coordinates, speeds and accelerations, at a change point.
+    /// Results that use the factors of singular blocks are NaN there.
     pub(super) fn stand_with_rates(
         &mut self,
         topology: &Topology,
@@ -637,7 +634,7 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Third derivatives of all bodies where they stand with velocity and acceleration, for those of the drivers.
+    /// Solves the jerks of all bodies at the current position, velocity and acceleration, for those of the drivers.
     pub(super) fn jerk(&mut self, topology: &Topology, demand: impl Fn(DriverId) -> T) {
         self.finish_rates(topology);
         for (c, d) in topology.driven_coordinates() {
@@ -656,7 +653,7 @@ impl<T: Real> State<T> {
         Linear { x, l, factors, rhs }
     }
 
-    /// Computes what only sensitivities need: second derivatives of twists and wrenches, and the rates of all redundant
+    /// Computes the data for sensitivities: second derivatives of twists and wrenches, and the rates of all redundant
     /// rows.
     pub fn finish_rates(&mut self, topology: &Topology) {
         self.finish_wrenches(topology);
@@ -666,7 +663,7 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// Wrenches of the rows that the motion is not solved with.
+    /// Computes the wrenches of the redundant rows.
     pub fn finish_wrenches(&mut self, topology: &Topology) {
         for (r, _) in RowId::each(&topology.rows).filter(|(_, p)| !p.has_wrench()) {
             self.l[0][r.0] = self.wrench_of(topology, r);
@@ -683,13 +680,13 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// The largest residuals over all rows, left-out ones included.
+    /// Largest residuals over all rows, redundant ones included.
     pub fn residuals(&self, topology: &Topology, parts: &PlanGeometry<T>, drivers: &[[T; 3]]) -> Residuals {
         let [largest, scaled] = self.largest_residuals(topology, parts, drivers);
         Residuals { largest: largest.decisive(), scaled: scaled.decisive() }
     }
 
-    /// The same as they are: m or rad, and sizes or rad.
+    /// Largest residuals in m or rad, and in sizes or rad.
     pub fn largest_residuals(
         &self,
         topology: &Topology,
@@ -713,7 +710,7 @@ impl<T: Real> State<T> {
         [largest, scaled]
     }
 
-    /// The row that fails most, and its residual.
+    /// Row with the largest residual, and that residual.
     pub fn worst_row(
         &self,
         topology: &Topology,
@@ -724,7 +721,7 @@ impl<T: Real> State<T> {
         for (r, place) in RowId::each(&topology.rows).filter(|(_, p)| !p.is_term) {
             let residual = self.residual_of(topology, parts, drivers, r).abs().decisive();
             let scaled = residual / place.unit;
-            // Written so that a NaN is the largest of all.
+            // NaN counts as the largest.
             if !(scaled <= worst.1) {
                 worst = (r, scaled, residual);
             }
@@ -751,7 +748,7 @@ impl<T: Real> State<T> {
             for &ClosureColumn { column, coordinate: c, side } in &topology.closure_of(row).entries {
                 let unit = topology[c].unit;
                 out[column] +=
-                    // (6), the row per its unit and the coordinate per its: a number without dimension
+                    // (6), dimensionless: row and coordinate divided by their units
                     self.l[0][row.0].on(self.x[0][c.0]) * T::constant(scale * unit * side * factor);
             }
         }
@@ -768,7 +765,7 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// First time derivative of the wrenches that the motion needs; or all of what sensitivities need besides.
+    /// First time derivative of the wrenches that the motion needs, or all derivatives that sensitivities need.
     #[inline(always)]
     fn rates_of_wrenches(&mut self, topology: &Topology, c: ClosureId, order: usize) {
         let closure = &topology[c];
@@ -789,7 +786,7 @@ impl<T: Real> State<T> {
     }
 }
 
-/// Room for the factors of a block with the rows that it is solved with now.
+/// Memory for the factors of a block with its selected rows.
 pub(crate) fn factors_of<T: Real>(topology: &Topology, block: &Block, largest_dense: usize) -> Factors<T> {
     let columns = |k: usize| {
         let place = &topology[block.selected[k]];

@@ -1,15 +1,15 @@
-//! The equation of order n: every linear level of a position is this, solved with one set of factors.
+//! The equation of order n, which covers all linear problems at a position, solved with one set of factors.
 //!
-//! A motion and its rates, and the rates of what a change of the design makes of it, obey the same two lines,
-//! differentiated n times by the time (`docs/theory.md`, section 4, "The equation of order n"):
+//! A motion and its rates, and their derivatives by the design, obey the same two equations, differentiated n times by
+//! time (`docs/theory.md`, section 4, "The equation of order n"):
 //!
 //! ```text
 //! U_c(n) = U_p(n) + z_p(n) - z_c(n) + sum_{m=0..n} C(n,m) sum_a x_a(m) u_a(n-m)          for every link,
 //! sum_{m=0..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)) = f(n),     D = U + z                for every row.        (24)
 //! ```
 //!
-//! Wanted are U(n) of the bodies and u(n) of the unknown coordinates; all orders below are known. Its transpose carries
-//! loads to ground (`sensitivity/adjoint.rs`).
+//! The unknowns are U(n) of the bodies and u(n) of the coordinates; all lower orders are known. The transposed equation
+//! propagates loads to ground (`sensitivity/adjoint.rs`).
 
 use crate::linalg::Factors;
 use crate::space::{Real, Twist, Wrench};
@@ -25,7 +25,7 @@ pub(crate) struct Linear<'s, T> {
     pub x: &'s [Vec<Twist<T>>; 3],
     /// Per order and row: wrenches l and their time derivatives.
     pub l: &'s [Vec<Wrench<T>>; 3],
-    /// Per block: its Jacobian's.
+    /// Factors of the Jacobian per block.
     pub factors: &'s mut [Factors<T>],
     /// Room for the right-hand side of a block.
     pub rhs: &'s mut [T],
@@ -41,19 +41,19 @@ pub(crate) struct Flow<T> {
     pub speeds: [Vec<T>; 3],
     /// Per order and body: U.
     ///
-    /// `[n][body]`: V, A, B of a motion; W, W., W.. along the design. Ground, body 0, is.
+    /// `[n][body]`: V, A, B of a motion; W, W., W.. along the design. Body 0 is ground.
     pub twists: [Vec<Twist<T>>; 3],
-    /// Per order and closure, as far as higher orders ask: `D_j - D_i`.
+    /// Per order and closure, as needed by higher orders: `D_j - D_i`.
     pub apart: [Vec<Twist<T>>; 2],
     /// Per order and link: `z_p - z_c`; empty where no marker moves in its body.
     pub moves: [Vec<Twist<T>>; 3],
     /// Per row, of the order to be solved: `f - l . (z_j - z_i)`.
     pub demand: Vec<T>,
-    /// True if driven coordinates go with it. Else their speeds are zero, and need not be looked at.
+    /// True if driven coordinates have speeds; otherwise they are zero and are skipped.
     pub drives: bool,
-    /// True if single axes on ground stand: in time they do, along the design they may not.
-    pub ground_stands: bool,
-    /// Per link: what it has besides the speeds of this order.
+    /// True if single axes on ground are fixed: over time they are; along the design they may move.
+    pub ground_is_fixed: bool,
+    /// Per link: its twist apart from the speeds of this order.
     /// `z_p(n) - z_c(n) + sum_{m=1..n} C(n,m) sum_a x_a(m) u_a(n-m)`.
     bias: Vec<Twist<T>>,
 }
@@ -69,31 +69,31 @@ impl<T: Real> Flow<T> {
             moves: std::array::from_fn(|_| Vec::new()),
             demand: vec![T::zero(); topology.rows.len()],
             drives,
-            ground_stands: true,
+            ground_is_fixed: true,
             bias: vec![none; topology.links.len()],
         }
     }
 
-    /// The same with room for markers that move in their bodies.
+    /// Adds memory for markers that move in their bodies.
     pub fn with_moves(mut self) -> Self {
         self.moves = std::array::from_fn(|_| vec![Twist::zero(); self.bias.len()]);
         self
     }
 
-    /// Lets all rows of closure c ask for f.
+    /// Sets the demand f of all rows of closure c.
     #[inline(always)]
     pub fn ask(&mut self, topology: &Topology, c: ClosureId, f: T) {
         topology[c].row_ids().for_each(|r| self.demand[r.0] = f);
     }
 
-    /// Enters how, at order n, the parent's (0) or the child's (1) marker of link k moves in its body: `z_p - z_c`.
+    /// Adds the twist, at order n, of the parent's (0) or the child's (1) marker of link k in its body: `z_p - z_c`.
     #[inline(always)]
     pub fn move_link(&mut self, n: usize, (k, end): (LinkId, usize), z: Twist<T>) {
         self.moves[n][k.0] += if end == 0 { z } else { -z };
     }
 
-    /// Enters how marker i (0) or j (1) of closure c moves in its body: what its rows ask for is less
-    /// `l . (z_j - z_i)`.
+    /// Adds the twist of marker i (0) or j (1) of closure c in its body: subtracts `l . (z_j - z_i)` from the demand of
+    /// its rows.
     #[inline(always)]
     pub fn move_end(
         &mut self,
@@ -123,10 +123,10 @@ impl<T: Real> Flow<T> {
             let link = &topology[k];
             // bias = z_p(n) - z_c(n) ...
             let mut bias = if self.moves[N].is_empty() { Twist::zero() } else { self.moves[N][k.0] };
-            if !(self.ground_stands && link.has_constant_twist()) {
+            if !(self.ground_is_fixed && link.has_constant_twist()) {
                 for step in link.steps.iter().filter(|s| self.drives || !s.is_driven) {
                     for c in step.coordinates() {
-                        // ... + C(n,m) x_a(m) u_a(n-m): what (24), first line, has of lower orders of u
+                        // ... + C(n,m) x_a(m) u_a(n-m): the lower orders of u in (24), first line
                         for m in 1..=N {
                             bias = x[m][c.0].times_plus(self.speeds[N - m][c.0] * BINOMIAL[N][m], bias);
                         }
@@ -155,15 +155,15 @@ impl<T: Real> Flow<T> {
         }
         for &r in &topology[b].coupled {
             for term in &topology[r].terms {
-                // Of a coupler it is the sum over its terms, c_k times what each has; the first term, with factor 1, is
-                // in its row.
+                // For a coupler it is the sum over its terms with factors c_k; the first term, with factor 1, is in its
+                // row.
                 let x = self.demand[term.row.0];
                 self.demand[r.0] += x * T::constant(term.factor);
             }
         }
     }
 
-    /// `U_c = U_p + bias + sum x_a u_a` for these links, over the freedoms that count.
+    /// Propagates `U_c = U_p + bias + sum x_a u_a` along these links, over the selected freedoms.
     #[inline(always)]
     fn carry<const N: usize>(
         &mut self,
@@ -176,7 +176,7 @@ impl<T: Real> Flow<T> {
         let (speeds, twists) = (&self.speeds[N], &mut self.twists[N]);
         for k in links {
             let link = &topology[k];
-            // U_c = U_p + bias + sum x_a u_a                                                                      (7), first line
+            // U_c = U_p + bias + sum x_a u_a                                                          (7), first line
             let mut twist = twists[link.parent.0];
             if let Some(bias) = bias.get(k.0) {
                 twist += *bias;
@@ -190,7 +190,7 @@ impl<T: Real> Flow<T> {
         }
     }
 
-    /// Order n of links whose coordinates are all given: (24), first line.
+    /// Solves order n of links whose coordinates are all given: (24), first line.
     #[inline(always)]
     pub fn follow<const N: usize>(
         &mut self,
@@ -209,7 +209,7 @@ impl<T: Real> Flow<T> {
         let (block, Linear { x, l, factors, rhs }) = (&topology[b], linear);
         self.turn_axes::<N>(topology, block.link_ids(), x);
         self.turn_wrenches::<N>(topology, b, l);
-        // First as if the unknowns were zero: what the rows miss then is theirs to make up.
+        // First with zero unknowns: the residuals of the rows are the right-hand side.
         self.carry::<N>(topology, block.link_ids(), &x[0], |step| step.is_driven);
         // J u(n) = rhs,    J_ra = +- l_r . x_a (6),    rhs_r = demand_r - l_r . (U_j - U_i)  with the U of that pass
         for (k, &r) in block.selected.iter().enumerate() {
@@ -231,7 +231,7 @@ impl<T: Real> Flow<T> {
     }
 }
 
-/// The n-th rate of a twist that a body carries, from those below and the twist V of the body with its own rates:
+/// The n-th rate of a twist fixed in a body, from the lower rates and the twist V of the body with its rates:
 /// `x(n) = sum_{m<n} C(n-1,m) ad(V(m)) x(n-1-m)`, (3) differentiated.
 #[inline(always)]
 pub(crate) fn carried<T: Real, const N: usize>(x: [Twist<T>; N], v: [Twist<T>; N]) -> Twist<T> {
@@ -243,8 +243,8 @@ pub(crate) fn carried<T: Real, const N: usize>(x: [Twist<T>; N], v: [Twist<T>; N
     rate
 }
 
-/// The n-th rates of a link's unit twists, each carried by the frame before its freedom; `v` are the twist and its
-/// rates of the frame that the first starts from, and `V(m) + sum_{k=0..m} C(m,k) x(k) u(m-k)` those of the next.
+/// The n-th rates of a link's unit twists, each fixed in the frame before its freedom. `v` are the twist of the first
+/// frame and its rates; those of the next frame are `V(m) + sum_{k=0..m} C(m,k) x(k) u(m-k)`.
 #[inline(always)]
 pub(crate) fn turn_twists<T: Real, const N: usize>(
     link: &Link,
@@ -254,8 +254,8 @@ pub(crate) fn turn_twists<T: Real, const N: usize>(
 ) {
     for (n, step) in link.steps.iter().enumerate() {
         for c in step.coordinates() {
-            // The frame behind a single freedom would do as well, since ad(x u) x = 0; the axes of a ball are those of
-            // the frame before it.
+            // For a single freedom the frame behind it gives the same result, since ad(x u) x = 0; the axes of a ball
+            // are those of the frame before it.
             x[N][c.0] = carried(std::array::from_fn(|m| x[m][c.0]), v);
         }
         if n + 1 == link.steps.len() {

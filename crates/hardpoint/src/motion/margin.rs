@@ -8,28 +8,28 @@ use crate::topology::{BlockId, ClosureColumn, LoopLink, RowId, RowTerm, Topology
 
 use super::kinematics::State;
 
-/// Blocks with more unknowns than this are judged by their pivots alone.
+/// Maximum number of unknowns of a block with a margin; larger blocks have pivot ratios only.
 const MOST_UNKNOWNS: usize = 200;
 
 /// Distance of the Jacobian from singularity.
 ///
-/// Every constraint is measured by the most that it could resist in any coordinate of its loop if that coordinate's
-/// axis pointed as it should: a force by its lever arm, a moment by itself, a slide by the force. The margin is the
-/// least change of the Jacobian, as a part of that, which makes it singular: `1 / |J^-1|` in the largest-row-sum norm,
-/// lengths in sizes of their loops (`docs/theory.md` (29)). For one unknown it is the sine of the transmission angle. 1
-/// is best, 0 is a singular position, and about log10(1 / margin) digits of a velocity are lost.
+/// Every constraint is scaled by the maximum resistance that it could have in any coordinate of its loop, for the best
+/// direction of that coordinate's axis: force times lever arm for a force, the moment itself, or the force for a slide.
+/// The margin is the smallest relative change of the Jacobian that makes it singular: `1 / |J^-1|` in the maximum
+/// row-sum norm, lengths in sizes of their loops (`docs/theory.md` (29)). For one unknown it is the sine of the
+/// transmission angle. 1 is best, 0 is a singular position, and about log10(1 / margin) digits of a velocity are lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Margin {
-    /// The least of all blocks.
+    /// Minimum over all blocks.
     pub value: f64,
-    /// The block that has it.
+    /// Block with the minimum.
     pub block: BlockId,
 }
 
-/// Works out margins; keeps its room from step to step.
+/// Computes margins; keeps its memory from step to step.
 pub(crate) struct Margins<T> {
     blocks: Vec<Elimination<T>>,
-    /// Per block: all of its rows, and whether there are more than it needs.
+    /// Per block: all of its rows; true if some are redundant.
     rows: Vec<Vec<RowId>>,
     redundant: Vec<bool>,
     row: Vec<T>,
@@ -52,7 +52,7 @@ impl<T: Real> Margins<T> {
         }
     }
 
-    /// The margin where `state` is.
+    /// Margin at the position of `state`.
     pub fn at(&mut self, topology: &Topology, state: &State<T>) -> Margin {
         let values = topology.block_ids().map(|b| {
             let small = topology[b].unknowns.len() <= MOST_UNKNOWNS;
@@ -61,7 +61,7 @@ impl<T: Real> Margins<T> {
         Margin::least(values)
     }
 
-    /// The margin of every block, and what must not be positive for it to be that.
+    /// Margin of every block, and the limits that must not be positive for it to be valid.
     pub fn record(&mut self, topology: &Topology, state: &State<T>) -> (Vec<T>, Vec<T>) {
         let mut limits = Vec::new();
         let of_block = |b| self.of_block(topology, state, b, &mut |x| limits.push(x));
@@ -69,8 +69,8 @@ impl<T: Real> Margins<T> {
         (margins, limits)
     }
 
-    /// 1 / |J^-1|, the inverse column by column; where constraints are redundant 1 / |J^+| of all of them, so that the
-    /// margin does not depend on which of them the block is solved with.
+    /// 1 / |J^-1|, the inverse column by column. With redundant constraints it is 1 / |J^+| of all rows, so that the
+    /// margin does not depend on the selection of rows.
     #[inline(always)]
     fn of_block(
         &mut self,
@@ -95,7 +95,7 @@ impl<T: Real> Margins<T> {
         let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
         for (k, &r) in block.selected.iter().enumerate() {
             relative_row(topology, state, r, row);
-            // R: each row of J by its unit and its most (29)
+            // R: each row of J divided by its unit and its maximum resistance (29)
             factors.row_mut(k).copy_from_slice(row);
         }
         if !(judged(factors, limit) > 0.0) {
@@ -114,8 +114,7 @@ impl<T: Real> Margins<T> {
         one / sums.iter().fold(zero, |most, x| most.larger(*x))
     }
 
-    /// 1 / |J^+| over all rows of a block, `J^+ = (J^T J)^-1 J^T` column by column; 0 where round-off may have a part
-    /// in it.
+    /// 1 / |J^+| over all rows of a block, `J^+ = (J^T J)^-1 J^T` column by column; 0 if round-off may dominate.
     #[inline(always)]
     fn of_all_rows(
         &mut self,
@@ -155,10 +154,10 @@ impl<T: Real> Margins<T> {
     }
 }
 
-/// Factors, and gives the pivot ratio; the order of the pivots must go on to serve.
+/// Factors the matrix and returns the pivot ratio; the recorded order of the pivots must remain stable.
 #[inline(always)]
 fn judged<T: Real>(factors: &mut Elimination<T>, limit: &mut impl FnMut(T)) -> f64 {
-    // One order of pivots serves as long as its factors stay below 4, or below twice what they were when recorded.
+    // An order of pivots is stable while its factors are below 4, or below twice the recorded ones.
     let found = factors.factor();
     let growth = found.watched.growth;
     limit(growth - T::constant(f64::max(MOST_GROWTH, 2.0 * growth.decisive())));
@@ -166,7 +165,7 @@ fn judged<T: Real>(factors: &mut Elimination<T>, limit: &mut impl FnMut(T)) -> f
 }
 
 impl Margin {
-    /// The least of those of all blocks; written so that NaN is the least of all.
+    /// Minimum over all blocks; NaN counts as the minimum.
     pub(crate) fn least(blocks: impl Iterator<Item = f64>) -> Self {
         let least = Self { value: 1.0, block: BlockId(0) };
         blocks.enumerate().fold(least, |least, (block, value)| match value >= least.value {
@@ -176,10 +175,10 @@ impl Margin {
     }
 }
 
-/// Margins below this are found without squares, which would leave less than half of their digits.
+/// Margins below this are computed without the normal matrix, which would lose half of the digits.
 const SQUARED: f64 = 1e-6;
 
-/// Constraint row r of the Jacobian, by column of its block, as a part of the most that it could resist.
+/// Constraint row r of the Jacobian, by column of its block, divided by its maximum resistance.
 #[inline(always)]
 fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: RowId, row: &mut [T]) {
     let scale = 1.0 / topology[r].unit;
@@ -203,7 +202,7 @@ fn wrench<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> Wrench<T>
     if topology[r].has_wrench() { state.l[0][r.0] } else { state.wrench_of(topology, r) }
 }
 
-/// The most that constraint row r could resist in any coordinate of its loop, scaled like its row of the Jacobian.
+/// Maximum resistance of constraint row r in any coordinate of its loop, scaled like its row of the Jacobian.
 #[inline(always)]
 fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> T {
     let scale = 1.0 / topology[r].unit;
@@ -212,7 +211,7 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> 
         let MarkerPair { i, j, .. } = &state.ends[topology[row].closure.0];
         let l = wrench(topology, state, row);
         for &LoopLink { link, side } in &topology.closure_of(row).links {
-            // A rod pulls at either body where it is tied to it; any other force acts at P_j.
+            // The force of a rod acts at its ends; any other force acts at P_j.
             let at_i = side < 0.0 && topology.constraint(row) == Row::Distance;
             let point = if at_i { i.r } else { j.r };
             for step in &topology[link].steps {
@@ -228,7 +227,7 @@ fn most_resistance<T: Real>(topology: &Topology, state: &State<T>, r: RowId) -> 
     most
 }
 
-/// The most that a force at a point, with its moment, could turn about an axis, whatever way it pointed.
+/// Maximum moment about an axis of a force at a point, with its couple, over all directions of the axis.
 #[inline(always)]
 fn most_moment<T: Real>(l: &Wrench<T>, point: Vec3<T>, turn: &Twist<T>) -> T {
     // x = [w; c x w]: w x v = w x (c x w) = c - w (w . c), the axis' point next to the origin; the arm is seen along

@@ -1,8 +1,8 @@
 //! Position, velocity and acceleration of every body over time.
 //!
-//! One step is: Newton on each block in turn, then velocity and acceleration from the same factors
-//! (`kinematics`). Output times that follow each other closely are stepped through as they
-//! are (`stepper`, `abreast`); everywhere else the path is followed in steps of its own (`walk`).
+//! One step is: Newton's method for each block in turn, then velocity and acceleration from the same factors
+//! (`kinematics`). Closely spaced output times are steps themselves (`stepper`, `time_batch`); elsewhere the solver
+//! chooses its own steps along the path (`walk`).
 
 mod assembly;
 mod change_point;
@@ -100,7 +100,7 @@ impl BodyState {
         Self { r: vector(0), rotation, v: vector(4), omega: vector(5), a: vector(6), alpha: vector(7) }
     }
 
-    /// Those of all bodies but ground, number by number.
+    /// Values of all bodies but ground, number by number.
     pub(crate) fn all<T: Real>(state: &State<T>) -> Vec<T> {
         (1..state.pose.len()).flat_map(|b| Self::numbers_of(state, b)).collect()
     }
@@ -122,7 +122,7 @@ impl BodyState {
     }
 }
 
-/// A solved history. It may be shorter than the model's output times: then something stopped it.
+/// Motion at the output times; fewer of them if the run was stopped.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
     /// Output times that were solved, s.
@@ -133,13 +133,13 @@ pub struct Motion {
     pub(crate) states: Blocks,
     /// Coordinates of the tree.
     pub(crate) coordinates: Blocks,
-    /// Per output time, how far from a singular position; empty where only the bodies were requested.
+    /// Per output time: distance from a singular position; empty if only the bodies were requested.
     pub margins: Vec<Margin>,
     /// Assembly before the motion, if the mechanism was open in the design configuration.
     pub assembly: Option<Assembly>,
-    /// The singular position next after its end, if one is near.
+    /// Next singular position after its end, if one is near.
     pub beyond: Option<SingularPosition>,
-    /// Per output time, the angles that are counted along the path, with all turns, rad; empty where the path was not
+    /// Per output time: the angles that are counted along the path, with all turns, rad; empty if the path was not
     /// followed.
     pub(crate) counted: Vec<f64>,
     /// Statistics of the solver.
@@ -156,10 +156,10 @@ pub struct States<'m> {
 }
 
 impl<'m> States<'m> {
-    /// That of body b; body 0 is ground.
+    /// State of body b; body 0 is ground.
     ///
     /// # Panics
-    /// Where there is no such body.
+    /// Panics if there is no such body.
     #[inline]
     pub fn body(self, b: usize) -> BodyState {
         if b == 0 {
@@ -168,7 +168,7 @@ impl<'m> States<'m> {
         BodyState::from(|k| self.row.get(BodyState::NUMBERS * (b - 1) + k))
     }
 
-    /// All of them, body by body.
+    /// States, body by body.
     pub fn iter(self) -> impl Iterator<Item = BodyState> + 'm {
         (0..self.bodies).map(move |b| self.body(b))
     }
@@ -192,9 +192,9 @@ pub struct SingularPosition {
 pub struct SolverStatistics {
     /// Output steps solved.
     pub steps: usize,
-    /// Steps in between that the predictor needed.
+    /// Steps between output times that the predictor needed.
     pub substeps: usize,
-    /// Output steps that a straight-line program has solved in place of the kernel.
+    /// Output steps that were solved by a program instead of the kernel.
     pub by_program: usize,
     /// Newton iterations.
     pub iterations: usize,
@@ -202,12 +202,12 @@ pub struct SolverStatistics {
     pub worst_residual: f64,
     /// Smallest ratio of smallest to largest pivot: 0 at a singular position.
     pub least_pivot_ratio: f64,
-    /// Time of that.
+    /// Time of this pivot ratio.
     pub least_pivot_time: f64,
 }
 
 impl SolverStatistics {
-    /// Keeps the smallest of these pivot ratios in mind, if it is the smallest so far.
+    /// Updates the smallest pivot ratio so far.
     #[inline(always)]
     pub(crate) fn note_pivots(&mut self, ratios: impl Iterator<Item = f64>, t: f64) {
         for ratio in ratios {
@@ -219,7 +219,7 @@ impl SolverStatistics {
 }
 
 impl Motion {
-    /// The least margin of the motion, and the output time that has it.
+    /// Minimum margin of the motion, and its output time.
     pub fn least_margin(&self) -> Option<(usize, Margin)> {
         self.margins.iter().copied().enumerate().min_by(|a, b| a.1.value.total_cmp(&b.1.value))
     }

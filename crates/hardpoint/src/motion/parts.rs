@@ -1,4 +1,4 @@
-//! A design laid out in the order in which the plan walks it.
+//! Geometry of a design in the order of the solution plan.
 
 use crate::design::Geometry;
 use crate::law::Law;
@@ -23,7 +23,7 @@ pub(crate) struct PlanGeometry<T> {
     ///
     /// M_i and M_j, likewise as seen from the markers by which the bodies are placed.
     pub ends: [Vec<Pose<T>>; 2],
-    /// Per row: what it keeps of the design configuration, like the length of a rod; 0 where it keeps nothing.
+    /// Per row: its constant from the design configuration, such as the length of a rod; 0 if it has none.
     /// L, c0, d0, r0 of the table in theory, section 2; m or a cosine.
     pub kept: Vec<T>,
     /// Curves, in the order of [`crate::topology::Closure::contact`].
@@ -33,7 +33,7 @@ pub(crate) struct PlanGeometry<T> {
 }
 
 impl<T: Real> PlanGeometry<T> {
-    /// Those of a design, without laws.
+    /// Geometry of a design, without laws.
     pub fn of(model: &Model, topology: &Topology, design: &Geometry<T>) -> Self {
         let marker = |joint: usize, end: usize| design.markers[joint][end];
         // Per body, its frame as seen from the marker that places it.
@@ -75,7 +75,7 @@ impl<T: Real> PlanGeometry<T> {
 }
 
 impl PlanGeometry<f64> {
-    /// Those of a design, with the laws of its drivers.
+    /// Geometry of a design, with the laws of its drivers.
     pub fn same(model: &Model, topology: &Topology, design: &Geometry, laws: &[Law]) -> Self {
         Self { laws: laws.to_vec(), ..Self::of(model, topology, design) }
     }
@@ -90,9 +90,9 @@ impl PlanGeometry<f64> {
         self.laws[d].over(from, to).value.reach_from(value)
     }
 
-    /// The fastest that driver d moves from one time to another.
+    /// Maximum speed of driver d between two times.
     pub fn fastest(&self, d: usize, from: f64, to: f64) -> f64 {
-        // What is scaled by zero rests, whatever is scaled.
+        // A law times zero rests, even if the law is NaN.
         f64::max(self.laws[d].fastest(from, to), 0.0)
     }
 
@@ -103,7 +103,7 @@ impl PlanGeometry<f64> {
     }
 }
 
-/// Per row, what it keeps.
+/// Constant of each row.
 fn kept<T: Real>(topology: &Topology, design: &Geometry<T>) -> Vec<T> {
     let of_row = |place: &RowPlace| {
         let closure = &topology[place.closure];

@@ -1,8 +1,8 @@
 //! Prediction of the next positions from the previous ones.
 //!
 //! The last three accepted positions, each with its speeds and accelerations, are nine conditions on a polynomial of
-//! degree eight per coordinate (Hermite's interpolation, in Newton's form). Newton's method then starts so near to the
-//! solution that one correction is enough, also eight output times ahead.
+//! degree eight per coordinate (Hermite interpolation, in Newton's form). Newton's method then starts so near to the
+//! solution that one correction is enough, even eight output times ahead.
 //!
 //! With the nodes `t_0 t_0 t_0 t_1 t_1 t_1 t_2 t_2 t_2`, the newest first (`docs/theory.md` (27)),
 //!
@@ -19,11 +19,11 @@ use crate::topology::{CoordinateId, Topology};
 
 use super::kinematics::State;
 
-/// Positions that are kept.
+/// Number of stored positions.
 pub(super) const NODES: usize = 3;
 /// Conditions per position: value, first and second derivative.
 pub(super) const ORDERS: usize = 3;
-/// Farther ahead than this many times the distance between two positions, their round-off would be magnified.
+/// Maximum prediction distance, in distances between two positions; round-off is magnified beyond it.
 const FARTHEST: f64 = 8.5;
 
 /// Polynomials through the last accepted positions.
@@ -73,7 +73,8 @@ impl Channel {
             Self::Coordinate(c) => [state.q[c.0], speeds[c.0], accelerations[c.0]],
             Self::Ball(CoordinateId(first), k) => {
                 let of = |x: &[T]| Vec3::new(x[first], x[first + 1], x[first + 2]);
-                // q. = (0, w) q / 2,    q.. = (0, w.) q / 2 + (0, w) q. / 2,  w and its rate about the axes of the parent's marker
+                // q. = (0, w) q / 2,    q.. = (0, w.) q / 2 + (0, w) q. / 2,  with w and its rate in axes of the
+                // parent's marker
                 let (q, w) = (state.balls[first], of(speeds));
                 let rate = q.rate(w);
                 let second = q.rate(of(accelerations)).plus(rate.rate(w));
@@ -82,7 +83,7 @@ impl Channel {
         }
     }
 
-    /// Puts what is predicted into a state; balls with their last component.
+    /// Writes the predicted value into a state; balls with their last component.
     #[inline(always)]
     pub fn put<T: Real>(self, x: T, state: &mut State<T>) {
         self.save(x, &mut state.q, &mut state.balls);
@@ -100,7 +101,7 @@ impl Channel {
         }
     }
 
-    /// The same where balls are on the unit sphere already.
+    /// Writes the predicted value into a state whose quaternions are already normalised.
     #[inline(always)]
     pub fn save<T: Real>(self, x: T, q: &mut [T], balls: &mut [Quat<T>]) {
         match self {
@@ -126,7 +127,7 @@ impl Predictor {
         }
     }
 
-    /// Forgets the past: another path begins.
+    /// Clears all positions at the start of another path.
     pub fn forget(&mut self) {
         self.count = 0;
     }
@@ -136,7 +137,7 @@ impl Predictor {
         self.count
     }
 
-    /// Learns where the mechanism is at time t.
+    /// Adds the position of the mechanism at time t.
     #[inline(always)]
     pub fn learn(&mut self, t: f64, state: &State<f64>) {
         self.remember(t);
@@ -145,7 +146,7 @@ impl Predictor {
         }
     }
 
-    /// The same from value and derivatives of every channel.
+    /// Adds a position from value and derivatives of every channel.
     #[inline(always)]
     pub fn learn_values(&mut self, t: f64, values: impl Iterator<Item = [f64; ORDERS]>) {
         self.remember(t);
@@ -176,15 +177,15 @@ impl Predictor {
         std::array::from_fn(|n| self.values[n][channel])
     }
 
-    /// Farther ahead than some times their distance, older positions do not count.
+    /// Number of positions to use; older ones are dropped beyond the maximum prediction distance.
     #[inline(always)]
     fn counting(&self, h: f64) -> usize {
         let apart = |n: usize| self.times[n - 1] - self.times[n];
         (1..self.count).take_while(|&n| h <= FARTHEST * apart(n)).count() + 1
     }
 
-    /// Divided differences over the newest positions; returns how many conditions they are. Far ahead, `h` beyond
-    /// the newest, only that one counts.
+    /// Computes divided differences over the newest positions; returns the number of conditions. If `h` beyond the
+    /// newest is too far, only that one is used.
     #[inline(always)]
     fn divide(&mut self, h: f64) -> usize {
         let n = ORDERS * self.counting(h);
@@ -220,7 +221,7 @@ impl Predictor {
         n
     }
 
-    /// Sets the unknowns of a state to what is predicted at time t, h beyond the newest position.
+    /// Sets the unknowns of a state to their prediction at time t, h beyond the newest position.
     #[inline(always)]
     pub fn set(&mut self, state: &mut State<f64>, t: f64, h: f64) {
         let n = self.divide(h);
@@ -236,7 +237,7 @@ impl Predictor {
     }
 }
 
-/// Output times may be apart by this part of a step less or more: the forecast is corrected anyway.
+/// Relative tolerance of equal steps: the prediction is corrected anyway.
 const AS_FAR: f64 = 1e-9;
 
 /// Weights of the nodes at eight times ahead: constant for equal steps.
@@ -250,8 +251,8 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// For these positions, that many of them, each so long before the newest, and times so long behind it. Returns
-    /// whether they had to be worked out.
+    /// Updates the weights for positions at these times before the newest one, and eight times ahead of it. Returns
+    /// true if they changed.
     #[inline(always)]
     pub fn set(&mut self, (nodes, count): ([f64; NODES], usize), ahead: &Lanes) -> bool {
         // p(t) is linear in what is known: p = sum_j weight_j(t) known_j, and the weights are those of last time if
@@ -268,10 +269,10 @@ impl Weights {
         !same
     }
 
-    /// Hermite's interpolation of what is one at a single position and derivative.
+    /// Computes the Hermite basis polynomials.
     #[inline(never)]
     fn work_out(&mut self) {
-        // In parts of the farthest way, so that no power is very large or small.
+        // Relative to the farthest time, so that no power is very large or small.
         let unit = self.ahead.iter().fold(f64::MIN_POSITIVE, |most, h| most.max(h.abs()));
         let n = ORDERS * self.count;
         let node = |i: usize| self.nodes[i / ORDERS] / unit;

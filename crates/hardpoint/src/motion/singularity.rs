@@ -1,19 +1,19 @@
 //! Distance to the nearest singular position ahead, independent of the drivers' laws.
 //!
 //! Near a singular position the response of a loop to a load, `s = J^-1 r` with r a fixed disturbance of its rows,
-//! grows like `(u* - u)^-m` along the motion: m = 1/2 at a limit, where the loop cannot be closed beyond, and m = 1
-//! where two motions meet. However narrow a gap is, and however near a miss, s shows it from afar, where the motion
-//! itself still looks smooth. With
+//! grows like `(u* - u)^-m` along the motion: m = 1/2 at a limit, beyond which the loop cannot be closed, and m = 1
+//! where two motions meet. s shows a singular position from a distance, where the motion itself still looks smooth,
+//! even if the motion only passes near it. With its series along a direction,
 //!
 //! ```text
-//! c0 = J^-1 r,   c1 = -J^-1 (J' c0),   c2 = -J^-1 (J'' c0 / 2 + J' c1)                               docs/theory.md (22)
+//! c0 = J^-1 r,   c1 = -J^-1 (J' c0),   c2 = -J^-1 (J'' c0 / 2 + J' c1)                     docs/theory.md (22)
 //! ```
 //!
-//! its series along a direction, `max(|c1| / |c0|, sqrt(|c2| / |c0|))` is the inverse of the distance to the nearest
-//! singular position, to within a factor of about two. c0, c1, c2 are levels like those of a sensitivity by a length in
-//! every row; they ask for no more of the motion than velocity and acceleration.
+//! `max(|c1| / |c0|, sqrt(|c2| / |c0|))` is the inverse of the distance to the nearest singular position, within a
+//! factor of about two. c0, c1, c2 solve the same equations as a sensitivity by a length in every row; they need only
+//! velocity and acceleration of the motion.
 //!
-//! The directions are the drivers, one by one: what is near is near whether the drivers hurry, rest or turn round.
+//! The directions are the drivers, one by one: the distance does not depend on the speeds of the drivers.
 
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, CoordinateId, Topology};
@@ -23,7 +23,8 @@ use super::level::Flow;
 use super::parts::PlanGeometry;
 use super::turns::TurnCounter;
 
-/// Loads on the rows. One could miss what is singular; two have not (270 hard cases in the plane and in space).
+/// Number of loads on the rows. One could miss a singular position; two have not (270 hard cases in the plane and in
+/// space).
 const LOADS: usize = 2;
 
 /// Neighbourhood of a position: the response of the mechanism to its drivers.
@@ -35,11 +36,11 @@ pub(super) struct Surroundings {
     /// Per direction: first and second derivatives of the coordinates by it.
     pub slopes: Vec<Vec<f64>>,
     pub bends: Vec<Vec<f64>>,
-    /// Per direction and row of a coupler's term: the same of what it counts.
+    /// Per direction and row of a coupler's term: first and second derivatives of its coordinate.
     pub turning: Vec<Vec<[f64; 2]>>,
-    /// Per direction and angle that is counted along the path: the same of the angle, where any is.
+    /// Per direction and angle that is counted along the path: first and second derivatives of the angle.
     pub angles: Vec<Vec<[f64; 2]>>,
-    /// Per direction and curve: the same of the parameter where it is touched.
+    /// Per direction and curve: first and second derivatives of the contact parameter.
     pub sliding: Vec<Vec<[f64; 2]>>,
     /// Per direction: the fastest unknown coordinate, in its unit; of curves the parameter, in lengths between their
     /// points.
@@ -59,7 +60,7 @@ pub(super) struct SingularityAhead {
     pub power: f64,
 }
 
-/// Room to work in.
+/// Working memory.
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
     /// The motion along a direction, in place of that along the time, and the rates of all twists and wrenches. `q'`,
@@ -78,7 +79,7 @@ pub(super) struct Workspace {
 }
 
 impl Surroundings {
-    /// Nothing.
+    /// Neighbourhood without known directions.
     pub fn unknown() -> Self {
         Self {
             nearness: Vec::new(),
@@ -92,7 +93,7 @@ impl Surroundings {
         }
     }
 
-    /// Makes room for that many directions.
+    /// Reserves memory for this number of directions.
     fn make_room(&mut self, topology: &Topology, directions: usize) {
         self.known = directions;
         if self.fastest.len() >= directions {
@@ -118,7 +119,7 @@ impl Surroundings {
             let of_block = travel[..self.known].iter().zip(&self.nearness);
             // sum over the drivers of Du_d / rho_d
             let sum: f64 = of_block.map(|(du, nearness)| part(*du, nearness[b])).sum();
-            // Written so that NaN is far too much.
+            // NaN counts as far too much.
             if !(sum <= most) {
                 most = if sum.is_nan() { f64::INFINITY } else { sum };
             }
@@ -131,7 +132,7 @@ impl Surroundings {
         travel[..self.known].iter().zip(&self.fastest).map(|(du, speed)| part(*du, *speed)).sum()
     }
 
-    /// Returns how far the fastest of the counted angles goes, rad, when each direction moves by `travel` at most.
+    /// Displacement of the fastest counted angle, rad, if each direction moves by at most `travel`.
     pub fn turn_of_fastest(&self, travel: &[f64]) -> f64 {
         let angles = self.angles.first().map_or(0, Vec::len);
         let of_angle = |i: usize| -> f64 {
@@ -141,12 +142,12 @@ impl Surroundings {
                 .map(|(du, angles)| part(*du, angles[i][0].abs()))
                 .sum()
         };
-        // One that has no number here, or no bound, limits nothing.
+        // An angle that is NaN or unbounded here is ignored.
         (0..angles).map(of_angle).filter(|turn| turn.is_finite()).fold(0.0, f64::max)
     }
 }
 
-/// A product in which nothing times whatever is nothing.
+/// Product in which zero times NaN or infinity is zero.
 fn part(travel: f64, per_unit: f64) -> f64 {
     if travel == 0.0 { 0.0 } else { travel * per_unit }
 }
@@ -154,7 +155,8 @@ fn part(travel: f64, per_unit: f64) -> f64 {
 impl Workspace {
     pub fn new(topology: &Topology, bodies: usize, drivers: usize) -> Self {
         let (coordinates, rows) = (topology.coordinates.len(), topology.rows.len());
-        // Multiples of the golden ratio are spread evenly and never repeat: all loads differ, and none is small.
+        // Multiples of the golden ratio are uniformly distributed and never repeat: all loads differ, and none is
+        // small.
         let mut numbers = (1..).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract());
         let mut load = || -> Vec<f64> {
             let mut next = || numbers.next().expect("there is always another");
@@ -174,15 +176,15 @@ impl Workspace {
         }
     }
 
-    /// Puts the rates along a direction in the place of those along the time, or back.
+    /// Exchanges the rates along a direction with those along time.
     fn swap(&mut self, state: &mut State<f64>) {
         std::mem::swap(&mut self.motion, &mut state.motion);
         self.x.swap_with_slice(&mut state.x[1..]);
         self.l.swap_with_slice(&mut state.l[1..]);
     }
 
-    /// Examines the position where a state is, with its factors, along that many directions. `speed(direction, driver)`
-    /// is how each driver moves along a direction, and `gap_rate` how the gaps of an assembly close.
+    /// Examines the position of a state, with its factors, along each direction. `speed(direction, driver)` is the
+    /// speed of a driver along a direction, and `gap_rate` the rate at which the gaps of an assembly close.
     #[expect(clippy::too_many_arguments, reason = "all are borrowed from one stepper, some of them mutably")]
     pub fn examine(
         &mut self,
@@ -260,7 +262,7 @@ impl Workspace {
             for load in 0..LOADS {
                 let nearness = self.respond(topology, state, b, load);
                 let Some(ahead) = self.extrapolate(topology, b) else { continue };
-                // The block and load that respond most steeply tell of what is nearest.
+                // The block and load with the steepest response determine the nearest position.
                 if nearest.is_none_or(|(most, _)| nearness > most) {
                     nearest = Some((nearness, ahead));
                 }
@@ -279,8 +281,8 @@ impl Workspace {
         state.all_rates(topology, parts, &self.drivers);
     }
 
-    /// The response of a block to a load: c0, c1 and 2 c2 of its unknowns; all bodies outside of it stand. Returns how
-    /// near a singular position is by it.
+    /// Computes the response of a block to a load: c0, c1 and 2 c2 of its unknowns, with all bodies outside of it
+    /// fixed. Returns the inverse distance of the nearest singular position.
     #[inline(never)]
     fn respond(&mut self, topology: &Topology, state: &mut State<f64>, b: BlockId, load: usize) -> f64 {
         let (block, response) = (&topology[b], &mut self.response);

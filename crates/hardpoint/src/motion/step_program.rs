@@ -1,14 +1,14 @@
 //! One step of a plan as a straight-line program.
 //!
-//! What [`State::solve`] computes is the same at every output time and for every design, as long as Newton's method
-//! takes as many corrections and the pivots keep their order. So it is recorded once, with a number of the tape in
-//! place of each number, together with the forecast before it and whatever is asked of the bodies after it; and what is
-//! left of it after folding is run eight lanes at a time. What was decided while recording is requested again in every
-//! run, as numbers by which a tape judges it ([`Tape::solve`](super::tape::Tape::solve)); where the answer is another,
-//! nothing has happened, and the kernel itself solves the step.
+//! [`State::solve`] computes the same operations at every output time and for every design, as long as Newton's method
+//! takes the same number of corrections and the pivots keep their order. So they are recorded once, with the numbers of
+//! the tape, together with the prediction before the step and the requested results after it. After constant folding
+//! the program runs in eight lanes at a time. Every decision that was made during recording is checked in every run by
+//! numbers that the tape evaluates ([`Tape::solve`](super::tape::Tape::solve)). If a decision differs, the results are
+//! discarded, and the kernel solves the step.
 //!
-//! Not recorded are mechanisms with curves, and with couplers, whose angles depend on the turn that is expected; those
-//! that are so large that a program each would cost more than it saves; and margins of sparse blocks.
+//! Not recorded are mechanisms with curves; mechanisms with couplers, which count turns; mechanisms so large that
+//! a program would cost more than it saves; and margins of sparse blocks.
 
 use std::sync::{Arc, OnceLock};
 
@@ -37,10 +37,9 @@ use super::stepper::{AcceptedPosition, Stepper};
 const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5];
 /// Maximum number of corrections of a program; if more are needed, it runs again from its result.
 pub(super) const MOST_CORRECTIONS: usize = 2;
-/// Mechanisms with more links than this are not recorded: what is recorded of each takes some kilobytes until it is a
-/// program.
+/// Maximum number of links of a recorded mechanism: each takes some kilobytes during recording.
 const MOST_LINKS: usize = 4000;
-/// Nor are those whose sparse factors take more multiplications together.
+/// Maximum number of multiplications of the sparse factors of a recorded mechanism.
 const MOST_MULTIPLICATIONS: usize = 70_000;
 /// Number of values that predict a channel.
 pub(super) const CONDITIONS: usize = NODES * ORDERS;
@@ -54,13 +53,13 @@ pub(crate) struct Purpose {
     pub any_design: bool,
     /// Newton's corrections in one run: one or two.
     pub corrections: usize,
-    /// True if it works out the derivatives of all bodies by all variables.
+    /// True if it computes the derivatives of all bodies by all variables.
     pub sensitivities: bool,
-    /// True if it works out how far from a singular position the mechanism is.
+    /// True if it computes the margins.
     pub margins: bool,
-    /// True if it works out the measures that depend on a driver that moves alone.
+    /// True if it computes the measures that depend on the motion of a single driver.
     pub slopes: bool,
-    /// True if it works out the loads that are requested.
+    /// True if it computes the requested loads.
     pub loads: bool,
 }
 
@@ -130,8 +129,8 @@ impl BlockProgram {
         let corrected = passes.checked_sub(2).and_then(|k| corrections.get(k));
         // Either the last that was applied leaves round-off, or the next one is round-off itself.
         let (last, limit) = match corrected {
-            // dq_0 ... dq_passes-2 were applied. In the last pass none was worked out, the one before being at most 1e-8, or it is
-            // at most 1e-14.
+            // dq_0 ... dq_passes-2 were applied. The last pass computed none, since the one before was at most 1e-8, or
+            // one of at most 1e-14.
             Some(c) if c.value() <= QUADRATIC => (passes - 2, QUADRATIC),
             _ => (passes - 1, ROUND_OFF),
         };
@@ -194,19 +193,19 @@ pub(crate) struct Outputs {
 /// Quantities that a run is checked by, in this order.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum StepCheck {
-    /// Positive where the pivots, or what was decided while recording, do not fit.
+    /// Positive if the pivots, or decisions made during recording, do not fit.
     Unfit,
     /// The largest first correction of all blocks, rad or sizes.
     First,
-    /// By how much the last correction is more than round-off; positive where another run is needed.
+    /// Excess of the last correction over round-off; positive if another run is needed.
     Last,
     /// The largest residual, and the largest in sizes of loops.
     Residual,
     ScaledResidual,
     /// The largest pivot of a block over its smallest, of all blocks.
     Pivots,
-    /// By how much speeds differ at most from those predicted by the newest position, and the largest of all speeds;
-    /// rad, or sizes.
+    /// Largest difference between speeds and their prediction from the newest position, and the largest speed; rad, or
+    /// sizes.
     Apart,
     Fastest,
 }
@@ -218,7 +217,7 @@ impl StepProgram {
     /// Reason why the steps of a plan cannot be recorded, with or without margins; `None` if they can.
     pub fn hindrance(topology: &Topology, margins: bool) -> Option<&'static str> {
         if !topology.coupled_rows.is_empty() {
-            Some("couplers count angles by the turn that is expected")
+            Some("couplers count angles by their predicted turns")
         } else if topology.closures.iter().any(|c| c.contact.is_some()) {
             Some("a point follows a curve")
         } else if margins && topology.blocks.iter().any(|b| b.unknowns.len() > LARGEST_DENSE) {
@@ -232,8 +231,8 @@ impl StepProgram {
         }
     }
 
-    /// Records the step that is solved where `one`, of the nominal design, is, and what `besides` makes of it; none
-    /// where either cannot be recorded.
+    /// Records the step at the position of `one`, of the nominal design, and the results of `besides`; returns `None`
+    /// if either cannot be recorded.
     pub fn record(
         one: &Stepper<'_>,
         design_map: &DesignMap<'_>,
@@ -248,10 +247,10 @@ impl StepProgram {
         let (mut fits, mut blocks) = (false, Vec::new());
         recording::begin();
         let recorded = record(|| {
-            // The kernel itself, on numbers that write down what is done with them.
+            // The kernel itself, with numbers that record all operations.
             let mut state = State::new(model, topology);
             let offset = OFFSET[purpose.corrections - 1];
-            let known = foresee(topology, &channels, &one.saved, (offset, purpose.times), &mut state);
+            let known = predict(topology, &channels, &one.saved, (offset, purpose.times), &mut state);
             let drivers: Vec<[Number; 3]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
             let t = *model.times.first().unwrap_or(&0.0);
             let laws = model.laws_of_forces().filter(|_| purpose.loads);
@@ -263,7 +262,7 @@ impl StepProgram {
             let values: Vec<Number> = nominal.map(number).collect();
             let geometry = recording::strictly(|| design_map.geometry(&values));
             let parts = PlanGeometry::of(model, topology, &geometry);
-            // (26), (9), (10): as many corrections as recorded here, whatever the numbers are later
+            // (26), (9), (10): later runs have the number of corrections that is recorded here
             fits = state.solve(topology, &parts, &drivers, f64::INFINITY).is_ok();
             let recorded = (0..topology.blocks.len()).map_while(|b| BlockProgram::of(&state, b));
             blocks = recorded.collect::<Vec<_>>();
@@ -405,7 +404,7 @@ fn judged(
         // The determinant keeps its sign, ...
         let side = if block.positive_product { -1.0 } else { 1.0 };
         unfit.push(w.product * side);
-        // ... the order of the pivots serves, ...
+        // ... the order of the pivots is stable, ...
         unfit.push(w.growth + -f64::max(MOST_GROWTH, 2.0 * block.growth));
         // ... and no other rows are better: 1 / (most least) is the pivot ratio.
         unfit.push(w.most * w.least * one.try_others[b] + -1.0);
@@ -415,13 +414,13 @@ fn judged(
     [unfit, first, last].map(|x| largest_of(x.into_iter()))
 }
 
-/// The largest of these; NaN where one is, and of none at all the least number.
+/// Maximum of these numbers; NaN if one is NaN, and the smallest number if there are none.
 fn largest_of(numbers: impl Iterator<Item = Number>) -> Number {
     numbers.reduce(Number::larger).unwrap_or_else(|| Number::constant(f64::MIN))
 }
 
-/// By how much the speeds differ at most from those that speed and acceleration at the newest position predict, so long
-/// ahead; and the fastest of both. In rad, or sizes; a ball's are twice those of its quaternion.
+/// Largest difference between the speeds and their prediction from the newest position, and the largest of both. In
+/// rad, or sizes; those of a ball are twice those of its quaternion.
 fn speeds(
     topology: &Topology,
     channels: &[Channel],
@@ -438,16 +437,16 @@ fn speeds(
         let [_, speed, _] = channel.of(state);
         let [_, before, acceleration, ..] = *known;
         // q. at the newest position + q.. h
-        let foreseen = acceleration.times_plus(ahead, before);
-        apart.push((speed - foreseen).abs() * per_unit);
+        let predicted = acceleration.times_plus(ahead, before);
+        apart.push((speed - predicted).abs() * per_unit);
         fastest.push(speed.abs().larger(before.abs()) * per_unit);
     }
     [apart, fastest].map(|x| largest_of(x.into_iter()))
 }
 
-/// Makes inputs of what predicts the state, `offset` beside where `at` is; returns what is known of every channel,
-/// which is the same at all of several output times.
-fn foresee(
+/// Makes inputs that predict the state, at `offset` from the position `at`; returns the node values of every channel,
+/// which are common to all lanes of output times.
+fn predict(
     topology: &Topology,
     channels: &[Channel],
     at: &AcceptedPosition,
@@ -464,8 +463,8 @@ fn foresee(
         let of = if times { Number::uniform } else { Number::input };
         let known: [Number; CONDITIONS] = std::array::from_fn(|n| of(first(n, beside)));
         let begin = if times { Number::input(0.0) } else { Number::constant(0.0) };
-        // What counts least comes first.
-        // q(t) = begin + sum_j weight_j(t) known_j: Hermite's interpolation (27), the weights worked out once for all channels
+        // Terms in order of increasing size.
+        // q(t) = begin + sum_j weight_j(t) known_j: Hermite interpolation (27), with the same weights for all channels
         let terms = weights.into_iter().zip(known).rev();
         channel.put(terms.fold(begin, |sum, (w, x)| w.times_plus(x, sum)), state);
         known
@@ -473,24 +472,23 @@ fn foresee(
     channels.iter().map(one).collect()
 }
 
-/// Recording pays from that many steps on: it costs about as much as a few hundred of the kernel's, once, and later
-/// runs have it for nothing.
+/// Number of steps from which recording saves time: it costs about a few hundred steps of the kernel, but only once.
 const PAYS: usize = 100;
 
-/// The programs of a plan, each recorded when it is first requested.
+/// Programs of a plan, each recorded on first use.
 ///
-/// They are recorded of the nominal design where its motion begins, so that they do not depend on who asks first.
+/// They are recorded for the nominal design at the first position, so that they do not depend on the first request.
 #[derive(Debug)]
 pub(crate) struct Programs {
     execution: Execution,
     steps: Cache<Purpose, StepProgram>,
     laws: Cache<bool, Runnable>,
-    /// The registers of machine code, or why there is none.
+    /// Register width of machine code, or the reason why there is none.
     machine: OnceLock<Result<Width, UnsupportedProgram>>,
 }
 
 impl Programs {
-    /// None as yet.
+    /// An empty set of programs.
     pub fn new(execution: Execution) -> Self {
         Self { execution, steps: Cache::default(), laws: Cache::default(), machine: OnceLock::new() }
     }
@@ -509,7 +507,7 @@ impl Programs {
                 StepMethod::Kernel(format!("recording pays from {PAYS} output times on"))
             }
             Execution::Interpreted => StepMethod::Interpreter(asked()),
-            // What can be made of nothing can be made of all.
+            // If the empty program compiles, all programs do.
             _ => match self.machine.get_or_init(|| Code::new(&Program::default()).map(|code| code.width())) {
                 Ok(width) => StepMethod::Code(*width),
                 Err(why) => StepMethod::Interpreter(why.to_string()),
@@ -517,7 +515,7 @@ impl Programs {
         }
     }
 
-    /// True if that many steps are worth a program.
+    /// True if a program saves time for this number of steps.
     pub fn pay(&self, steps: usize) -> bool {
         match self.execution {
             Execution::Fastest => steps >= PAYS,
@@ -526,7 +524,7 @@ impl Programs {
         }
     }
 
-    /// The program for this purpose; `record` makes it for this execution, if it was not requested before.
+    /// Returns the program for this purpose; `record` makes it on first use.
     pub fn step(
         &self,
         purpose: Purpose,
@@ -535,9 +533,9 @@ impl Programs {
         self.steps.get(purpose, |_| record(self.execution))
     }
 
-    /// The drivers' laws of the nominal design at eight times: in one part value, speed and acceleration of each
-    /// driver, and where loads are requested the values of the laws of forces; in the next what must not be positive.
-    /// None where a law is no plain formula.
+    /// Program of the laws of the nominal design at eight times. The first part has value, speed and acceleration of
+    /// each driver and, if loads are requested, the values of the laws of forces; the second has the limits that must
+    /// not be positive. `None` if a law is not a plain formula.
     pub fn laws(&self, model: &Model, loads: bool) -> Option<Arc<Runnable>> {
         self.laws.get(loads, |_| {
             recording::begin();

@@ -1,8 +1,8 @@
-//! From one output time to the next: predict, correct, and make sure that it is the same branch.
+//! Advance from one output time to the next: predict, correct, and check the branch.
 //!
-//! Where output times follow each other closely they are the walk themselves ([`Stepper::glide`]): the determinants of
-//! the blocks tell, for free, that no singular position is near. Everywhere else the path is followed in steps of its
-//! own ([`super::walk`]), however the output times are spaced.
+//! Closely spaced output times are steps themselves ([`Stepper::glide`]): the determinants of the blocks show at no
+//! cost that no singular position is near. Otherwise the solver chooses its own steps along the path ([`super::walk`]),
+//! independent of the spacing of the output times.
 
 use crate::joint::{Freedom, Quantity};
 use crate::linalg::{FullPivot, LARGEST_DENSE};
@@ -20,47 +20,46 @@ use super::turns::TurnCounter;
 use super::walk::{MOST_BEND, PART_OF_WAY, Path};
 use super::{SolverStatistics, Stop};
 
-/// A first correction (rad, or sizes) up to this is accepted whatever the prediction's own length is.
+/// First correction (rad, or sizes) that is always accepted, whatever the length of the predicted move.
 pub(super) const TRUST_FLOOR: f64 = 0.02;
-/// The first correction may be this part of the predicted move: more means a prediction gone wrong.
+/// Maximum first correction as a fraction of the predicted move; a larger one means that the prediction is wrong.
 pub(super) const TRUST: f64 = 0.5;
-/// Speeds after a step between output times may differ from the predicted ones by this part of the fastest coordinate:
-/// on a motion that output times resolve the difference vanishes with the step.
+/// Maximum difference between speeds after a step and their prediction, as a fraction of the fastest coordinate: for a
+/// motion that the output times resolve, the difference vanishes with the step.
 const SPEED_TRUST: f64 = 0.25;
-/// Differences below this part of the drivers' fastest speed do not count: a start from rest.
+/// Differences below this fraction of the fastest driver speed are ignored, for a start from rest.
 const SPEED_FLOOR: f64 = 1e-3;
-/// The coordinates of a coupler must come within this of their prediction, rad: which turn an angle is in would
-/// otherwise be a guess.
+/// Maximum difference between coordinates of a coupler and their prediction, rad; otherwise the turn of an angle is
+/// ambiguous.
 const TURN_TRUST: f64 = 1.0;
-/// From one output time to the next a determinant may become that many times what it was; a limit position that is
-/// nearer than 1.5 such steps, or a crossing nearer than 3.5, changes it by more (405 motions into such positions, in
-/// 20 to 500 output times).
+/// Allowed ratio of a determinant to that at the output time before. A limit position nearer than 1.5 such steps, or a
+/// change point nearer than 3.5, changes it by more (405 motions into such positions, in 20 to 500 output times).
 pub(super) const MILD: [f64; 2] = [0.78, 1.28];
-/// ... and that part of it may change by so much from one such step to the next.
+/// Allowed change of this ratio from one such step to the next.
 pub(super) const MILD_CHANGE: f64 = 0.125;
-/// Between output times the law may nowhere be faster than that many times what it moves between any two of them
-/// nearby: what rests and pulses in between is looked at closely.
+/// Maximum speed of a law between output times, relative to its mean speeds over nearby steps: laws that rest and pulse
+/// in between are followed in smaller steps.
 pub(super) const EVEN: f64 = 2.0;
 /// A driver that moves by less than this between output times, in rad or sizes, rests.
 pub(super) const RESTS: f64 = 1e-12;
-/// Laws are looked at over that many output times at once.
+/// Number of output times over which the range of a law is evaluated at once.
 const CELL: f64 = 64.0;
-/// Between output times a driver moves by no more than this, rad or sizes: whole turns look like rest from end to end.
+/// Maximum travel of a driver between output times, rad or sizes: whole turns would look like rest.
 pub(super) const LONGEST: f64 = 1.0;
-/// A left-out constraint that fails by more than this part of its loop's size (or, for a cosine, by
-/// more than this) is a contradiction: the mechanism locks. Typed coordinates have about six digits, and an
-/// axis through two of them is tilted by some times that.
+/// Residual of a redundant constraint, as a fraction of its loop's size (or, for a cosine, as it is), above which the
+/// mechanism locks. Coordinates typed into a file have about six digits, and an axis through two of them is tilted by
+/// some times that.
 pub(crate) const LOCKED: f64 = 1e-5;
-/// When the pivot ratio has fallen to this part of its first value, other rows may serve better: redundant ones agree
-/// to the digits of the drawing only, and a weak selection magnifies what they lack.
+/// Other rows are tried when the pivot ratio has fallen to this fraction of its first value: redundant rows agree only
+/// to the digits of the model file, and a weak selection magnifies the difference.
 const RESELECT: f64 = 0.1;
-/// If no other rows served better, they are tried again when the ratio has fallen by this factor once more.
+/// If no other rows were better, they are tried again when the ratio has fallen by this factor once more.
 const LOOK_AGAIN: f64 = 0.3;
 
-/// A mechanism on its way through time.
+/// Solver of a mechanism from one output time to the next.
 pub(crate) struct Stepper<'m> {
     pub(super) model: &'m Model,
-    /// Own copy: the selection of independent rows may change on the way.
+    /// Own copy, because the selection of independent rows may change along the path.
     pub topology: Topology,
     pub parts: PlanGeometry<f64>,
     pub state: State<f64>,
@@ -83,43 +82,44 @@ pub(crate) struct Stepper<'m> {
     pub(super) ahead: Lookahead,
     pub(super) around: Surroundings,
     pub(super) beyond: Surroundings,
-    /// Made when first needed: who takes many steps at once examines nothing.
+    /// Made on first use; batches of steps do not need it.
     pub(super) workspace: Option<Box<Workspace>>,
-    /// Per block: by what part its determinant changed over the last step between output times, and how long that was.
+    /// Per block: relative change of its determinant over the last step between output times, and the length of that
+    /// step.
     /// `r_k - 1` of theory (28).
     pub(super) changes: Vec<f64>,
     pub(super) change_step: f64,
-    /// Per driver: how far it moved over that step.
+    /// Per driver: its travel over that step.
     /// `abs(f_k - f_k-1) / unit`.
     pub(super) moves: Vec<f64>,
-    /// Per driver: how fast it is at most over a stretch of time.
+    /// Per driver: its maximum speed over an interval of time.
     pub(super) speed_bounds: Vec<DriverSpeedBound>,
-    /// Per direction: how far it goes at most over the step considered; on a path other than the laws' in these units.
+    /// Per direction: its maximum travel over the step considered; on a path other than the laws' in these units.
     /// Du of theory (22), m or rad.
     pub(super) travel: Vec<f64>,
     pub(super) travel_unit: f64,
     pub(super) on_laws: bool,
     /// Scratch of predictions.
     pub(super) predicted: Vec<f64>,
-    /// Per curve: the parameter that was predicted, and how far that is from the one before.
+    /// Per curve: the predicted parameter, and its distance from the one before.
     pub(super) touching: Vec<[f64; 2]>,
     /// Fastest driver on the present path (rad, or sizes, per unit of its parameter).
     /// max abs(f.) / unit.
     pub(super) fastest_driver: f64,
-    /// By how much the constraints fail at the position tried last.
+    /// Largest residuals at the position tried last.
     pub(super) residuals: Residuals,
     pub effort: SolverStatistics,
     /// Number of times that other rows were selected.
     pub(super) selections: usize,
     /// Assembly of the mechanism, if it was open in the design configuration.
     pub assembly: Option<Assembly>,
-    /// Counts the angles whose turns only the path indicates; `None` where there are none.
+    /// Counter of the angles whose turns are counted along the path; `None` if there are none.
     pub turns: Option<TurnCounter<'m>>,
     /// The change point that was crossed last.
     pub(super) crossing: Option<Box<Crossing>>,
-    /// True at a change point, where J is singular and nothing can be solved with it.
+    /// True at a change point, where J is singular and cannot be used.
     pub at_change_point: bool,
-    /// Room for the changes and moves over output times that are tried at once.
+    /// Memory for the changes and moves over a batch of output times.
     pub(super) changes_ahead: Vec<f64>,
     pub(super) moves_ahead: Vec<f64>,
 }
@@ -157,7 +157,7 @@ pub(super) enum Lookahead {
     Unknown,
     /// Distances of singular positions are known, in [`Stepper::around`].
     Examined,
-    /// That the last step was one of an even walk.
+    /// The last step was even.
     Even,
 }
 
@@ -174,7 +174,7 @@ pub(super) struct AcceptedPosition {
     pub drivers: Vec<[f64; 3]>,
     /// Per row that is a term of a coupler: its coordinate, with speed and acceleration.
     pub coupled: Vec<[f64; 3]>,
-    /// Per curve: where it is touched.
+    /// Per curve: its contact.
     pub contacts: Vec<Contact<f64>>,
     /// Largest residual there, sizes or rad.
     pub residual: f64,
@@ -183,7 +183,7 @@ pub(super) struct AcceptedPosition {
 /// Reason why a step was rejected.
 pub(super) enum StepRejection {
     Position(PositionFailure),
-    /// The determinant changed its sign, or a turn cannot be reported.
+    /// The determinant changed its sign, or a turn is ambiguous.
     Branch {
         block: BlockId,
     },
@@ -305,7 +305,7 @@ impl<'m> Stepper<'m> {
         Ok(())
     }
 
-    /// Lets angles go on from the accepted position, where the state is with the rates of another path.
+    /// Continues counting angles from the accepted position, at which the state has the rates of another path.
     pub(super) fn renew_turns(&mut self) {
         if let Some(turns) = &mut self.turns {
             turns.renew(&self.state);
@@ -319,7 +319,7 @@ impl<'m> Stepper<'m> {
         self.effort.note_pivots(self.state.pivots.iter().map(|p| p.0), self.time);
     }
 
-    /// Goes on to the output time t in one step, if the way there is known to be even; returns whether it did.
+    /// Advances to the output time t in one step, if the path there is known to be even; returns true if it did.
     fn glide(&mut self, t: f64) -> bool {
         let h = t - self.time;
         if self.forecast.known() == 0 || self.ahead == Lookahead::Unknown {
@@ -329,9 +329,8 @@ impl<'m> Stepper<'m> {
             return false;
         }
         self.fastest_driver = self.driver_speed();
-        let moved = self.foresee_at(h);
-        // abs(dq_0) <= max(half of the predicted move, 0.02): a correction out of proportion may lead to another
-        // branch.
+        let moved = self.predict_at(h);
+        // abs(dq_0) <= max(half of the predicted move, 0.02): a larger correction may lead to another branch.
         let trust = (TRUST * moved).max(TRUST_FLOOR);
         let selections = self.selections;
         if self.state.solve(&self.topology, &self.parts, &self.drivers, trust).is_err()
@@ -366,8 +365,8 @@ impl<'m> Stepper<'m> {
         }
     }
 
-    /// True if the laws do nothing between here and the output time t that its two ends would not show, and no singular
-    /// position is known to be near. The drivers are at t already.
+    /// True if the two ends of the step to the output time t resolve the laws between them, and no singular position is
+    /// known to be near. The drivers are at t already.
     #[inline(always)]
     pub(super) fn is_clear(&mut self, t: f64, h: f64) -> bool {
         for d in 0..self.drivers.len() {
@@ -375,8 +374,7 @@ impl<'m> Stepper<'m> {
             let most = match self.ahead {
                 Lookahead::Even => {
                     let moved = (self.drivers[d][0] - self.saved.drivers[d][0]).abs() / unit;
-                    // Over the step h max abs(f.) <= 2 (larger of the last two moves) / h: the law does nothing of its
-                    // own between.
+                    // Over the step h max abs(f.) <= 2 (larger of the last two moves) / h: the law is even in between.
                     (EVEN * self.moves[d].max(moved)).clamp(RESTS, LONGEST)
                 }
                 _ => LONGEST,
@@ -391,8 +389,8 @@ impl<'m> Stepper<'m> {
         self.ahead == Lookahead::Even || self.around.part_of_way(&self.travel) <= PART_OF_WAY
     }
 
-    /// By what part each determinant has changed since the saved position, a step h before; returns whether that is
-    /// little, and about as much as over the step before.
+    /// Computes the relative change of each determinant since the saved position, a step h before; returns true if all
+    /// changes are small and similar to those of the step before.
     #[inline(always)]
     fn note_changes(&mut self, h: f64) -> bool {
         const MIDDLE: f64 = 0.5 * (MILD[0] + MILD[1]);
@@ -411,14 +409,14 @@ impl<'m> Stepper<'m> {
             self.changes[b] = change;
         }
         self.change_step = h;
-        // Written so that NaN is not even.
+        // NaN is not even.
         most <= 1.0
     }
 
     /// Sets the drivers for the path at t.
     #[inline(always)]
     pub(super) fn drive(&mut self, path: Path, t: f64) -> Result<(), StepRejection> {
-        // phi = (1 - s) phi_0: what is left of every gap, and its rate by s
+        // phi = (1 - s) phi_0: the remaining fraction of every gap, and its rate by s
         self.state.gap_left = if path == Path::Assembly { [1.0 - t, -1.0] } else { [0.0; 2] };
         for k in 0..self.drivers.len() {
             let law = match path {
@@ -432,7 +430,7 @@ impl<'m> Stepper<'m> {
                     [here, to - from, 0.0]
                 }
             };
-            // A sum that is too large is none that a motion can follow either.
+            // An overflow of the sum is not finite either.
             if !(law[0].abs() + law[1].abs() + law[2].abs()).is_finite() {
                 return Err(StepRejection::Law { driver: k });
             }
@@ -441,7 +439,7 @@ impl<'m> Stepper<'m> {
         Ok(())
     }
 
-    /// Solves the position at t on a path, from the saved one, which is about there.
+    /// Solves the position at t on a path, from the saved one, which is near.
     pub(super) fn attempt(&mut self, path: Path, t: f64) -> Result<(), StepRejection> {
         self.drive(path, t)?;
         self.restore();
@@ -454,7 +452,7 @@ impl<'m> Stepper<'m> {
         self.state.solve(&self.topology, &self.parts, &self.drivers, trust).map_err(StepRejection::Position)
     }
 
-    /// The first position of all decides which branch it is.
+    /// Sets the branch from the first position.
     pub(super) fn settle_branch(&mut self) {
         for (b, &(ratio, positive)) in self.state.pivots.iter().enumerate() {
             self.branch[b] = (positive, ratio);
@@ -474,10 +472,10 @@ impl<'m> Stepper<'m> {
             return Err(StepRejection::Branch { block });
         }
         self.residuals = self.state.residuals(&self.topology, &self.parts, &self.drivers);
-        // On the way to being closed, redundant constraints need not agree yet.
+        // During assembly, redundant constraints need not agree yet.
         let half_open = self.state.gap_left[0] > 0.0;
-        // abs(phi) <= 1e-5 of the loop's size, of rows left out as well: else redundant constraints contradict each
-        // other here.
+        // abs(phi) <= 1e-5 of the loop's size, redundant rows included: otherwise the constraints contradict each
+        // other.
         if !half_open && !(self.residuals.scaled <= LOCKED) {
             let (row, residual) = self.state.worst_row(&self.topology, &self.parts, &self.drivers);
             return Err(StepRejection::Locked { row, residual });
@@ -485,10 +483,10 @@ impl<'m> Stepper<'m> {
         self.reselect()
     }
 
-    /// Predicts the position a step h beyond the saved one, from where the mechanism has been; returns how far the
-    /// largest move goes (rad, or sizes), to second order.
+    /// Predicts the position a step h beyond the saved one, from former positions; returns the largest move (rad, or
+    /// sizes), to second order.
     #[inline(always)]
-    fn foresee_at(&mut self, h: f64) -> f64 {
+    fn predict_at(&mut self, h: f64) -> f64 {
         let t = self.time + h;
         self.state.contacts.copy_from_slice(&self.saved.contacts);
         self.forecast.set(&mut self.state, t, h);
@@ -496,7 +494,7 @@ impl<'m> Stepper<'m> {
         self.expected_move(h)
     }
 
-    /// The largest move (rad, or sizes) over a step h, by speed and acceleration.
+    /// Largest move (rad, or sizes) over a step h, by speed and acceleration.
     #[inline(always)]
     fn expected_move(&self, h: f64) -> f64 {
         let (saved, half) = (&self.saved, 0.5 * h);
@@ -509,7 +507,7 @@ impl<'m> Stepper<'m> {
         most
     }
 
-    /// About what the coordinates of couplers are, a step h beyond the saved position.
+    /// Predicts the coordinates of couplers, a step h beyond the saved position.
     #[inline(always)]
     pub(super) fn expect_turns(&mut self, h: f64) {
         let half = 0.5 * h;
@@ -530,13 +528,13 @@ impl<'m> Stepper<'m> {
             .fold(self.fastest_driver, |most, (unit, f)| most.max(f[1].abs() / unit))
     }
 
-    /// The block of a coupler that counts an angle whose turn the prediction does not tell for sure.
+    /// Block of a coupler with an angle whose turn is ambiguous.
     #[inline(always)]
     pub(super) fn uncertain_turn(&self) -> Option<BlockId> {
         let (topology, s) = (&self.topology, &self.state);
         let uncertain = |r: &RowId| {
             let [value, ..] = s.coordinate_of_row(topology, *r);
-            // Written so that NaN is uncertain.
+            // NaN is uncertain.
             !topology.constraint(*r).is_length() && !((value - s.near[r.0]).abs() <= TURN_TRUST)
         };
         // All terms of a coupler are of its block.
@@ -557,7 +555,7 @@ impl<'m> Stepper<'m> {
         smooth(difference, fastest, self.fastest_driver)
     }
 
-    /// Returns whether curves hardly bend from where they were touched to where they are now.
+    /// Returns true if all curves are nearly straight from the former contact to the present one.
     fn contacts_are_near(&self) -> bool {
         let contacts = self.state.contacts.iter().zip(&self.saved.contacts);
         contacts
@@ -565,8 +563,8 @@ impl<'m> Stepper<'m> {
             .all(|((now, before), curve)| curve.bend(before.u, now.u) <= MOST_BEND)
     }
 
-    /// Accepts the position at t, a step h after the one before (0 at the start of a path). What lies ahead is not
-    /// known then.
+    /// Accepts the position at t, a step h after the one before (0 at the start of a path). The path ahead is unknown
+    /// then.
     pub(super) fn save(&mut self, t: f64, h: f64) {
         let (s, saved) = (&self.state, &mut self.saved);
         if h == 0.0 {
@@ -589,7 +587,7 @@ impl<'m> Stepper<'m> {
         self.ahead = Lookahead::Unknown;
     }
 
-    /// Puts the coordinates back to the saved position.
+    /// Restores the coordinates of the saved position.
     pub(super) fn restore(&mut self) {
         let (s, saved) = (&mut self.state, &self.saved);
         s.q.copy_from_slice(&saved.q);
@@ -600,11 +598,11 @@ impl<'m> Stepper<'m> {
         }
     }
 
-    /// Chooses other independent rows for blocks whose present ones have become nearly dependent.
+    /// Selects other independent rows for blocks whose present ones have become nearly dependent.
     pub(super) fn reselect(&mut self) -> Result<(), StepRejection> {
         for b in self.topology.block_ids() {
             let ratio = self.state.pivots[b.0].0;
-            // min / max of the pivots against a tenth of what it was when these rows were chosen
+            // min / max of the pivots, compared with a tenth of its value when these rows were selected
             if ratio >= self.try_others[b.0] {
                 continue;
             }
@@ -624,7 +622,7 @@ impl<'m> Stepper<'m> {
                     entries.filter(|(_, x)| *x != 0.0).collect()
                 })
                 .collect();
-            // All rows of the block where it is now, redundant ones included: those with the largest pivots.
+            // From all rows of the block, redundant ones included, select those with the largest pivots.
             let pivots = FullPivot::of_sparse(matrix, block.unknowns.len(), f64::MIN_POSITIVE);
             let mut selected: Vec<RowId> = pivots.rows.iter().map(|&r| rows[r]).collect();
             selected.sort_unstable();
@@ -634,7 +632,7 @@ impl<'m> Stepper<'m> {
             self.topology.select(b, selected);
             self.selections += 1;
             self.renew_factors(b);
-            // The same position, seen through other rows: new factors, and a new sign to stay with.
+            // Other rows at the same position: new factors, and a new sign of the determinant.
             self.state
                 .solve(&self.topology, &self.parts, &self.drivers, f64::INFINITY)
                 .map_err(StepRejection::Position)?;
@@ -645,7 +643,7 @@ impl<'m> Stepper<'m> {
         Ok(())
     }
 
-    /// Room for the factors of a block that is solved with other rows from now on: they have entries in other places.
+    /// Replaces the factors of a block after a change of its rows, whose entries are elsewhere.
     pub(super) fn renew_factors(&mut self, b: BlockId) {
         let block = &self.topology[b];
         self.state.factors[b.0] = factors_of(&self.topology, block, LARGEST_DENSE);
@@ -659,16 +657,16 @@ impl<'m> Stepper<'m> {
     }
 }
 
-/// True if speeds that differ by so much from the predicted ones are still those of the same branch, with so fast a
-/// coordinate and driver at the most.
+/// True if this difference between speeds and their prediction belongs to the same branch, for these maximum speeds of
+/// coordinates and drivers.
 #[inline(always)]
 pub(super) fn smooth(difference: f64, fastest: f64, fastest_driver: f64) -> bool {
-    // Written so that NaN is refused.
-    // max abs(q. - predicted) <= max(0.25 max abs(q.), 1e-3 max abs(f.)): on another branch the speeds are others
+    // NaN is rejected.
+    // max abs(q. - predicted) <= max(0.25 max abs(q.), 1e-3 max abs(f.)): speeds on another branch differ by more
     difference <= f64::max(SPEED_TRUST * fastest, SPEED_FLOOR * fastest_driver)
 }
 
-/// Per driver, what its travel is compared with: 1 rad, or the size of the largest loop that it moves.
+/// Unit of travel per driver: 1 rad, or the size of the largest loop that it moves.
 pub(crate) fn driver_units(model: &Model, topology: &Topology) -> Vec<f64> {
     let whole = model.size();
     // Du_d / unit is a number without dimension: rad, or a part of the loop.
@@ -692,7 +690,7 @@ mod tests {
     use crate::topology::Formulation;
     use crate::{draft::*, model::*};
 
-    /// Nodes on two slides each, tied by rods to the two nodes before; a leg pushes at the last.
+    /// Nodes on two slides each, connected by rods to the two nodes before; a leg drives the last.
     fn truss(n: usize) -> Model {
         let place = |k: usize| [0.5 * k as f64, 0.8 * (k % 2) as f64, 0.0];
         let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };

@@ -7,7 +7,7 @@ use crate::topology::BlockId;
 
 use super::assembly::{Closing, Gap};
 
-/// A run that could not go on. What was solved before is kept.
+/// End of a run before its last output time. The results up to there are kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stop {
     /// Event that ended the run.
@@ -33,11 +33,11 @@ pub struct Stop {
 /// Event that ended a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StopKind {
-    /// The drivers ask for a position that the mechanism cannot reach (HP0401).
+    /// The drivers prescribe a position that the mechanism cannot reach (HP0401).
     Limit,
     /// A dead point or change point: beyond it the mechanism may take another branch (HP0402).
     BranchChange,
-    /// The configuration in the design configuration is open and cannot be closed (HP0406).
+    /// The mechanism is open in the design configuration and cannot be closed (HP0406).
     DoesNotAssemble,
     /// Redundant constraints contradict each other there: the mechanism locks (HP0403).
     Locked {
@@ -53,7 +53,7 @@ pub enum StopKind {
         /// The driver.
         driver: crate::model::DriverId,
     },
-    /// A driver moves further between two output times than can be followed (HP0408).
+    /// A driver moves farther between two output times than the solver follows (HP0408).
     TooFar {
         /// The driver.
         driver: crate::model::DriverId,
@@ -126,7 +126,7 @@ impl Stop {
                 format!("the mechanism locks: joint `{}` cannot stay closed", model.joints[joint.0].name)
             }
             StopKind::LawNotFinite { driver } => {
-                format!("driver `{}` has no finite place", model.drivers[driver.0].name)
+                format!("driver `{}` has no finite value", model.drivers[driver.0].name)
             }
             StopKind::TooFar { driver } => {
                 format!("driver `{}` moves too far to be followed", model.drivers[driver.0].name)
@@ -136,13 +136,13 @@ impl Stop {
         }
     }
 
-    /// Returns whether it does not assemble since it is drawn in, or next to, a singular position, around which none of
-    /// the assemblies searched for was found.
+    /// Returns true if the mechanism does not assemble because its design configuration is in or near a singular
+    /// position, and no assembly was found around it.
     pub fn is_singular_drawing(&self) -> bool {
         self.closed.is_some_and(|part| part <= SINGULAR_DRAWING)
     }
 
-    /// Instruction that helps, if there is one.
+    /// Suggested fix, if there is one.
     pub fn help(&self) -> Option<&'static str> {
         Some(match self.kind {
             StopKind::Limit => {
@@ -151,8 +151,8 @@ impl Stop {
             }
             StopKind::BranchChange => {
                 "at a dead point the loop may continue on either of two branches and its velocities are not defined; \
-                 write `at_change_points = \"continue\"` at the top of the model file where the motion goes on smoothly, as that of \
-                 a parallelogram does; or shorten the sweep, or drive another joint of the loop"
+                 write `at_change_points = \"continue\"` at the top of the model file if the motion continues smoothly, as in \
+                 a parallelogram; or shorten the sweep, or drive another joint of the loop"
             }
             StopKind::Locked { .. } => {
                 "the loop has redundant constraints that agree at the design configuration only; check that its axes \
@@ -168,8 +168,8 @@ impl Stop {
             }
             StopKind::LawNotFinite { .. } => "change the law, or end the run before that time",
             StopKind::TooFar { .. } => {
-                "up to 100,000 rad, some 16,000 turns, or as many sizes of the mechanism are followed from one output time to the \
-                 next: ask for more output times, or slow the law down"
+                "the limit between two output times is 100,000 rad (about 16,000 turns), or 100,000 sizes of the mechanism: \
+                 request more output times, or make the law slower"
             }
             StopKind::Interrupted => return None,
         })

@@ -1,4 +1,4 @@
-//! A program of a step at work: eight output times of a design, or eight designs at an output time, side by side.
+//! Execution of a step's program: eight output times of one design, or eight designs at one output time, in a batch.
 
 use std::sync::Arc;
 
@@ -14,18 +14,18 @@ use super::predictor::{Channel, ORDERS};
 use super::step_program::{CONDITIONS, Inputs, Outputs, PER_BLOCK, Purpose, StepCheck, StepProgram};
 use super::stepper::{LOCKED, smooth};
 
-/// Maximum number of runs; the kernel solves what has not converged then.
+/// Maximum number of runs; the kernel solves steps that have not converged then.
 const MOST_RUNS: usize = 4;
 /// From one run to the next the first correction must become smaller by this factor, as Newton's corrections must.
 const CONTRACTS: f64 = 0.5;
-/// After that many groups of steps, a program that was refused in more than a quarter of them is given up.
+/// Number of groups of steps after which a program is given up if it was rejected in more than a quarter of them.
 const TRIAL: usize = 8;
 
-/// A step that the program does not fit: the kernel solves it.
+/// Step that the program does not fit; the kernel solves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ProgramMismatch;
 
-/// A program at work, with what it works in: one design in all lanes, or one in each.
+/// A program with its working memory: one design in all lanes, or one in each.
 pub(crate) struct Tape {
     program: Arc<StepProgram>,
     room: ProgramMemory,
@@ -33,7 +33,7 @@ pub(crate) struct Tape {
     /// Node values of the channels, if lanes are output times.
     uniforms: Vec<f64>,
     outputs: Vec<AlignedLanes>,
-    /// Groups of steps that were tried, those that were refused, and those that took more than one run.
+    /// Groups of steps that were tried, those that were rejected, and those that took more than one run.
     tried: usize,
     refused: usize,
     repeated: usize,
@@ -69,7 +69,7 @@ impl Tape {
         }
     }
 
-    /// Takes the designs whose values these are, one per lane; the last one in lanes beyond.
+    /// Sets the designs, one per lane; surplus lanes have the last one.
     pub fn set_designs(&mut self, designs: &[Vec<f64>]) {
         let StepProgram { program, inputs, variables, .. } = &*self.program;
         for v in 0..*variables {
@@ -79,12 +79,12 @@ impl Tape {
         program.take_design(&mut self.inputs);
     }
 
-    /// True if it is refused so often that the kernel alone is faster.
+    /// True if it is rejected so often that the kernel alone is faster.
     pub fn is_of_no_use(&self) -> bool {
         self.tried >= TRIAL && 4 * self.refused > self.tried
     }
 
-    /// True if that many steps take more than one run that a program with more corrections would be faster.
+    /// True if so often more than one run is needed that a program with more corrections would be faster.
     pub fn is_too_short(&self) -> bool {
         self.tried >= TRIAL && 4 * self.repeated > self.tried
     }
@@ -120,8 +120,8 @@ impl Tape {
         self.program.purpose
     }
 
-    /// Predicts times so far ahead of the newest position by these weights: by position, the newest first, and order of
-    /// its derivative; they may be the ones of last time.
+    /// Sets the times ahead of the newest position, and the weights of the prediction: by position, the newest first,
+    /// and order of its derivative. `are_new` is false if the weights have not changed.
     #[inline(always)]
     pub fn look_ahead(&mut self, weights: &[Lanes; CONDITIONS], are_new: bool, ahead: &Lanes) {
         let at = self.program.inputs.ahead;
@@ -155,7 +155,7 @@ impl Tape {
         &mut lanes_of(&mut self.inputs)[drivers..ahead]
     }
 
-    /// The same, read.
+    /// Drivers and laws that were set.
     #[inline(always)]
     pub fn driver(&self, d: usize, order: usize) -> &Lanes {
         &self.inputs[self.program.inputs.drivers + ORDERS * d + order].0
@@ -178,7 +178,7 @@ impl Tape {
             let inputs = bytemuck::cast_slice(&self.inputs);
             self.room.run(&self.program.program.step, inputs, &self.uniforms, outputs);
             self.runs += 1;
-            // All comparisons are written so that NaN is refused.
+            // All comparisons reject NaN.
             if !all_within(self.judged(StepCheck::First), trust) {
                 return Err(ProgramMismatch);
             }
@@ -229,12 +229,12 @@ impl Tape {
         &self.outputs[self.program.outputs.judged + which as usize].0
     }
 
-    /// Counts the steps that were just solved as refused: what came after them did not fit.
+    /// Counts the last steps as rejected, because a later check failed.
     pub fn refuse(&mut self) {
         self.refused += 1;
     }
 
-    /// By how much the forecast missed at most, rad or sizes: the largest first correction of all blocks.
+    /// Largest error of the prediction, rad or sizes: the largest first correction of all blocks.
     pub fn missed(&self) -> f64 {
         self.missed
     }
@@ -282,17 +282,17 @@ impl Tape {
     #[inline(always)]
     pub fn speeds_are_smooth(&self, fastest_driver: f64) -> bool {
         let [apart, fastest] = [StepCheck::Apart, StepCheck::Fastest].map(|which| self.judged(which));
-        // NaN of any lane is refused.
+        // NaN in any lane is rejected.
         all_within(apart, f64::MAX) && smooth(largest(apart), largest(fastest), fastest_driver)
     }
 
-    /// The margins of the blocks, if they are worked out.
+    /// Margins of the blocks, if computed.
     pub fn margins(&self) -> &[AlignedLanes] {
         let Outputs { margins, defects, .. } = self.program.outputs;
         &self.outputs[margins..defects]
     }
 
-    /// Measures that need more of a step than where the bodies are, with their derivatives, if they are worked out.
+    /// Measures that need more of a step than the motion of the bodies, with their derivatives, if computed.
     pub fn measures(&self) -> &[AlignedLanes] {
         let Outputs { measures, states, .. } = self.program.outputs;
         &self.outputs[measures..states]
@@ -313,7 +313,7 @@ impl Tape {
     }
 }
 
-/// True if no lane is larger; NaN is.
+/// True if no lane is larger; NaN counts as larger.
 #[inline(always)]
 pub(super) fn all_within(lanes: &Lanes, limit: f64) -> bool {
     lanes.iter().fold(true, |all, x| all & (*x <= limit))

@@ -1,8 +1,8 @@
-//! Eight output times at once: a single design's steps side by side, by a straight-line program.
+//! Batch of eight output times of a single design, solved by a straight-line program.
 //!
-//! Where the motion is smooth, the positions of the next eight output times are predicted so well that they can be
-//! corrected together. Every check of a single step is made at each of them, and more strictly; where one fails,
-//! nothing has happened, and the steps are walked one by one.
+//! In a smooth motion the prediction of the next eight output times is so accurate that they can be corrected together.
+//! Every check of a single step is made at each of them, and more strictly. If a check fails, the results are
+//! discarded, and the steps are solved one by one.
 
 use std::sync::Arc;
 
@@ -22,19 +22,19 @@ use super::tape::{SolveQuality, Tape, all_within, largest};
 use super::turns::TurnCounter;
 use super::walk::PART_OF_WAY;
 
-/// The first correction (rad, or sizes) must be within this: a forecast by all positions that fails by more is none.
-const FORESEEN: f64 = 1e-3;
-/// After a failure that many steps are walked one by one, at the least and at the most.
+/// Maximum first correction (rad, or sizes) after a prediction by all stored positions.
+const FORECAST_TRUST: f64 = 1e-3;
+/// Minimum and maximum number of steps that are solved one by one after a failure.
 const PAUSE: [usize; 2] = [LANES, 64];
-/// Laws are looked at over that many times the way of all lanes at once.
+/// Interval over which the range of a law is evaluated, in lengths of a batch.
 const CELL: f64 = 8.0;
-/// Fewer steps than this are not worth it.
+/// Minimum number of steps of a batch.
 const FEWEST: usize = 3;
 
-/// Gives the program with that many corrections, if there is one.
+/// Function that returns the program with this number of corrections, if there is one.
 pub(crate) type ProgramOf<'p> = Box<dyn Fn(usize) -> Option<Arc<StepProgram>> + 'p>;
 
-/// Takes up to eight steps of a stepper at once.
+/// Solver of up to eight steps of a stepper at once.
 pub(crate) struct TimeBatch<'p> {
     /// Source of programs.
     programs: Option<ProgramOf<'p>>,
@@ -43,10 +43,10 @@ pub(crate) struct TimeBatch<'p> {
     tape: Option<Tape>,
     laws: Laws,
     weights: Weights,
-    /// Steps to walk before the next try, and how long the next pause is.
+    /// Number of single steps before the next try, and length of the next pause.
     wait: usize,
     pause: usize,
-    /// Results, where nobody gives room for them; and whether they are here.
+    /// Results that have no memory elsewhere; true if the last results are here.
     own: [Vec<AlignedLanes>; 2],
     is_own: bool,
 }
@@ -59,8 +59,7 @@ struct Laws {
 }
 
 impl<'p> TimeBatch<'p> {
-    /// By these programs, for a design with these values; `laws` are those of its drivers, if there is a program for
-    /// them.
+    /// Solver by these programs, for a design with these values; `laws` is the program of its laws, if there is one.
     pub fn new(programs: Option<ProgramOf<'p>>, design: &[f64], laws: Option<Arc<Runnable>>) -> Self {
         let limits = vec![AlignedLanes::default(); laws.as_ref().map_or(0, |laws| laws.sizes()[1])];
         let laws = Laws { program: laws, room: ProgramMemory::default(), limits };
@@ -80,20 +79,20 @@ impl<'p> TimeBatch<'p> {
     /// Result of the last solution.
     ///
     /// # Panics
-    /// Where nothing was.
+    /// Panics if nothing was solved.
     pub fn solved(&self) -> &Tape {
         self.tape.as_ref().expect("a tape has solved the steps")
     }
 
-    /// Results, where there was no room for them elsewhere.
+    /// Results that have no memory elsewhere.
     pub fn own_results(&self) -> Option<ResultBlock<'_>> {
         let [states, derivatives] = self.own.each_ref().map(|own| bytemuck::cast_slice(own));
         self.is_own.then_some(ResultBlock { states, derivatives })
     }
 
-    /// Advances from the stepper's position to as many of the next output times, from output time k on, as a program
-    /// can solve at once. Returns their number; 0 if the kernel has to solve them one by one. Output times 8n to 8n + 7
-    /// are stored together, so a batch ends with such a group; those of the group before k are solved again and
+    /// Advances from the stepper's position by the largest number of output times, from output time k on, that a
+    /// program can solve at once. Returns this number; 0 if the kernel has to solve them one by one. Output times 8n to
+    /// 8n + 7 are stored together, so a batch ends with such a group; those of the group before k are solved again and
     /// ignored. Results go to `room` if there is one; otherwise they are stored here.
     #[inline]
     pub fn advance<'r>(
@@ -126,7 +125,7 @@ impl<'p> TimeBatch<'p> {
         0
     }
 
-    /// Makes a tape where there is none, and another or none where it does not fit; returns whether there is one. Till
+    /// Makes a tape if there is none, and replaces or drops one that does not fit; returns true if there is one. Up to
     /// `last` there are `count` steps.
     fn choose_tape(&mut self, one: &Stepper<'_>, [last, count]: [f64; 2]) -> bool {
         let corrections = match &self.tape {
@@ -179,9 +178,9 @@ impl<'p> TimeBatch<'p> {
             }
             self.own.each_mut().map(|own| lanes_of(own))
         });
-        // As a motion begins, less is known of it.
-        // With three nodes the forecast misses by (27) alone; a first correction above 1e-3 says that the motion is no such polynomial.
-        let trust = if one.forecast.known() < NODES { TRUST_FLOOR } else { FORESEEN };
+        // The first steps of a motion have fewer nodes. With three nodes the error of the prediction is that of (27); a
+        // first correction above 1e-3 means that the motion is not smooth enough.
+        let trust = if one.forecast.known() < NODES { TRUST_FLOOR } else { FORECAST_TRUST };
         let solved = tape.solve(trust, [&mut *states, derivatives]).ok()?;
         let change_step = determinants_are_even(tape, one, times, [first, last]);
         let change_step = change_step.filter(|_| tape.speeds_are_smooth(one.fastest_driver));
@@ -202,8 +201,8 @@ impl<'p> TimeBatch<'p> {
 }
 
 impl Laws {
-    /// Value, speed and acceleration of every driver at these times, and the values of the laws of forces, if there is
-    /// room for them; none where one is not finite.
+    /// Value, speed and acceleration of every driver at these times, and the values of the laws of forces, if
+    /// requested; `None` if one is not finite.
     #[inline(always)]
     fn at(&mut self, one: &Stepper<'_>, times: &Lanes, laws: &mut [Lanes]) -> Option<()> {
         let mut by_program = false;
@@ -230,15 +229,14 @@ impl Laws {
     }
 }
 
-/// By how much a forecast will miss eight steps beyond three positions that are four steps apart, rad or sizes: the
-/// remainder of Hermite's interpolation, `x^9 / 9!` times the ninth derivative, of a motion that goes like a sine. It
-/// goes as often as the fastest driver turns, or as that comes and depends on its law. Up to `last` there are `count`
-/// steps.
+/// Estimated error of a prediction eight steps beyond three positions that are four steps apart, rad or sizes: the
+/// remainder of the Hermite interpolation, `x^9 / 9!` times the ninth derivative, for a sinusoidal motion. The
+/// frequency is that of the fastest driver's rotation, or of its law. Up to `last` there are `count` steps.
 fn missed(one: &Stepper<'_>, last: f64, count: f64) -> f64 {
     let frequency = |d: usize| {
         let speed = one.parts.fastest(d, one.time, last);
-        // omega = f. / unit: a driver that turns so fast makes all it drives go like sin(omega t). Or f itself goes like sin(omega t), and
-        // then f... = -omega^2 f.
+        // omega = f. / unit: all bodies that a rotating driver moves follow sin(omega t). Or f itself follows
+        // sin(omega t), and then f... = -omega^2 f.
         let [.., third] = one.parts.law_of(d).at(one.time).derivatives();
         let of_law = if speed > 0.0 { (third.abs() / speed).sqrt() } else { 0.0 };
         f64::max(speed / one.driver_units[d], of_law)
@@ -260,8 +258,8 @@ fn fastest_driver(tape: &Tape, one: &Stepper<'_>) -> f64 {
     fastest
 }
 
-/// True if no law does anything between the output times that these would not show; and, where no step indicates yet,
-/// no singular position is known to be near. Notes how far the drivers go from one output time to the next.
+/// True if the output times resolve all laws between them and, at the first step, no singular position is known to be
+/// near. Records the travel of the drivers from one output time to the next.
 #[inline(always)]
 fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last]: [usize; 2]) -> bool {
     let mut longest = times[first] - one.time;
@@ -285,14 +283,14 @@ fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last
         if !(travel <= most) {
             return false;
         }
-        // What was examined must be clear as far as the last of these times.
+        // The examined range must extend to the last of these times.
         (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit * ((to - from) / longest));
     }
     one.ahead == Lookahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
 }
 
-/// True if every determinant changes by little from one output time to the next, and about as much as over the step
-/// before. Notes the last of these changes, and gives the length of its step.
+/// True if the change of every determinant from one output time to the next is small and similar to that of the step
+/// before. Records the last of these changes, and returns the length of its step.
 #[inline(always)]
 fn determinants_are_even(
     tape: &Tape,
@@ -300,7 +298,7 @@ fn determinants_are_even(
     times: &Lanes,
     [first, last]: [usize; 2],
 ) -> Option<f64> {
-    // How long every step is beside the one before it; the first beside the last of the stepper's.
+    // Length of every step relative to the one before it; for the first step, relative to the last of the stepper.
     let (mut beside, mut step) = ([1.0; LANES], one.change_step);
     for k in first..=last {
         let next = if k == first { times[k] - one.time } else { times[k] - times[k - 1] };
@@ -316,7 +314,7 @@ fn determinants_are_even(
             let ratio = one.state.factors[b].ratio(determinants[k], before);
             // r_k = det_k / det_k-1;  r_k in [0.78, 1.28],  abs((r_k - 1) - (r_k-1 - 1) h_k / h_k-1) <= 0.125     (28)
             let changed = ratio - 1.0;
-            // Written so that NaN is not even.
+            // NaN is not even.
             even &= (MILD[0]..=MILD[1]).contains(&ratio);
             even &= k < compared || (changed - change * beside[k]).abs() <= MILD_CHANGE;
             (change, before) = (changed, determinants[k]);
@@ -340,7 +338,7 @@ impl Stepper<'_> {
         SolveQuality { residuals, pivot_ratio }: SolveQuality,
         change_step: f64,
     ) {
-        // The forecast depends on the middle and the end of the way.
+        // The next prediction uses the middle and the end of the batch.
         for lane in [usize::midpoint(first, last), last] {
             let channels = 0..tape.channels().len();
             self.forecast.learn_values(times[lane], channels.map(|c| tape.channel(c, lane)));

@@ -1,54 +1,54 @@
-//! Angles counted through whole turns along the path: of measures, and of the coordinates of cut joints that elements
-//! act on.
+//! Counting of whole turns along the path: for angles of measures, and for coordinates of cut joints that elements act
+//! on.
 //!
-//! An angle is known within a turn only; the path indicates which turn it is in. Between output times an angle is
-//! predicted along the drivers, as every unknown is ([`super::walk`]), so that neither the output times nor what the
-//! laws do in between have a part in it. From one output time to the next of an even motion an angle moves by less than
-//! a radian, or the step is refused ([`TurnCounter::is_even`]).
+//! A position gives an angle within one turn only; the path determines the turn. Between output times an angle is
+//! predicted along the drivers, like every unknown ([`super::walk`]), so that the result does not depend on the output
+//! times or on the laws in between. From one output time to the next of an even motion an angle moves by less than a
+//! radian; otherwise the step is rejected ([`TurnCounter::is_even`]).
 
 use hardpoint_tape::Lanes;
 
 use super::BodyState;
 use super::kinematics::State;
 
-/// An angle must come within this of its prediction, rad: which turn it is in would otherwise be a guess. Over one step
-/// it moves by no more than this to first order, so that half a turn is far away.
+/// Maximum difference between an angle and its prediction, rad; otherwise its turn is ambiguous. It is also the maximum
+/// first-order change over one step, which is well below half a turn.
 pub(super) const TURN_TRUST: f64 = 1.0;
-/// Seen from its far end, a step may move an angle by this many times more.
+/// Factor of this maximum for the change of an angle as computed from the far end of a step.
 const FAR_END: f64 = 2.5;
-/// A step of the drivers below this, rad or sizes, is not refused for an angle: one that has no number on the way, as
-/// where the points of a direction meet, jumps there.
+/// Driver travel, rad or sizes, below which a step is not rejected because of an angle: an angle may jump where it is
+/// undefined, such as where the two points of a direction coincide.
 pub(super) const FINEST: f64 = 1e-6;
 
 /// One turn, rad.
 const TURN: f64 = 2.0 * std::f64::consts::PI;
 
-/// The angle nearest to another that is a whole number of turns from this one; this one, where the other has no number.
+/// Angle plus the whole number of turns that brings it nearest to another; unchanged if the other is NaN.
 pub(crate) fn turned(angle: f64, near: f64) -> f64 {
     // angle + 2 pi k,  k the whole number nearest to (near - angle) / 2 pi
     let turns = ((near - angle) / TURN).round();
     if turns.is_nan() { angle } else { angle + TURN * turns }
 }
 
-/// The angle nearest to another; where it has no number, what it was before, so that its turns are not lost.
+/// Angle in the turn nearest to another; if it is NaN, the former angle, so that its turns are not lost.
 fn counted(angle: f64, near: f64, before: f64) -> f64 {
     if angle.is_nan() { before } else { turned(angle, near) }
 }
 
-/// Angles that only the path counts.
+/// Angles whose turns are counted along the path.
 pub(crate) trait CountedAngles {
-    /// The bodies that they are measured on, without ground.
+    /// Bodies on which they are measured, without ground.
     fn bodies(&self) -> &[usize];
 
-    /// Per angle: its value in the design configuration; as it is measured, without a whole turn, where that is `None`.
+    /// Per angle: its value in the design configuration; `None` to start with the measured value, without whole turns.
     fn origins(&self) -> &[Option<f64>];
 
-    /// Value, within a turn, and first two derivatives of every angle, where each of [`bodies`](Self::bodies) is as
-    /// `state` says.
+    /// Computes the value within a turn, and the first two derivatives, of every angle; `state` returns the state of
+    /// each of the [`bodies`](Self::bodies).
     fn measure(&mut self, state: &dyn Fn(usize) -> BodyState, found: &mut [[f64; 3]]);
 }
 
-/// The angles that are counted along the path, where the accepted position is.
+/// Counter of the angles that are counted along the path, at the accepted position.
 pub(crate) struct TurnCounter<'m> {
     angles: Box<dyn CountedAngles + 'm>,
     /// Per angle: its value with all turns at the accepted position, rad.
@@ -66,7 +66,7 @@ pub(crate) struct TurnCounter<'m> {
 }
 
 impl<'m> TurnCounter<'m> {
-    /// A counter of these angles.
+    /// Makes a counter of these angles.
     pub fn new(angles: Box<dyn CountedAngles + 'm>) -> Self {
         let count = angles.origins().len();
         Self {
@@ -86,7 +86,7 @@ impl<'m> TurnCounter<'m> {
         self.values.len()
     }
 
-    /// Counts from the design configuration, where the state is.
+    /// Starts at the design configuration, the position of the state.
     pub fn begin(&mut self, state: &State<f64>) {
         self.look(&|b| BodyState::of(state, b));
         for ((value, [now, ..]), origin) in self.values.iter_mut().zip(&self.found).zip(self.angles.origins())
@@ -96,7 +96,7 @@ impl<'m> TurnCounter<'m> {
         self.spin = self.spin_ahead;
     }
 
-    /// The accepted position once more, with the rates that the bodies have on another path.
+    /// Updates the rates at the accepted position, for another path.
     pub fn renew(&mut self, state: &State<f64>) {
         self.look(&|b| BodyState::of(state, b));
         self.nearest();
@@ -110,10 +110,9 @@ impl<'m> TurnCounter<'m> {
         out.extend(self.found.iter().map(|[_, slope, bend]| [*slope, *bend]));
     }
 
-    /// Returns whether each angle, where the state is after a step, is in the turn that was predicted. `predict` is
-    /// given an angle; of what it returns the first is by how much the angle moves as seen from the accepted position,
-    /// the second as seen from the new one, both to second order, and the third the farthest that it gets as seen from
-    /// there, to first order.
+    /// Returns true if each angle is in the predicted turn after a step. For an angle, `predict` returns its change
+    /// computed from the accepted position, and from the new one, both to second order, and its maximum change computed
+    /// from the new one to first order.
     pub fn follow(&mut self, state: &State<f64>, predict: impl Fn(usize) -> [f64; 3]) -> bool {
         self.look(&|b| BodyState::of(state, b));
         let mut sure = true;
@@ -122,7 +121,7 @@ impl<'m> TurnCounter<'m> {
             let near = before + if ahead.is_finite() { ahead } else { 0.0 };
             self.ahead[i] = counted(*now, near, before);
             let moved = self.ahead[i] - before;
-            // Written so that an angle without a number is no matter of turns.
+            // A NaN angle is not checked.
             let doubtful = (self.ahead[i] - near).abs() > TURN_TRUST
                 || (moved - back).abs() > FAR_END * TURN_TRUST
                 || far > FAR_END * TURN_TRUST;
@@ -131,15 +130,15 @@ impl<'m> TurnCounter<'m> {
         sure
     }
 
-    /// Returns whether a step h from one output time to the next, over which the drivers move by so much in all, leaves
-    /// no doubt about the turns of any angle where the state is then.
+    /// Returns true if the turns of all angles are unambiguous after a step h from one output time to the next, over
+    /// which the total travel of the drivers is `moved`.
     pub fn is_even(&mut self, state: &State<f64>, h: f64, moved: f64) -> bool {
         self.look(&|b| BodyState::of(state, b));
         self.nearest();
         self.is_slow(h, moved)
     }
 
-    /// The same over all these output times at once, by the numbers of all bodies in lanes; `before` is the time of the
+    /// Checks all these output times at once, from the states of all bodies in lanes; `before` is the time of the
     /// accepted position.
     pub fn are_even(
         &mut self,
@@ -180,18 +179,18 @@ impl<'m> TurnCounter<'m> {
         self.spin_ahead = self.angles.bodies().iter().map(|b| state(*b).omega.norm()).fold(0.0, f64::max);
     }
 
-    /// Takes every angle in the turn that is nearest to the accepted position.
+    /// Moves every angle to the turn nearest to the accepted position.
     fn nearest(&mut self) {
         for ((ahead, before), [now, ..]) in self.ahead.iter_mut().zip(&self.values).zip(&self.found) {
             *ahead = counted(*now, *before, *before);
         }
     }
 
-    /// Returns whether over a step h nothing turns by more than a radian: neither the drivers together, nor a body, nor
+    /// Returns true if nothing turns by more than a radian over a step h: neither the drivers together, nor a body, nor
     /// an angle.
     fn is_slow(&self, h: f64, moved: f64) -> bool {
         let mut angles = self.ahead.iter().zip(&self.values).map(|(ahead, before)| (ahead - before).abs());
-        // Written so that NaN of the motion is not slow, and an angle without a number is no matter of turns.
+        // A NaN motion is not slow; a NaN angle is not checked.
         moved <= TURN_TRUST
             && self.spin * h <= TURN_TRUST
             && self.spin_ahead * h <= TURN_TRUST

@@ -14,67 +14,61 @@ use super::stepper::{LOCKED, Lookahead, StepRejection, Stepper, TRUST, TRUST_FLO
 use super::turns::{FINEST, TURN_TRUST};
 use super::{SingularPosition, Stop, StopKind};
 
-/// A step may be this part of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17
-/// times the true distance (`docs/theory.md`, section 4), so that no step reaches beyond.
+/// Maximum step as a fraction of the estimated distance to the nearest singular position. The estimate is 0.94 to 2.17
+/// times the true distance (`docs/theory.md`, section 4), so that no step passes it.
 pub(super) const PART_OF_WAY: f64 = 0.4;
-/// Seen from its far end, a step may be this part of the distance there: an equal walk back would be 0.67 of it, and a
-/// narrow miss that symmetry hides from one end shows from the other.
+/// Maximum step as a fraction of the distance estimated at its far end: the step back would be 0.67 of it, and a near
+/// singular position that symmetry hides from one end shows from the other.
 const PART_FROM_FAR_END: f64 = 2.5 / (1.0 - PART_OF_WAY) * PART_OF_WAY;
-/// No driver moves by more than this in a step, rad or sizes of its loop: symmetry may hide a singular position
-/// entirely, and in uniform rotation there is none.
+/// Maximum travel of a driver in a step, rad or sizes of its loop: symmetry may hide a singular position entirely, and
+/// in uniform rotation there is none.
 const LONGEST: f64 = 1.0;
-/// ... and no unknown coordinate by more than this: which turn an angle is in would be a guess.
+/// Maximum change of an unknown coordinate in a step; otherwise the turn of an angle is ambiguous.
 const LONGEST_MOVE: f64 = 2.0;
-/// A singular position nearer than this, in rad or sizes of driver travel, is where the walk ends; nearer by, round-off
-/// decides.
+/// Distance of a singular position, in rad or sizes of driver travel, at which the walk ends; round-off dominates
+/// nearer to it.
 const NEAREST: f64 = 1e-6;
-/// A law that comes within this part of the distance to a singular position reaches it: the estimate of that distance,
-/// 2e-6 rad away, is good to about 1e-4 (`docs/theory.md`, section 4).
+/// Fraction of the distance to a singular position at which a law has reached it: the estimate of that distance, 2e-6
+/// rad away, is accurate to about 1e-4 (`docs/theory.md`, section 4).
 const REACHED: f64 = 0.99;
-/// Maximum number of parts of the way over which the range of a law is computed, to find out what it does first.
+/// Maximum number of intervals for which the range of a law is computed, to find its first event.
 const MOST_PARTS: usize = 2_000;
-/// A step that is refused at this length, rad or sizes, is refused for good.
+/// Minimum step, rad or sizes; if it is rejected, the path ends.
 const SHORTEST: f64 = 1e-10;
-/// Times nearer to each other than this, relative to the times of the path, are one: what changes between them jumps.
+/// Relative difference below which two times are equal; a law that changes between them jumps.
 const ONE_TIME: f64 = 1e-14;
-/// Redundant constraints that disagree by this part of what counts as locked are looked at in the middle of a step,
-/// too.
+/// Fraction of the locking tolerance above which redundant constraints are also checked in the middle of a step.
 const SUSPECT: f64 = 1e-2;
-/// The response to a load goes with this power of the distance, at most, where the loop cannot be closed beyond: 1/2;
-/// where two motions meet it is 1.
+/// Power of the response below which a singular position is a limit: it is 1/2 at a limit, and 1 where two motions
+/// meet.
 const LIMIT: f64 = 0.75;
-/// A power this near to 1/2 or 1 indicates of what kind a singular position ahead is; farther from it, other things
-/// have their part.
-const TELLING: f64 = 0.1;
-/// A walk gives up after that many steps without a radian, or a size, of any driver.
+/// Maximum deviation of the power from 1/2 or 1 for which the kind of a singular position ahead is clear.
+const CLEAR_POWER: f64 = 0.1;
+/// Maximum number of steps during which no driver moves by a radian, or a size.
 const MOST_STEPS: usize = 20_000;
-/// Between two output times no driver is followed further than this, rad or sizes: what runs away would be followed for
-/// ever.
+/// Maximum travel of a driver between two output times, rad or sizes, so that a diverging law ends the run.
 const FARTHEST: f64 = 1e5;
-/// Between two output times a law may jump so often: each jump is followed by itself, and one that jumps without end
-/// would be followed for ever.
+/// Maximum number of jumps of a law between two output times, since each jump is followed on its own.
 const MOST_JUMPS: usize = 1_000;
-/// ... and so often without a time at which it does not jump: one that goes on like that is faster than times can be
-/// distinguished.
+/// Maximum number of jumps in a row: a law with more is faster than the resolution of times.
 const MOST_IN_A_ROW: usize = 32;
-/// A law that is not bounded over this part of a walk, however near by, and this large there, has a pole, 1e3 times
-/// what it is at the ends.
+/// A law has a pole if it is unbounded over this fraction of a walk, and has there this multiple of its values at the
+/// ends.
 const POLE: [f64; 2] = [1e-9, 1e3];
 
-/// A curve may be touched this far from where it was predicted, in lengths between its points, however short the
-/// predicted move.
+/// Difference between a contact and its prediction that is always accepted, in lengths between the points of the curve.
 const CONTACT_FLOOR: f64 = 0.1;
-/// A curve may bend by this much over a step, rad: a groove that turns back within a step would be crossed unseen.
+/// Maximum bend of a curve over a step, rad: a groove that turns back within a step would be missed.
 pub(super) const MOST_BEND: f64 = 0.4;
 
 /// Path of the drivers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Path {
-    /// From the configuration in the design configuration, where joints may be open, to the closed one, all drivers at
-    /// zero; the parameter runs from 0 to 1 and is the part of every gap that is closed.
+    /// From the design configuration, whose joints may be open, to the closed one, with all drivers at zero; the
+    /// parameter runs from 0 to 1 and is the closed fraction of every gap.
     Assembly,
     /// All drivers straight from one value to another, [`Stepper::line`], at one time; the parameter runs from 0 to 1.
-    /// So the mechanism comes from the design configuration to its first output time, and over the jumps of laws.
+    /// It is used from the design configuration to the first output time, and over jumps of laws.
     Line {
         /// That time.
         at: f64,
@@ -89,8 +83,8 @@ impl Path {
         if self == Self::Assembly { -1.0 } else { 0.0 }
     }
 
-    /// Travel of a direction over a step h, from the values of the drivers `before` to those `now`: of a law what its
-    /// driver does, of a straight path the step itself.
+    /// Travel of a direction over a step h, from the values of the drivers `before` to those `now`: that of the driver
+    /// for a law, the step itself for a straight path.
     fn travel_of(self, direction: usize, h: f64, [before, now]: [&[[f64; 3]]; 2]) -> f64 {
         match self {
             Self::Laws => now[direction][0] - before[direction][0],
@@ -106,11 +100,11 @@ impl Stepper<'_> {
             let Err(stop) = self.walk_to(path, target) else { break };
             self.cross(path, stop)?;
         }
-        // An output time that was passed on the way over a change point is gone back to.
+        // Returns to an output time that was passed while crossing a change point.
         self.stand_within_crossing(target).unwrap_or(Ok(()))
     }
 
-    /// The same up to the first change point.
+    /// Follows a path up to its target or the first change point.
     fn walk_to(&mut self, path: Path, target: f64) -> Result<(), Box<Stop>> {
         let scale = f64::max(self.time.abs(), target.abs());
         let (mut steps, mut walked) = (0, 0.0);
@@ -128,7 +122,7 @@ impl Stepper<'_> {
             // The longest step with  sum over d of Du_d / rho_d <= 0.4  (22), Du_d the range of law d over [t, t + h]
             let mut h = self.stride(path, rest, ONE_TIME * scale);
             if path == Path::Laws && h <= ONE_TIME * scale && !(self.travelled() <= SHORTEST) {
-                // However many times are requested, what a law does in no time is a jump, also at the end of the way.
+                // A change of a law within the resolution of times is a jump, also at the end of the path.
                 (jumps, in_a_row) = (jumps + 1, in_a_row + 1);
                 far += self.travelled();
                 if jumps > MOST_JUMPS || in_a_row > MOST_IN_A_ROW || !(far <= FARTHEST) {
@@ -138,9 +132,9 @@ impl Stepper<'_> {
                 continue;
             }
             in_a_row = 0;
-            // The travel that the distance allows, 0.4 of it, whatever part of that the step is.
+            // The allowed travel, 0.4 of the distance, even if the step is shorter.
             let allowed = self.travelled() * PART_OF_WAY / self.around.part_of_way(&self.travel);
-            // Where it is below 1e-6 rad, or sizes, round-off decides nearer by.
+            // Below 1e-6 rad, or sizes, round-off dominates.
             if h < rest && allowed < NEAREST && self.is_singular_ahead(path) && self.reaches(path, target) {
                 return Err(self.stop(path, self.time + h, StepRejection::TooNear, true));
             }
@@ -150,11 +144,11 @@ impl Stepper<'_> {
                 match self.step_to(path, t, if last { rest } else { h }) {
                     Ok(()) => break,
                     Err(refusal) => {
-                        // What Newton refuses, or the far end, may be reached in halves.
+                        // A step that Newton's method or the far end rejects may succeed in two halves.
                         h *= 0.5;
                         self.measure_travel(path, h);
                         steps += 1;
-                        // At 1e-10 rad a step is round-off; `stop` finds out what it is that is so near.
+                        // At 1e-10 rad a step is round-off; `stop` determines the reason.
                         let too_short = self.travelled() < SHORTEST || h <= ONE_TIME * scale;
                         if too_short || steps > MOST_STEPS {
                             self.stand(path).map_err(|r| self.stop(path, t, r, true))?;
@@ -195,8 +189,8 @@ impl Stepper<'_> {
             let (mut from, mut to) = (self.time, target);
             while !bounded(from, to) && to - from > POLE[0] * whole {
                 let middle = 0.5 * (from + to);
-                // The half over which interval arithmetic gives no bound, again and again; what stays unbounded to the end and is
-                // large there is a pole, not only a bound that is too wide.
+                // Bisects towards the half without a bound by interval arithmetic. If the last interval is unbounded
+                // and the law is large there, it is a pole, and not only a wide bound.
                 (from, to) = if bounded(from, middle) { (middle, to) } else { (from, middle) };
             }
             if bounded(from, to) {
@@ -204,7 +198,7 @@ impl Stepper<'_> {
             }
             let size = |t: f64| law.at(t).value().abs();
             let (near, usual) = (size(from).max(size(to)), size(self.time).max(size(target)));
-            // Written so that NaN is a pole: the law has no value there.
+            // NaN is a pole: the law is undefined there.
             if !(near <= POLE[1] * usual.max(self.driver_units[driver])) {
                 return Err(self.stop(Path::Laws, to, StepRejection::Law { driver }, true));
             }
@@ -219,24 +213,24 @@ impl Stepper<'_> {
         self.solve_within(f64::INFINITY)
     }
 
-    /// Finds out how near singular positions are to the saved position, where the state is.
+    /// Examines the distance of singular positions from the saved position, the position of the state.
     pub(super) fn examine_here(&mut self, path: Path) {
         self.examine(path);
         std::mem::swap(&mut self.around, &mut self.beyond);
         self.ahead = Lookahead::Examined;
     }
 
-    /// Finds out how near singular positions are to where the state is: along each driver alone, or along the whole
-    /// path where all go together.
+    /// Examines the distance of singular positions from the state: along each driver alone, or along the whole path if
+    /// all move together.
     fn examine(&mut self, path: Path) {
-        // On the laws' path one direction per driver, f_d' = 1: what is near is near whether a driver hurries or rests.
+        // On the laws' path one direction per driver, f_d' = 1: the distance does not depend on the speed of a driver.
         let Self { workspace, topology, parts, state, line, beyond, drivers, turns, .. } = self;
         let turns = turns.as_mut().filter(|_| path != Path::Assembly);
         let directions = if path == Path::Laws { drivers.len() } else { 1 };
         let workspace = workspace
             .get_or_insert_with(|| Box::new(Workspace::new(topology, state.pose.len(), drivers.len())));
-        // df_d/du: 1 of the driver that depends on itself; the line's f(1) - f(0) of all together; 0 of an assembly,
-        // whose gaps go
+        // df_d/du: 1 for the driver of the direction; f(1) - f(0) for all drivers on a line; 0 in an assembly, where
+        // the gaps change
         let speed = |direction: usize, d: usize| match path {
             Path::Assembly => 0.0,
             Path::Line { .. } => line[d][1] - line[d][0],
@@ -264,7 +258,7 @@ impl Stepper<'_> {
             }
         }
         self.travel_unit = match path {
-            // The parameter runs from 0 to 1; one unit of it is as much travel as this, rad or sizes.
+            // The parameter runs from 0 to 1; one unit of it corresponds to this travel, rad or sizes.
             Path::Assembly => self.state.largest_gap(&self.topology),
             Path::Line { .. } => {
                 let of_driver = self.line.iter().zip(&self.driver_units);
@@ -275,21 +269,21 @@ impl Stepper<'_> {
         self.on_laws = path == Path::Laws;
     }
 
-    /// Measures how far each direction goes at most over a stretch of a path, as
-    /// [`measure_travel`](Self::measure_travel) notes it.
+    /// Measures the maximum travel of each direction over a stretch of a path, like
+    /// [`measure_travel`](Self::measure_travel).
     pub(super) fn travel_over(&mut self, path: Path, from: f64, to: f64) {
         self.measure_travel(path, to - from);
         if path == Path::Laws {
             for d in 0..self.drivers.len() {
                 let start = self.parts.law(d, from)[0];
                 let travel = self.parts.travel(d, from, to, start);
-                // Where a law has no value it goes too far.
+                // A NaN travel counts as too far.
                 self.travel[d] = if travel.is_nan() { f64::INFINITY } else { travel };
             }
         }
     }
 
-    /// Returns where on its path the nearest singular position ahead of the saved one lies.
+    /// Parameter of the nearest singular position ahead of the saved one on a path.
     pub(super) fn nearest_ahead(&mut self, path: Path) -> Option<f64> {
         self.stand(path).ok()?;
         let ahead = self.ahead(path)?;
@@ -304,8 +298,8 @@ impl Stepper<'_> {
         self.travel.iter().zip(&self.driver_units).map(|(x, unit)| x / unit).fold(0.0, f64::max)
     }
 
-    /// The longest step along a path that stays clear of singular positions, `rest` or shorter, with its travel;
-    /// `shortest` where none does.
+    /// Longest step along a path, at most `rest`, that stays clear of singular positions, with its travel; `shortest`
+    /// if there is none.
     fn stride(&mut self, path: Path, rest: f64, shortest: f64) -> f64 {
         let mut h = rest;
         loop {
@@ -321,14 +315,15 @@ impl Stepper<'_> {
             if much <= 1.0 || h <= shortest {
                 return h;
             }
-            // Where the travel goes with h, the first guess is right; ranges of laws over long steps may be wider.
+            // If the travel is proportional to h, the first guess is right; ranges of laws over long steps may be
+            // wider.
             h = (h * (0.95 / much).clamp(0.02, 0.9)).max(shortest);
         }
     }
 
-    /// Goes a step h along a path, to t, if it is a safe one.
+    /// Takes a step h along a path, to t, if it is safe.
     fn step_to(&mut self, path: Path, t: f64, h: f64) -> Result<(), StepRejection> {
-        // What disagrees in the middle of a step may agree again at its end.
+        // Redundant constraints that disagree in the middle of a step may agree again at its end.
         if self.saved.residual > SUSPECT * LOCKED && path == Path::Laws {
             self.solve_at(path, self.time + 0.5 * h, 0.5 * h)?;
         }
@@ -349,8 +344,8 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Counts angles over a step h, to where the state is; whether each is in the turn that is predicted along the
-    /// drivers, from both ends.
+    /// Counts angles over a step h to the present state; returns true if each is in the turn that is predicted along
+    /// the drivers from both ends.
     fn follow_turns(&mut self, path: Path, h: f64) -> bool {
         let is_fine = self.travelled() <= FINEST;
         let Self { turns, around, beyond, drivers, saved, travel, state, .. } = self;
@@ -384,7 +379,7 @@ impl Stepper<'_> {
         self.examine_position()
     }
 
-    /// Returns whether curves are touched about where it was predicted.
+    /// Checks the distance between the contacts of curves and their prediction.
     fn examine_contacts(&self) -> Result<(), StepRejection> {
         for (c, k) in self.topology.contacts() {
             let ([predicted, moved], curve) = (self.touching[k], &self.parts.curves[k]);
@@ -401,8 +396,8 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Predicts the position where the drivers stand now, `q + sum over the directions of q' du + q'' du^2 / 2`;
-    /// returns how far the largest move goes, rad or sizes.
+    /// Predicts the position for the present values of the drivers, `q + sum over the directions of q' du + q'' du^2 /
+    /// 2`; returns the largest move, rad or sizes.
     pub(super) fn predict_along(&mut self, path: Path, h: f64) -> f64 {
         self.restore();
         let mut most = 0.0_f64;
@@ -414,8 +409,8 @@ impl Stepper<'_> {
         }
         for k in 0..directions {
             let du = path.travel_of(k, h, [&self.saved.drivers, &self.drivers]);
-            // q + sum over the drivers of (q_d' Du_d + q_d'' Du_d^2 / 2); what two drivers bend together is left to
-            // Newton.
+            // q + sum over the drivers of (q_d' Du_d + q_d'' Du_d^2 / 2); mixed second derivatives are left to Newton's
+            // method.
             let half = du * du * 0.5;
             let (slopes, bends) = (&self.around.slopes[k], &self.around.bends[k]);
             for (c, moved) in moves.iter_mut().enumerate() {
@@ -444,7 +439,7 @@ impl Stepper<'_> {
         most
     }
 
-    /// Takes the drivers over a jump of their laws, straight from their values before to those at t.
+    /// Moves the drivers over a jump of their laws, straight from their values before to those at t.
     fn jump(&mut self, t: f64) -> Result<(), Box<Stop>> {
         let before = self.time;
         for d in 0..self.line.len() {
@@ -479,8 +474,8 @@ impl Stepper<'_> {
         self.stand(Path::Laws).ok()?;
         let ahead = self.ahead(Path::Laws)?;
         // m of (23): 1/2 at a limit, 1 where two motions meet
-        let limit = (ahead.power - 0.5).abs() < TELLING;
-        let meets = (ahead.power - 1.0).abs() < TELLING;
+        let limit = (ahead.power - 0.5).abs() < CLEAR_POWER;
+        let meets = (ahead.power - 1.0).abs() < CLEAR_POWER;
         if !(ahead.distance > 0.0 && (limit || meets)) {
             return None;
         }
@@ -488,7 +483,7 @@ impl Stepper<'_> {
         let travel = now.enumerate().map(|(d, now)| {
             // f(t*) - f(t), t* = t + distance of (23)
             let then = self.parts.law_of(d).at(self.time + ahead.distance).value();
-            // A law that ends there goes on as it does now.
+            // A law that is undefined there is extrapolated at its present speed.
             if then.is_finite() { then - now } else { self.drivers[d][1] * ahead.distance }
         });
         Some(SingularPosition {
@@ -499,7 +494,7 @@ impl Stepper<'_> {
         })
     }
 
-    /// True if what is near lies ahead, not behind.
+    /// True if the near singular position is ahead, not behind.
     fn is_singular_ahead(&mut self, path: Path) -> bool {
         if self.stand(path).is_err() {
             return true;
@@ -507,8 +502,8 @@ impl Stepper<'_> {
         !self.ahead(path).is_some_and(|ahead| ahead.distance < 0.0)
     }
 
-    /// Returns whether the laws reach the singular position ahead before they go as far the other way, on the way to
-    /// `target`. Where more than one driver moves there, they are taken to reach it.
+    /// Returns true if the laws reach the singular position ahead, before they move by the same distance in the
+    /// opposite direction, up to `target`. If more than one driver moves there, they are assumed to reach it.
     fn reaches(&mut self, path: Path, target: f64) -> bool {
         let from = self.time;
         let moving = |d: &usize| !(self.parts.travel(*d, from, target, self.saved.drivers[*d][0]) <= 0.0);
@@ -523,7 +518,7 @@ impl Stepper<'_> {
         let law = parts.law_of(d);
         let (begin, side) = (law.at(from).value(), ahead.distance.signum());
         let distance = REACHED * ahead.distance.abs();
-        // Part by part in the order of time, halved until the law stays within the distance or is beyond it.
+        // Intervals in the order of time, halved until the law stays within the distance or is beyond it.
         let (mut stretches, mut asked) = (vec![[from, target]], 0);
         while let Some([low, high]) = stretches.pop() {
             asked += 1;
@@ -533,7 +528,7 @@ impl Stepper<'_> {
             }
             let middle = low + 0.5 * (high - low);
             if !(middle > low && middle < high) || asked > MOST_PARTS {
-                // Written so that NaN reaches it.
+                // NaN reaches it.
                 return !(side * (law.at(high).value() - begin) <= 0.0);
             }
             stretches.extend([[middle, high], [low, middle]]);
@@ -550,8 +545,8 @@ impl Stepper<'_> {
             ) if !moved => (StopKind::Limit, Some(block)),
             StepRejection::Position(_) | StepRejection::Branch { .. } | StepRejection::TooNear => {
                 let ahead = self.ahead(path);
-                // The step that failed is no longer than a part of the way.
-                // (23) indicates of a place only where it is about as near as the step that failed there.
+                // The rejected step is short compared with the path.
+                // (23) predicts a position only if its distance is comparable to the rejected step.
                 let near = 1e3 * (t - self.time).abs().max(ONE_TIME * t.abs());
                 match ahead.filter(|a| a.distance > 0.0 && a.distance <= near) {
                     Some(a) => {
@@ -569,8 +564,7 @@ impl Stepper<'_> {
                     },
                 }
             }
-            // What is left of a row that was not solved with: the constraints agreed in the design configuration and do
-            // not here.
+            // Residual of a redundant row: the constraints agreed in the design configuration and do not agree here.
             StepRejection::Locked { row, residual } => {
                 let closure = self.topology.closure_of(row);
                 let quantity = self.topology.constraint(row).into();

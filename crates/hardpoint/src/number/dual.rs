@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_depend_on_the_parameter_has_no_derivative_at_a_vertical_tangent() {
+    fn numbers_independent_of_the_parameter_have_derivative_zero_at_a_vertical_tangent() {
         let [zero, one] = [0.0, 1.0].map(Dual::constant);
         for root in [zero.map(Function::Sqrt), one.asin(), zero.powf(0.5)] {
             assert_eq!(root.d, 0.0);

@@ -1,4 +1,4 @@
-//! A model with its plan, and the ways to run it.
+//! A model with its solution plan, and the methods that run it.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,7 +23,7 @@ use super::sink::Sink;
 use super::solution::{Solution, StreamSummary};
 use super::walk::{PreparedDesign, Scope, Walk};
 
-/// A model with its plan of solution, ready to be run as often as needed.
+/// A model with its solution plan, ready to be run any number of times.
 ///
 /// ```
 /// # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
@@ -45,19 +45,19 @@ use super::walk::{PreparedDesign, Scope, Walk};
 #[derive(Clone, Debug)]
 pub struct Analysis<'m> {
     topology: Topology,
-    /// With the model.
+    /// Geometry of the model as a function of the design; owns the model.
     design_map: DesignMap<'m>,
-    /// Per variable, the joints that it opens in the nominal design: worked out when first requested.
+    /// Per variable, the joints that it opens in the nominal design; computed on first use.
     opens: Arc<OnceLock<Vec<Vec<JointDefect>>>>,
-    /// The output times and those between them that metrics ask for: worked out when first requested.
+    /// Output times, and the times between them that metrics need; computed on first use.
     pub(super) between: Arc<OnceLock<Vec<f64>>>,
-    /// Steps as straight-line programs, recorded when they pay.
+    /// Programs of steps, recorded when this saves time.
     programs: Arc<Programs>,
-    /// The same of measures.
+    /// Programs of measures.
     formulas: Arc<Cache<measure::ProgramKey, measure::MeasureProgram>>,
-    /// Reason why measures need the kernel, if they do: worked out when first requested.
+    /// Reason why measures need the kernel, if they do; computed on first use.
     kernel: Arc<OnceLock<Option<&'static str>>>,
-    /// Once set, whatever is being solved ends at its next output time.
+    /// Once set, all runs end at their next output time.
     end: Option<Arc<AtomicBool>>,
 }
 
@@ -65,15 +65,15 @@ impl<'m> Analysis<'m> {
     /// Plans the solution of a model in relative coordinates.
     ///
     /// # Errors
-    /// A [`TopologyError`] where the drivers leave motions free or contradict the joints.
+    /// Returns a [`TopologyError`] if the drivers leave degrees of freedom or contradict the joints.
     pub fn new(model: impl Into<SharedModel<'m>>) -> Result<Self, TopologyError> {
         Self::with(model, Formulation::Relative)
     }
 
-    /// Plans the solution of a model in the formulation requested.
+    /// Plans the solution of a model in the requested formulation.
     ///
     /// # Errors
-    /// As [`Analysis::new`].
+    /// See [`Analysis::new`].
     pub fn with(model: impl Into<SharedModel<'m>>, formulation: Formulation) -> Result<Self, TopologyError> {
         let model = model.into();
         let topology = Topology::of(&model, formulation)?;
@@ -90,13 +90,13 @@ impl<'m> Analysis<'m> {
         })
     }
 
-    /// The same analysis, its steps solved in this way.
+    /// Sets the execution of steps: by the kernel or by programs.
     pub fn executed(self, execution: Execution) -> Self {
         Self { programs: Arc::new(Programs::new(execution)), formulas: Arc::default(), ..self }
     }
 
-    /// The same analysis, interruptible: once the flag is set, whatever is being solved with it, on whatever thread,
-    /// ends at its next output time. Its stop is then [`Interrupted`](StopKind::Interrupted).
+    /// Makes the analysis interruptible: once the flag is set, every run on any thread ends at its next output time.
+    /// Its stop is then [`Interrupted`](StopKind::Interrupted).
     pub fn ended_by(self, flag: Arc<AtomicBool>) -> Self {
         Self { end: Some(flag), ..self }
     }
@@ -121,8 +121,8 @@ impl<'m> Analysis<'m> {
         self.solve(Run::new())
     }
 
-    /// Solves the request, at all output times. Where something ends the run before, [`Solution::stop`] says what, and
-    /// all that was solved is there.
+    /// Solves the request at all output times. If the run ends before the last one, [`Solution::stop`] has the reason,
+    /// and the results up to there are complete.
     pub fn solve(&self, mut run: Run<'_>) -> Solution {
         let (design, mut solution) = (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
         self.walk(&design, self.model().times.len(), &mut *run.progress, &mut solution, &mut |_, _| ());
@@ -130,9 +130,9 @@ impl<'m> Analysis<'m> {
         solution
     }
 
-    /// As [`Analysis::solve`], but nothing is stored: the sink takes every result as it is found.
+    /// Solves like [`Analysis::solve`], but passes every result to the sink instead of storing it.
     ///
-    /// What 10,000 loops and 1,000 variables give need not fit into memory; measures are not evaluated.
+    /// Results of 10,000 loops and 1,000 variables need not fit into memory. Measures are not evaluated.
     pub fn stream(&self, mut run: Run<'_>, sink: &mut impl Sink) -> StreamSummary {
         let design = self.prepare(run.design, run.scope);
         let wanted = self.wanted(std::slice::from_ref(sink));
@@ -142,8 +142,8 @@ impl<'m> Analysis<'m> {
         StreamSummary { steps, admissibility: walk.admissibility(&design.opens), effort, stop }
     }
 
-    /// True if and how the mechanism follows a change of the nominal design as a whole, in which variable k depends on
-    /// `change[k]`: together, variables may be followed that are not one by one.
+    /// Admissibility of a combined change of the nominal design, in which variable k changes by `change[k]`. A
+    /// combination may be admissible although its variables are not.
     pub fn admissibility_of(&self, change: &[f64]) -> Admissibility {
         let mut design = self.design(&[]);
         let along = along(&self.model().whole(change));
@@ -155,19 +155,19 @@ impl<'m> Analysis<'m> {
         walk.admissibility(&design.opens).pop().expect("that of the one field")
     }
 
-    /// A design that is ready, at all output times.
+    /// Solves a prepared design at all output times.
     pub(super) fn solve_prepared(&self, design: &PreparedDesign, solution: &mut Solution) {
         let progress = &mut |_| ControlFlow::Continue(());
         self.walk(design, self.model().times.len(), progress, solution, &mut |_, _| ());
         self.solve_between(design, progress, solution);
     }
 
-    /// The design with variable k at `design[k]`, without sensitivities.
+    /// Prepares the design with variable k at `design[k]`, without sensitivities.
     pub(crate) fn design(&self, design: &[f64]) -> PreparedDesign {
         self.prepare(design, Scope::of_one(false, true))
     }
 
-    /// The design with variable k at `design[k]`, and the request of it.
+    /// Prepares the design with variable k at `design[k]`, for results of this scope.
     pub(super) fn prepare(&self, design: &[f64], scope: Scope) -> PreparedDesign {
         let values = self.model().whole(design);
         let sensitivities = scope.sensitivities;
@@ -181,8 +181,7 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// The same analysis at other output times, of which the first is its own: what is planned and recorded serves for
-    /// these as well.
+    /// Analysis of the same model at other output times, with the same first one. It shares the plan and the programs.
     pub(super) fn at_times(&self, times: Vec<f64>) -> Analysis<'static> {
         self.with_model(Model { times, ..self.model().clone() })
     }
@@ -192,7 +191,7 @@ impl<'m> Analysis<'m> {
         self.with_model(Model { times, metrics: Vec::new(), ..self.model().clone() })
     }
 
-    /// The same analysis of a model that differs only in its output times and metrics.
+    /// Analysis of a model that differs only in its output times and metrics.
     fn with_model(&self, model: Model) -> Analysis<'static> {
         Analysis {
             topology: self.topology.clone(),
@@ -219,7 +218,7 @@ impl<'m> Analysis<'m> {
         })
     }
 
-    /// Method that solves the smooth steps of the nominal motion, with its measures or without.
+    /// Method that solves the smooth steps of the nominal motion, with or without measures.
     pub(super) fn solved_by(&self, measures: bool) -> StepMethod {
         let of_measures = || if measures { self.needs_kernel() } else { None };
         match StepProgram::hindrance(&self.topology, measures).or_else(of_measures) {
@@ -228,7 +227,7 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// True if measures need more of a step than where its bodies are.
+    /// True if measures need more of a step than the motion of its bodies.
     pub(super) fn depends_on_step(&self) -> bool {
         (0..self.model().measures.len()).any(|k| self.model().depends_on_step(k))
     }
@@ -238,30 +237,30 @@ impl<'m> Analysis<'m> {
         self.model().measures.iter().any(|m| m.kind.is_load())
     }
 
-    /// Reason why measures need more of a step than programs provide, if they do.
+    /// Reason why measures need the kernel instead of programs, if they do.
     pub(super) fn needs_kernel(&self) -> Option<&'static str> {
         *self.kernel.get_or_init(|| {
             let model = self.model();
             if model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Compliance { .. })) {
-                return Some("measures say how elastic joints deflect");
+                return Some("there are measures of compliance");
             }
             let of_loads = || load::hindrance(model, &self.topology).filter(|_| self.asks_for_loads());
             measure::hindrance(&self.design_map).or_else(of_loads)
         })
     }
 
-    /// Program that evaluates these laws at many times, if they are those of the nominal design and it pays.
+    /// Program that evaluates these laws at many times, if they are those of the nominal design and it saves time.
     pub(super) fn laws_program(&self, laws: &[Law], loads: bool) -> Option<Arc<Runnable>> {
         let nominal = self.model().drivers.iter().zip(laws).all(|(driver, law)| driver.law == *law);
         if nominal { self.programs.laws(self.model(), loads) } else { None }
     }
 
-    /// True if steps of that many designs are worth a program.
+    /// True if a program saves time for the steps of this number of designs.
     pub(super) fn programs_pay(&self, designs: usize) -> bool {
         self.programs.pay(designs * self.model().times.len())
     }
 
-    /// Per body, whether any sink wants its results.
+    /// Per body: true if any sink requests its results.
     pub(super) fn wanted<S: Sink>(&self, sinks: &[S]) -> Vec<bool> {
         (0..self.model().bodies.len()).map(|b| sinks.iter().any(|s| s.wants(BodyId(b)))).collect()
     }
@@ -283,7 +282,7 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// Empties a motion, with room for that many output times.
+    /// Clears a motion and reserves memory for `steps` output times.
     pub(super) fn make_room(&self, motion: &mut Motion, steps: usize) {
         motion.bodies = self.model().bodies.len();
         motion.states.shape(BodyState::NUMBERS * (motion.bodies - 1), steps);

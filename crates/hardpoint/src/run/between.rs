@@ -1,10 +1,10 @@
-//! The motion between output times, as far as metrics need it.
+//! The motion between output times, as needed by metrics.
 //!
-//! A metric is that of the curve, not of its output times. Where these are too few to show the curve, the same motion
-//! is solved once more at more times, close enough that no driver goes far between two of them and that each law is the
-//! polynomial through its ends; and at last at the times that the metrics are taken at, or in the middle of intervals
-//! where an integral is off. At its own time a value is exact, and so is its derivative: an extremum moves with the
-//! design, but its value does not change by that, `dm/db = dy/db` at `t*`.
+//! A metric is a property of the curve, not of its output times. If these are too few to resolve the curve, the motion
+//! is solved again at more times, so close that no driver moves far between two of them and that each law is a
+//! polynomial there. Then times are added at which metrics are evaluated, or in the middle of intervals in which an
+//! integral is inaccurate. At a solved time a value is exact, and so is its derivative: the time of an extremum depends
+//! on the design, but this does not change its value, `dm/db = dy/db` at `t*`.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -21,24 +21,24 @@ use super::solution::Solution;
 use super::walk::PreparedDesign;
 use super::window::Footprint;
 
-/// Between two times at which a metric is looked for no driver moves by more than this, rad or sizes of its loop: a
-/// polynomial of degree five misses a sine over it by `0.15^6 / 46080 = 2e-10`.
+/// Maximum travel of a driver between two times, rad or sizes of its loop: the error of a polynomial of degree five for
+/// a sine is then `0.15^6 / 46080 = 2e-10`.
 const FINE: f64 = 0.15;
-/// ... and no law is off the polynomial through its ends by more than this part of its range.
+/// Maximum difference between a law and its polynomial of degree five, as a fraction of the range of the law.
 const LAW_RESOLVED: f64 = 1e-8;
-/// Parts of an interval in which that is looked at.
+/// Number of parts of an interval, at whose ends this difference is evaluated.
 const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
-/// An interval is halved so often at most.
+/// Maximum number of bisections of an interval.
 const MOST_HALVINGS: u32 = 40;
-/// The times that metrics ask for are solved so often at most, each time nearer to where they are.
+/// Maximum number of passes; each adds times nearer to those of the metrics.
 const MOST_PASSES: usize = 4;
-/// Just before a jump of a law is this part of the run earlier: far more than times are distinguished by, far less than
-/// anything moves in.
+/// Distance of the time just before a jump of a law, as a fraction of the run: far above the resolution of times, and
+/// too short for any motion.
 const JUST_BEFORE: f64 = 1e-12;
 /// Memory for the motion between output times.
 const BYTES: usize = 128 << 20;
 
-/// Returns whether a metric depends on the curve at times that are not among the output times, or may.
+/// Returns true if a metric may depend on the curve between the output times.
 fn is_between_outputs(metric: &Metric, times: &[f64]) -> bool {
     match metric.take {
         Reduction::Least
@@ -54,12 +54,12 @@ fn is_between_outputs(metric: &Metric, times: &[f64]) -> bool {
 }
 
 impl Analysis<'_> {
-    /// Returns whether metrics ask for more times than there are output times.
+    /// Returns true if metrics need more times than the output times.
     pub(super) fn has_times_between(&self) -> bool {
         self.times_between().len() > self.model().times.len()
     }
 
-    /// The output times, and as many between them as metrics ask for; of the nominal design's laws.
+    /// Output times, and the times between them that metrics need for the laws of the nominal design.
     fn times_between(&self) -> &[f64] {
         self.between.get_or_init(|| {
             let model = self.model();
@@ -68,7 +68,7 @@ impl Analysis<'_> {
             }
             let units = driver_units(model, self.topology());
             let laws: Vec<(&Law, f64)> = model.drivers.iter().map(|d| &d.law).zip(units).collect();
-            // However long the motion is, what is kept of it must fit.
+            // The stored results must fit into memory, however long the motion is.
             let most = Footprint::of(model, true).rows(BYTES);
             (0..6)
                 .map(|k| f64::from(1 << k))
@@ -77,9 +77,8 @@ impl Analysis<'_> {
         })
     }
 
-    /// Solves the motion of a design between its output times, where metrics ask for it; `solution` is that at the
-    /// output times, or at the last of them: then only the whole motion, solved once more, shows whether they are
-    /// enough.
+    /// Solves the motion of a design between its output times, if metrics need it. `solution` has the results at all
+    /// output times, or at the last ones only; then the whole motion is solved again.
     pub(super) fn solve_between(
         &self,
         design: &PreparedDesign,
@@ -103,7 +102,7 @@ impl Analysis<'_> {
         if times.len() > model.times.len() {
             times.extend(model.metrics.iter().flat_map(window_times));
         }
-        // None of the output times is solved for the first time now.
+        // All output times have been reported as solved before.
         let mut go_on =
             |_: Progress| progress(Progress { done: model.times.len() - 1, total: model.times.len() });
         for _ in 0..MOST_PASSES {
@@ -134,8 +133,8 @@ impl Analysis<'_> {
     }
 }
 
-/// Returns the output times of a model, and those between them that its laws ask for, in steps `coarser` times as long
-/// as they might be; `None` where these are more than `most`.
+/// Returns the output times of a model, and the times between them that its laws need. Steps are `coarser` times the
+/// usual length. Returns `None` if there are more than `most` times.
 fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> Option<Vec<f64>> {
     let (start, end) = (*model.times.first()?, *model.times.last()?);
     let ranges: Vec<f64> = laws
@@ -145,7 +144,7 @@ fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> O
     let mut ends = model.times.clone();
     for (law, _) in laws {
         let jumps = law.jumps(start, end);
-        // The curve before a jump ends there with other rates than it continues with.
+        // Rates differ before and after a jump.
         let sharp = jumps.iter().filter(|jump| jump.time > start);
         ends.extend(sharp.flat_map(|jump| [jump.time - JUST_BEFORE * (end - start), jump.time]));
     }
@@ -174,17 +173,17 @@ fn times_of(model: &Model, laws: &[(&Law, f64)], coarser: f64, most: usize) -> O
     Some(times)
 }
 
-/// Returns whether a law is, within so much, the polynomial of degree five that has its values, rates and accelerations
-/// at both ends.
+/// Returns true if the difference is at most `within` between a law and the polynomial of degree five that has its
+/// values, rates and accelerations at both ends.
 fn is_resolved(law: &Law, [from, to]: [f64; 2], within: f64) -> bool {
     let h = to - from;
     let [a, b] = [from, to].map(|t| law.at(t).derivatives());
     let polynomial = hermite(h, 2, |end, order| [a, b][end][order]);
-    // Round-off of the value is no bend of the law.
+    // Ignores round-off of the value.
     let within = within.max(8.0 * f64::EPSILON * a[0].abs().max(b[0].abs()));
     PLACES.iter().all(|s| {
         let [there, ..] = segment_at(&polynomial, s * h);
-        // A law without a number is no matter of resolution.
+        // More times would not resolve a law whose value is NaN.
         !((law.at(from + s * h).value() - there).abs() > within)
     })
 }

@@ -1,9 +1,9 @@
-//! Curves between the times at which a motion was solved: the polynomials that have the values, rates and accelerations
-//! at both ends of each interval, where they turn and where they cross a value, and how far they may be from the curve.
+//! Curves between solved times: polynomials with the values, rates and accelerations at both ends of each interval,
+//! with their extrema, crossings of a value, and error estimates.
 
 use crate::number::Real;
 
-/// A curve over time: at each time that many of its value, rate and acceleration.
+/// A curve over time: at each time the first `orders` of value, rate and acceleration.
 pub(super) struct SampledCurve<'t, T> {
     pub(super) times: &'t [f64],
     pub(super) orders: usize,
@@ -14,7 +14,7 @@ pub(super) struct SampledCurve<'t, T> {
 pub(super) struct Polynomial<T> {
     from: f64,
     length: f64,
-    /// Coefficients in the part of the interval that has passed.
+    /// Coefficients in the fraction of the interval.
     c: [T; 6],
 }
 
@@ -31,23 +31,23 @@ impl<T: Real> Polynomial<T> {
 }
 
 impl<T: Real> SampledCurve<'_, T> {
-    /// The number of orders that are known at a time: at a kink the value alone.
+    /// Number of orders that are known at a time: at a kink the value alone.
     pub(super) fn known(&self, k: usize) -> usize {
         self.values[k][..self.orders].iter().take_while(|x| x.value().is_finite()).count()
     }
 
-    /// The interval of a time.
+    /// Interval of a time.
     pub(super) fn interval(&self, t: f64) -> usize {
         let after = self.times[..self.values.len()].partition_point(|end| *end <= t);
         after.clamp(1, self.values.len() - 1) - 1
     }
 
-    /// The polynomial of interval k with the values, rates and accelerations that are known at its ends.
+    /// Polynomial of interval k with the values, rates and accelerations that are known at its ends.
     pub(super) fn polynomial(&self, k: usize) -> Polynomial<T> {
         self.polynomial_of(k, self.orders)
     }
 
-    /// The polynomial with at most this number of them.
+    /// Polynomial of interval k with at most this number of orders.
     pub(super) fn polynomial_of(&self, k: usize, orders: usize) -> Polynomial<T> {
         let length = self.times[k + 1] - self.times[k];
         let known = [k, k + 1].map(|end| self.known(end).min(orders));
@@ -63,7 +63,7 @@ impl<T: Real> SampledCurve<'_, T> {
         let [b0, b1, b2] = [b[0], b[1] * c(h), b[2] * c(0.5 * h * h)];
         match known {
             [3, 3] => {
-                // What is left of value, rate and half the acceleration at s = 1.
+                // Remainders of value, rate and half the acceleration at s = 1.
                 let p = b0 - a0 - a1 - a2;
                 let q = b1 - a1 - c(2.0) * a2;
                 let r = b2 - a2;
@@ -75,7 +75,7 @@ impl<T: Real> SampledCurve<'_, T> {
                 let rise = b0 - a0;
                 [a0, a1, c(3.0) * rise - c(2.0) * a1 - b1, a1 + b1 - c(2.0) * rise, zero, zero]
             }
-            // A kink at one end: all that is known at the other.
+            // A kink at one end: all orders of the other.
             [3, _] => [a0, a1, a2, b0 - a0 - a1 - a2, zero, zero],
             [2, _] => [a0, a1, b0 - a0 - a1, zero, zero, zero],
             [_, 3] => {
@@ -96,7 +96,7 @@ impl<T: Real> SampledCurve<'_, T> {
         self.polynomial(k).at(t)
     }
 
-    /// The parts of interval k in which the curve rises or falls all along.
+    /// Parts of interval k in which the curve is monotone.
     pub(super) fn monotone(
         times: &[f64],
         curve: Option<&Self>,
@@ -107,9 +107,9 @@ impl<T: Real> SampledCurve<'_, T> {
         turns.into_iter().chain([times[k + 1]]).map(move |to| [std::mem::replace(&mut from, to), to])
     }
 
-    /// The times inside interval k where the curve turns.
+    /// Times of the extrema inside interval k.
     pub(super) fn turns(&self, k: usize) -> Vec<f64> {
-        // Where the coefficients in Bernstein's form rise or fall all along, so does the polynomial.
+        // If the Bernstein coefficients are monotone, so is the polynomial.
         let coefficients = self.bernstein(k);
         if coefficients.is_some_and(|b| b.is_sorted() || b.iter().rev().is_sorted()) {
             return Vec::new();
@@ -122,13 +122,13 @@ impl<T: Real> SampledCurve<'_, T> {
 
     /// Upper bound of the polynomial of interval k times `sign`: the largest of its Bernstein coefficients.
     pub(super) fn bound(&self, k: usize, sign: f64) -> f64 {
-        // Beside a kink or a gap nothing is said.
+        // There is no bound next to a kink or a gap.
         let Some(coefficients) = self.bernstein(k) else { return f64::INFINITY };
         coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c))
     }
 
-    /// The coefficients of the polynomial of interval k in Bernstein's form, of a cubic the inner ones twice; none
-    /// beside a kink or a gap.
+    /// Bernstein coefficients of the polynomial of interval k, the inner ones of a cubic twice; `None` next to a kink
+    /// or a gap.
     fn bernstein(&self, k: usize) -> Option<[f64; 6]> {
         let h = self.times[k + 1] - self.times[k];
         let [a, b] = [k, k + 1].map(|k| self.values[k].map(|x| x.value()));
@@ -150,7 +150,7 @@ impl<T: Real> SampledCurve<'_, T> {
         })
     }
 
-    /// A time of interval k without its round-off.
+    /// A time clamped to interval k.
     pub(super) fn within(&self, k: usize, t: T) -> f64 {
         let (t, [low, high]) = (t.value(), [self.times[k], self.times[k + 1]]);
         let end = if t - low < high - t { low } else { high };
@@ -211,12 +211,12 @@ fn roots(c: &[f64]) -> Vec<f64> {
     found
 }
 
-/// The polynomial with what is known at the ends of an interval and at the next output time to either side, in Newton's
-/// form: twice the degree of the interval's own. How far the two are apart is how far that may be from the curve.
+/// Polynomial through the known orders at the ends of an interval and at the next output time on either side, in
+/// Newton's form: twice the degree of the interval's own. Their difference estimates the error of the latter.
 pub(super) struct WidePolynomial {
     /// Number of known values and derivatives.
     count: usize,
-    /// Each time as often as something is known there.
+    /// Each time, repeated for each known order.
     nodes: [f64; MOST_KNOWN],
     /// Divided differences.
     c: [f64; MOST_KNOWN],
@@ -226,11 +226,11 @@ pub(super) struct WidePolynomial {
 const MOST_KNOWN: usize = 12;
 
 impl WidePolynomial {
-    /// `None` where nothing is known beside the interval.
+    /// Returns `None` if no neighbouring time is known.
     pub(super) fn new(y: &SampledCurve<'_, f64>, k: usize) -> Option<Self> {
         let last = y.values.len() - 1;
         let h = y.times[k + 1] - y.times[k];
-        // Beyond a kink or a jump (a pair of times) the curve is another.
+        // The polynomial does not extend across a kink or a jump (a pair of times).
         let smooth = |end: usize| y.known(end) == y.orders;
         let goes_on = |end: usize, other: usize| {
             smooth(end) && y.known(other) > 0 && (y.times[end] - y.times[other]).abs() > THERE * h
@@ -268,7 +268,7 @@ impl WidePolynomial {
     }
 }
 
-/// Value and rate of the polynomial through more times less those of the interval's own.
+/// Value and rate of the polynomial through more times, minus those of the interval's own.
 pub(super) fn apart(curve: &SampledCurve<'_, f64>, k: usize, t: f64) -> Option<[f64; 2]> {
     let (own, wide) = (curve.at(k, t), WidePolynomial::new(curve, k)?.at(t));
     Some([wide[0] - own[0], wide[1] - own[1]])
@@ -277,11 +277,11 @@ pub(super) fn apart(curve: &SampledCurve<'_, f64>, k: usize, t: f64) -> Option<[
 /// Bisections of an interval: to the last bit of a time.
 const HALVINGS: usize = 60;
 
-/// An abscissa this near, as a part of its span, is there: a motion that starts at the place must not be said to come
-/// by later, for its last digit.
+/// Relative tolerance, per span, within which the abscissa has reached a value: a motion that starts at the value must
+/// not reach it later because of round-off.
 pub(super) const THERE: f64 = 1e-9;
 
-/// The intervals where the abscissa is `at`, in their order, and the time of each, which moves with the design.
+/// Intervals in which the abscissa is `at`, in order, and the time of each, which depends on the design.
 pub(super) fn crossings<'c, T: Real>(
     y: &'c SampledCurve<'_, T>,
     x: &'c Option<SampledCurve<'_, T>>,
@@ -302,8 +302,8 @@ pub(super) fn crossings<'c, T: Real>(
     })
 }
 
-/// The time at which the abscissa is `at` in a part of interval k where it rises or falls all along, which moves with
-/// the design; none where it is not.
+/// Time at which the abscissa is `at` in a monotone part of interval k, which depends on the design; `None` if the
+/// abscissa does not reach it.
 pub(super) fn crossing<T: Real>(
     x: Option<&SampledCurve<'_, T>>,
     k: usize,
@@ -323,12 +323,12 @@ pub(super) fn crossing<T: Real>(
     Some(x.moved(k, 0.5 * (low + high), at))
 }
 
-/// The abscissa at a time of interval k.
+/// Abscissa at a time of interval k.
 pub(super) fn along<T: Real>(x: &Option<SampledCurve<'_, T>>, k: usize, t: f64) -> f64 {
     x.as_ref().map_or(t, |x| x.number(k, t))
 }
 
-/// The abscissa at an output time.
+/// Abscissa at an output time.
 pub(super) fn abscissa_at<T: Real>(y: &SampledCurve<'_, T>, x: &Option<SampledCurve<'_, T>>, k: usize) -> T {
     x.as_ref().map_or(T::constant(y.times[k]), |x| x.values[k][0])
 }
@@ -359,7 +359,7 @@ mod tests {
                         let at = |j: u32| sign * curve.number(k, times[k] + h * f64::from(j) / 64.0);
                         let most = (0..=64).map(at).fold(f64::NEG_INFINITY, f64::max);
                         let bound = curve.bound(k, sign);
-                        // The ends' rates and accelerations are what Bernstein's coefficients lie apart by.
+                        // The rates and accelerations at the ends are differences of the Bernstein coefficients.
                         let ends = [curve.values[k], curve.values[k + 1]];
                         let apart = ends.map(|[_, v, a]| h * v.abs() + h * h * a.abs() / 10.0);
                         assert!(

@@ -1,4 +1,4 @@
-//! Many designs of one mechanism: eight side by side, on as many threads as are requested.
+//! Many designs of one mechanism: in batches of eight, on the requested number of threads.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -19,18 +19,18 @@ use super::solution::{Solution, StreamSummary};
 use super::walk::Scope;
 
 impl Analysis<'_> {
-    /// Solves many designs, each with variable k at its entry k (m, rad or a plain number; missing entries are 0), in
-    /// the memory of eight solutions for each thread: `visit` sees every design's number and its solution, one at a
-    /// time. What it does not take away (`std::mem::take`) is overwritten by later designs.
+    /// Solves many designs, each with variable k at its entry k (m, rad or a plain number; missing entries are 0).
+    /// Calls `visit` with the number of every design and its solution, one at a time. Each thread has memory for eight
+    /// solutions: later designs overwrite a solution that `visit` does not take (`std::mem::take`).
     ///
-    /// One thread goes through them in the order given, several ([`Run::threads`]) in no certain order.
+    /// A single thread solves the designs in the given order; with several ([`Run::threads`]) the order is undefined.
     ///
-    /// Without sensitivities, designs are solved side by side. Where one of those stops, each of them is solved again
-    /// on its own, so that every design gets its own outcome. Lanes and single runs agree to round-off
+    /// Without sensitivities, designs are solved in batches. If one design of a batch stops, each of them is solved
+    /// again on its own, so that every design has its own outcome. Lanes and single runs agree to round-off
     /// (`docs/performance.md`).
     ///
     /// # Panics
-    /// If `visit` does.
+    /// Panics if `visit` panics.
     pub fn solve_designs(
         &self,
         run: Run<'_>,
@@ -43,12 +43,12 @@ impl Analysis<'_> {
         let (next, visit) = (AtomicUsize::new(0), Mutex::new(visit));
         let work = || {
             let mut solutions: [Solution; LANES] = std::array::from_fn(|_| Solution::default());
-            let mut abreast = if alone { None } else { self.side_by_side(designs.len(), false, true) };
+            let mut batch = if alone { None } else { self.design_batch(designs.len(), false, true) };
             let firsts = || Some(LANES * next.fetch_add(1, Ordering::Relaxed));
             for first in std::iter::from_fn(firsts).take_while(|first| *first < designs.len()) {
                 let group = &designs[first..usize::min(first + LANES, designs.len())];
                 let solutions = &mut solutions[..group.len()];
-                self.solve_group(&mut abreast, group, scope, solutions);
+                self.solve_group(&mut batch, group, scope, solutions);
                 let mut visit = visit.lock().expect("a visit before has panicked");
                 (first..).zip(solutions).for_each(|(k, solution)| visit(k, solution));
             }
@@ -59,15 +59,15 @@ impl Analysis<'_> {
         }
     }
 
-    /// Up to as many designs as there are lanes: side by side, or each on its own.
+    /// Solves at most one design per lane: in a batch, or each on its own.
     fn solve_group(
         &self,
-        abreast: &mut Option<DesignBatch<'_>>,
+        batch: &mut Option<DesignBatch<'_>>,
         designs: &[Vec<f64>],
         scope: Scope,
         solutions: &mut [Solution],
     ) {
-        let Some(effort) = self.solve_side_by_side(abreast, designs, solutions) else {
+        let Some(effort) = self.solve_batch(batch, designs, solutions) else {
             for (design, solution) in designs.iter().zip(solutions) {
                 self.solve_prepared(&self.prepare(design, scope), solution);
             }
@@ -88,35 +88,35 @@ impl Analysis<'_> {
         }
     }
 
-    /// The motions of all these designs, or nothing where one of them does not go as expected.
-    fn solve_side_by_side(
+    /// Solves the motions of all these designs in a batch; returns `None` if one of them fails.
+    fn solve_batch(
         &self,
-        abreast: &mut Option<DesignBatch<'_>>,
+        batch: &mut Option<DesignBatch<'_>>,
         designs: &[Vec<f64>],
         solutions: &mut [Solution],
     ) -> Option<SolverStatistics> {
-        let abreast = abreast.as_mut().filter(|_| designs.len() > 1)?;
+        let batch = batch.as_mut().filter(|_| designs.len() > 1)?;
         solutions.iter_mut().for_each(|s| self.make_room(&mut s.motion, 0));
-        let effort = abreast.run(&self.whole(designs), |_, _| self.flow())?;
-        solutions.iter_mut().enumerate().for_each(|(lane, s)| abreast.hand_over(lane, &mut s.motion));
+        let effort = batch.run(&self.whole(designs), |_, _| self.flow())?;
+        solutions.iter_mut().enumerate().for_each(|(lane, s)| batch.hand_over(lane, &mut s.motion));
         Some(effort)
     }
 
-    /// Breaks once the analysis is asked to end: each design is then left to itself, and stops as interrupted.
+    /// Breaks once the analysis is interrupted: each design is then solved on its own, and stops as interrupted.
     fn flow(&self) -> ControlFlow<()> {
         if self.is_ended() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// A value for every variable of every design.
+    /// Completes the designs to one value per variable.
     fn whole(&self, designs: &[Vec<f64>]) -> Vec<Vec<f64>> {
         designs.iter().map(|d| self.model().whole(d)).collect()
     }
 
-    /// As [`Analysis::stream`], for many designs in the order given, eight at a time: every design's results, with its
-    /// sensitivities, go to a sink of its own, which `sink` makes and `end` gets back.
+    /// Streams like [`Analysis::stream`], for many designs in the given order, eight at a time. The results of every
+    /// design, with its sensitivities, go to a sink of its own, which `sink` creates and `end` receives.
     ///
-    /// Results of up to eight designs come by turns. Where one of those that are solved side by side stops, each of
-    /// them begins anew with a new sink, so that every design gets its own outcome.
+    /// Results of up to eight designs are interleaved. If one design of a batch stops, each of them starts again with a
+    /// new sink, so that every design has its own outcome.
     pub fn stream_designs<S: Sink>(
         &self,
         run: Run<'_>,
@@ -124,13 +124,12 @@ impl Analysis<'_> {
         mut sink: impl FnMut(usize) -> S,
         mut end: impl FnMut(usize, S, StreamSummary),
     ) {
-        let mut abreast = self.side_by_side(designs.len(), run.scope.sensitivities, false);
+        let mut batch = self.design_batch(designs.len(), run.scope.sensitivities, false);
         let opens = if run.scope.sensitivities { self.opens() } else { &[] };
         for (group, designs) in designs.chunks(LANES).enumerate() {
             let number = |k: usize| group * LANES + k;
             let mut sinks: Vec<S> = (0..designs.len()).map(|k| sink(number(k))).collect();
-            if let Some((effort, mut resisting)) = self.stream_side_by_side(&mut abreast, designs, &mut sinks)
-            {
+            if let Some((effort, mut resisting)) = self.stream_batch(&mut batch, designs, &mut sinks) {
                 let steps = self.model().times.len();
                 for (k, sink) in sinks.into_iter().enumerate() {
                     let resisting = resisting.drain(..opens.len()).collect();
@@ -147,18 +146,18 @@ impl Analysis<'_> {
         }
     }
 
-    /// All designs to the end, or nothing where one of them does not go as expected.
-    fn stream_side_by_side<S: Sink>(
+    /// Streams all designs in a batch; returns `None` if one of them fails.
+    fn stream_batch<S: Sink>(
         &self,
-        abreast: &mut Option<DesignBatch<'_>>,
+        batch: &mut Option<DesignBatch<'_>>,
         designs: &[Vec<f64>],
         sinks: &mut [S],
     ) -> Option<(SolverStatistics, Vec<Resistance>)> {
-        let abreast = abreast.as_mut().filter(|_| designs.len() > 1)?;
-        let (wanted, moved) = (self.wanted(sinks), abreast.moved());
+        let batch = batch.as_mut().filter(|_| designs.len() > 1)?;
+        let (wanted, moved) = (self.wanted(sinks), batch.moved());
         let variables = self.model().variables.len();
         let mut resisting = vec![(Vec::new(), 0.0); LANES * variables];
-        let effort = abreast.run(&self.whole(designs), |k, found| {
+        let effort = batch.run(&self.whole(designs), |k, found| {
             let times = [self.model().times[k]; LANES];
             note_defects(
                 found.tape,
@@ -174,8 +173,8 @@ impl Analysis<'_> {
         Some((effort, resisting))
     }
 
-    /// Batch solver of this number of designs, if that pays and is possible; stores results if requested.
-    fn side_by_side(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<DesignBatch<'_>> {
+    /// Batch solver for this number of designs, if that is possible and saves time; stores results if requested.
+    fn design_batch(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<DesignBatch<'_>> {
         let pays = designs > 1 && self.programs_pay(designs);
         // All designs must have the same laws.
         if !pays || self.design_map().laws_change() {

@@ -1,7 +1,7 @@
 //! Metrics of a solved motion, with their exact derivatives by the design variables.
 //!
-//! A metric is written once over any number; its derivatives are the same lines run on duals. Between output times,
-//! curves are the polynomials that have their values, rates and accelerations at both ends.
+//! The code is generic over the number type; dual numbers give the derivatives. Between output times, curves are the
+//! polynomials with the values, rates and accelerations at both ends.
 
 use super::curve::{SampledCurve, THERE, WidePolynomial, abscissa_at, along, apart, crossings};
 use super::quadrature::{PathIntegral, coarse_middles, path_error, path_nodes, travel};
@@ -15,26 +15,26 @@ use crate::number::{Dual, Real};
 pub struct MetricValue {
     /// In SI; `None` where the motion does not reach the request.
     pub value: Option<f64>,
-    /// When it is taken, s; `None` for what is taken of the whole curve.
+    /// Time at which it is taken, s; `None` if it belongs to the whole curve.
     pub time: Option<f64>,
-    /// Estimate of the error of interpolation between output times, in SI; `None` where the metric was solved at its
-    /// own time, and where there are not enough output times to estimate it.
+    /// Estimate of the interpolation error between output times, in SI; `None` if the metric was solved at its own
+    /// time, or if there are too few output times for an estimate.
     pub error: Option<f64>,
-    /// Scale of the error, in SI: greatest less least value of the curve, for an integral times the travel of its
-    /// abscissa, for a slope its own size.
+    /// Scale of the error, in SI: maximum minus minimum of the curve; for an integral, times the travel of its
+    /// abscissa; for a slope, its magnitude.
     pub range: f64,
-    /// Derivative by every design variable; NaN for those that the mechanism cannot follow, and all of them where no
-    /// sensitivities were solved.
+    /// Derivative by every design variable; NaN for those that are not admissible, and for all if no sensitivities were
+    /// solved.
     pub d: Vec<f64>,
 }
 
-/// The values of all metrics of a model.
+/// Values of all metrics of a model.
 pub fn metrics(model: &Model, solution: &Solution) -> Vec<MetricValue> {
     model.metrics.iter().map(|metric| metric_value(model, solution, metric)).collect()
 }
 
-/// The values of another design's metrics, to be compared with today's. Where its motion ends before today's, what a
-/// metric takes of the whole curve is not known: a part of the curve says nothing of the rest.
+/// Metrics of another design, for comparison with today's. If its motion ends before today's, metrics of the whole
+/// curve are `None`, because the rest of the curve is not known.
 pub fn metrics_beside(model: &Model, today: &Solution, other: &Solution) -> Vec<Option<f64>> {
     let whole = other.motion.len() >= today.motion.len();
     let known = |metric: &Metric| {
@@ -82,8 +82,8 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         let found = varied_curves(solution, metric, VariableId(v));
         found.and_then(|(y, x)| take(metric, &y, &x)).map_or(f64::NAN, |(value, _)| value.d)
     };
-    // Solved between output times, it is taken at times that were solved; no integral is, nor an extremum that lies between times for
-    // which no rates are known.
+    // If the motion was solved between output times, the metric is taken at a solved time. Integrals are not, nor is an
+    // extremum between times without rates.
     let hidden = match metric.take {
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => true,
         Reduction::Least | Reduction::Greatest | Reduction::Range => y.orders == 1,
@@ -113,23 +113,23 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     }
 }
 
-/// A turn of a curve within this part of its range of the farthest one may be the farthest where the curve was not
-/// solved at either.
+/// Fraction of the range within which two extrema are alike: either may be the larger, unless the curve was solved at
+/// both.
 const ALIKE: f64 = 1e-4;
-/// An interpolation error below this part of the curve's range counts for nothing where the motion was solved between
-/// output times ...
+/// Interpolation error, as a fraction of the curve's range, below which a curve is resolved if the motion was solved
+/// between output times.
 const RESOLVED: f64 = 1e-10;
-/// ... and where the output times show the curve by themselves: metrics are read to some digits, and many designs are
+/// The same for motions that were solved at the output times alone: metrics need few digits, and many designs are
 /// solved for them.
 const RESOLVED_BY_OUTPUTS: f64 = 1e-7;
 
-/// The greatest less the least value of a curve at its times.
+/// Maximum minus minimum of a curve at its times.
 fn range_of(y: &SampledCurve<'_, f64>) -> f64 {
     let finite = || y.values.iter().map(|v| v[0]).filter(|x| x.is_finite());
     finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min)
 }
 
-/// The times at which a metric over time is taken, or its window ends.
+/// Times at which a metric over time is taken, or at which its window ends.
 pub(crate) fn window_times(metric: &Metric) -> Vec<f64> {
     if metric.over.is_some() {
         return Vec::new();
@@ -147,8 +147,8 @@ pub(crate) fn window_times(metric: &Metric) -> Vec<f64> {
     metric.window.into_iter().flatten().chain(at).collect()
 }
 
-/// The times between those of a solution that a metric needs: those that it is taken at by interpolation that may be
-/// off, and for an integral those that halve the intervals where it is off; `finer` says that the solution has times
+/// Times that a metric needs in addition to those of a solution: times at which it is taken by inaccurate
+/// interpolation; for an integral, midpoints of the inaccurate intervals. `finer` is true if the solution has times
 /// between the output times.
 pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool) -> Vec<f64> {
     let Some((y, x)) = curves_at(solution, metric) else { return Vec::new() };
@@ -174,15 +174,15 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
             return false;
         }
         let k = y.interval(*time);
-        // Where too little is known to say, it may be off.
+        // Without an estimate, the error may be large.
         let error = time_error(&y, &x, k, *time).unwrap_or(f64::INFINITY);
         !(error <= part * range)
     };
     located.into_iter().filter(unresolved).collect()
 }
 
-/// The time of the greatest (sign 1) or the least value (-1); where the motion is known at `finer` times, those of all
-/// turns and ends of the window that are about as far out, too: of a motion that repeats itself, any may be the one.
+/// Time of the maximum (sign 1) or minimum (-1). If the motion is known at `finer` times, also the times of all extrema
+/// and ends of the window with about the same value: in a periodic motion any of them may be the largest.
 fn far_out_times(
     metric: &Metric,
     y: &SampledCurve<'_, f64>,
@@ -207,19 +207,19 @@ fn far_out_times(
     times
 }
 
-/// The solution that metrics are taken of: that between output times, where there is one.
+/// Solution that metrics are taken of: that between output times, if there is one.
 fn solution_of(solution: &Solution) -> &Solution {
     solution.between.as_deref().unwrap_or(solution)
 }
 
-/// The curve that a metric is taken of, and the one that it goes over where that is not time.
+/// Curve of a metric, and its abscissa if that is not time.
 type Curves<'t, T> = (SampledCurve<'t, T>, Option<SampledCurve<'t, T>>);
 
 fn curves<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>> {
     curves_at(solution_of(solution), metric)
 }
 
-/// The same at the times of a solution itself.
+/// Curves at the times of the solution itself.
 fn curves_at<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>> {
     let (measured, times) = (&solution.measured, &solution.motion.times[..]);
     let now = |output: OutputSource| {
@@ -230,8 +230,7 @@ fn curves_at<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f
     Some((now(metric.of)?, abscissa(metric, now)?))
 }
 
-/// The same with their derivatives by a variable; `None` where the mechanism cannot follow it or no sensitivities were
-/// solved.
+/// Curves with their derivatives by a variable; `None` if it is not admissible, or if no sensitivities were solved.
 fn varied_curves<'s>(
     solution: &'s Solution,
     metric: &Metric,
@@ -259,7 +258,7 @@ fn varied_curves<'s>(
 pub struct MetricParts {
     /// In SI.
     pub values: Vec<f64>,
-    /// By every design variable; NaN for those that the mechanism cannot follow.
+    /// Derivatives by every design variable; NaN for those that are not admissible.
     pub d: Vec<Vec<f64>>,
 }
 
@@ -283,9 +282,9 @@ impl MetricParts {
     }
 }
 
-/// The differences from the target of an `rms` metric, one part for each node of the integral or each point of the
-/// target, so weighted that the sum of their squares is that of the metric; `None` for other metrics, and where the
-/// metric has no value.
+/// Differences from the target of an `rms` metric, one part for each node of the integral or each point of the target,
+/// weighted so that the sum of their squares is the square of the metric; `None` for other metrics, and if the metric
+/// has no value.
 ///
 /// ```text
 /// r_g = sqrt(abs(dx_g) / sum abs(dx_g)) (y_g - target(x_g)),        r_p = sqrt(1 / points) (y(x_p) - y_p)
@@ -297,7 +296,7 @@ pub fn misfits(model: &Model, solution: &Solution, metric: &Metric) -> Option<Me
         match &metric.take {
             Reduction::Rms(target) => {
                 let travel = travel(metric, y, x);
-                // The root has no derivative where the abscissa rests.
+                // The root has no derivative if the abscissa does not move.
                 let moving = path_nodes(metric, y, x).filter(|node| node.dx.value() != 0.0);
                 moving.map(|n| (n.dx.abs() / travel).sqrt() * (n.y - on_target(target, n.x))).collect()
             }
@@ -318,15 +317,14 @@ pub fn misfits(model: &Model, solution: &Solution, metric: &Metric) -> Option<Me
     MetricParts::of(model, solution, metric, |curves| parts(curves, metric), |curves| parts(curves, metric))
 }
 
-/// The greatest value (for `sign` 1) or the least (for -1) of the curve of a metric in each interval between output
-/// times; in those beyond its window, the value of the metric's whole curve at the other end, which has no say, and no
-/// derivative.
+/// Maximum (`sign` 1) or minimum (-1) of the curve of a metric in each interval between output times. Intervals beyond
+/// its window have the opposite extremum of the whole curve, which cannot decide, with derivative zero.
 pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> Option<MetricParts> {
     fn parts<T: Real>((y, x): &Curves<'_, T>, ends: &[f64], metric: &Metric, sign: f64) -> Vec<T> {
         let values = y.values.iter().map(|v| v[0].value());
         let least = values.fold(f64::INFINITY, |least, v| least.min(sign * v));
         let inside = |k: usize| within_window(metric, abscissa_at(y, x, k).value());
-        // Of one interval between the times that were solved
+        // Extremum of one interval between solved times
         let peak = |k: usize| {
             if !(inside(k) && inside(k + 1)) {
                 return T::constant(sign * least);
@@ -341,7 +339,7 @@ pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> 
             }
             best
         };
-        // As many parts for every design, at whatever times between the output times it was solved.
+        // The number of parts must not depend on the times between output times.
         let part = |ends: &[f64]| {
             let [first, last] = [ends[0], ends[1]].map(|end| y.times.partition_point(|t| *t < end));
             let peaks = (first..usize::min(last, y.values.len().saturating_sub(1))).map(peak);
@@ -361,19 +359,19 @@ pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> 
     )
 }
 
-/// The column of an output, and how many orders of it are known.
+/// Column of an output, and the number of its known orders.
 fn column(measured: &MeasureResults, output: OutputSource) -> Option<(usize, usize)> {
     let m = measured.outputs.iter().position(|o| o.source == output)?;
     Some((m, measured.outputs[m].known.orders))
 }
 
-/// The abscissa of a metric; `Some(None)` is time.
+/// Abscissa of a metric; `Some(None)` is time.
 fn abscissa<C>(metric: &Metric, curve: impl Fn(OutputSource) -> Option<C>) -> Option<Option<C>> {
     metric.over.map_or(Some(None), |over| curve(over).map(Some))
 }
 
-/// Estimate of the error of the value at a time of interval k that the abscissa decides about: its error moves the
-/// time, and that the value.
+/// Estimate of the error of the value at a time of interval k that follows from the abscissa: an error of the abscissa
+/// changes the time, and so the value.
 fn time_error(y: &SampledCurve<'_, f64>, x: &Option<SampledCurve<'_, f64>>, k: usize, t: f64) -> Option<f64> {
     let late = match x {
         Some(x) => (apart(x, k, t)?[0] / x.at(k, t)[1]).abs(),
@@ -383,7 +381,7 @@ fn time_error(y: &SampledCurve<'_, f64>, x: &Option<SampledCurve<'_, f64>>, k: u
     Some(apart(y, k, t)?[0].abs() + late * y.at(k, t)[1].abs())
 }
 
-/// Estimates the interpolation error of the metric between output times. The reference curve is that of polynomials
+/// Estimates the interpolation error of the metric between output times. The reference curve consists of polynomials
 /// through more output times ([`WidePolynomial`]).
 fn interpolation_error(
     metric: &Metric,
@@ -421,7 +419,7 @@ fn interpolation_error(
                 Some(_) if cut => at_place(time)?,
                 Some(k) => apart(y, k, time)?[0].abs(),
             };
-            // Somewhere else the curve may go beyond.
+            // The curve may have a larger value elsewhere.
             let mut beyond: f64 = 0.0;
             for k in 0..y.values.len() - 1 {
                 let Some(wide) = WidePolynomial::new(y, k) else { continue };
@@ -452,7 +450,7 @@ fn interpolation_error(
     }
 }
 
-/// Parts of an interval at whose ends a curve between output times is looked at.
+/// Number of parts of an interval, at whose ends a curve between output times is evaluated.
 const PLACES: u32 = 8;
 
 /// Value of a metric's reduction, and its time.
@@ -508,7 +506,7 @@ fn take_at_single_time<T: Real>(
     let slope = |x: &SampledCurve<'_, T>| (x.orders > 1 && y.orders > 1).then(|| rate / x.values[0][1]);
     match &metric.take {
         Reduction::Value(at) if is_there(*at) => match x {
-            // The place stays and the time moves:  y(x = at) = y + (at - x) y. / x.
+            // The abscissa is fixed and the time varies:  y(x = at) = y + (at - x) y. / x.
             Some(x) if x.values[0][1].value() != 0.0 => {
                 let moved = slope(x).map_or(T::constant(0.0), |slope| (T::constant(*at) - place) * slope);
                 Some((value + moved, Some(time)))
@@ -534,8 +532,8 @@ fn take_at_single_time<T: Real>(
     }
 }
 
-/// The differences from a target at each of its points within the window, where the abscissa first is there; `None`
-/// where there is no such point, or one that is not reached.
+/// Differences from a target at each of its points within the window, at the first time when the abscissa reaches it;
+/// `None` if there is no such point, or if one is not reached.
 fn left_at_points<T: Real>(
     metric: &Metric,
     points: &[[f64; 2]],
@@ -550,12 +548,12 @@ fn left_at_points<T: Real>(
     counting.map(left).collect::<Option<Vec<T>>>().filter(|left| !left.is_empty())
 }
 
-/// True if this part of the curve counts.
+/// True if this abscissa is within the window.
 fn within_window(metric: &Metric, at: f64) -> bool {
     metric.window.is_none_or(|[low, high]| low <= at && at <= high)
 }
 
-/// The greatest value (sign 1) or the least (-1) where the abscissa is in the window, and its time.
+/// Maximum (sign 1) or minimum (-1) while the abscissa is in the window, and its time.
 fn extreme<T: Real>(
     metric: &Metric,
     y: &SampledCurve<'_, T>,
@@ -580,7 +578,7 @@ fn extreme<T: Real>(
         if counts(k) {
             offer(y.values[k][0], t);
         }
-        // Where a curve bends by less than it rises elsewhere, no turn of it is the greatest.
+        // If the bound of an interval is below the maximum so far, none of its extrema is the maximum.
         if k == last || y.orders == 1 || y.bound(k, sign) <= most {
             continue;
         }
@@ -590,7 +588,7 @@ fn extreme<T: Real>(
             }
         }
     }
-    // Wherever the window cuts the curve, its end stays and the time moves.
+    // At an end of the window the abscissa is fixed and the time varies.
     for (k, t) in metric.window.into_iter().flatten().flat_map(|end| crossings(y, x, end)) {
         offer(y.at(k, t)[0], t.value());
     }

@@ -1,7 +1,6 @@
-//! The whole walk for one model: plan, motion, sensitivities, measures.
+//! Runs of one model: plan, motion, sensitivities, measures.
 //!
-//! A [`Run`] says the request, an [`Analysis`] answers it: at once, window by window, into a [`Sink`], or for many
-//! designs.
+//! A [`Run`] is a request, and an [`Analysis`] solves it: at once, in windows, into a [`Sink`], or for many designs.
 
 mod analysis;
 mod between;

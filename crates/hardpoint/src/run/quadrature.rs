@@ -1,9 +1,8 @@
-//! Integrals over the path of a curve: of its polynomials between the times that were solved, over the way of the
-//! abscissa.
+//! Integrals over the path of a curve: of its polynomials between solved times, over the travel of the abscissa.
 //!
-//! The path is cut where the window ends (these cuts move with the design), where the abscissa turns, and where the
-//! target of an `rms` has a corner; between the cuts all is smooth. Kinks and jumps of laws are times that were solved
-//! (`between.rs`).
+//! The path is cut at the ends of the window (these cuts depend on the design), at turns of the abscissa, and at
+//! corners of the target of an `rms`. Between the cuts the integrand is smooth. Kinks and jumps of laws are solved
+//! times (`between.rs`).
 
 use super::curve::{Polynomial, SampledCurve, WidePolynomial, crossing};
 use crate::model::{Metric, Reduction, on_target};
@@ -12,16 +11,16 @@ use crate::number::Real;
 /// A metric that is an integral over the path.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PathIntegral<'m> {
-    /// Over the travel of the abscissa, to and fro.
+    /// Mean over the travel of the abscissa, in both directions.
     Mean,
-    /// Over the abscissa: the way back counts down.
+    /// Integral over the abscissa: backward travel counts negative.
     Integral,
     /// Root of the mean square of the difference from this target.
     Rms(&'m [[f64; 2]]),
 }
 
 impl<'m> PathIntegral<'m> {
-    /// The integral that a metric is, if it is one.
+    /// Integral of a reduction, if it is one.
     pub(super) fn of(take: &'m Reduction) -> Option<Self> {
         match take {
             Reduction::Mean => Some(Self::Mean),
@@ -36,7 +35,7 @@ impl<'m> PathIntegral<'m> {
         }
     }
 
-    /// The function of abscissa and value that is integrated.
+    /// Integrand as a function of abscissa and value.
     fn integrand<T: Real>(self, at: T, value: T) -> T {
         match self {
             Self::Mean | Self::Integral => value,
@@ -47,7 +46,7 @@ impl<'m> PathIntegral<'m> {
         }
     }
 
-    /// The mean of the integrand over the travel, where the metric is made of that.
+    /// Mean of the integrand over the travel, for metrics that are based on it.
     fn mean_of_integrand(self, value: f64) -> f64 {
         match self {
             Self::Mean => value,
@@ -56,7 +55,7 @@ impl<'m> PathIntegral<'m> {
         }
     }
 
-    /// The metric from the nodes of its path.
+    /// Value of the metric from the nodes of its path.
     pub(super) fn value<T: Real>(self, nodes: impl Iterator<Item = PathNode<T>>) -> Option<T> {
         let nodes = nodes.map(|node| (self.integrand(node.x, node.y), node.dx));
         match self {
@@ -67,7 +66,7 @@ impl<'m> PathIntegral<'m> {
         }
     }
 
-    /// The error of the metric from the contributions to it.
+    /// Error of the metric from its contributions.
     fn error(self, value: f64, errors: &IntegralErrors) -> Option<f64> {
         let sum: f64 = errors.parts.iter().map(|(_, error)| *error).sum::<Option<f64>>()?;
         let mean = sum / errors.travel;
@@ -80,7 +79,7 @@ impl<'m> PathIntegral<'m> {
     }
 }
 
-/// The mean of a function over the travel of the abscissa, to and fro, from its values and steps of the abscissa.
+/// Mean of a function over the travel of the abscissa, in both directions, from values and steps of the abscissa.
 fn mean<T: Real>(nodes: impl Iterator<Item = (T, T)>) -> Option<T> {
     // sum f_g abs(dx_g)  over  sum abs(dx_g)
     let add = |[sum, travel]: [T; 2], (f, dx): (T, T)| {
@@ -103,7 +102,7 @@ const GAUSS: [[f64; 2]; NODES] = [
     [0.953_089_922_969_332, 0.118_463_442_528_094_54],
 ];
 
-/// A part of interval k over which the abscissa rises or falls all along, within the window.
+/// A part of interval k within the window, over which the abscissa is monotone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stretch<T> {
     pub k: usize,
@@ -118,13 +117,13 @@ pub(super) struct PathNode<T> {
     pub dt: T,
     /// Abscissa.
     pub x: T,
-    /// Weight over the abscissa: negative where that goes back.
+    /// Weight over the abscissa: negative for backward travel.
     pub dx: T,
     pub y: T,
 }
 
 impl<T: Real> Stretch<T> {
-    /// The nodes of the stretch.
+    /// Nodes of the stretch.
     pub(super) fn nodes(
         &self,
         y: &SampledCurve<'_, T>,
@@ -144,7 +143,7 @@ impl<T: Real> Stretch<T> {
     }
 }
 
-/// The nodes of a metric's path.
+/// Nodes of a metric's path.
 pub(super) fn path_nodes<T: Real>(
     metric: &Metric,
     y: &SampledCurve<'_, T>,
@@ -153,7 +152,7 @@ pub(super) fn path_nodes<T: Real>(
     path_stretches(metric, y, x).into_iter().flat_map(move |stretch| stretch.nodes(y, x))
 }
 
-/// The parts of a metric's path between its cuts.
+/// Parts of a metric's path between its cuts.
 pub(super) fn path_stretches<T: Real>(
     metric: &Metric,
     y: &SampledCurve<'_, T>,
@@ -170,17 +169,17 @@ pub(super) fn path_stretches<T: Real>(
         for part in SampledCurve::monotone(y.times, x, k) {
             let along = part.map(|t| x.map_or(t, |x| x.number(k, t)));
             let [least, most] = [along[0].min(along[1]), along[0].max(along[1])];
-            // Written so that an abscissa without a value is in no window, but on the path of a metric without one.
+            // A NaN abscissa is in no window, but it is on the path of a metric without a window.
             if metric.window.is_some() && !(least < high && most > low) {
                 continue;
             }
-            // Where the part begins or ends, or the window cuts it
+            // Ends of the part, or cuts of the window
             let [from, to] = [0, 1].map(|side| {
                 let cut = [(along[side] < low, low), (along[side] > high, high)];
                 let cut = cut.into_iter().find_map(|(beyond, end)| beyond.then_some(end));
                 cut.and_then(|end| crossing(x, k, part, end)).unwrap_or(T::constant(part[side]))
             });
-            // The integrand is continuous at a corner: that its time moves changes nothing.
+            // The integrand is continuous at a corner: a change of its time has no effect.
             let corner = |p: &[f64; 2]| Some(crossing(x, k, part, p[0])?.value());
             let mut cuts: Vec<f64> = corners.iter().filter_map(corner).collect();
             cuts.retain(|t| from.value() < *t && *t < to.value());
@@ -195,9 +194,9 @@ pub(super) fn path_stretches<T: Real>(
     stretches
 }
 
-/// The middles of those parts of the path that contribute most to the error of an integral, if that is more than
-/// `tolerance` (of `rms` and `mean`; of `integral` as a part of the travel). None where rates are unknown: there the
-/// error falls with the square of the steps only.
+/// Midpoints of the parts of the path with the largest contributions to the error of an integral, if the error is above
+/// `tolerance` (for `rms` and `mean`; for `integral` per travel). Empty if rates are unknown, since the error then
+/// decreases only with the square of the steps.
 pub(super) fn coarse_middles(
     metric: &Metric,
     y: &SampledCurve<'_, f64>,
@@ -210,7 +209,7 @@ pub(super) fn coarse_middles(
     let Some(of) = PathIntegral::of(&metric.take) else { return Vec::new() };
     let stretches = path_stretches(metric, y, x);
     let Some(value) = of.value(stretches.iter().flat_map(|s| s.nodes(y, x))) else { return Vec::new() };
-    // Most curves are resolved by far, and so are their polynomials of lower degree.
+    // For most curves the polynomials of lower degree are already accurate enough.
     let mut parts = Vec::new();
     for other in [lower, wide] {
         let errors = integral_errors(of, (y, x), &stretches, value, other);
@@ -220,25 +219,25 @@ pub(super) fn coarse_middles(
         }
         parts = errors.parts;
     }
-    // Where too little is known to say, it may be off.
+    // Without an estimate, the error may be large.
     let size = |error: &Option<f64>| error.unwrap_or(f64::INFINITY);
     let most = parts.iter().map(|(_, error)| size(error)).fold(0.0, f64::max);
     let large = parts.iter().filter(|(_, error)| size(error) >= COARSE * most);
     large.map(|(stretch, _)| 0.5 * (y.times[stretch.k] + y.times[stretch.k + 1])).collect()
 }
 
-/// Parts of the path with at least this part of the largest contribution to the error of an integral are halved: of a
-/// smooth curve many, of one with a kink the one where that is.
+/// Fraction of the largest error contribution above which a part of the path is halved: many parts of a smooth curve,
+/// but only the part with the kink of a curve that has one.
 const COARSE: f64 = 1.0 / 64.0;
 
 /// Contributions of the parts of the path to the error of an integral; `None` if too little is known.
 struct IntegralErrors {
     parts: Vec<(Stretch<f64>, Option<f64>)>,
-    /// Travel of the abscissa within the window, to and fro.
+    /// Travel of the abscissa within the window, in both directions.
     travel: f64,
 }
 
-/// A polynomial that says how far the one of an interval may be from the curve.
+/// A polynomial for estimating the error of an interval's own.
 enum OtherPolynomial {
     Lower(Polynomial<f64>),
     Wide(WidePolynomial),
@@ -254,19 +253,18 @@ impl OtherPolynomial {
     }
 }
 
-/// The polynomial of interval k without the highest order that is known at its ends: farther from the curve than its
-/// own.
+/// Polynomial of interval k without the highest order that is known at its ends: less accurate than its own.
 fn lower(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
     let known = usize::min(curve.known(k), curve.known(k + 1));
     (known > 1).then(|| OtherPolynomial::Lower(curve.polynomial_of(k, known - 1)))
 }
 
-/// The polynomial through more times: nearer to the curve than the interval's own.
+/// Polynomial through more times: more accurate than the interval's own.
 fn wide(curve: &SampledCurve<'_, f64>, k: usize) -> Option<OtherPolynomial> {
     WidePolynomial::new(curve, k).map(OtherPolynomial::Wide)
 }
 
-/// The contribution of each part of the path to the error of an integral: the difference between other polynomials
+/// Contribution of each part of the path to the error of an integral: the difference between other polynomials
 /// ([`wide`] or [`lower`]) and the interval's own.
 fn integral_errors(
     of: PathIntegral<'_>,
@@ -275,7 +273,7 @@ fn integral_errors(
     value: f64,
     other: fn(&SampledCurve<'_, f64>, usize) -> Option<OtherPolynomial>,
 ) -> IntegralErrors {
-    // An error of the travel counts for as much less as the mean of the integrand is.
+    // The integrand minus its mean: an error of the travel changes numerator and denominator.
     let mean = of.mean_of_integrand(value);
     let integrand = |at: f64, y: f64| of.integrand(at, y) - mean;
     let mut travel = 0.0;
@@ -290,7 +288,7 @@ fn integral_errors(
             let [at, rate] = along(node.t);
             integrand(at, other_y.at(node.t)[0]) * rate * node.dt - integrand(node.x, node.y) * node.dx
         });
-        // Where the window cuts the curve, an error of the abscissa moves the cut.
+        // At an end of the window, an error of the abscissa moves the cut.
         let moved = [stretch.from, stretch.to].into_iter().filter(|t| !y.times.contains(t)).map(|t| {
             let own = x.as_ref().map_or(t, |x| x.number(k, t));
             (integrand(own, y.number(k, t)) * (along(t)[0] - own)).abs()
@@ -301,7 +299,7 @@ fn integral_errors(
     IntegralErrors { parts, travel }
 }
 
-/// The travel of the abscissa within the window, to and fro.
+/// Travel of the abscissa within the window, in both directions.
 pub(super) fn travel<T: Real>(
     metric: &Metric,
     y: &SampledCurve<'_, T>,
@@ -310,8 +308,7 @@ pub(super) fn travel<T: Real>(
     path_nodes(metric, y, x).fold(T::zero(), |sum, node| sum + node.dx.abs())
 }
 
-/// The estimate of the error of an integral with that value, from the polynomials through more times; `None` if too
-/// little is known.
+/// Error estimate of an integral with this value, from polynomials through more times; `None` if too little is known.
 pub(super) fn path_error(
     metric: &Metric,
     y: &SampledCurve<'_, f64>,

@@ -9,9 +9,8 @@ use super::walk::Scope;
 
 /// Request of a run: the design, and the results to compute.
 ///
-/// Without further words it is everything, for the nominal design: the motion at all output times, its sensitivities by
-/// all design variables, and measures. Not every way to run has a use for every word; what it has no use for changes
-/// nothing.
+/// By default it is everything, for the nominal design: the motion at all output times, its sensitivities by all design
+/// variables, and measures. Options that a run mode does not use are ignored.
 ///
 /// | | [`solve`] | [`solve_in_windows`] | [`solve_designs`] | [`stream`] | [`stream_designs`] |
 /// |---|---|---|---|---|---|
@@ -42,12 +41,12 @@ use super::walk::Scope;
 /// let model = Model::from_draft(&draft).unwrap();
 /// let analysis = Analysis::new(&model).unwrap();
 ///
-/// // The motion alone of the design whose pivot is 0.1 m further on: the tip is 0.1 m from it.
+/// // The motion alone, of the design whose pivot is moved by 0.1 m: the distance of the tip is then 0.1 m.
 /// let moved = analysis.solve(Run::new().at(&[0.1]).without_sensitivities());
 /// let tip_y = moved.measured.index("tip.y").unwrap();
 /// assert!((moved.measured.value(1, tip_y)[0] - 0.1 * 0.5_f64.sin()).abs() < 1e-12);
 ///
-/// // Again with sensitivities, where the results were written before.
+/// // Again with sensitivities, in the memory of the former results.
 /// let again = analysis.solve(Run::new().at(&[0.1]).reusing(moved));
 /// assert!((again.measured.d(1, model.variable("O along").unwrap(), tip_y)[0] + 0.5_f64.sin()).abs() < 1e-12);
 /// ```
@@ -61,7 +60,7 @@ pub struct Run<'r> {
 }
 
 impl<'r> Run<'r> {
-    /// Everything, for the nominal design.
+    /// Requests all results of the nominal design.
     pub fn new() -> Self {
         Self {
             design: &[],
@@ -72,20 +71,20 @@ impl<'r> Run<'r> {
         }
     }
 
-    /// The changed design with variable k at `design[k]` (m, rad or a plain number; missing entries are 0, further ones
-    /// count for nothing): its motion, solved exactly, and its sensitivities there.
+    /// Requests the design with variable k at `design[k]` (m, rad or a plain number; missing entries are 0, surplus
+    /// ones are ignored): its motion, solved exactly, and its sensitivities.
     ///
-    /// True if joints open under a further change is answered for the nominal design.
+    /// Joint defects are those of the nominal design.
     pub fn at(self, design: &'r [f64]) -> Self {
         Self { design, ..self }
     }
 
-    /// The motion without its sensitivities.
+    /// Requests the motion without sensitivities.
     pub fn without_sensitivities(self) -> Self {
         Self { scope: Scope { sensitivities: false, ..self.scope }, ..self }
     }
 
-    /// The bodies without measures and points: [`Solution::measured`] stays empty.
+    /// Requests the motion without measures and points: [`Solution::measured`] stays empty.
     pub fn without_measures(self) -> Self {
         Self { scope: Scope { measures: false, ..self.scope }, ..self }
     }
@@ -96,14 +95,14 @@ impl<'r> Run<'r> {
         Self { progress: Box::new(progress), ..self }
     }
 
-    /// Writes the results into the memory of a former solution, of whatever model: fresh pages from the system cost as
-    /// much as solving.
+    /// Writes the results into the memory of a former solution, of any model: allocating new memory takes as long as
+    /// solving.
     pub fn reusing(self, memory: Solution) -> Self {
         Self { memory, ..self }
     }
 
-    /// Solves designs on that many threads. The same designs share their lanes however many there are, so that every
-    /// solution is the same to the last bit.
+    /// Solves designs on this number of threads. Batches do not depend on it, so that every solution is the same to the
+    /// last bit.
     pub fn threads(self, threads: NonZero<usize>) -> Self {
         Self { threads, ..self }
     }
@@ -128,6 +127,6 @@ impl fmt::Debug for Run<'_> {
 pub struct Progress {
     /// Output times solved.
     pub done: usize,
-    /// Output times in all.
+    /// Total number of output times.
     pub total: usize,
 }

@@ -7,41 +7,41 @@ use crate::model::{BodyId, VariableId};
 use crate::motion::BodyState;
 use crate::sensitivity::BodySensitivity;
 
-/// Takes the results of a run as they are found, so that nothing need be stored that is not wanted.
+/// Receives the results of a run as they are computed, so that only requested results are stored.
 ///
-/// Results come in groups of up to eight output times; within a group the bodies' states come first, then variable by
-/// variable the sensitivities of those bodies that the variable moves. All others are zero.
+/// Results come in groups of up to eight output times. Within a group the states of the bodies come first; then,
+/// variable by variable, the sensitivities of the bodies that the variable moves. All other sensitivities are zero.
 pub trait Sink {
-    /// True if this body's results are wanted: what is not is not even worked out.
+    /// True if the results of this body are requested; others are not computed.
     fn wants(&self, body: BodyId) -> bool {
         let _ = body;
         true
     }
 
-    /// A body's state at output time k.
+    /// Receives the state of a body at output time k.
     fn state(&mut self, k: usize, body: BodyId, state: &BodyState);
 
-    /// A body's sensitivity by one variable at output time k.
+    /// Receives the sensitivity of a body by one variable at output time k.
     ///
-    /// By variables that turn out to be such as the mechanism cannot follow, numbers may come nevertheless: the
-    /// [`Admissibility`](crate::sensitivity::Admissibility) at the end indicates.
+    /// Numbers may also come for variables that prove not to be admissible; see the
+    /// [`Admissibility`](crate::sensitivity::Admissibility) at the end.
     fn sensitivity(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity);
 
-    /// Memory for eight output times, k to k + 7, that are found at once, those of every number side by side. First,
-    /// per body but ground, position, columns of the rotation, velocity, angular velocity, acceleration, angular
-    /// acceleration (24 numbers); second, per variable and body that it moves, a [`BodySensitivity`] in the order of
-    /// its fields (18).
+    /// Memory for a batch of eight output times, k to k + 7; the eight values of each number are adjacent. The first
+    /// array has per body but ground: position, columns of the rotation, velocity, angular velocity, acceleration,
+    /// angular acceleration (24 numbers). The second has per variable and body that it moves: a [`BodySensitivity`] in
+    /// the order of its fields (18).
     ///
-    /// What is written to it comes no other way, and means nothing beyond the last output time. Where there is none, as
-    /// here, or of another size, results come one by one.
+    /// Results that are written here are not passed to the other methods. Values beyond the last output time are
+    /// undefined. With `None` (the default) or another size, results come one by one.
     fn room(&mut self, k: usize) -> Option<[&mut [[f64; 8]]; 2]> {
         let _ = k;
         None
     }
 }
 
-/// Gives the results of wanted bodies, lane by lane, to one of the sinks each, as those of an output time: `of(lane)`
-/// says which sink, and which time. `moved` says which variable moves which body, in the order of the derivatives.
+/// Passes the results of the requested bodies to sinks, lane by lane. `of(lane)` returns the sink and the output time
+/// of a lane. `moved` has the pairs of a variable and a body that it moves, in the order of the derivatives.
 #[inline(always)]
 pub(super) fn hand_over<S: Sink>(
     block: &ResultBlock<'_>,
@@ -67,7 +67,7 @@ pub(super) fn hand_over<S: Sink>(
     }
 }
 
-/// Takes nothing.
+/// Sink that requests no results.
 pub(super) struct NullSink;
 
 impl Sink for NullSink {

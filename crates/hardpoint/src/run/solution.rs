@@ -18,7 +18,7 @@ pub struct Solution {
     pub measured: MeasureResults,
     /// Reason why the run ended before the last output time, if it did.
     pub stop: Option<Stop>,
-    /// The same motion at more times, where metrics ask for these.
+    /// The same motion at more times, if metrics need them.
     pub(crate) between: Option<Arc<Solution>>,
 }
 
@@ -34,7 +34,7 @@ impl Solution {
 pub struct StreamSummary {
     /// Output times solved.
     pub steps: usize,
-    /// Per variable: whether and how the mechanism follows the change.
+    /// Admissibility per variable.
     pub admissibility: Vec<Admissibility>,
     /// Statistics of the solver.
     pub effort: SolverStatistics,

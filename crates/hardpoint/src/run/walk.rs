@@ -1,4 +1,4 @@
-//! The way of one design through all output times.
+//! Solution of one design at all output times.
 
 use std::ops::{ControlFlow, Range};
 
@@ -22,12 +22,12 @@ use super::analysis::Analysis;
 use super::request::Progress;
 use super::sink::{NullSink, Sink, hand_over};
 
-/// The request of a design.
+/// Requested results of a design.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scope {
     pub sensitivities: bool,
     pub measures: bool,
-    /// Number of designs that are solved in all, this one included: what is worth a program for all of them.
+    /// Total number of designs, this one included; it decides whether a program saves time.
     pub of_many: usize,
 }
 
@@ -38,7 +38,7 @@ impl Scope {
     }
 }
 
-/// One design, ready to be analysed.
+/// A design that is prepared for solution.
 pub(crate) struct PreparedDesign {
     pub values: Vec<f64>,
     pub geometry: Geometry,
@@ -49,29 +49,29 @@ pub(crate) struct PreparedDesign {
     pub scope: Scope,
 }
 
-/// The way through all output times.
+/// Solver of one design at all output times.
 pub(crate) struct Walk<'a> {
     analysis: &'a Analysis<'a>,
     pub one: Stepper<'a>,
-    abreast: TimeBatch<'a>,
-    /// `None` where no sensitivities are requested.
+    batch: TimeBatch<'a>,
+    /// `None` if no sensitivities are requested.
     pub solver: Option<SensitivitySolver>,
-    /// `None` where no loads are.
+    /// `None` if no loads are requested.
     pub loads: Option<LoadSolver<'a>>,
-    /// Per body: whether its results are wanted.
+    /// Per body: true if its results are requested.
     wanted: Vec<bool>,
     /// Output times solved.
     pub done: usize,
 }
 
-/// Steps that were just solved: one output time, or several by a program, in these of its lanes.
+/// Steps that were just solved: one output time, or several in these lanes of a program.
 pub(crate) enum SolvedSteps<'w, 'a> {
     One(&'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>),
-    Abreast(&'w Tape, Range<usize>, Option<&'w TurnCounter<'a>>),
+    Batch(&'w Tape, Range<usize>, Option<&'w TurnCounter<'a>>),
 }
 
 impl<'a> Walk<'a> {
-    /// Step by step.
+    /// Solver that goes step by step.
     pub fn new(analysis: &'a Analysis<'a>, design: &'a PreparedDesign, wanted: Vec<bool>) -> Self {
         let (model, topology) = (analysis.model(), analysis.topology());
         let PreparedDesign { geometry, laws, fields, .. } = design;
@@ -81,7 +81,7 @@ impl<'a> Walk<'a> {
         Self {
             analysis,
             one,
-            abreast: TimeBatch::new(None, &[], None),
+            batch: TimeBatch::new(None, &[], None),
             solver: (!fields.is_empty())
                 .then(|| SensitivitySolver::new(model, topology, fields, wanted.clone())),
             loads: None,
@@ -90,7 +90,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The same by programs, as many output times at once as there are lanes, where that can be done and pays.
+    /// Solver that uses programs, one output time per lane, if that is possible and saves time.
     pub fn by_programs(
         analysis: &'a Analysis<'a>,
         design: &'a PreparedDesign,
@@ -108,12 +108,12 @@ impl<'a> Walk<'a> {
                 analysis.program(purpose).filter(|program| program.moved == moved)
             };
             let laws = analysis.laws_program(&design.laws, loads);
-            walk.abreast = TimeBatch::new(Some(Box::new(program)), &design.values, laws);
+            walk.batch = TimeBatch::new(Some(Box::new(program)), &design.values, laws);
         }
         walk
     }
 
-    /// To the last output time, or to what stops it, for those who take what they want from the stepper: nothing is
+    /// Solves up to the last output time or a stop. Calls `then` with the stepper at each output time; nothing is
     /// stored.
     pub fn each(&mut self, mut then: impl FnMut(&mut Stepper<'a>)) -> Option<Stop> {
         self.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
@@ -123,8 +123,8 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// To the last output time, or to what stops it. `then` sees what was solved, how many output times of it count,
-    /// and what is known of the variables.
+    /// Solves up to the last output time or a stop. Calls `then` with the solved steps, the number of valid output
+    /// times among them, and the sensitivity solver.
     pub fn all<S: Sink>(
         &mut self,
         sink: &mut S,
@@ -140,20 +140,20 @@ impl<'a> Walk<'a> {
             }
             let at_once = match k {
                 0 => 0,
-                _ => self.abreast.advance(&mut self.one, k, times, || sink.room(k)),
+                _ => self.batch.advance(&mut self.one, k, times, || sink.room(k)),
             };
             let count;
             let solved = if at_once == 0 {
                 if let Err(failed) = self.step(k) {
                     return Some(*failed);
                 }
-                (count, stop) = self.tell(1, progress);
+                (count, stop) = self.report(1, progress);
                 self.give_one(k, sink);
                 SolvedSteps::One(&mut self.one, self.loads.as_ref())
             } else {
-                (count, stop) = self.tell(at_once, progress);
-                let lanes = self.give_abreast(k, count, sink);
-                SolvedSteps::Abreast(self.abreast.solved(), lanes, self.one.turns.as_ref())
+                (count, stop) = self.report(at_once, progress);
+                let lanes = self.give_batch(k, count, sink);
+                SolvedSteps::Batch(self.batch.solved(), lanes, self.one.turns.as_ref())
             };
             then(sink, solved, count, self.solver.as_ref());
             self.done += count;
@@ -161,7 +161,7 @@ impl<'a> Walk<'a> {
         stop
     }
 
-    /// To output time k alone.
+    /// Solves output time k alone.
     fn step(&mut self, k: usize) -> Result<(), Box<Stop>> {
         let t = self.analysis.model().times[k];
         let step = if k == 0 { self.one.start(t) } else { self.one.advance(t) };
@@ -173,9 +173,9 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// Indicates the progress of that many output times; how many of them count, and the stop of a run that is reported
-    /// to end.
-    fn tell(
+    /// Reports progress for `solved` output times. Returns how many of them are valid, and the stop if the caller
+    /// interrupts the run.
+    fn report(
         &self,
         solved: usize,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
@@ -190,7 +190,7 @@ impl<'a> Walk<'a> {
         (solved, None)
     }
 
-    /// Output time k, where the stepper is.
+    /// Passes on output time k, the position of the stepper.
     #[inline(always)]
     fn give_one<S: Sink>(&mut self, k: usize, sink: &mut S) {
         for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
@@ -212,22 +212,22 @@ impl<'a> Walk<'a> {
 
     /// Passes on `count` output times from k on, with the lanes of the program that solved them.
     #[inline(always)]
-    fn give_abreast<S: Sink>(&mut self, k: usize, count: usize, sink: &mut S) -> Range<usize> {
+    fn give_batch<S: Sink>(&mut self, k: usize, count: usize, sink: &mut S) -> Range<usize> {
         let first = k % LANES;
         let lanes = first..first + count;
-        if let Some(block) = self.abreast.own_results() {
+        if let Some(block) = self.batch.own_results() {
             let moved = self.solver.iter().flat_map(SensitivitySolver::moved);
             let of = |lane: usize| (0, k + lane - first);
             hand_over(&block, &self.wanted, moved, std::slice::from_mut(sink), lanes.clone(), of);
         }
         if let Some(solver) = &mut self.solver {
             let times = &self.analysis.model().times[k..k + count];
-            solver.note(self.abreast.solved(), &self.one.topology, times, first);
+            solver.note(self.batch.solved(), &self.one.topology, times, first);
         }
         lanes
     }
 
-    /// Per variable, whether and how the mechanism follows it, as far as the walk has come.
+    /// Admissibility per variable, for the output times solved so far.
     pub fn admissibility(&self, opens: &[Vec<JointDefect>]) -> Vec<Admissibility> {
         self.solver.as_ref().map_or_else(Vec::new, |s| s.admissibility(opens, self.done))
     }

@@ -1,7 +1,7 @@
-//! Runs that need not fit into memory: their results come window by window, and some of them are kept.
+//! Runs whose results need not fit into memory: they are processed in windows, and a selection is stored.
 //!
-//! A window is a [`Solution`] of consecutive output times. What goes on from one to the next (turns that are counted by
-//! rates, the walk itself) is carried over, so that all numbers are those of a run in one piece.
+//! A window is a [`Solution`] of consecutive output times. The solver and the counted turns continue from one window to
+//! the next, so that all numbers are the same as without windows.
 
 use std::ops::ControlFlow;
 
@@ -43,12 +43,12 @@ impl Footprint {
         }
     }
 
-    /// All of it.
+    /// Total size.
     pub fn bytes(self) -> usize {
         self.motion + self.sensitivities + self.measured
     }
 
-    /// Actual size of a window of about this number of bytes: it holds at least one batch.
+    /// Actual size of a window of about this number of bytes; it has at least one batch.
     pub fn of_window(self, bytes: usize) -> usize {
         self.bytes() * self.rows(bytes)
     }
@@ -59,12 +59,12 @@ impl Footprint {
 }
 
 impl Analysis<'_> {
-    /// As [`Analysis::solve`], window by window, each of about that many bytes: `each` sees the window's solution, and
-    /// the number of its first output time. What comes back are the facts of the whole run (stop, effort, assembly,
-    /// admissibility), with the last window.
+    /// Solves like [`Analysis::solve`] in windows of about `bytes` bytes. Calls `each` with the number of a window's
+    /// first output time and its solution. Returns the last window with the summary of the whole run (stop, effort,
+    /// assembly, admissibility).
     ///
-    /// A window knows which variables the mechanism could not follow up to its end. One that resists later has numbers
-    /// in the windows before, which mean nothing.
+    /// The admissibility of a window covers all output times up to its end. If a variable proves inadmissible later,
+    /// its sensitivities in earlier windows are invalid.
     pub fn solve_in_windows(
         &self,
         mut run: Run<'_>,
@@ -80,7 +80,7 @@ impl Analysis<'_> {
         solution
     }
 
-    /// Solves all output times, that many at a time; the last ones remain. Gives the number of the first of these.
+    /// Solves all output times, `rows` at a time. The last window remains; returns the number of its first output time.
     pub(super) fn walk(
         &self,
         design: &PreparedDesign,
@@ -147,7 +147,7 @@ impl Analysis<'_> {
                         window.motion.margins.push(margins.at(&one.topology, &one.state));
                     }
                 }
-                SolvedSteps::Abreast(tape, lanes, turns) => {
+                SolvedSteps::Batch(tape, lanes, turns) => {
                     if !tape.measures().is_empty() {
                         window.slopes.take_recorded(tape.measures(), lanes.clone());
                     }
@@ -181,9 +181,9 @@ impl Analysis<'_> {
     }
 }
 
-/// The results that are under way, of consecutive output times.
+/// Window that is being filled with consecutive output times.
 struct Window {
-    /// The number of the first.
+    /// Number of its first output time.
     first: usize,
     /// Output times solved, of all windows.
     done: usize,
@@ -211,7 +211,7 @@ impl Sink for Window {
 }
 
 impl Window {
-    /// Hands over what there is, measured.
+    /// Completes the window with its measures.
     fn close(&mut self, analysis: &Analysis<'_>, design: &PreparedDesign, solution: &mut Solution) {
         self.motion.times.extend_from_slice(&analysis.model().times[self.first..self.done]);
         solution.motion = std::mem::take(&mut self.motion);
@@ -219,7 +219,7 @@ impl Window {
         analysis.measure(design, &self.slopes, solution);
     }
 
-    /// Goes on behind a window that was handed over, in its memory.
+    /// Starts the next window in the memory of the last.
     fn open(&mut self, analysis: &Analysis<'_>, rows: usize, solution: &mut Solution) {
         let Solution { motion, sensitivities, .. } = solution;
         (self.motion, self.sensitivities) = (std::mem::take(motion), std::mem::take(sensitivities));
@@ -232,17 +232,17 @@ impl Window {
 /// Selection of the results of a run that are stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sampling {
-    /// At most that many output times: of more, every second, then every fourth, and so on.
+    /// Maximum number of output times; beyond it every second one is stored, then every fourth, and so on.
     pub rows: usize,
     /// Poses and motion of the bodies.
     pub motion: bool,
     /// Sensitivities of the bodies.
     pub sensitivities: bool,
-    /// Measures and points, with their sensitivities: these, or all.
+    /// Measures and points to store, with their sensitivities; all if `None`.
     pub outputs: Option<Vec<OutputSource>>,
 }
 
-/// Keeps some of the results of a run, at evenly chosen output times.
+/// Stores a selection of the results of a run, at uniformly spaced output times.
 #[derive(Clone, Debug)]
 pub struct SampledResults {
     keep: Sampling,
@@ -251,7 +251,7 @@ pub struct SampledResults {
 }
 
 impl SampledResults {
-    /// Nothing as yet.
+    /// An empty selection.
     pub fn new(keep: Sampling) -> Self {
         Self { keep, stride: 1, solution: Solution::default() }
     }
@@ -261,7 +261,7 @@ impl SampledResults {
         self.stride
     }
 
-    /// Takes what it keeps of a window that begins with output time `first`.
+    /// Stores the selected results of a window that begins with output time `first`.
     pub fn add(&mut self, first: usize, window: &Solution) {
         for k in 0..window.motion.len() {
             if (first + k).is_multiple_of(self.stride) {
@@ -276,7 +276,7 @@ impl SampledResults {
         }
     }
 
-    /// Stored results, with the facts of the whole run.
+    /// Returns the stored results, with the summary of the whole run.
     pub fn end(mut self, whole: &Solution) -> Solution {
         self.solution.motion.effort = whole.motion.effort;
         self.solution.motion.solved_by = whole.motion.solved_by.clone();
@@ -323,7 +323,7 @@ impl SampledResults {
     }
 }
 
-/// Drops every second of rows of equal length.
+/// Drops every second row; all rows have the same length.
 pub(crate) fn thin<X: Copy>(list: &mut Vec<X>, rows: usize) {
     let n = list.len() / rows.max(1);
     for row in (0..rows).step_by(2) {

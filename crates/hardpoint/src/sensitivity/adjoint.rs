@@ -1,14 +1,15 @@
-//! Sensitivities of a few outputs by many variables: one transposed solution for each output instead of one for each
-//! variable.
+//! Adjoint method, for sensitivities of a few outputs by many variables: one transposed solution per output instead of
+//! one per variable.
 //!
-//! How an output goes with the design twists of the bodies is a load on them, a wrench each. Carried to ground like a
-//! load in statics, it says what every joint transmits; that, on the design twists of the joint's markers, is the
-//! output's derivative. What is transmitted does not know of any variable (`docs/theory.md` (17) to (20)).
+//! The derivatives of an output by the design twists of the bodies are loads on them, a wrench each. Propagated to
+//! ground like loads in statics, they give the wrench that every joint transmits. Its work on the design twists of the
+//! joint's markers is the derivative of the output. Transmitted wrenches do not depend on the variables
+//! (`docs/theory.md` (17) to (20)).
 //!
-//! | here | theory | what |
+//! | here | theory | meaning |
 //! |---|---|---|
-//! | `transmission` | F, T, mu and their rates | on its way to ground: `transmission.rs` |
-//! | `seen` | t, t., t.. | T as the body of a marker sees it (20) |
+//! | `transmission` | F, T, mu and their rates | propagation to ground: `transmission.rs` |
+//! | `seen` | t, t., t.. | T in body components of a marker's body (20) |
 //! | `gradient[v][n]` | dy/db, d(y.)/db, d(y..)/db | (19) and its time derivatives |
 
 use crate::design::DesignVelocity;
@@ -26,15 +27,14 @@ use super::transmission::{Transmission, Transposed, Way};
 /// A wrench with its first two time derivatives, about the world origin.
 pub(crate) type Load = [Wrench; 3];
 
-/// Loads on the twists D of the frames that unit twists and wrenches turn with, W of a body and z of its marker
-/// together.
+/// Loads on the twists D = W + z of the frames in which unit twists and wrenches are fixed.
 #[derive(Clone, Debug)]
 pub(crate) struct Turning<T = f64> {
-    /// Per link: on that of its parent's marker.
+    /// Per link: on the twist of its parent's marker.
     pub starts: Vec<Wrench<T>>,
-    /// Per closure: on those of markers i and j.
+    /// Per closure: on the twists of markers i and j.
     pub ends: Vec<[Wrench<T>; 2]>,
-    /// Per coordinate: on its S.
+    /// Per coordinate: on its speed S.
     pub pulls: Vec<T>,
 }
 
@@ -48,21 +48,21 @@ impl<T: Real> Turning<T> {
     }
 }
 
-/// Support of loads on some bodies: the bodies from there to ground, and the variables that change something on the
-/// way.
+/// Support of loads on some bodies: the bodies from there to ground, and the variables that change something between
+/// them.
 #[derive(Clone, Debug)]
 pub(crate) struct Support {
     /// Bodies that the load reaches.
     bodies: Vec<usize>,
-    /// From the load to ground.
+    /// Path from the load to ground.
     way: Way,
     /// Markers that some variable moves.
     places: Vec<MarkerPlace>,
     /// Per variable and marker that it moves: place, and body-fixed twist with the sign of that end.
     moves: Vec<(usize, usize, Twist)>,
-    /// Per variable and kept value that it changes: row and rate.
+    /// Per variable and joint constant that it changes: row and rate.
     keeps: Vec<(usize, RowId, f64)>,
-    /// Per variable and law that it changes: the driver, and what follows it.
+    /// Per variable and law that it changes: the driver, and the unknown that it prescribes.
     laws: Vec<(usize, DriverId, Follower)>,
 }
 
@@ -94,8 +94,8 @@ impl Support {
     fn new(topology: &Topology, fields: &[PlanVelocity<f64>], loaded: &[usize]) -> Self {
         let mut pushed = vec![false; 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0)];
         loaded.iter().for_each(|&b| pushed[b] = true);
-        // From the last block to the first: a load on a child goes through its link to the parent, and through the block's closures to
-        // all bodies that these stand between.
+        // From the last block to the first: a load on a child is transmitted by its link to the parent, and by the
+        // block's closures to all bodies that they connect.
         let (mut blocks, mut driven_links) = (Vec::new(), Vec::new());
         let mut feels = (vec![false; topology.links.len()], vec![false; topology.closures.len()]);
         for (b, block) in BlockId::each(&topology.blocks).rev() {
@@ -132,7 +132,7 @@ impl Support {
         support
     }
 
-    /// Enters what variable v changes where the load is felt, by link and by closure.
+    /// Adds the changes by variable v at links and closures that transmit the load.
     fn add(
         &mut self,
         topology: &Topology,
@@ -140,8 +140,8 @@ impl Support {
         v: usize,
         field: &PlanVelocity<f64>,
     ) {
-        // What a link transmits pushes its child: it works on z_p - z_c; that of a closure pushes j, and works on z_j -
-        // z_i.
+        // The wrench of a link acts on its child and does work on z_p - z_c; that of a closure acts on j and does work
+        // on z_j - z_i.
         for m in field.links.iter().filter(|m| links[m.at.0]) {
             let index = 2 * m.at.0 + m.end;
             self.places.push(MarkerPlace { index, joint: Transmitter::Link(m.at), body: m.body });
@@ -171,7 +171,7 @@ impl Support {
     }
 }
 
-/// Carries loads to ground; nothing is allocated per step.
+/// Propagates loads to ground; a step allocates no memory.
 pub(crate) struct Adjoint {
     /// Design velocity of each variable.
     fields: Vec<PlanVelocity<f64>>,
@@ -182,7 +182,7 @@ pub(crate) struct Adjoint {
 }
 
 impl Adjoint {
-    /// By the variables with these fields.
+    /// Adjoint solver for the variables with these fields.
     pub fn new(model: &Model, topology: &Topology, fields: &[DesignVelocity]) -> Self {
         let none = Wrench::zero();
         let parts = |f: &DesignVelocity| PlanVelocity::new(topology, &f.clone().with_laws_in_order());
@@ -198,14 +198,14 @@ impl Adjoint {
         Support::new(topology, &self.fields, loaded)
     }
 
-    /// Sets what changing laws do where a stepper is, at time t.
+    /// Sets the contributions of laws that depend on variables, at the position of a stepper and time t.
     pub fn set_time(&mut self, stepper: &Stepper<'_>, t: f64) {
         let law = |d: DriverId| stepper.parts.law_of(d.0);
         self.fields.iter_mut().for_each(|field| field.set_time(law, t));
     }
 
-    /// Adds to `gradient`, by variable, the work of loads on bodies and its first two time derivatives; only that many
-    /// `orders` of these. `state` is with all of its rates.
+    /// Adds to `gradient`, per variable, the work of loads on bodies and its time derivatives, `orders` in all. `state`
+    /// has all of its rates.
     pub fn add_work(
         &mut self,
         topology: &Topology,
@@ -225,8 +225,8 @@ impl Adjoint {
         self.work(topology, state, support, orders, gradient);
     }
 
-    /// The same of a functional `sum F . W.. + 2 F. . W. + F.. . W`, whose wrenches need not be each other's rates, and
-    /// of loads on frames and coordinates; it is what each variable's third number in `gradient` gets.
+    /// Adds the functional `sum F . W.. + 2 F. . W. + F.. . W`, whose wrenches need not be rates of each other, with
+    /// loads on frames and coordinates, to the third number of each variable in `gradient`.
     pub fn add_turning_work(
         &mut self,
         topology: &Topology,
@@ -248,8 +248,8 @@ impl Adjoint {
         self.fields[v].law_rate(driver, order)
     }
 
-    /// Wrenches on the markers that variables move, seen from their bodies: there the markers' twists stand still, and
-    /// time derivatives are those of the components (`docs/theory.md` (20)).
+    /// Computes the wrenches on the markers that variables move, in body components: the twists of the markers are
+    /// constant there, and time derivatives are those of the components (`docs/theory.md` (20)).
     fn see(&mut self, state: &State<f64>, support: &Support, orders: usize) {
         let [v, a, _] = &state.motion.twists;
         for place in &support.places {
@@ -278,7 +278,7 @@ impl Adjoint {
         }
     }
 
-    /// `docs/theory.md` (19).
+    /// Adds the work on design twists: `docs/theory.md` (19).
     fn work(
         &self,
         topology: &Topology,
@@ -288,7 +288,7 @@ impl Adjoint {
         gradient: &mut [[f64; 3]],
     ) {
         let Transmission { rows, links, pulls, .. } = &self.transmission;
-        // T_k . (z_p - z_c) + T_c . (z_j - z_i): of order n t(n) . e, since e is
+        // T_k . (z_p - z_c) + T_c . (z_j - z_i): at order n it is t(n) . e, since e is constant
         for &(v, place, e) in &support.moves {
             for n in 0..orders {
                 gradient[v][n] += self.seen[place][n].on(e);
@@ -322,17 +322,17 @@ impl Adjoint {
     }
 }
 
-/// Watches the rows that were left out, as
-/// [`DirectDifferentiation::worst_defect`](super::DirectDifferentiation::worst_defect) does: each side of each row is a
-/// load of its own.
+/// Monitors the redundant rows, like
+/// [`DirectDifferentiation::worst_defect`](super::DirectDifferentiation::worst_defect): each side of each row is a load
+/// of its own.
 pub(crate) struct DefectWatch {
-    /// Per body that such a row is on: what loads on it are felt by.
+    /// Per body with such a row: support of loads on it.
     supports: Vec<Option<Support>>,
     /// Per variable: the work on one side, the sum of all terms, and the largest of them.
     side: Vec<[f64; 3]>,
     sum: Vec<f64>,
     most: Vec<f64>,
-    /// Per variable: the row that fails most.
+    /// Per variable: the row with the largest defect.
     worst: Vec<Option<Defect>>,
 }
 
@@ -348,7 +348,7 @@ impl DefectWatch {
         }
     }
 
-    /// Notes which joints resist which variables where a stepper is, at time t.
+    /// Records the joints that resist variables, at the position of a stepper and time t.
     pub fn look(
         &mut self,
         adjoint: &mut Adjoint,
@@ -368,7 +368,7 @@ impl DefectWatch {
         }
     }
 
-    /// Enters row r where it fails most.
+    /// Updates the largest defect with row r.
     fn row(&mut self, adjoint: &mut Adjoint, topology: &Topology, state: &mut State<f64>, r: RowId) {
         let (zero, none) = (0.0, Wrench::zero());
         self.sum.fill(zero);
@@ -396,14 +396,14 @@ impl DefectWatch {
                     let z = state.l[0][row.0].on(state.pose[m.body].carry(m.e));
                     enter(sum, most, if m.end == 1 { z * factor } else { z * -factor });
                 }
-                // - (L' + df/dp): the sum of all is what (11) leaves of the row
+                // - (L' + df/dp): the sum of all is the defect of the row in (11)
                 let driven = closure.driver.map_or(zero, |d| field.law_rate(d, 0));
                 enter(sum, most, -(field.kept_rate(row) + driven) * factor);
             }
         }
         for (v, field) in adjoint.fields.iter().enumerate() {
             let sum = self.sum[v].abs();
-            // (30), as for a variable that is solved for by itself
+            // (30), as in direct differentiation
             let limit = (self.most[v] * LOCKED).larger(field.scale * DEFECT_FLOOR);
             Defect::enter(&mut self.worst[v], r, sum, limit);
         }

@@ -1,4 +1,4 @@
-//! Kinematic admissibility of a design variable: can the joints stay closed, and how.
+//! Kinematic admissibility of design variables.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use crate::design::DesignVelocity;
 use crate::model::{CouplerTerm, JointId, Model};
 use crate::space::Twist;
 
-/// True if and how a mechanism follows a design variable.
+/// Admissibility of a design variable.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Admissibility {
     /// Every joint stays closed with all bodies where they are: no re-assembly (paper, section 4).
@@ -29,18 +29,18 @@ pub enum Admissibility {
     Unknown,
 }
 
-/// By how much a joint opens per unit of a design variable.
+/// Opening of a joint per unit of a design variable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointDefect {
     /// The joint.
     pub joint: JointId,
-    /// The elementary constraint that fails most.
+    /// Elementary constraint with the largest defect.
     pub row: Row,
     /// Defect per unit of the variable: m or a cosine, per m, rad or unit of tau.
     pub value: f64,
 }
 
-/// A defect below this part of the field's speed is round-off of typed velocities.
+/// Defects below this fraction of the field's speed are round-off of velocities in the file.
 const OPEN: f64 = 1e-7;
 
 /// Effect of a variable on one elementary constraint of a joint at the design configuration, with all bodies fixed.
@@ -50,11 +50,11 @@ pub struct Condition {
     pub joint: JointId,
     /// The constraint.
     pub row: Row,
-    /// By how much it opens per unit of the variable, with its sign: m or a cosine, per m, rad or unit of tau.
+    /// Signed opening per unit of the variable: m or a cosine, per m, rad or unit of tau.
     pub value: f64,
 }
 
-/// The conditions of all joints that a variable touches: `l . (z_j - z_i) - L' = 0` for each of their elementary
+/// Conditions of all joints that a variable changes: `l . (z_j - z_i) - L' = 0` for each of their elementary
 /// constraints (`docs/theory.md` (8), paper section 4: Dot-1, Dot-2, spherical, distance).
 pub fn conditions_at_design(model: &Model, field: &DesignVelocity) -> Vec<Condition> {
     let twists = |k: usize| {
@@ -79,8 +79,8 @@ pub fn conditions_at_design(model: &Model, field: &DesignVelocity) -> Vec<Condit
         // A driven coordinate is a constraint too: it must stay at zero in the design configuration.
         let driven = driven.get(&joint).into_iter().flatten().copied();
         let rows = model.joints[k].kind.rows.iter().copied().chain(driven);
-        // l . (z_j - z_i) - L', which is (11) with W = 0: the paper's (4.3), (4.6), (4.9) and (4.11) differentiated by tau at tau = 0
-        // (`docs/theory.md` (32)).
+        // l . (z_j - z_i) - L', which is (11) with W = 0: the paper's (4.3), (4.6), (4.9) and (4.11) differentiated by
+        // tau at tau = 0 (`docs/theory.md` (32)).
         let value = |row: Row| row.wrench(&ends).on(z[1] - z[0]) - kept.by(row);
         conditions.extend(rows.map(|row| Condition { joint, row, value: value(row) }));
     }

@@ -1,12 +1,12 @@
 //! The three levels of one design variable at one step.
 //!
-//! What is here under which name (`docs/theory.md`, sections 5 and 6; the paper's sections 3 and 5):
+//! Names here and in theory (`docs/theory.md`, sections 5 and 6; the paper's sections 3 and 5):
 //!
 //! | here | theory | paper | what, per unit of the variable b |
 //! |---|---|---|---|
 //! | `MovingMarker::e` | e | V and R U (3.2, 3.3, 3.10), in `dD/dtau` (5.5) | body-fixed twist of a marker, rad and m |
 //! | `z` | z, z., z.. | | the same in the world, with its rates (8) |
-//! | `flow.twists[n]` | W, W., W.. | Y (5.3c): `dr/dtau = W_v + W_w x r`, `dpi/dtau = W_w` | design twist of each body |
+//! | `flow.twists[n]` | W, W., W.. | Y (5.3c): `dr/dtau = W_v + W_w x r`, `dpi/dtau = W_w` | design twist of a body |
 //! | `flow.speeds[n]` | S, S., S.. | | of each coordinate of the tree |
 //! | `flow.apart[n]` | `D_j - D_i`, D = W + z | | between the markers of each closure |
 //! | `state.l[n]` | l, l., l.. | a row of `phi_z` (5.3a) and of `phi_D` (5.3b) | wrench of each row |
@@ -51,7 +51,7 @@ pub(crate) struct PlanVelocity<T> {
     /// Contribution to the driver's value, speed and acceleration at the time that was set last. At orders n = 0, 1, 2:
     /// `sum over p of df(n)/dp dp/db`.
     law_rates: Vec<(DriverId, [T; 3])>,
-    /// Largest speed in the field: what round-off of a defect is compared with.
+    /// Largest speed in the field, the reference for round-off of a defect.
     pub(super) scale: T,
     /// Reach of the change.
     pub reach: Influence,
@@ -62,7 +62,7 @@ pub(crate) struct PlanVelocity<T> {
 pub(crate) struct Influence {
     /// Links placed by drivers alone, whose children move.
     pub driven_links: Vec<LinkId>,
-    /// Blocks with anything to make up for.
+    /// Blocks with a nonzero right-hand side.
     pub blocks: Vec<BlockId>,
     /// Closures of these blocks, and those between driven bodies.
     pub closures: Vec<ClosureId>,
@@ -74,8 +74,8 @@ impl Influence {
     /// Reach of changes at these links and closures, and of these drivers.
     fn new(topology: &Topology, links: &[LinkId], closures: &[ClosureId], drivers: &[DriverId]) -> Self {
         let bodies = 1 + topology.links.iter().map(|l| l.child.0).max().unwrap_or(0);
-        // A change spreads the way that motion does: a body moves if its parent does, if its link's marker or driver does, or if its
-        // block has a closure that is changed; what comes later in the order of solution never acts back.
+        // A change propagates like motion: a body moves if its parent, its link's marker or its driver does, or if its
+        // block has a changed closure. Later blocks in the order of solution have no effect on earlier ones.
         let (mut moves, mut reach) = (vec![false; bodies], Self::default());
         let mut driven = vec![false; topology.links.len()];
         for (c, d) in topology.driven_coordinates() {
@@ -97,7 +97,7 @@ impl Influence {
                 || closure.driver.is_some_and(|d| drivers.contains(&d))
         };
         for (b, block) in BlockId::each(&topology.blocks) {
-            // Any right-hand side of the block: then, as far as the lists tell, all of its S may differ from 0.
+            // With any nonzero right-hand side of the block, all of its S may differ from 0.
             let felt = block.closures.iter().any(|&c| changed(c, &moves))
                 || block.link_ids().any(|k| moves[topology[k].parent.0] || starts(k));
             if felt {
@@ -135,7 +135,7 @@ impl<T: Real, At: Copy> MovingMarker<T, At> {
     fn carried(&self, state: &State<T>) -> [Twist<T>; 3] {
         let [v, a, _] = &state.motion.twists;
         let (v, a) = (v[self.body], a[self.body]);
-        // z = Ad(X) e,    z. = ad(V) z,    z.. = ad(A) z + ad(V) z.              (8), with e standing in the body
+        // z = Ad(X) e,    z. = ad(V) z,    z.. = ad(A) z + ad(V) z.              (8), with e fixed in the body
         let z0 = state.pose[self.body].carry(self.e);
         let z1 = carried([z0], [v]);
         [z0, z1, carried([z0, z1], [v, a])]
@@ -163,21 +163,20 @@ impl<T: Real> PlanVelocity<T> {
             }
             let Some(rates) = field.kept_rate(closure.joint) else { continue };
             for (r, row) in closure.numbered_rows() {
-                // L' of this row: `u . (V_j - V_i)` of a rod, the change of what else a row keeps; 0 of a row that
-                // keeps nothing.
+                // L' of this row: `u . (V_j - V_i)` of a rod, or the rate of another constant; 0 for a row without one.
                 let rate = rates.by(row);
                 if rate.abs().decisive() > 0.0 {
                     kept.push((r, rate));
                 }
             }
         }
-        // Per unit of a variable: how fast markers move and turn, kept values change, laws change.
-        // Their largest is what a defect of this variable is measured by, whatever its unit.
+        // Rates of markers, joint constants and laws per unit of the variable. Defects of this variable are compared
+        // with their maximum, whatever its unit.
         let markers = field.markers.iter().map(|m| m.twist.w.norm().larger(m.twist.v.norm()));
         let kept_rates = field.kept.iter().map(|(_, k)| k.size());
         let laws = field.laws.iter().map(|(.., rate)| rate.abs());
         let shifts = field.shifts.iter().map(|(_, rate)| rate.abs());
-        // Of a driver it is one number, which is compared with none while pairs are recorded.
+        // For a driver it is a single number, so that no comparison is recorded.
         let scale =
             markers.chain(kept_rates).chain(laws).chain(shifts).reduce(T::larger).unwrap_or(T::zero());
         let mut drivers: Vec<DriverId> = field.laws.iter().map(|(d, ..)| *d).collect();
@@ -199,7 +198,7 @@ impl<T: Real> PlanVelocity<T> {
         self.laws.is_empty()
     }
 
-    /// The drivers whose laws change.
+    /// Drivers whose laws change.
     pub fn drivers(&self) -> impl Iterator<Item = DriverId> {
         self.law_rates.iter().map(|(d, _)| *d)
     }
@@ -210,7 +209,7 @@ impl<T: Real> PlanVelocity<T> {
         of_driver.map(|(_, parameter, rate)| rate.value() * law.derivative(*parameter, t).value()).sum()
     }
 
-    /// Sets what changing laws do at time t; `law` gives a driver's law.
+    /// Sets the contributions of laws at time t; `law` returns the law of a driver.
     pub fn set_time<'l>(&mut self, law: impl Fn(DriverId) -> &'l Law, t: f64) {
         for (driver, rates) in &mut self.law_rates {
             let mut sums = [0.0; 3];
@@ -229,7 +228,7 @@ impl<T: Real> PlanVelocity<T> {
         }
     }
 
-    /// The same where no law changes: drivers shift at most.
+    /// Sets the contributions if no law changes: shifts of drivers alone.
     pub fn set_shifts(&mut self) {
         for (driver, rates) in &mut self.law_rates {
             let of_driver = self.shifts.iter().filter(|(d, _)| d == driver);
@@ -285,7 +284,7 @@ impl<T: Real> PlanVelocity<T> {
                 rates = state.walk(c, k, &rates);
             }
             for (r, row) in closure.numbered_rows() {
-                // A marker that moves in its body turns a wrench as one that its body carries.
+                // A marker that moves in its body turns a wrench like one that is fixed in it.
                 [l[r.0], _] = row.wrench_rates(&state.ends[c.0], &rates);
             }
         }
@@ -299,8 +298,8 @@ impl<T: Real> PlanVelocity<T> {
         starts.chain(ends).fold(T::zero(), |sum, (load, body, e)| sum + load.on(state.pose[body].carry(e)))
     }
 
-    /// Work of these loads, and of loads on bodies `[n][b]` that depend on W, W' and W'', on the motion that `flow`
-    /// gives for this change.
+    /// Work of these loads, and of loads on bodies `[n][b]` that depend on W, W' and W'', on the motion in `flow` for
+    /// this change.
     pub fn work(
         &self,
         (topology, state): (&Topology, &State<T>),
@@ -325,7 +324,7 @@ impl<T: Real> PlanVelocity<T> {
         sum
     }
 
-    /// The rows that the change may make fail, since the motion is not solved with them.
+    /// Redundant rows that the change may open.
     #[inline(always)]
     fn left_out(&self, topology: &Topology) -> impl Iterator<Item = RowId> {
         let rows = self.reach.closures.iter().flat_map(|&c| topology[c].row_ids());
@@ -340,18 +339,18 @@ impl<T: Real> PlanVelocity<T> {
     }
 }
 
-/// Derivatives of the motion by the design variables, one variable at a time; nothing is allocated per step.
+/// Solver of derivatives of the motion, one design variable at a time; a step allocates no memory.
 pub(crate) struct DirectDifferentiation<T> {
     /// Unknowns of orders 0, 1, 2: design twists W of the bodies and speeds S of the coordinates, and their time
     /// derivatives.
     pub flow: Flow<T>,
-    /// Per marker that the field moves at a closure, per order: how.
+    /// Design twists and their rates, per marker that the field moves at a closure.
     z: Vec<[Twist<T>; 3]>,
-    /// The bodies that the variable before moved.
+    /// Bodies that the last variable moved.
     moved: Vec<usize>,
 }
 
-/// By how much a left-out row fails per unit of a variable, against what could be round-off.
+/// Defect of a redundant row per unit of a variable, above round-off.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Defect {
     /// The row.
@@ -361,18 +360,18 @@ pub(crate) struct Defect {
 }
 
 impl Defect {
-    /// Enters that of a row where it is worse than those of others, and than what may be round-off.
+    /// Updates the largest defect with that of a row, if it is above round-off.
     #[inline(always)]
     pub(super) fn enter<T: Real>(worst: &mut Option<Self>, row: RowId, sum: T, limit: T) {
         let (value, limit) = (sum.value(), limit.value());
-        // Written so that NaN is a defect.
+        // NaN is a defect.
         if !(value <= limit) && worst.is_none_or(|w| value > w.value) {
             *worst = Some(Self { row, value });
         }
     }
 }
 
-/// A defect below this part of the field's own speed is zero, even if nothing else is in the row.
+/// Defects below this fraction of the field's speed are zero, even if the row has no other terms.
 pub(super) const DEFECT_FLOOR: f64 = 1e-9;
 
 impl<T: Real> DirectDifferentiation<T> {
@@ -384,7 +383,7 @@ impl<T: Real> DirectDifferentiation<T> {
         }
     }
 
-    /// W, W. and W.. of all bodies for one variable, where `state` is with all of its rates.
+    /// Solves W, W. and W.. of all bodies for one variable; `state` has all of its rates.
     pub fn solve(&mut self, topology: &Topology, state: &mut State<T>, field: &PlanVelocity<T>) {
         self.set_field(topology, state, field);
         self.solve_order::<0>(topology, state, field);
@@ -392,13 +391,13 @@ impl<T: Real> DirectDifferentiation<T> {
         self.solve_order::<2>(topology, state, field);
     }
 
-    /// W alone, where `state` need not know its rates.
+    /// Solves W alone; `state` needs no rates.
     pub fn solve_position(&mut self, topology: &Topology, state: &mut State<T>, field: &PlanVelocity<T>) {
         self.set_field(topology, state, field);
         self.solve_order::<0>(topology, state, field);
     }
 
-    /// The design twists of every marker of the field; all that it does not reach is.
+    /// Sets the design twists of every marker of the field, and zero for bodies out of its reach.
     #[inline(always)]
     fn set_field(&mut self, topology: &Topology, state: &State<T>, field: &PlanVelocity<T>) {
         let (none, Self { flow, z, moved }) = (Twist::zero(), self);
@@ -425,7 +424,8 @@ impl<T: Real> DirectDifferentiation<T> {
         z.extend(field.closures.iter().map(|m| m.carried(state)));
     }
 
-    /// (24) of `docs/theory.md` with U = W, u = S, z the design twists of the markers, and f = L': (11), (12) or (13).
+    /// Solves (24) of `docs/theory.md` with U = W, u = S, z the design twists of the markers, and f = L': (11), (12) or
+    /// (13).
     #[inline(always)]
     fn solve_order<const N: usize>(
         &mut self,
@@ -434,8 +434,9 @@ impl<T: Real> DirectDifferentiation<T> {
         field: &PlanVelocity<T>,
     ) {
         let (reach, Self { flow, z, .. }) = (&field.reach, self);
-        // demand = L' + df(n)/dp - l . (z_j(n) - z_i(n)); L' is at rest, so it is requested at order 0 alone. What (12) and (13) have
-        // besides, -sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)), is the same for all that is solved here: see `Flow::solve`.
+        // demand = L' + df(n)/dp - l . (z_j(n) - z_i(n)); L' is constant over time, so it is part of order 0 alone.
+        // The other terms of (12) and (13), -sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)), are added by
+        // `Flow::solve`.
         reach.closures.iter().for_each(|&c| flow.ask(topology, c, T::zero()));
         for (m, z) in field.closures.iter().zip(&*z) {
             flow.move_end(topology, (m.at, m.end), z[N], &state.l[0]);
@@ -460,7 +461,7 @@ impl<T: Real> DirectDifferentiation<T> {
         }
     }
 
-    /// The left-out row that fails most under the change that was solved last, if any does by more than round-off.
+    /// Redundant row with the largest defect under the change that was solved last, if any is above round-off.
     pub fn worst_defect(
         &self,
         topology: &Topology,
@@ -474,8 +475,7 @@ impl<T: Real> DirectDifferentiation<T> {
         worst
     }
 
-    /// The left-out rows under the change that was solved last: each with the size of its defect and what of it may be
-    /// round-off.
+    /// Redundant rows under the change that was solved last: each with the size of its defect and its round-off limit.
     pub fn judged_defects(
         &self,
         topology: &Topology,
@@ -484,14 +484,14 @@ impl<T: Real> DirectDifferentiation<T> {
     ) -> impl Iterator<Item = (RowId, T, T)> {
         field.left_out(topology).map(|r| {
             let (sum, most) = self.row_defect(topology, state, field, r);
-            // What typed coordinates may be off by in the motion, they may be off by in the design's terms.
+            // The tolerance for coordinates in the file is the same as in the motion.
             // abs(sum) <= max(1e-5 of the largest term, 1e-9 of the field's largest speed)                     (30)
             let limit = most * T::constant(LOCKED);
             (r, sum.abs(), limit.larger(field.scale * T::constant(DEFECT_FLOOR)))
         })
     }
 
-    /// Defects of the left-out rows under the change that was solved last, with their signs.
+    /// Signed defects of the redundant rows under the change that was solved last.
     pub fn defects(
         &self,
         topology: &Topology,
@@ -501,12 +501,11 @@ impl<T: Real> DirectDifferentiation<T> {
         field.left_out(topology).map(|r| (r, self.row_defect(topology, state, field, r).0))
     }
 
-    /// By how much row r fails, and the largest of the terms that must cancel.
+    /// Defect of row r, and the largest of its terms.
     #[inline(always)]
     fn row_defect(&self, topology: &Topology, state: &State<T>, field: &PlanVelocity<T>, r: RowId) -> (T, T) {
         let zero = T::zero();
-        // l . (W_j - W_i) + l . (z_j - z_i) - (L' + df/dp), summed over a coupler's terms: (11) of a row that it was
-        // not solved with
+        // l . (W_j - W_i) + l . (z_j - z_i) - (L' + df/dp), summed over a coupler's terms: (11) of a redundant row
         let (mut sum, mut most) = (zero, zero);
         for RowTerm { row, factor } in topology.parts_of_row(r) {
             let closure = topology.closure_of(row);

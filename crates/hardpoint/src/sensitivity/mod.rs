@@ -1,4 +1,4 @@
-//! Exact design sensitivities by direct differentiation, from the factors that the motion leaves.
+//! Exact design sensitivities by direct differentiation, with the factors of the motion.
 //!
 //! Every row must stay satisfied along the motion of the changed design. Differentiated by the design
 //! variable b and then in time, that gives three linear systems with the Jacobian of the position
@@ -95,7 +95,7 @@ pub struct Sensitivities {
     pub variables: usize,
     /// Number of bodies, ground included.
     pub bodies: usize,
-    /// Per variable: whether and how the mechanism follows the change.
+    /// Admissibility per variable.
     pub admissibility: Vec<Admissibility>,
     /// Derivatives of every body by every variable that moves it.
     pub(crate) derivatives: Blocks,
@@ -104,8 +104,7 @@ pub struct Sensitivities {
 }
 
 impl Sensitivities {
-    /// Sensitivities of all bodies at output time k by variable b; `None` where the mechanism cannot
-    /// follow that variable, for then there is no such number.
+    /// Sensitivities of all bodies at output time k by variable b; `None` if the variable is not admissible.
     pub fn at(&self, k: usize, b: usize) -> Option<Derivatives<'_>> {
         if matches!(self.admissibility[b], Admissibility::CannotFollow { .. }) {
             return None;
@@ -119,8 +118,8 @@ impl Sensitivities {
         self.places[variable.0 * self.bodies + body.0].is_some()
     }
 
-    /// Copies those of a body by a variable that moves it, at the eight output times that k is one of, in the order of
-    /// the fields.
+    /// Copies the sensitivities of a body by a variable that moves it, for the block of eight output times that
+    /// contains k, in the order of the fields.
     #[inline(always)]
     pub(crate) fn gather(&self, k: usize, variable: usize, body: usize, to: &mut [Lanes]) {
         let place = self.places[variable * self.bodies + body].expect("the variable moves the body");
@@ -130,14 +129,14 @@ impl Sensitivities {
     /// Writes the sensitivity of a body by a variable at output time k.
     ///
     /// # Panics
-    /// Where the variable does not move the body.
+    /// Panics if the variable does not move the body.
     #[inline(always)]
     pub fn set(&mut self, k: usize, variable: VariableId, body: BodyId, derivatives: &BodySensitivity) {
         let place = self.places[variable.0 * self.bodies + body.0];
         self.derivatives.set(k, place.expect("the variable moves the body"), derivatives.numbers());
     }
 
-    /// Takes over output time j of another one as its own output time k.
+    /// Copies output time j of another one to output time k.
     pub(crate) fn copy(&mut self, k: usize, from: &Self, j: usize) {
         if self.bodies == 0 {
             self.bodies = from.bodies;
@@ -176,10 +175,10 @@ pub struct Derivatives<'s> {
 }
 
 impl<'s> Derivatives<'s> {
-    /// That of body i; zero if the variable does not move it.
+    /// Sensitivity of body i; zero if the variable does not move it.
     ///
     /// # Panics
-    /// Where there is no such body.
+    /// Panics if there is no such body.
     #[inline]
     pub fn body(self, i: usize) -> BodySensitivity {
         let Some(first) = self.places[i] else { return BodySensitivity::ZERO };

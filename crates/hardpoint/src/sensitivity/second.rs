@@ -1,10 +1,9 @@
 //! Second design derivatives of positions: one more solution with the factors at hand for every pair of directions.
 //!
-//! The first-order condition of every row, `l . D_u = L_u`, holds in the design that a second direction w leads to as
-//! well; differentiated along w it is the equation of order 1, w in the place of the time (`docs/theory.md` (15),
-//! (24)).
+//! The first-order condition of every row, `l . D_u = L_u`, also holds in designs along a second direction w.
+//! Differentiated along w it is the equation of order 1, with w in place of time (`docs/theory.md` (15), (24)).
 //!
-//! | here | theory | what, per unit of a direction (or of both) |
+//! | here | theory | meaning, per unit of a direction (or of both) |
 //! |---|---|---|
 //! | `FirstOrder::w()` | W_u | design twists of the bodies along one direction (11) |
 //! | `FirstOrder::direct.flow.speeds[0]` | S_u | of the coordinates |
@@ -28,15 +27,14 @@ use crate::topology::{ClosureId, LinkId, RowId, SetBy, Topology};
 
 use super::direct::{DirectDifferentiation, MovingMarker, PlanVelocity};
 
-/// A way to go.
+/// Direction of differentiation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PairDirection {
-    /// The design changes: how fast each variable goes.
+    /// The design changes, with these rates of the variables.
     Design(Vec<f64>),
-    /// The design stays, and one driver moves by one unit per unit while the others stand.
+    /// One driver moves by one unit per unit; the design and the other drivers are fixed.
     Driver(DriverId),
-    /// Marker i of a joint moves by this twist, along the joint's own axes, while the joint keeps holding its bodies to
-    /// it.
+    /// Marker i of a joint moves by this twist, along the joint's own axes, while the joint stays closed.
     Opening(JointId, Twist),
 }
 
@@ -73,7 +71,7 @@ pub struct BodyCurvature {
 struct FirstOrder<T> {
     field: PlanVelocity<T>,
     /// U = W_u, u = S_u, z = z_u, f = L_u.
-    /// Order 0 is the direction; order 1 is how a pair changes that.
+    /// Order 0 is the direction; order 1 is its derivative along the second direction of a pair.
     direct: DirectDifferentiation<T>,
     /// Per link, the design twist of its parent's marker; per closure, those of markers i and j.
     links: Vec<Twist<T>>,
@@ -84,7 +82,7 @@ impl<T: Real> FirstOrder<T> {
     fn new(model: &Model, topology: &Topology, field: PlanVelocity<T>) -> Self {
         let mut direct = DirectDifferentiation::new(model, topology);
         // Along the design even the axes of joints on ground move: x^w = ad(z_w) x.
-        direct.flow.ground_stands = false;
+        direct.flow.ground_is_fixed = false;
         Self {
             field,
             direct,
@@ -123,7 +121,7 @@ impl<T: Real> FirstOrder<T> {
     }
 }
 
-/// Two directions, and how the design changes along the first while it goes along the second.
+/// Two directions, with the derivative along the second of the design velocity along the first.
 #[derive(Clone, Debug)]
 struct Pair<T> {
     of: [usize; 2],
@@ -133,7 +131,8 @@ struct Pair<T> {
     closures: Vec<[Twist<T>; 2]>,
     /// Derivatives of these markers' design twists of the first direction along the second, links first.
     z: Vec<Twist<T>>,
-    /// By driver whose law changes along the first direction: its laws a little along the second, and back.
+    /// Per driver whose law changes along the first direction: its laws at small steps along the second, forward and
+    /// back.
     laws: Vec<(DriverId, [Law; 2])>,
     /// Contribution to the driver's value, at the times set last.
     law_rates: Vec<(DriverId, f64)>,
@@ -147,8 +146,8 @@ fn along_direction<T: Real>(values: &[T], direction: &PairDirection) -> Vec<Dual
     values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d: T::constant(d) }).collect()
 }
 
-/// Laws know their derivatives by a parameter exactly; second derivatives are differences of these over this part of a
-/// parameter's unit, whose error is its square.
+/// Step of the difference quotients for second derivatives of laws by parameters, in the parameter's unit; first
+/// derivatives are exact. The error is proportional to its square.
 const LAW_STEP: f64 = 1e-4;
 
 /// Second derivatives by pairs of directions.
@@ -161,7 +160,7 @@ pub(crate) struct Seconds<T = f64> {
 }
 
 impl Seconds {
-    /// For these pairs of directions at the design with these values.
+    /// Second derivatives for these pairs of directions, at the design with these values.
     pub fn new(
         design_map: &DesignMap<'_>,
         topology: &Topology,
@@ -186,7 +185,7 @@ impl Seconds {
         Self::of_fields(design_map.model(), topology, &fields, pairs)
     }
 
-    /// Solves all pairs where a stepper is, at time t.
+    /// Solves all pairs at the position of a stepper and time t.
     pub fn solve(&mut self, stepper: &mut Stepper<'_>, t: f64) {
         let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
         self.firsts.iter_mut().for_each(|first| first.field.set_time(|d| parts.law_of(d.0), t));
@@ -194,8 +193,8 @@ impl Seconds {
         self.solve_at(topology, state);
     }
 
-    /// Defects of the redundant rows under a direction alone, where [`solve`](Self::solve) was called last; none where
-    /// the mechanism follows it.
+    /// Defects of the redundant rows along a single direction, at the position of the last [`solve`](Self::solve);
+    /// empty if the mechanism follows it.
     pub fn resistance(&self, stepper: &Stepper<'_>, direction: usize) -> Vec<(RowId, f64)> {
         let (topology, state) = (&stepper.topology, &stepper.state);
         let FirstOrder { field, direct, .. } = &self.firsts[direction];
@@ -216,7 +215,8 @@ impl Seconds {
 }
 
 impl Seconds<Number> {
-    /// For these pairs of directions while a step is recorded; `None` where a law changes, which no program knows.
+    /// Second derivatives for these pairs of directions, for recording; `None` if a law changes, because programs do
+    /// not support that.
     pub fn recorded(
         design_map: &DesignMap<'_>,
         topology: &Topology,
@@ -254,10 +254,10 @@ impl<T: Real> Seconds<T> {
         }
     }
 
-    /// Solves all pairs at a state, where the times of all laws are set.
+    /// Solves all pairs at a state; the contributions of laws must be set.
     pub fn solve_at(&mut self, topology: &Topology, state: &mut State<T>) {
         for first in &mut self.firsts {
-            // Every direction by itself (11); then every pair with what its two directions left (15).
+            // Every direction by itself (11); then every pair with the results of its directions (15).
             first.solve(topology, state);
         }
         // Derivatives along a direction, in the place of those along the time.
@@ -283,14 +283,14 @@ impl<T: Real> Seconds<T> {
         with_twists(state.pose[body], u, w, pair.w[body])
     }
 
-    /// The same for one direction alone: `d.v` along it, and nothing along a second.
+    /// Pose of a body with its derivative along one direction in `d.v`.
     pub fn pose_along(&self, state: &State<T>, direction: usize, body: usize) -> Pose<Dual<Dual<T>>> {
         let u = self.firsts[direction].w()[body];
         with_twists(state.pose[body], u, Twist::zero(), Twist::zero())
     }
 }
 
-/// The body-fixed twist of a marker that moves, and the derivative of that.
+/// Body-fixed twist of a moving marker, and its derivative.
 fn parts<T: Real, At>(m: &MovingMarker<Dual<T>, At>) -> [Twist<T>; 2] {
     let part = |part: fn(Dual<T>) -> T| Twist { w: m.e.w.map(part), v: m.e.v.map(part) };
     [part(|x| x.v), part(|x| x.d)]
@@ -325,8 +325,8 @@ fn number<T: Real>([v, u, w, uw]: [Vec3<T>; 4]) -> Vec3<Dual<Dual<T>>> {
 }
 
 impl<T: Real> Pair<T> {
-    /// For these two directions, with the field of the first along the second; `laws` are those of all drivers, a
-    /// little along the second and back, where any may change.
+    /// Pair of two directions, with the field of the first along the second. `laws` are those of all drivers at small
+    /// steps along the second, forward and back, if any may change.
     fn new(
         model: &Model,
         topology: &Topology,
@@ -350,7 +350,7 @@ impl<T: Real> Pair<T> {
         }
     }
 
-    /// Differences of the laws' exact derivatives.
+    /// Computes differences of the laws' exact derivatives.
     fn set_time(&mut self, t: f64) {
         let Self { field, laws, law_rates, .. } = self;
         for ((driver, [ahead, behind]), (_, out)) in laws.iter().zip(law_rates) {
@@ -365,8 +365,8 @@ impl<T: Real> Pair<T> {
         of_driver.map_or(T::zero(), |(_, rate)| T::constant(*rate))
     }
 
-    /// (24) of `docs/theory.md` with n = 1, but differentiated along w: what u does is known, and changes by `W_uw` and
-    /// `S_uw` (15).
+    /// Solves (24) of `docs/theory.md` with n = 1, but differentiated along w: the results along u are known; the
+    /// unknowns are `W_uw` and `S_uw` (15).
     fn solve(&mut self, topology: &Topology, state: &mut State<T>, firsts: &mut [FirstOrder<T>]) {
         let ([u, w], reach) = (self.of, &self.field.reach);
         let first = &firsts[w];

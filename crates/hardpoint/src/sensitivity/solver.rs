@@ -17,11 +17,11 @@ use super::{Admissibility, BodySensitivity, JointDefect, Sensitivities};
 
 /// Collects the sensitivities of a run.
 pub(crate) struct SensitivitySolver {
-    /// Per variable, how it changes the design.
+    /// Design velocity of each variable.
     fields: Vec<PlanVelocity<f64>>,
     direct: DirectDifferentiation<f64>,
     bodies: usize,
-    /// Per body: whether its sensitivities are wanted.
+    /// Per body: true if its sensitivities are requested.
     wanted: Vec<bool>,
     resisting: Vec<Resistance>,
 }
@@ -40,7 +40,7 @@ pub(crate) struct Differentiated<'s, T = f64> {
 pub(crate) type Resistance = (Vec<JointDefect>, f64);
 
 impl SensitivitySolver {
-    /// Prepares the sensitivities of the wanted bodies by the variables with these fields.
+    /// Prepares the sensitivities of the requested bodies by the variables with these fields.
     pub fn new(model: &Model, topology: &Topology, fields: &[DesignVelocity], wanted: Vec<bool>) -> Self {
         Self {
             fields: fields.iter().map(|f| PlanVelocity::new(topology, f)).collect(),
@@ -62,8 +62,8 @@ impl SensitivitySolver {
         fields.flat_map(|(v, field)| field.reach.bodies.iter().map(move |b| (VariableId(v), BodyId(*b))))
     }
 
-    /// The output time t, where a stepper is with velocity and acceleration: `found` gets the sensitivities of wanted
-    /// bodies, and `each` all that is known of a variable before the next one.
+    /// Solves at the position of a stepper and output time t, with velocity and acceleration. Calls `found` with the
+    /// sensitivities of requested bodies, and `each` with the solution of each variable.
     pub fn step(
         &mut self,
         one: &mut Stepper<'_>,
@@ -72,7 +72,7 @@ impl SensitivitySolver {
         mut each: impl FnMut(Differentiated<'_>),
     ) {
         let Self { fields, direct, wanted, resisting, .. } = self;
-        // Where nothing can be solved a variable has no number, which says nothing about what resists it.
+        // At a change point sensitivities are NaN, which does not mean that the variable is not admissible.
         let solved = !one.at_change_point;
         // x., x.., l., l.. of all coordinates and rows once; then three right-hand sides for each variable: (11), (12),
         // (13).
@@ -95,7 +95,7 @@ impl SensitivitySolver {
         }
     }
 
-    /// Notes what resists at these output times, as a program has found them from this lane on.
+    /// Records the joints that resist at these output times, from the results of a program from this lane on.
     pub fn note(&mut self, tape: &Tape, topology: &Topology, times: &[f64], first: usize) {
         note_defects(tape, topology, (times, first), (&mut self.resisting, 0));
     }
@@ -126,11 +126,11 @@ pub(crate) fn admissibility(
     opens.iter().zip(resisting).map(answer).collect()
 }
 
-/// Keeps in mind which joint resists a variable most, and when.
+/// Updates the joints that resist a variable, and the time of the largest defect.
 pub(super) fn note(resisting: &mut Resistance, topology: &Topology, defect: Defect, t: f64) {
     let (joint, row) = (topology.closure_of(defect.row).joint, topology.constraint(defect.row));
     let (joints, time) = resisting;
-    // A periodic motion comes back to its largest defect: the first time counts, not round-off.
+    // A periodic motion returns to its largest defect; the first time is reported, not one that round-off selects.
     if joints.iter().all(|j| defect.value > j.value * (1.0 + 1e-9)) {
         *time = t;
     }
@@ -165,8 +165,8 @@ fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; Bod
     [p.x, p.y, p.z, q.x, q.y, q.z, u.x, u.y, u.z, o.x, o.y, o.z, n.x, n.y, n.z, e.x, e.y, e.z]
 }
 
-/// Records the derivatives of all bodies by all variables with these fields, where the state is, and what `each` makes
-/// of all that is known of a variable before the next one; none where a law changes, which no program knows.
+/// Records the derivatives of all bodies by all variables with these fields, at the position of the state, and the
+/// results of `each` for each variable; returns `None` if a law changes, because programs do not support that.
 pub(crate) fn record_derivatives(
     model: &Model,
     fields: &[DesignVelocity<Number>],
@@ -185,7 +185,7 @@ pub(crate) fn record_derivatives(
         if !field.is_constant() {
             return None;
         }
-        // What is recorded does not know the time: z, L' and shifts, but no df/dp of a law.
+        // A recording does not depend on time: it has z, L' and shifts, but no df/dp of a law.
         field.set_shifts();
         direct.solve(topology, state, &field);
         for (row, defect, limit) in direct.judged_defects(topology, state, &field) {
@@ -211,7 +211,7 @@ pub(crate) fn note_defects(
     (times, first): (&[f64], usize),
     (resisting, apart): (&mut [Resistance], usize),
 ) {
-    // Written so that NaN resists.
+    // NaN resists.
     let fails = |[defect, limit]: &[Lanes; 2], lane: usize| !(defect[lane] <= limit[lane]);
     if tape.defects().all(|(_, _, found)| (0..times.len()).all(|n| !fails(found, first + n))) {
         return;

@@ -1,10 +1,10 @@
-//! Loads on their way to ground: the equation of order n, transposed.
+//! Propagation of loads to ground: the equation of order n, transposed.
 //!
-//! | here | theory | what |
+//! | here | theory | meaning |
 //! |---|---|---|
-//! | `load[n]` | F, F., F.. | on each body; on the way to ground, all that is still to be carried |
-//! | `links[n]` | T_k, T_k., T_k.. | what a link transmits to its parent (18) |
-//! | `closures[n]` | T_c, T_c., T_c.. | what a closure's rows push body j with, and body i back |
+//! | `load[n]` | F, F., F.. | load on each body; during propagation, the accumulated load |
+//! | `links[n]` | T_k, T_k., T_k.. | wrench that a link transmits to its parent (18) |
+//! | `closures[n]` | T_c, T_c., T_c.. | wrench of a closure's rows on body j; the opposite acts on body i |
 //! | `rows[n]` | mu, mu., mu.. | `T_c = - sum mu_r l_r` |
 
 use crate::linalg::Factors;
@@ -14,7 +14,7 @@ use crate::motion::level::BINOMIAL;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, LinkId, RowTerm, Topology};
 
-/// The way of some loads to ground.
+/// Path of some loads to ground.
 #[derive(Clone, Debug)]
 pub(crate) struct Way {
     /// Blocks, from the load to ground.
@@ -24,7 +24,7 @@ pub(crate) struct Way {
 }
 
 impl Way {
-    /// That of loads on any body.
+    /// Path of loads on any body.
     pub fn of_all(topology: &Topology) -> Self {
         Self {
             blocks: topology.block_ids().rev().collect(),
@@ -39,7 +39,7 @@ pub(crate) struct Transposed<'s, T = f64> {
     pub x: [&'s [Twist<T>]; 3],
     /// Per order and row: l.
     pub l: [&'s [Wrench<T>]; 3],
-    /// Per block: its Jacobian's.
+    /// Factors of the Jacobian per block.
     pub factors: &'s mut [Factors<T>],
     /// Room for the right-hand side of a block.
     pub rhs: &'s mut [T],
@@ -53,18 +53,18 @@ impl<'s, T: Real> Transposed<'s, T> {
     }
 }
 
-/// Transmitted wrenches and their first two derivatives; nothing is allocated per step.
+/// Transmitted wrenches and their first two derivatives; a step allocates no memory.
 pub(crate) struct Transmission<T = f64> {
-    /// Per order and body: what still has to be carried.
+    /// Per order and body: the load that is still to be transmitted.
     pub load: [Vec<Wrench<T>>; 3],
     /// Per order and link, or closure: the wrench that it transmits.
     pub links: [Vec<Wrench<T>>; 3],
     pub closures: [Vec<Wrench<T>>; 3],
-    /// Per order and row: how much of its wrench that takes, with the sign that makes it a part of a gradient.
+    /// Per order and row: multiplier mu of its wrench, with the sign of a gradient.
     pub rows: [Vec<T>; 3],
-    /// Per order and coordinate: what pulls at it besides.
+    /// Per order and coordinate: additional generalised force.
     pub pulls: [Vec<T>; 3],
-    /// Per body of a block: the load on it and all that it carries.
+    /// Per body of a block: the load on it and on its children.
     below: Vec<Wrench<T>>,
 }
 
@@ -83,8 +83,8 @@ impl<T: Real> Transmission<T> {
         }
     }
 
-    /// Wrenches of links, closures and rows to order n: the equation of order n, transposed (`docs/theory.md` (18),
-    /// (25)),
+    /// Solves for wrenches of links, closures and rows to order n: the equation of order n, transposed
+    /// (`docs/theory.md` (18), (25)),
     ///
     /// ```text
     /// sum_{m=0..n} C(n,m) T_k(m) . x_a(n-m) = 0                     for every unknown coordinate a of link k,
@@ -97,7 +97,7 @@ impl<T: Real> Transmission<T> {
         let load = &mut load[n];
         for &b in &way.blocks {
             let block = &topology[b];
-            // What is known before: the parts of lower orders, on wrenches that turn.
+            // Known parts: lower orders, on wrenches that turn.
             for &c in &block.closures {
                 let closure = &topology[c];
                 let mut known = none;
@@ -112,11 +112,11 @@ impl<T: Real> Transmission<T> {
                 load[closure.bodies[1].0] += known;
                 load[closure.bodies[0].0] -= known;
             }
-            // First as if the closures took nothing: what then works on the unknowns is theirs to take.
+            // First without closures: the generalised forces on the unknowns are the right-hand side for the closures.
             for link in block.link_ids().map(|k| &topology[k]) {
                 below[link.child.0] = load[link.child.0];
             }
-            // Parents outside of the block get some, too, which nobody reads.
+            // Parents outside of the block also accumulate loads, which are not used.
             for link in block.link_ids().rev().map(|k| &topology[k]) {
                 // below(p) = F_p + sum of below(c) over its children: T_k as far as it is known
                 let carried = below[link.child.0];
@@ -166,7 +166,7 @@ impl<T: Real> Transmission<T> {
 #[inline(always)]
 fn pass_on<T: Real>(topology: &Topology, k: LinkId, load: &mut [Wrench<T>], links: &mut [Wrench<T>]) {
     let link = &topology[k];
-    // T_k = what the child bears with all that came to it; F_p <- F_p + T_k                               (18), first line
+    // T_k = load on the child and its children; F_p <- F_p + T_k                              (18), first line
     let carried = load[link.child.0];
     links[k.0] = carried;
     load[link.parent.0] += carried;

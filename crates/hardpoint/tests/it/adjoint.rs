@@ -153,7 +153,7 @@ fn all_measures_of_a_wheel_have_the_same_gradients_where_variables_move_its_own_
 
 /// Velocities, slopes and formulas have no load: they are taken from a whole run.
 #[test]
-fn gradients_of_what_is_no_matter_of_positions_are_those_of_a_run() {
+fn gradients_of_other_measures_are_those_of_a_run() {
     let mut draft = reference_draft("double_wishbone");
     let point = || PointRef::On { body: "knuckle".into(), at: LocationDraft::At([0.0, 0.6, 0.2].into()) };
     let along: Vec3 = [0.0, 0.0, 1.0].into();
@@ -186,7 +186,7 @@ fn gradients_of_what_is_no_matter_of_positions_are_those_of_a_run() {
 }
 
 #[test]
-fn variables_that_cannot_be_followed_are_found_by_the_adjoint_way_too() {
+fn inadmissible_variables_are_found_by_the_adjoint_method_too() {
     // Three redundant rows watch the planar four-bar: its law may change, one pivot may not tilt.
     let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "t", &times(3.0, 30));
     draft.drivers[0].law = hardpoint::law::Law::parse_with("a*sin(3*t)", &[("a", 0.7)]).unwrap();

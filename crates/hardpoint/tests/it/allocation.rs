@@ -1,4 +1,4 @@
-//! The hot path allocates nothing per step: ten times the steps take exactly as many allocations.
+//! The hot path allocates nothing per step: ten times the steps take exactly the same number of allocations.
 
 use hardpoint::model::Model;
 use hardpoint::motion::Execution;

@@ -84,7 +84,7 @@ fn assembling_an_assembled_mechanism_changes_nothing() {
 }
 
 #[test]
-fn joints_drawn_apart_come_together() {
+fn joints_open_in_the_design_configuration_are_closed() {
     let mut draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "sin(t)", &times(1.0, 5));
     let c = draft.joints.iter_mut().find(|j| j.name == "C").unwrap();
     c.at.push(LocationDraft::At(Vec3::new(0.31, 0.27, 0.0)));
@@ -97,7 +97,7 @@ fn joints_drawn_apart_come_together() {
 }
 
 #[test]
-fn a_rod_that_cannot_reach_is_named_with_the_gap_that_stays() {
+fn a_rod_that_cannot_reach_is_reported_with_its_gap() {
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let draft = with_a_rod_of(0.7);
         let solution = run(&draft, formulation);

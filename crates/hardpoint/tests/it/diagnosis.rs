@@ -14,7 +14,7 @@ fn fault(draft: &Draft, formulation: Formulation) -> TopologyError {
 }
 
 #[test]
-fn a_mechanism_without_its_driver_is_under_driven_and_names_what_moves() {
+fn a_mechanism_without_its_driver_is_under_driven_and_free_joints_are_reported() {
     let mut draft = four_bar(CRANK_ROCKER, "t", &[0.0]);
     draft.drivers.clear();
     for formulation in [Formulation::Relative, Formulation::Absolute] {
@@ -84,7 +84,7 @@ fn redundant_constraints_of_a_planar_mechanism_are_counted_and_named() {
 }
 
 #[test]
-fn a_crank_that_cannot_turn_fully_stops_at_its_limit_and_keeps_what_was_solved() {
+fn a_crank_that_cannot_turn_fully_stops_at_its_limit_and_keeps_its_results() {
     // Non-Grashof: the crank of 0.5 stalls where coupler and rocker (0.4 and 0.3) are stretched out.
     let points = [[0.0, 0.0], [0.3, 0.4], [0.5, 0.3], [0.6, 0.0]];
     let model = Model::from_draft(&four_bar(points, "2*pi*t", &times(1.0, 100))).unwrap();
@@ -161,7 +161,7 @@ fn a_law_that_jumps_between_two_output_times_ends_the_run_there() {
 }
 
 #[test]
-fn an_interrupted_run_keeps_what_it_has() {
+fn an_interrupted_run_keeps_its_results() {
     let model = Model::from_draft(&four_bar(CRANK_ROCKER, "2*pi*t", &times(1.0, 100))).unwrap();
     let solution = Analysis::new(&model).unwrap().solve(Run::new().progress(|p| {
         if p.done == 10 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
@@ -184,7 +184,7 @@ fn a_law_with_a_corner_is_followed_around_it() {
 }
 
 #[test]
-fn a_start_out_of_reach_says_so() {
+fn a_start_out_of_reach_is_reported() {
     let points = [[0.0, 0.0], [0.3, 0.4], [0.5, 0.3], [0.6, 0.0]];
     let model = Model::from_draft(&four_bar(points, "3 + t", &times(1.0, 10))).unwrap();
     let solution = Analysis::new(&model).unwrap().run();
@@ -212,7 +212,7 @@ fn rod_between_balls() -> Draft {
 }
 
 #[test]
-fn a_rod_that_spins_idly_between_its_balls_is_held_and_no_error() {
+fn an_idle_rotation_of_a_rod_is_fixed_and_no_error() {
     let model = Model::from_draft(&rod_between_balls()).unwrap();
     let [idle] = &model.idle[..] else { panic!("{:?}", model.idle) };
     assert_eq!(idle.bodies, [model.body("rod").unwrap()]);
@@ -247,7 +247,7 @@ fn a_rod_that_spins_idly_between_its_balls_is_held_and_no_error() {
 }
 
 #[test]
-fn redundant_constraints_are_named_with_those_that_say_the_same() {
+fn redundant_constraints_are_reported_with_equivalent_ones() {
     let draft = four_bar([[0.0, 0.0], [0.0, 0.1], [0.3, 0.25], [0.3, 0.0]], "t", &times(1.0, 2));
     let model = Model::from_draft(&draft).unwrap();
     let analysis = Analysis::new(&model).unwrap();

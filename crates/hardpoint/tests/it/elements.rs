@@ -104,9 +104,9 @@ fn a_progressive_spring_follows_its_free_length_and_its_scale() {
 }
 
 #[test]
-fn a_point_of_a_table_has_the_force_that_stands_there() {
-    // The lever's spring, 0.3 m long in the design configuration, gets 0.05 m shorter: it pushes with what the table
-    // says there.
+fn a_point_of_a_spring_table_has_its_force() {
+    // The lever's spring, 0.3 m long in the design configuration, becomes 0.05 m shorter: its force is that of the
+    // table.
     let mut draft = Draft::new("bump stop")
         .body("piston")
         .translational("slide", ["ground", "piston"], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
@@ -137,7 +137,7 @@ fn a_point_of_a_table_has_the_force_that_stands_there() {
 }
 
 #[test]
-fn what_gives_against_a_table_gives_by_its_slope() {
+fn deflection_against_a_spring_table_follows_its_slope() {
     let (arm, k) = (0.5, 3e4);
     let give = |kind: ElementKindDraft| {
         let mut draft = rotor("0*t").point("tip", "rotor", [arm, 0.0, 0.0]);
@@ -249,7 +249,7 @@ fn box_of(centre: Vec3, [x, y, z]: [f64; 3]) -> Solid {
 }
 
 #[test]
-fn a_box_as_a_mesh_weighs_what_a_block_does() {
+fn a_box_mesh_has_the_mass_properties_of_a_block() {
     let draft = |kind: fn(&str, Vec3, Pose) -> ElementKindDraft| {
         let mut draft = heavy("macpherson");
         let frame = Pose { rot: Mat3::IDENTITY, r: Vec3::new(0.1, 0.3, 0.2) };
@@ -323,7 +323,7 @@ fn strut_on_its_wheel(push: [Option<NumberDraft>; 3]) -> Draft {
 }
 
 #[test]
-fn the_road_works_on_the_point_of_the_wheel_that_stands_on_it() {
+fn the_road_does_work_on_the_contact_point_of_the_wheel() {
     let [outboard, forward, up] = [-1500.0, 700.0, 4000.0];
     let draft = strut_on_its_wheel([outboard, forward, up].map(|x| Some(x.into())));
     let mut draft = draft.measure("road", MeasureKindDraft::SpringForce { force: "road".into() });
@@ -363,7 +363,7 @@ fn loads_of_the_road_follow_the_wheel_and_its_forces() {
 }
 
 #[test]
-fn a_wheel_gives_to_the_road_as_its_point_of_the_knuckle_does() {
+fn a_wheel_is_compliant_like_its_point_of_the_knuckle() {
     let (mut draft, _) = crate::loads::soft("macpherson");
     let wheel = strut_on_its_wheel([None, None, Some(1.0.into())]);
     draft.wheels = wheel.wheels;
@@ -427,22 +427,23 @@ fn sledge(length: Option<f64>, viscous: Option<f64>) -> Draft {
     draft
 }
 
-/// The transition velocity of slides is 1 mm/s: at half a metre per second it is whole to this part.
+/// Relative deviation from full friction: the transition velocity of slides is 1 mm/s, the speed half a metre per
+/// second.
 const WHOLE: f64 = 1e-5;
 
 #[test]
-fn a_slide_rubs_by_what_presses_its_guide() {
+fn friction_of_a_slide_follows_the_normal_forces_of_its_guide() {
     // 150 N down; its moment about the middle is 100 * 0.3 - 50 * 0.1 = 25 N m.
-    let pressed = |length: f64| (75.0 + 25.0 / length).abs() + (75.0 - 25.0 / length).abs();
+    let normal = |length: f64| (75.0 + 25.0 / length).abs() + (75.0 - 25.0 / length).abs();
     let cases = [
         (None, None, 0.2 * 150.0),
-        // The ends are pressed the same way: their sum is the weight.
+        // The normal forces of both ends have the same direction: their sum is the weight.
         (Some(0.5), None, 0.2 * 150.0),
         // The guide is so short that the couple lifts one end.
-        (Some(0.2), None, 0.2 * pressed(0.2)),
+        (Some(0.2), None, 0.2 * normal(0.2)),
         (None, Some(8.0), 0.2 * 150.0 + 8.0 * 0.5),
     ];
-    assert!((pressed(0.2) - 250.0).abs() < 1e-12);
+    assert!((normal(0.2) - 250.0).abs() < 1e-12);
     for (length, viscous, expected) in cases {
         for formulation in [Formulation::Relative, Formulation::Absolute] {
             for pull in values(&run(&sledge(length, viscous), formulation), "rope") {
@@ -456,7 +457,7 @@ fn a_slide_rubs_by_what_presses_its_guide() {
 }
 
 #[test]
-fn a_ball_rubs_by_its_load_and_its_radius() {
+fn friction_of_a_ball_joint_follows_its_load_and_radius() {
     let mut draft = Draft::new("top")
         .body("top")
         .spherical("ball", ["ground", "top"], [0.0, 0.0, 0.0])
@@ -475,9 +476,9 @@ fn a_ball_rubs_by_its_load_and_its_radius() {
     let expected = 0.1 * 0.015 * 120.0 + 0.003 * 9.0;
     for formulation in [Formulation::Relative, Formulation::Absolute] {
         let solution = run(&draft, formulation);
-        for (torque, rubs) in values(&solution, "motor").into_iter().zip(values(&solution, "friction")) {
+        for (torque, friction) in values(&solution, "motor").into_iter().zip(values(&solution, "friction")) {
             assert!((torque - expected).abs() < WHOLE * expected, "{torque} {expected}");
-            assert!((rubs + expected).abs() < WHOLE * expected, "{rubs} {expected}");
+            assert!((friction + expected).abs() < WHOLE * expected, "{friction} {expected}");
         }
     }
 }
@@ -531,7 +532,7 @@ fn friction_of_all_kinds_follows_the_design() {
 }
 
 #[test]
-fn what_presses_is_known_or_friction_is_named() {
+fn undetermined_normal_forces_are_reported() {
     // A door in two hinges: the force across either is shared with the moment of the other.
     let leaf = point_mass("leaf", "door", [0.5, 0.0, 1.0], 20.0);
     let mut draft = door(leaf).measure("hand", driver_force("hand"));

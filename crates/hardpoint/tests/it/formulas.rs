@@ -77,7 +77,7 @@ fn crank_rocker(own_length: bool) -> Draft {
 }
 
 #[test]
-fn formulas_give_the_positions_that_their_expressions_say() {
+fn formulas_result_in_the_positions_of_their_expressions() {
     let model = Model::from_draft(&crank_rocker(false)).unwrap_or_else(|f| panic!("{f:?}"));
     let at = |name: &str| model.hardpoints.iter().find(|h| h.name == name).unwrap().position;
     let d = 0.17_f64.sqrt();
@@ -178,7 +178,7 @@ fn designs_side_by_side_are_those_one_by_one() {
 }
 
 #[test]
-fn parameters_that_nothing_follows_are_told_apart() {
+fn parameters_without_effect_are_distinguished() {
     let mut draft = crank_rocker(false);
     parameter(&mut draft, "nothing", 1.0, Quantity::Number);
     parameter(&mut draft, "dead_end", 1.0, Quantity::Number);

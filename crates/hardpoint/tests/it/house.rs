@@ -234,7 +234,7 @@ fn the_table_of_dependencies_is_complete() {
 /// The crate that may hold `unsafe`, and where in it (`docs/machine-code.md`). The page's engine only exports functions
 /// by name.
 #[test]
-fn unsafe_stands_where_the_safety_argument_says() {
+fn unsafe_code_is_only_in_the_documented_modules() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let mut with_lints_of_their_own = Vec::new();
     for entry in std::fs::read_dir(crates).unwrap() {

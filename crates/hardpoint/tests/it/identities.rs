@@ -148,7 +148,7 @@ impl hardpoint::Sink for Count {
 }
 
 #[test]
-fn a_request_means_the_same_whatever_way_it_is_run() {
+fn a_request_has_the_same_results_in_all_run_modes() {
     let model = Model::from_draft(&reference_draft("macpherson")).unwrap();
     let analysis = Analysis::new(&model).unwrap();
     let design = [1e-3, -5e-4, 2e-4];
@@ -205,12 +205,12 @@ fn a_request_means_the_same_whatever_way_it_is_run() {
         assert_eq!(ended, designs.len());
     }
 
-    // And each of them may be ended.
-    let told = |p: hardpoint::Progress| {
+    // Each of them can be interrupted.
+    let stop_at_three = |p: hardpoint::Progress| {
         if p.done == 3 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
     };
-    let windowed = analysis.solve_in_windows(Run::new().progress(told), 1, |_, _| ());
-    let streamed = analysis.stream(Run::new().progress(told), &mut Count::default());
+    let windowed = analysis.solve_in_windows(Run::new().progress(stop_at_three), 1, |_, _| ());
+    let streamed = analysis.stream(Run::new().progress(stop_at_three), &mut Count::default());
     for stop in [windowed.stop, streamed.stop] {
         assert_eq!(stop.unwrap().kind, hardpoint::motion::StopKind::Interrupted);
     }
@@ -218,7 +218,7 @@ fn a_request_means_the_same_whatever_way_it_is_run() {
 }
 
 #[test]
-fn steps_abreast_are_the_same_as_one_by_one() {
+fn batched_steps_are_the_same_as_single_steps() {
     // Times far apart are solved one by one, times close together in batches of eight: common ones must agree.
     for name in ["slider_crank", "macpherson", "rssr", "jansen", "double_wishbone", "elementary_chain"] {
         let mut draft = reference_draft(name);

@@ -222,7 +222,7 @@ fn a_cam_and_a_slot_move_as_they_must_and_match_resolved_designs() {
 }
 
 #[test]
-fn a_pin_that_reaches_the_end_of_its_slot_stops_there_and_keeps_what_was_solved() {
+fn a_pin_that_reaches_the_end_of_its_slot_stops_there_and_keeps_its_results() {
     let mut draft = cam_and_slot();
     // The cam lifts the pin by some 20 mm; a lever that is driven by 60 deg would pull it out.
     draft.joints.retain(|j| j.name != "cam" && j.name != "shaft");

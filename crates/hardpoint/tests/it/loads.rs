@@ -394,7 +394,7 @@ fn newton_euler(
 const BALANCED: f64 = 1e-11;
 
 #[test]
-fn joints_put_on_every_body_what_it_needs_in_both_formulations() {
+fn reactions_balance_every_body_in_both_formulations() {
     for name in REFERENCES {
         let draft = heavy(name);
         let model = Model::from_draft(&draft).unwrap();
@@ -471,7 +471,7 @@ fn elastic(name: &str, joint: &str, stiffness: [f64; 3], about_z: Option<f64>) -
 }
 
 #[test]
-fn a_lever_in_a_bushing_gives_by_force_over_stiffness_and_arm_squared() {
+fn a_lever_in_a_bushing_deflects_by_force_over_stiffness_times_arm_squared() {
     let (arm, k, about) = (0.5, [2e5, 4e5, 8e5], 3e3);
     let mut draft = rotor("0.4*t").point("tip", "rotor", [arm, 0.0, 0.0]);
     draft.forces.push(elastic("bushing", "pivot", k, Some(about)));
@@ -488,15 +488,15 @@ fn a_lever_in_a_bushing_gives_by_force_over_stiffness_and_arm_squared() {
     }
 }
 
-/// A suspension whose balls and hinges stand in rubber, pushed at a point of its last body.
+/// A suspension with rubber bushings at its ball joints and hinges, loaded at a point of its last body.
 pub fn soft(name: &str) -> (Draft, Vec<String>) {
     let mut draft = reference_draft(name);
     let model = Model::from_draft(&draft).unwrap();
     draft.measures.clear();
     draft.metrics.clear();
     draft.times = draft.times.iter().copied().step_by(usize::max(draft.times.len() / 3, 1)).collect();
-    let stands = |j: &&Joint| j.kind.places == 1 && !j.kind.is_rod();
-    let joints: Vec<String> = model.joints.iter().filter(stands).map(|j| j.name.clone()).collect();
+    let has_point = |j: &&Joint| j.kind.places == 1 && !j.kind.is_rod();
+    let joints: Vec<String> = model.joints.iter().filter(has_point).map(|j| j.name.clone()).collect();
     for (k, joint) in joints.iter().enumerate() {
         let stiffness = 1e6 * (1.0 + k as f64);
         draft.forces.push(elastic(&format!("rubber {k}"), joint, [stiffness; 3], None));
@@ -511,7 +511,7 @@ pub fn soft(name: &str) -> (Draft, Vec<String>) {
 }
 
 #[test]
-fn elastic_joints_store_half_of_what_a_force_works() {
+fn elastic_joints_store_half_the_work_of_a_force() {
     for name in ["macpherson", "double_wishbone"] {
         let (mut draft, joints) = soft(name);
         let pushed = || PointRef::Named("pushed".into());
@@ -558,7 +558,7 @@ fn elastic_joints_store_half_of_what_a_force_works() {
 }
 
 #[test]
-fn with_its_driver_released_a_strut_gives_against_its_spring() {
+fn with_its_driver_released_a_strut_deflects_against_its_spring() {
     // A lever on a hinge, held by a spring across its tip: F/k of the spring by the square of the arms' ratio.
     let (arm, k) = (0.5, 3e4);
     let mut draft = rotor("0*t").point("tip", "rotor", [arm, 0.0, 0.0]);
@@ -601,11 +601,11 @@ pub fn friction(name: &str, joint: &str, coefficient: f64, radius: f64) -> Eleme
     ElementDraft::new(name, kind)
 }
 
-/// The transition velocity of friction is 0.01 rad/s: at a speed of some rad/s it is whole to this part.
+/// Relative deviation from full friction: the transition velocity is 0.01 rad/s, the speed some rad/s.
 const WHOLE: f64 = 1e-5;
 
 #[test]
-fn a_loaded_shaft_rubs_by_its_weight_and_the_radius_of_its_pin() {
+fn friction_of_a_loaded_shaft_follows_its_weight_and_the_radius_of_its_pin() {
     let mut draft = rotor("7*t").measure("motor", driver_force("motor"));
     draft.masses.push(point_mass("disc", "rotor", [0.0, 0.0, 0.0], 40.0));
     draft.gravity = Vec3::new(0.0, -9.81, 0.0);
@@ -618,7 +618,7 @@ fn a_loaded_shaft_rubs_by_its_weight_and_the_radius_of_its_pin() {
 }
 
 #[test]
-fn friction_takes_what_the_reactions_that_it_makes_itself_say() {
+fn friction_depends_on_reactions_that_it_changes() {
     let mut draft = press();
     let pins = [("A", 0.3, 0.03), ("B", 0.2, 0.06), ("C", 0.15, 0.02)];
     for (joint, coefficient, radius) in pins {
@@ -673,7 +673,7 @@ pub fn door(leaf: ElementDraft) -> Draft {
 }
 
 #[test]
-fn what_redundant_constraints_share_has_no_number_and_all_else_has() {
+fn only_reactions_shared_by_redundant_constraints_are_undetermined() {
     // Two hinges on one line hold a door: the weight along the line is shared, the rest is not.
     let draft = door(rigid("leaf", "door", [0.5, 0.0, 1.0], 20.0, [1.0, 1.2, 0.3, 0.0, 0.0, 0.0]))
         .measure("axial", reaction("upper", ReactionPart::Axial))
@@ -692,7 +692,7 @@ fn what_redundant_constraints_share_has_no_number_and_all_else_has() {
 const PRINTED: f64 = 1e-13;
 
 #[test]
-fn an_open_arm_needs_what_pinocchio_says() {
+fn driver_torques_of_an_open_arm_agree_with_pinocchio() {
     let joints = [
         ([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]),
         ([0.1, 0.05, 0.4], [0.0, 1.0, 0.2]),
@@ -706,8 +706,8 @@ fn an_open_arm_needs_what_pinocchio_says() {
         (0.8, [0.8, 0.3, 0.2], [0.004, 0.005, 0.006, 0.0003, -0.0002, 0.0004]),
     ];
     let (q, v, a) = ([0.3, -0.5, 0.8, 1.1], [0.7, -1.2, 0.4, 2.0], [-0.4, 0.9, 3.0, -1.7]);
-    // pin.rnea of Pinocchio 4.1.0, the same arm built with JointModelRevoluteUnaligned; forces and moments of its data.f, along
-    // the frames of the joints, which have turned with the bodies.
+    // pin.rnea of Pinocchio 4.1.0, for the same arm with JointModelRevoluteUnaligned; forces and moments of its data.f,
+    // in the frames of the joints, which have turned with the bodies.
     let torques = [0.5100432235584015, -11.271463484049534, 5.865749606420835, -0.1845078411636732];
     let forces = [
         [-0.8392773862206552, 5.024043280193802, 69.55019617992994],
@@ -746,7 +746,7 @@ fn an_open_arm_needs_what_pinocchio_says() {
 }
 
 #[test]
-fn a_balance_is_held_by_the_difference_and_a_governor_by_its_speed() {
+fn driver_torques_of_a_balance_and_a_governor() {
     // A balance: equal arms, unequal weights, held by the driver with the difference of their moments.
     let mut draft = rotor("0*t").measure("hand", driver_force("motor"));
     draft.masses = vec![

@@ -74,8 +74,8 @@ fn a_chain_of_four_bars_is_solved_loop_by_loop_and_matches_its_closed_form() {
 
 #[test]
 fn loops_that_share_their_code_move_as_the_kernel_moves_them() {
-    // Bars of slightly different heights (each loop passes on a little more or less of the swing) on pivots here and there, in two orders of
-    // the bodies; long enough for a program in pieces.
+    // Bars of slightly different heights (each loop transmits a little more or less of the swing) on scattered pivots,
+    // in two orders of the bodies; long enough for a program in pieces.
     let n = 80;
     let mut draft = chain(n);
     for joint in &mut draft.joints {
@@ -369,7 +369,7 @@ fn opens_as_lazy_tongs_do(n: usize, at: [usize; 2], tolerance: f64) -> usize {
 }
 
 #[test]
-fn a_loop_that_rides_on_a_body_which_depends_on_it_is_solved_where_it_stands() {
+fn a_loop_on_a_body_that_depends_on_it_is_solved() {
     // A telescope turns about the origin; a ram sets its length, and a rod from ground to its tip then sets its angle.
     let z = Some([0.0, 0.0, 1.0]);
     let mut draft = Draft {

@@ -121,7 +121,7 @@ fn sensitivities_match_resolved_designs_and_the_error_falls_as_it_must() {
 
 /// Each quantity by itself, however small the part of the motion that it is: none hides behind another's error.
 #[test]
-fn a_wrong_sensitivity_fails_and_is_named() {
+fn a_wrong_sensitivity_fails_and_is_reported() {
     type Of = fn(&mut BodySensitivity) -> &mut Vec3;
     let kinds: [(&str, Of); 4] = [
         ("position", |s| &mut s.dr),
@@ -190,14 +190,14 @@ fn errors_are_found_by_body_and_by_output() {
     let comparison = Comparison::of(&model, &solution, &difference);
     let error = |name: String| {
         let found = comparison.errors().iter().find(|e| e.quantity == name);
-        found.unwrap_or_else(|| panic!("nothing is said of {name}")).error
+        found.unwrap_or_else(|| panic!("no error of {name}")).error
     };
-    let mut told = 0;
+    let mut count = 0;
     for (b, body) in model.bodies.iter().enumerate().skip(1) {
         let kinds = ["position", "velocity", "acceleration"];
         let want = kinds.map(|kind| error(format!("{} {kind}", body.name)));
         assert_eq!(comparison.of_origin(BodyId(b)), want, "{}", body.name);
-        told += 6;
+        count += 6;
     }
     for (m, output) in solution.measured.outputs.iter().enumerate() {
         let want = [0, 1, 2].map(|order| match order {
@@ -206,15 +206,15 @@ fn errors_are_found_by_body_and_by_output() {
             _ => 0.0,
         });
         assert_eq!(comparison.of_output(m), want, "{}", output.name);
-        told += output.known.orders;
+        count += output.known.orders;
     }
-    assert_eq!(comparison.errors().len(), told);
+    assert_eq!(comparison.errors().len(), count);
     assert!(comparison.worst().unwrap().error > 0.0);
 }
 
 /// Everything that goes over the output times ends at the next one when the analysis is asked to end, and says so.
 #[test]
-fn whatever_an_analysis_solves_ends_at_the_next_output_time() {
+fn an_interrupted_analysis_ends_at_the_next_output_time() {
     let mut draft = reference_draft("macpherson");
     let last = draft.times.last().copied().unwrap();
     draft.times = (0..=100).map(|k| last * f64::from(k) / 100.0).collect();

@@ -534,9 +534,9 @@ impl Case<'_> {
                 }
             }
         };
-        // Where an orientation is driven, the direction that is seen turning is perpendicular to `about` but otherwise chosen by
-        // the global axes, so that such a driver means something else once the mechanism is turned.
-        // The same is true of the Euler angles of a marker whose x axis nobody gave.
+        // The direction whose rotation an orientation driver measures is perpendicular to `about`, but otherwise
+        // derived from the global axes. So such a driver has a different meaning after the mechanism is rotated. The
+        // same is true of the Euler angles of a marker without a given x axis.
         let turns = self.draft.drivers.iter().any(|d| matches!(d.drives, DrivenDraft::Orientation { .. }))
             || self
                 .draft
