@@ -14,7 +14,7 @@ MISSING = (
 
 
 def _require_cargo() -> None:
-    """Ends the build with one sentence if Rust is missing, instead of a download or a page of output."""
+    """Ends the build with a short message if Rust is missing, instead of a download or a page of output."""
     if shutil.which(os.environ.get("CARGO", "cargo")) is None:
         raise SystemExit(MISSING)
 

@@ -1,4 +1,4 @@
-"""Arrays that are handed out."""
+"""Arrays of results."""
 
 from __future__ import annotations
 
@@ -6,6 +6,6 @@ import numpy as np
 
 
 def frozen(array: np.ndarray) -> np.ndarray:
-    """The array, read-only: results that several readers share are not changed by one of them."""
+    """Makes the array read-only, so that no reader changes shared results."""
     array.flags.writeable = False
     return array

@@ -31,7 +31,7 @@ class _Jacobian(casadi.Callback):
 
 
 class MechanismCallback(casadi.Callback):
-    """Function for CasADi's expressions and solvers, with the exact Jacobian of the engine. Keep the object as long as
+    """Function for CasADi's expressions and solvers, with the exact Jacobian of the engine. Keep a reference to the object as long as
     expressions use it."""
 
     def __init__(self, of: Function, name: str = "mechanism", options: dict | None = None):
@@ -58,6 +58,6 @@ class MechanismCallback(casadi.Callback):
         return True
 
     def get_jacobian(self, name, inputs, outputs, options):
-        # CasADi keeps no reference to it.
+        # CasADi does not keep a reference to it.
         self._slopes = _Jacobian(name, self.of, options)
         return self._slopes

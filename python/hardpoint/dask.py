@@ -5,9 +5,9 @@
     >>> model = hardpoint.read("models/studies/strut_sweep.toml")
     >>> with Client() as client:
     ...     done = hardpoint.dask.sweep(model, client, "results/strut", samples=100_000)
-    >>> done.read()                                                 # a table of Arrow, in order of designs
+    >>> done.read()                                                 # an Arrow table, in order of designs
 
-`docs/scaling.md` says what travels, what becomes of lost workers and interrupted runs, and where it ends.
+`docs/scaling.md` describes data transfer, lost workers, interrupted runs, and limits.
 """
 
 from __future__ import annotations
@@ -49,26 +49,26 @@ if TYPE_CHECKING:
 __all__ = ["Searches", "Stored", "monte_carlo", "multi_start", "opened", "sweep"]
 
 Store = Union[str, "os.PathLike[str]"]
-"""A folder, or any URL of fsspec (`s3://bucket/sweep`), that the client and all workers reach."""
+"""A folder, or any URL of fsspec (`s3://bucket/sweep`), that the client and all workers can access."""
 Columns = Mapping[str, Any]
-"""Cells by the names of columns, units in brackets behind."""
+"""Cells by column name, with units in brackets."""
 
 PART = 8192
-"""That many designs are a part, where nothing is said."""
+"""Default number of designs per part."""
 BLOCK = 512
 """Number of designs in a block; parts begin with a block, so that their last bits do not depend on the partition."""
 AHEAD = 3
-"""That many tasks are under way for each thread of the workers: one is solved, the others wait beside it."""
+"""Number of submitted tasks per thread of the workers: one is being solved, the others are queued."""
 PATIENCE = 600.0
-"""Seconds in which no task ends and no worker is at one, after which a sweep ends with an error."""
+"""Seconds without a finished task or a busy worker after which a sweep ends with an error."""
 LOOK = 1.0
 """Seconds between two checks of the states of futures."""
 ASK = 10.0
-"""Seconds between two queries of the scheduler for busy workers, while nothing ends."""
+"""Seconds between two queries of the scheduler for busy workers, while no task ends."""
 ANSWER = 30.0
-"""Seconds in which the scheduler must answer; otherwise it is asked again."""
+"""Time limit for an answer of the scheduler, in seconds; then the query is repeated."""
 ENDED = ("finished", "error", "cancelled")
-"""States of futures that have ended. The data of one that is `lost` is made anew."""
+"""States of finished futures. The data of a `lost` one is computed again."""
 RECORD = "sweep.json"
 NAME = re.compile(r"(?P<table>designs|curves)-(?P<first>\d{8,})\.parquet")
 PARTIAL = re.compile(r"\.(designs|curves)-\d{8,}\.parquet\.[0-9a-f]{32}\.partial")
@@ -86,13 +86,13 @@ def sweep(
     storage_options: Mapping[str, Any] | None = None,
     **asked,
 ) -> Stored:
-    """Solves the designs of `model.sweep(**asked)` on the workers of `client`, and keeps them at `store`: in parts of `part` designs,
-    `designs-00000000.parquet` with the number of its first design, and likewise `curves-` where `curves` are requested. The numbers are
-    those of `model.sweep`, bit for bit.
+    """Solves the designs of `model.sweep(**asked)` on the workers of `client`, and stores them at `store` in parts of `part` designs:
+    `designs-00000000.parquet` with the number of its first design, and `curves-` if `curves` are requested. The numbers are those of
+    `model.sweep`, bit for bit.
 
-    Called again after an interruption it goes on: parts that are there and whole are not solved again. A store that holds anything
-    else is refused; `overwrite` empties it first. `progress` is reported designs. Raises `StudyError` when for `patience` seconds no part has
-    ended and no worker was at work; `math.inf` waits for workers however long they take to come.
+    The same call resumes an interrupted sweep: complete parts are not solved again. A store with other data is rejected; `overwrite`
+    empties it first. `progress` receives numbers of designs. Raises `StudyError` if no part has ended and no worker was busy for
+    `patience` seconds; `math.inf` waits for workers indefinitely.
     """
     listed = asked.pop("designs", None)
     asked = json.loads(json.dumps({name: value for name, value in asked.items() if value is not None}, default=_plain))
@@ -114,11 +114,11 @@ def monte_carlo(
     patience: float = PATIENCE,
     storage_options: Mapping[str, Any] | None = None,
 ) -> Stored:
-    """Solves designs that are drawn within the tolerances, those of `model.tolerance(samples=samples, seed=seed)`, in every case, and
-    keeps their variables and metrics as `sweep` does. `seed` is that of the model file, if none is given.
+    """Solves the Monte Carlo designs of `model.tolerance(samples=samples, seed=seed)` in every case, and stores their variables and
+    metrics like `sweep`. The default of `seed` is that of the model file.
     """
     if samples < 1:
-        raise UsageError.saying("there is no design to be solved; give at least one sample")
+        raise UsageError.saying("there are no designs; give at least one sample")
     _drawn(model, [0], seed)
     return _stored(_Drawn(model, int(samples), part, seed), client, store, overwrite, progress, patience, storage_options)
 
@@ -127,10 +127,10 @@ class Searches(NamedTuple):
     """Searches from several starts."""
 
     best: Study
-    """The best of them, as `model.optimize` chooses: of those that keep all limits the one with the least objective, of others the one
-    that exceeds them least."""
+    """Best search by the rule of `model.optimize`: the minimum objective among those that keep all limits, or else the minimum
+    violation."""
     studies: tuple[Study, ...]
-    """All of them, in order of starts; that of number 0 starts from the nominal design."""
+    """All searches, in order of starts; number 0 starts from the nominal design."""
 
 
 def multi_start(
@@ -142,16 +142,16 @@ def multi_start(
     progress: Progress = None,
     patience: float = PATIENCE,
 ) -> Searches:
-    """Searches for the best design (`model.optimize`) from several starts, each on a worker. `progress` is reported searches."""
+    """Optimises the design (`model.optimize`) from several starts, each on a worker. `progress` receives numbers of searches."""
     if starts < 1:
-        raise UsageError.saying("there is nothing to start from; give at least one start")
+        raise UsageError.saying("there are no starts; give at least one start")
     _check(client)
-    told, found = listener(progress), {}
+    report, found = listener(progress), {}
     with closing(_each(client, _search, _Search(model, iterations), range(starts), lambda first: f"start {first}", patience)) as searches:
         for first, search in searches:
             found[first] = outcome(model, *search)
-            if told:
-                told(len(found), starts)
+            if report:
+                report(len(found), starts)
     studies = tuple(found[first] for first in range(starts))
     return Searches(studies[_best([study.facts for study in studies])], studies)
 
@@ -161,13 +161,13 @@ def opened(store: Store, storage_options: Mapping[str, Any] | None = None) -> St
     fs, root = _at(store, storage_options)
     record = _record(fs, root)
     if record is None or not record["complete"]:
-        why = f"the sweep at `{root}` is not complete; call it again as before" if record else f"there is no sweep at `{root}`"
+        why = f"the sweep at `{root}` is not complete; repeat the same call" if record else f"there is no sweep at `{root}`"
         raise StudyError.saying(why)
     return Stored(fs, root, record)
 
 
 class Stored:
-    """Designs that have been solved, at a store."""
+    """Solved designs at a store."""
 
     def __init__(self, fs: fsspec.AbstractFileSystem, root: str, record: dict):
         self._fs = fs
@@ -177,11 +177,11 @@ class Stored:
         firsts = range(0, record["designs"], record["sweep"]["part"])
         self._files = {table: tuple(_path(root, table, first) for first in firsts) for table in record["tables"]}
         self.parts: tuple[str, ...] = self._files["designs"]
-        """The files of designs, in order."""
+        """Files of designs, in order."""
         self.designs: int = record["designs"]
         """Number of designs."""
         self.failed: int = record["failed"]
-        """Number of designs that do not move to their end; the column `failed` has the reasons."""
+        """Number of designs that do not reach the end of a motion; the column `failed` has the reasons."""
 
     def __len__(self) -> int:
         return self.designs
@@ -191,13 +191,13 @@ class Stored:
         return f"<hardpoint.dask.Stored at {self.store}: {self.designs} designs in {len(self.parts)} parts{failed}>"
 
     def read(self, table: str = "designs") -> pyarrow.Table:
-        """The table of `designs`, or that of `curves`, in order of designs: all of it, in memory."""
+        """Reads the table of `designs`, or that of `curves`, in order of designs into memory."""
         found = []
         for path in self._of(table):
             with self._fs.open(path, "rb") as file:
                 one = pyarrow.parquet.ParquetFile(file)
-                if _told(one.metadata).get("sweep") != self._record["digest"]:
-                    raise StudyError.saying(f"`{path}` is of another sweep; call `sweep` again, which solves it anew")
+                if _part_record(one.metadata).get("sweep") != self._record["digest"]:
+                    raise StudyError.saying(f"`{path}` belongs to another sweep; call `sweep` again to solve it again")
                 found.append(one.read().replace_schema_metadata(None))
         return pyarrow.concat_tables(found)
 
@@ -214,21 +214,21 @@ class Stored:
 def _plain(value: Any) -> Any:
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise UsageError.saying(f"a sweep is requested with numbers, texts, lists and dictionaries; {value!r} is none of them")
+    raise UsageError.saying(f"options of a sweep are numbers, texts, lists and dictionaries, not {value!r}")
 
 
-# What is solved
+# Work
 
 
 class _Work:
-    """Task data. They are sent to each worker once, and planned there once."""
+    """Data of a task. They are sent to each worker once, and planned there once."""
 
     study: str
 
     def __init__(self, model: Model, count: int, part: int, asked: dict):
         if part < BLOCK or part % BLOCK:
             near = max(1, round(part / BLOCK)) * BLOCK
-            raise UsageError.saying(f"designs are solved in blocks of {BLOCK}, and a part of {part} would cut one; give `part={near}`")
+            raise UsageError.saying(f"designs are solved in blocks of {BLOCK}, so a part cannot have {part} designs; give `part={near}`")
         self.model = model
         self.count = count
         self.part = part
@@ -245,7 +245,7 @@ class _Work:
             "part": part,
         }
         self.fingerprint: dict = json.loads(json.dumps(fingerprint, default=_plain))
-        """All that the numbers depend on, as JSON has it."""
+        """Everything that the results depend on, in JSON form."""
         self.digest: str = digest(json.dumps(self.fingerprint, sort_keys=True))
 
     def __eq__(self, other: object) -> bool:
@@ -255,18 +255,18 @@ class _Work:
         return hash(self.digest)
 
     def last(self, first: int) -> int:
-        """End of the part that begins there."""
+        """End of the part that begins with this design."""
         return min(first + self.part, self.count)
 
     def tables(self) -> tuple[str, ...]:
-        """The names of the tables, in the order in which they are written."""
+        """Names of the tables, in the order in which they are written."""
         return ("designs",)
 
     def plan(self) -> Any:
-        """Data for any part."""
+        """Plan for all parts."""
 
     def solve(self, plan: Any, first: int, last: int) -> dict[str, Columns]:
-        """The tables of some designs."""
+        """Solves some designs and returns their tables."""
         raise NotImplementedError
 
 
@@ -275,7 +275,7 @@ _planning = threading.Lock()
 
 @lru_cache(maxsize=4)
 def _plan(work: _Work) -> Any:
-    """The plan of a work; of one that is sent again it is the same."""
+    """Plan of the work, shared by all its parts."""
     if work.version != __version__:
         raise UsageError.saying(f"a worker has hardpoint {__version__}, the client {work.version}; install the same everywhere")
     return work.plan()
@@ -336,12 +336,12 @@ def _cases(model: Model) -> tuple[str | None, ...]:
 
 
 def _title(name: str, unit: str) -> str:
-    """The name of a column, as in the tables of the command line."""
+    """Name of a column, as in the tables of the command line."""
     return name if unit in ("", "1") else f"{name} [{unit}]"
 
 
 def _drawn(model: Model, numbers: list[int], seed: int | None) -> np.ndarray:
-    """Designs of a tolerance study by their numbers, `[design, variable]`, in the model's units."""
+    """Designs of a tolerance study by number, `[design, variable]`, in the model's units."""
     return model._native.drawn_designs(numbers, seed)
 
 
@@ -351,18 +351,18 @@ class _Search(NamedTuple):
 
 
 def _search(asked: _Search, first: int) -> tuple[str, list[float] | None, list[float] | None]:
-    """The search from a start: its outcome as JSON, the design found with its numbers rounded, and as it is."""
+    """Search from one start: its result as JSON, the optimised design with rounded numbers, and the exact one."""
     return asked.model._native.optimize(first, 1, asked.iterations, 1, None)
 
 
 KEPT = 1e-8
-"""A limit that is exceeded by less of its scale is kept; as the engine has it."""
+"""Relative violation up to which a limit counts as kept, as in the engine."""
 THE_SAME = 1e-12
-"""Objectives that differ by less of themselves are as good; then the one nearer to an optimum counts."""
+"""Relative difference up to which objectives count as equal; then the one closer to an optimum is chosen."""
 
 
 def _best(found: list[dict]) -> int:
-    """The place of the best of some searches, by their facts."""
+    """Index of the best search, by their facts."""
 
     def rank(facts: dict) -> tuple[bool, float]:
         objective, violation = facts["objective"]["after"], facts["violation"]["after"]
@@ -381,7 +381,7 @@ def _best(found: list[dict]) -> int:
 
 def _check(client: Client) -> None:
     if client.asynchronous:
-        raise UsageError.saying("the client is asynchronous; give one that `Client(...)` makes outside of coroutines")
+        raise UsageError.saying("the client is asynchronous; create it with `Client(...)` outside of coroutines")
 
 
 def _itself(shared: Any) -> Any:
@@ -396,14 +396,14 @@ def _each(
     named: Callable[[int], str],
     patience: float = PATIENCE,
 ) -> Iterator[tuple[int, Any]]:
-    """`work(shared, number)` of each number, as they end.
+    """Yields the results of `work(shared, number)` for all numbers, in order of completion.
 
-    What is shared is the outcome of a task: it goes to each worker once, from another that has it, and is made anew if all that had
-    it are lost. As many tasks are under way as the workers that there are can have beside them.
+    The shared data are the result of a task: each worker receives them once, from another worker, and they are computed again if all
+    workers that had them are lost. The number of submitted tasks follows the number of workers.
 
-    A task that has ended is announced by a callback on the event loop of this client; `distributed.as_completed` would by default
-    wait on that of the client that was made last, whose thread misses wake-ups of this one. The states of futures are looked at
-    every so often all the same, so that no announcement has to arrive.
+    The end of a task is announced by a callback on the event loop of this client; `distributed.as_completed` would by default wait on
+    the loop of the client that was created last, whose thread misses wake-ups of this one. The states of futures are also polled, so
+    that a lost announcement does no harm.
     """
     name = f"hardpoint-{uuid.uuid4().hex}"
     here = client.submit(_itself, shared, key=f"{name}-model")
@@ -413,7 +413,7 @@ def _each(
     room = since = 0
     try:
         while True:
-            # Workers come and go.
+            # The number of workers may change.
             if since >= room:
                 room, since = AHEAD * max(1, watch.threads()), 0
             for number in islice(waiting, max(0, room - len(under_way))):
@@ -429,16 +429,16 @@ def _each(
                 continue
             since += 1
             yield under_way.pop(future), found[0]
-            # What the caller has done meanwhile does not count.
+            # The time that the caller has used meanwhile does not count.
             watch.one_ended()
     finally:
-        # What has not begun is dropped.
+        # Tasks that have not started are dropped.
         for future in [*under_way, here]:
             future.release()
 
 
 def _next(ended: SimpleQueue[Future], under_way: Mapping[Future, int]) -> Future | None:
-    """A task that has ended; nothing if none does for a while."""
+    """Returns a finished task, or `None` if none ends for a while."""
     try:
         future = ended.get(timeout=LOOK)
         return future if future in under_way else None
@@ -447,7 +447,7 @@ def _next(ended: SimpleQueue[Future], under_way: Mapping[Future, int]) -> Future
 
 
 def _result(future: Future, named: str) -> tuple[Any] | None:
-    """Result of a task; None if it is not available now: its worker was lost, or the scheduler does not answer."""
+    """Result of a task; `None` if it is not available: its worker was lost, or the scheduler does not answer."""
     try:
         return (future.result(timeout=ANSWER),)
     except KilledWorker as error:
@@ -456,16 +456,16 @@ def _result(future: Future, named: str) -> tuple[Any] | None:
             "little memory: give smaller parts or fewer threads to each, then call it again"
         ) from error
     except CancelledError as error:
-        raise StudyError.saying(f"{named}: the cluster has dropped it ({error}); call it again, it goes on from what is done") from error
+        raise StudyError.saying(f"{named}: the cluster has cancelled it ({error}); repeat the call, which resumes it") from error
     except (OSError, TimeoutError):
-        # That of the task itself is an answer.
+        # A time-out raised by the task itself is its result.
         if future.status == "error":
             raise
         return None
 
 
 class _Watch:
-    """Ends the wait for tasks that nobody works at."""
+    """Ends the wait for tasks that no worker executes."""
 
     def __init__(self, client: Client, patience: float):
         self._client = client
@@ -473,18 +473,18 @@ class _Watch:
         self._since = self._asked = time.monotonic()
 
     def threads(self) -> int:
-        """The threads of all workers; none if the scheduler does not answer."""
+        """Number of threads of all workers; 0 if the scheduler does not answer."""
         try:
             return sum(self._client.nthreads(callback_timeout=ANSWER).values())
         except (OSError, TimeoutError):
             return 0
 
     def one_ended(self) -> None:
-        """A task has ended."""
+        """Records that a task has ended."""
         self._since = time.monotonic()
 
     def nothing_ended(self, named: str) -> None:
-        """No task has ended for a while. Raises when none has for so long, with no worker at any task meanwhile."""
+        """Records that no task has ended for a while. Raises an error after the time limit without a busy worker."""
         now = time.monotonic()
         if now - self._asked < min(ASK, self._patience):
             return
@@ -493,14 +493,14 @@ class _Watch:
         if busy:
             self._since = now
         elif now - self._since >= self._patience:
-            has = "does not answer" if workers is None else "has no workers" if workers == 0 else f"has {workers} workers, and none works at a task"
+            has = "does not answer" if workers is None else "has no workers" if workers == 0 else f"has {workers} workers, and none executes a task"
             raise StudyError.saying(
-                f"{named}: no task has ended for {self._patience:g} s, and the cluster {has}; see whether its scheduler and workers run, "
+                f"{named}: no task has ended for {self._patience:g} s, and the cluster {has}; check that its scheduler and workers run, "
                 "then call it again, it goes on from what is done; `patience` is how many seconds it waits"
             )
 
     def _at_work(self) -> tuple[int | None, bool]:
-        """Number of workers, if the scheduler answers, and whether any of them works at a task, by their last report."""
+        """Number of workers, if the scheduler answers, and whether any of them executes a task, by their last report."""
         try:
             known = self._client.sync(self._client.scheduler.identity, callback_timeout=ANSWER)
         except (OSError, TimeoutError):
@@ -518,20 +518,20 @@ class _Part(NamedTuple):
 
 
 def _solve(asked: _Part, first: int) -> int:
-    """Solves a part, unless it is there; how many of its designs failed."""
+    """Solves a part, unless it is stored already; returns its number of failed designs."""
     work, last = asked.work, asked.work.last(first)
-    told = {"sweep": work.digest, "first": first, "last": last}
+    part_record = {"sweep": work.digest, "first": first, "last": last}
     paths = {table: _path(asked.root, table, first) for table in work.tables()}
     known = [_known(asked.fs, path) for path in paths.values()]
-    if all(one == {**told, "failed": known[0].get("failed")} for one in known):
+    if all(one == {**part_record, "failed": known[0].get("failed")} for one in known):
         return known[0]["failed"]
     with _planning:
         plan = _plan(work)
     tables = work.solve(plan, first, last)
-    told["failed"] = sum(1 for why in tables["designs"]["failed"] if why)
+    part_record["failed"] = sum(1 for why in tables["designs"]["failed"] if why)
     for table, path in paths.items():
-        _put(asked.fs, path, _bytes(tables[table], told))
-    return told["failed"]
+        _put(asked.fs, path, _bytes(tables[table], part_record))
+    return part_record["failed"]
 
 
 def _stored(
@@ -546,22 +546,22 @@ def _stored(
     _check(client)
     fs, root = _at(store, storage_options)
     record = _begun(fs, root, work, overwrite)
-    told, done, failed = listener(progress), 0, 0
+    report, done, failed = listener(progress), 0, 0
     named = lambda first: f"designs {first} to {work.last(first) - 1}"  # noqa: E731
     with closing(_each(client, _solve, _Part(work, fs, root), range(0, work.count, work.part), named, patience)) as parts:
         for first, more in parts:
             done, failed = done + work.last(first) - first, failed + more
-            if told:
-                told(done, work.count)
+            if report:
+                report(done, work.count)
     stored = Stored(fs, root, {**record, "complete": True, "failed": failed})
     left = _listing(fs, root)
     missing = [path for paths in stored._files.values() for path in paths if path.rpartition("/")[2] not in left]
     if missing:
         raise StudyError.saying(
-            f"workers have written `{missing[0]}`, and the client does not find it: a store must be one place for all of them, a shared "
+            f"workers have written `{missing[0]}`, but the client does not find it: all of them must share the store, a shared "
             "folder, or a URL such as s3://bucket/folder"
         )
-    # What workers had in hand when they were lost.
+    # Partial files of lost workers.
     _remove(fs, root, filter(PARTIAL.fullmatch, left))
     _put(fs, f"{root}/{RECORD}", _json(stored._record))
     return stored
@@ -571,7 +571,7 @@ def _stored(
 
 
 def _at(store: Store, options: Mapping[str, Any] | None) -> tuple[fsspec.AbstractFileSystem, str]:
-    """The file system of a store, and its path there."""
+    """File system of a store, and its path there."""
     fs, root = fsspec.core.url_to_fs(os.fspath(store), **(options or {}))
     return fs, root.rstrip("/")
 
@@ -597,14 +597,14 @@ def _record(fs: fsspec.AbstractFileSystem, root: str) -> dict | None:
 
 
 def _begun(fs: fsspec.AbstractFileSystem, root: str, work: _Work, overwrite: bool) -> dict:
-    """The record at the store: that of the same sweep, or a new one."""
+    """Record at the store: that of the same sweep, or a new one."""
     names, record = _listing(fs, root), _record(fs, root)
     parts = [name for name in names if NAME.fullmatch(name) or PARTIAL.fullmatch(name)]
     if not overwrite:
         if record and record["sweep"] == work.fingerprint:
             return record
         if record is not None or parts:
-            what = _differences(record["sweep"], work.fingerprint) if record else f"nobody knows of which: its `{RECORD}` cannot be read"
+            what = _differences(record["sweep"], work.fingerprint) if record else f"unknown, because its `{RECORD}` cannot be read"
             raise StudyError.saying(
                 f"`{root}` holds designs of another sweep ({what}); name another store, or call with `overwrite=True` to remove them"
             )
@@ -623,7 +623,7 @@ def _begun(fs: fsspec.AbstractFileSystem, root: str, work: _Work, overwrite: boo
 
 
 def _differences(there: dict, here: dict) -> str:
-    """In what two sweeps differ, in words."""
+    """Describes the differences of two sweeps."""
 
     def flat(known: dict) -> dict:
         return {**{k: v for k, v in known.items() if k != "asked"}, **known["asked"]}
@@ -642,13 +642,13 @@ def _differences(there: dict, here: dict) -> str:
 
 
 def _listing(fs: fsspec.AbstractFileSystem, root: str) -> list[str]:
-    """The names of the files at a store, which is made if it is not there."""
+    """Names of the files at a store, which is created if it does not exist."""
     try:
         fs.makedirs(root, exist_ok=True)
         fs.invalidate_cache(root)
         return [path.rpartition("/")[2] for path in fs.ls(root, detail=False)]
     except OSError as error:
-        raise StudyError.saying(f"`{root}` is no store: {error}; name a folder that can be written, or a URL") from error
+        raise StudyError.saying(f"`{root}` is not a valid store: {error}; name a writable folder, or a URL") from error
 
 
 def _remove(fs: fsspec.AbstractFileSystem, root: str, names: Iterable[str]) -> None:
@@ -657,7 +657,7 @@ def _remove(fs: fsspec.AbstractFileSystem, root: str, names: Iterable[str]) -> N
 
 
 def _put(fs: fsspec.AbstractFileSystem, path: str, data: bytes) -> None:
-    """Writes a file, whole or not at all."""
+    """Writes a file atomically."""
     folder, _, name = path.rpartition("/")
     beside = f"{folder}/.{name}.{uuid.uuid4().hex}.partial"
     try:
@@ -665,17 +665,17 @@ def _put(fs: fsspec.AbstractFileSystem, path: str, data: bytes) -> None:
         fs.mv(beside, path)
     except OSError as error:
         raise StudyError.saying(
-            f"`{path}` cannot be written: {error}; the store must be one that the client and all workers reach, with room for it"
+            f"`{path}` cannot be written: {error}; the client and all workers must be able to access the store, and it needs free space"
         ) from error
 
 
-def _bytes(columns: Columns, told: dict) -> bytes:
-    """A table as a file of Parquet: units are in the metadata of columns, what the part is in that of the table."""
+def _bytes(columns: Columns, part_record: dict) -> bytes:
+    """Converts a table to a Parquet file: units are in the metadata of the columns, the record of the part in that of the table."""
     arrays = [pyarrow.array(cells) for cells in columns.values()]
     fields = [pyarrow.field(name, cells.type, metadata=_unit(name)) for name, cells in zip(columns, arrays)]
-    schema = pyarrow.schema(fields, {"hardpoint": json.dumps(told)})
+    schema = pyarrow.schema(fields, {"hardpoint": json.dumps(part_record)})
     sink = pyarrow.BufferOutputStream()
-    # Hardly a number comes twice: dictionaries would only be in the way.
+    # Numbers hardly repeat: dictionaries would be useless.
     pyarrow.parquet.write_table(pyarrow.table(arrays, schema=schema), sink, compression="zstd", use_dictionary=False)
     return sink.getvalue().to_pybytes()
 
@@ -685,14 +685,14 @@ def _unit(name: str) -> dict[str, str] | None:
     return {"unit": found[1]} if found else None
 
 
-def _told(metadata: pyarrow.parquet.FileMetaData) -> dict:
+def _part_record(metadata: pyarrow.parquet.FileMetaData) -> dict:
     return json.loads((metadata.metadata or {}).get(b"hardpoint", b"{}"))
 
 
 def _known(fs: fsspec.AbstractFileSystem, path: str) -> dict:
-    """Metadata of a part; None if there is none, or an incomplete one."""
+    """Metadata of a part; `None` if there is none, or an incomplete one."""
     try:
         with fs.open(path, "rb") as file:
-            return _told(pyarrow.parquet.read_metadata(file))
+            return _part_record(pyarrow.parquet.read_metadata(file))
     except (OSError, pyarrow.ArrowException, ValueError):
         return {}

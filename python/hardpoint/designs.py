@@ -1,4 +1,4 @@
-"""Many designs, solved at once."""
+"""Many designs, solved in one call."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 
 class Designs:
-    """Stored results of many designs. Where a design cannot be moved to its end (`stops`), and by variables that the mechanism cannot
-    follow, numbers are NaN. Arrays are read-only: to change numbers, copy them."""
+    """Stored results of many designs. Values of stopped designs (`stops`) and derivatives by inadmissible variables are NaN. Arrays are
+    read-only: copy them to change values."""
 
     def __init__(self, model: Model, case: int, rows: np.ndarray, outputs: list[str], order: int, at: np.ndarray, found: dict, with_d: bool):
         self.model = model
@@ -23,11 +23,11 @@ class Designs:
         self.variables: tuple[str, ...] = tuple(model.variables)
         drawn = np.array([v.drawn for v in model.variables.values()])
         self.designs: np.ndarray = frozen(np.where(np.isnan(rows), drawn, rows))
-        """`[design, variable]`: the value of every design variable."""
+        """`[design, variable]`: the values of all design variables."""
         self.outputs: tuple[str, ...] = tuple(outputs)
         self.order = order
         self.times: np.ndarray = frozen(np.array(model._info["motions"][case]["times"], dtype=float)[at])
-        """The output times that were kept, s."""
+        """Stored output times, s."""
         self.values: np.ndarray = found["values"]
         """`[design, output, time]`."""
         self._sensitivities: np.ndarray = found["sensitivities"]
@@ -36,7 +36,7 @@ class Designs:
         """`[design, metric]`."""
         self._metric_sensitivities: np.ndarray = found["metric_sensitivities"]
         self.stops: dict[int, Diagnostic] = {number: diagnostics(why)[0] for number, why in found["stops"]}
-        """Designs whose motion ends early, and why."""
+        """Designs whose motion ends early, with the reason."""
 
     @property
     def sensitivities(self) -> np.ndarray:
@@ -50,7 +50,7 @@ class Designs:
 
     def _asked(self, array: np.ndarray) -> np.ndarray:
         if not self._with_d:
-            raise UsageError.saying("the designs were requested no sensitivities; leave `sensitivities=False` out")
+            raise UsageError.saying("the designs were solved without sensitivities; leave `sensitivities=False` out")
         return array
 
     def __len__(self) -> int:
@@ -61,13 +61,13 @@ class Designs:
         return f"<hardpoint.Designs of {self.model.name!r}: {len(self)}{stopped}>"
 
     def metric(self, name: str) -> np.ndarray:
-        """A metric of all designs."""
+        """Values of a metric for all designs."""
         if name not in self.metric_names:
             raise unknown("metric", name, self.metric_names)
         return self.metrics[:, self.metric_names.index(name)]
 
     def to_xarray(self):
-        """All of it, with labels."""
+        """Data set of all results, with labels."""
         import xarray
 
         data = {"values": (("design", "output", "time"), self.values), "metrics": (("design", "metric"), self.metrics)}
@@ -79,7 +79,7 @@ class Designs:
         return xarray.Dataset(data, {**names, "time": self.times})
 
     def to_pandas(self):
-        """Variables and metrics, a row for each design."""
+        """Table of variables and metrics, with a row for each design."""
         import pandas
 
         columns = dict(zip(self.variables, self.designs.T))

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from .studies import Study
 
 CURVES = 6
-"""That many curves of a run are drawn."""
+"""Maximum number of curves of a run."""
 WIDTH, HEIGHT = 260, 90
 
 
 class Page(str):
-    """A page as HTML, shown in a frame."""
+    """A page as HTML, displayed in a frame."""
 
     def _repr_html_(self) -> str:
         return f'<iframe srcdoc="{escape(self)}" style="width:100%;height:640px;border:1px solid #ccc"></iframe>'
@@ -31,24 +31,24 @@ class Page(str):
         return f"<hardpoint.Page, {len(self) / 1e6:.1f} MB of HTML; save it with .save(path)>"
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes it, whole or not at all."""
+        """Writes the page, atomically."""
         files.write(path, self)
 
 
 def number(value) -> str:
-    """A number as tables show it."""
+    """Formats a number for a table."""
     return "–" if value is None or value != value else f"{value:.6g}"
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:
-    """A table."""
+    """Formats a table."""
     cells = lambda tag, row: "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in row)  # noqa: E731
     body = "".join(f"<tr>{cells('td', row)}</tr>" for row in rows)
     return f"<table><thead><tr>{cells('th', head)}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def model(shown: Model) -> str:
-    """The outline of a model."""
+    """Formats the outline of a model."""
     facts = [
         ["bodies", ", ".join(shown.bodies)],
         ["joints", ", ".join(f"{j['name']} ({j['type']})" for j in shown.joints)],
@@ -62,7 +62,7 @@ def model(shown: Model) -> str:
 
 
 def curve(x: np.ndarray, y: np.ndarray, title: str) -> str:
-    """A small curve."""
+    """Draws a small curve."""
     known = np.isfinite(y)
     if not known.any():
         return ""
@@ -80,7 +80,7 @@ def curve(x: np.ndarray, y: np.ndarray, title: str) -> str:
 
 
 def run(shown: Run) -> str:
-    """Curves and metrics of a motion."""
+    """Formats curves and metrics of a motion."""
     outputs = [o for o in shown.model.outputs.values() if o.kind == "measure"] or list(shown.model.outputs.values())
     every = max(1, len(shown) // 200)
     x = shown.times[::every]
@@ -92,7 +92,7 @@ def run(shown: Run) -> str:
 
 
 def study(shown: Study) -> str:
-    """The tables of a study."""
+    """Formats the tables of a study."""
     parts = [f"<b>{escape(shown.message or shown.model.name)}</b>"]
     for one in shown.tables:
         rows = [[cell.get("text", cell) if isinstance(cell, dict) else cell for cell in row] for row in one.get("rows", [])]
@@ -102,10 +102,10 @@ def study(shown: Study) -> str:
 
 
 def counter():
-    """Indicates progress on the standard error."""
+    """Returns a callback that shows progress on the standard error."""
 
-    def told(done: int, total: int) -> None:
+    def report(done: int, total: int) -> None:
         sys.stderr.write(f"\r{done} of {total}" + ("\n" if done >= total else ""))
         sys.stderr.flush()
 
-    return told
+    return report

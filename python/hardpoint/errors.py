@@ -1,4 +1,4 @@
-"""Errors: one class for each kind, all with the diagnostics of the command line."""
+"""Exceptions: one class for each kind, all with the diagnostics of the command line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One finding of the engine."""
+    """A diagnostic of the engine."""
 
     severity: str
     """`error`, `warning` or `note`."""
@@ -21,19 +21,19 @@ class Diagnostic:
     """Code, such as `HP0501`; docs/diagnostics.md lists all codes."""
     message: str
     element: str | None
-    """The name of the element that it is about."""
+    """Name of the affected element."""
     file: str | None
     line: int | None
     column: int | None
     length: int | None
     """Number of underlined characters."""
     label: str | None
-    """Text at the underlined place."""
+    """Text at the underlined position."""
     notes: tuple[str, ...]
     help: str | None
-    """Instruction that corrects the problem."""
+    """Suggested fix."""
     rendered: str
-    """As the command line shows it, with its place in the text."""
+    """Text as on the command line, with its position in the file."""
 
     @classmethod
     def of(cls, found: dict) -> Diagnostic:
@@ -48,14 +48,14 @@ def _plain(message: str) -> dict:
 
 
 def diagnostics(text: str) -> tuple[Diagnostic, ...]:
-    """Those of a JSON text, one or a list."""
+    """Diagnostics of a JSON text, one or a list."""
     found = json.loads(text)
     return tuple(Diagnostic.of(one) for one in (found if isinstance(found, list) else [found]))
 
 
 class HardpointError(Exception):
-    """Anything that the engine refuses. `code`, `element`, `file`, `line`, `column`, `help` and `rendered` are those of the first of
-    its `diagnostics`."""
+    """Base class of all errors. `code`, `element`, `file`, `line`, `column`, `help` and `rendered` are those of the first of its
+    `diagnostics`."""
 
     diagnostics: tuple[Diagnostic, ...]
 
@@ -81,7 +81,7 @@ class HardpointError(Exception):
 
 
 class ModelError(HardpointError):
-    """The file cannot be read, or the text is no valid model."""
+    """The file cannot be read, or the text is not a valid model."""
 
 
 class TopologyError(HardpointError):
@@ -89,17 +89,17 @@ class TopologyError(HardpointError):
 
 
 class MotionStopped(HardpointError):
-    """A motion ends before its last output time: it locks, cannot be assembled, leaves its laws. `run` has what was solved."""
+    """A motion ends before its last output time: it locks, does not assemble, or leaves the range of a law. `run` has the solved part."""
 
     run: Run | None = None
 
 
 class CannotFollow(HardpointError):
-    """The mechanism cannot follow a design variable: redundant constraints would contradict each other, so there is no sensitivity."""
+    """A design variable is inadmissible: redundant constraints would contradict each other, so there is no sensitivity."""
 
 
 class StudyError(HardpointError):
-    """A study cannot be done."""
+    """A study is impossible."""
 
 
 class UsageError(HardpointError, ValueError):
@@ -111,7 +111,7 @@ class HardpointWarning(UserWarning):
 
 
 def unknown(what: str, name: str, known) -> UsageError:
-    """A name that does not exist, with the nearest one that does."""
+    """Error for an unknown name, with the most similar known name."""
     from difflib import get_close_matches
 
     known = list(known)

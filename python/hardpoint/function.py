@@ -1,4 +1,4 @@
-"""A mechanism as a function of its design, with exact derivatives: what optimisers and other programs take."""
+"""A mechanism as a function of its design, with exact derivatives, for optimisers and other programs."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ STEP = 1e-5
 
 @dataclass(frozen=True)
 class Part:
-    """One of the things that a function comes to."""
+    """One output of a function: a metric or a curve."""
 
     name: str
-    """`toe`, or `bump.toe` of a model with cases."""
+    """Name: `toe`, or `bump.toe` for a model with cases."""
     case: int
     of: str
     is_metric: bool
@@ -85,18 +85,18 @@ class Function:
 
     @property
     def start(self) -> np.ndarray:
-        """The values of the variables in the design configuration."""
+        """Nominal values of the variables."""
         return np.array([self.model.variables[name].drawn for name in self.variables])
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Least and greatest values, infinite where the model has none."""
+        """Lower and upper bounds, infinite if the model has none."""
         bounds = [self.model.variables[name].bounds or (-np.inf, np.inf) for name in self.variables]
         return np.array([b[0] for b in bounds]), np.array([b[1] for b in bounds])
 
     @property
     def steps(self) -> np.ndarray:
-        """Changes of the variables that central differences are well taken with: round-off and curvature are both small."""
+        """Suitable steps for central differences: round-off and truncation errors are both small."""
         places = np.array(list(self.model.hardpoints.values()) or [[0.0], [1.0]])
         size = float((places.max(axis=0) - places.min(axis=0)).max()) or 1.0
         radian = 1.0 if self.model.units["angle"] == "rad" else 180 / np.pi
@@ -104,32 +104,32 @@ class Function:
         return np.array([STEP * kinds.get(self.model.variables[name].unit, 1.0) for name in self.variables])
 
     def design(self, x) -> dict[str, float]:
-        """The design of these values."""
+        """Design with these values."""
         return dict(zip(self.variables, np.asarray(x, dtype=float).ravel()))
 
     def __call__(self, x) -> np.ndarray:
-        """All numbers, `[size]`."""
+        """Values of all outputs, `[size]`."""
         return self._solved(x, False)[0].copy()
 
     def jacobian(self, x) -> np.ndarray:
-        """Their derivatives, `[size, variable]`."""
+        """Derivatives of all outputs, `[size, variable]`."""
         return self._solved(x, True)[1].copy()
 
     def value(self, x) -> float:
-        """Value of a function of one number."""
+        """Value of a scalar function."""
         return float(self._one(self(x))[0])
 
     def gradient(self, x) -> np.ndarray:
-        """Gradient of a function of one number."""
+        """Gradient of a scalar function."""
         return self._one(self.jacobian(x))[0]
 
     def _one(self, found: np.ndarray) -> np.ndarray:
         if self.size != 1:
-            raise UsageError.saying(f"the function has {self.size} numbers; name one metric for a value and its gradient")
+            raise UsageError.saying(f"the function has {self.size} outputs; name a single metric for a value and its gradient")
         return found
 
     def part(self, name: str, numbers: np.ndarray) -> np.ndarray:
-        """The numbers of one of its parts."""
+        """Values of one of its parts."""
         for part in self.parts:
             if part.name == name:
                 return numbers[part.place]
@@ -174,9 +174,9 @@ class Function:
 
     def _check(self, part: Part, values: np.ndarray, jacobian: np.ndarray | None) -> None:
         if np.isnan(values[part.place]).any():
-            raise StudyError.saying(f"`{part.name}` has no number in this design" + ("" if part.is_metric else " at some output times"))
+            raise StudyError.saying(f"`{part.name}` is undefined in this design" + ("" if part.is_metric else " at some output times"))
         if jacobian is None:
             return
         for column, name in enumerate(self.variables):
             if np.isnan(jacobian[part.place, column]).any():
-                raise CannotFollow.saying(f"there is no derivative of `{part.name}` by `{name}`: the mechanism cannot follow it")
+                raise CannotFollow.saying(f"there is no derivative of `{part.name}` by `{name}`: the variable is inadmissible")

@@ -27,7 +27,7 @@ def function(of: Function) -> Callable[[jax.Array], jax.Array]:
     @solved.defjvp
     def along(at, way):
         (x,), (dx,) = at, way
-        # Linear in the way, so that JAX transposes it by itself.
+        # Linear in the direction, so that JAX can transpose it.
         jacobian = jax.pure_callback(lambda x: of.jacobian(np.asarray(x)), slopes, x, vmap_method="sequential")
         return solved(x), jacobian @ dx
 

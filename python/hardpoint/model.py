@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Design = Union[Mapping[str, float], "ArrayLike", None]
 """A design: values by the names of design variables, or all of them in order. Missing values, and NaN, are nominal."""
 Progress = Union[Callable[[int, int], Any], bool, None]
-"""Is reported how much is done of how much; `True` writes it to the standard error."""
+"""Receives the amount done and the total; `True` writes them to the standard error."""
 
 MOST_RANKED = 200
 """Maximum number of hardpoints whose coordinates are variables of a what-if."""
@@ -35,18 +35,18 @@ ORDERS = {0: 0, 1: 1, 2: 2, "value": 0, "rate": 1, "acceleration": 2}
 
 @dataclass(frozen=True)
 class Variable:
-    """A design variable. The value of a parameter is its own; for all others it is a change, zero in the nominal design."""
+    """A design variable. Its value is that of the parameter, or for all others a change, zero in the nominal design."""
 
     name: str
     unit: str
     drawn: float
     """Value in the nominal design."""
     bounds: tuple[float, float] | None
-    """Between which values it may lie."""
+    """Lower and upper bound."""
     typical: float | None
     """Typical size of a change."""
     tolerance: float | None
-    """By how much it may be off when it is made, either way."""
+    """Manufacturing tolerance, plus or minus."""
     is_parameter: bool
 
 
@@ -58,19 +58,18 @@ class Output:
     kind: str
     """`measure` or `point`."""
     columns: tuple[str, ...]
-    """The names of value, rate and acceleration, as many as are known."""
+    """Names of value, rate and acceleration, up to the highest order available."""
     units: tuple[str, ...]
     """Their units."""
     by_position: bool
-    """True if it follows from the position alone: then it has second derivatives by the design."""
+    """True if it depends on the position only; then it has second derivatives by the design."""
 
 
 class Model:
-    """A mechanism that was read and checked, with its plan of solution.
+    """A mechanism, read and checked, with its plan of solution.
 
-    A model never changes; all methods may be called from several threads at once, and long ones leave the interpreter free.
-    Models pickle. A model with cases is requested one of them, `model.case("bump").run()` or `model.run(case="bump")`; studies take
-    all of them.
+    A model is immutable; all methods are thread-safe, and long ones release the interpreter lock. Models can be pickled. For a model
+    with cases, select one: `model.case("bump").run()` or `model.run(case="bump")`; studies use all of them.
     """
 
     def __init__(self, native: _native.Model, case: int | None = None, variables: tuple[bool, bool] = (False, False)):
@@ -97,38 +96,38 @@ class Model:
         self._variable_index = {name: k for k, name in enumerate(self.variables)}
         self._output_index = {name: k for k, name in enumerate(self.outputs)}
 
-    # What it is
+    # Contents
 
     @property
     def text(self) -> str:
-        """The text of the model file."""
+        """Text of the model file."""
         return self._native.text
 
     @property
     def file(self) -> str:
-        """The name of the model file."""
+        """Name of the model file."""
         return self._native.file
 
     @property
     def measures(self) -> tuple[str, ...]:
-        """The names of the measures."""
+        """Names of the measures."""
         return tuple(o.name for o in self.outputs.values() if o.kind == "measure")
 
     def times(self, case: str | None = None) -> np.ndarray:
-        """The output times of a case, s."""
+        """Output times of a case, s."""
         return frozen(np.array(self._info["motions"][self._index(case)]["times"], dtype=float))
 
     def metrics(self, case: str | None = None) -> dict[str, str]:
-        """The metrics of a case, with their units."""
+        """Metrics of a case, with their units."""
         return {m["name"]: m["unit"] for m in self._info["motions"][self._index(case)]["metrics"]}
 
     def case(self, name: str) -> Model:
-        """The model in one of its cases."""
+        """Returns the model in one of its cases."""
         return Model(self._native, self._named(name), self._added)
 
     def with_coordinates(self, tilts: bool = False) -> Model:
-        """The model with a design variable for every coordinate of its hardpoints (`A.x`), and with `tilts` for every tilt of the axes of
-        its joints (`hinge.tilt_x`), besides its own."""
+        """Returns the model with additional design variables: every coordinate of its hardpoints (`A.x`), and with `tilts` every tilt of
+        its joint axes (`hinge.tilt_x`)."""
         return Model(self._native.with_variables(True, tilts), self._case, (True, tilts or self._added[1]))
 
     def __repr__(self) -> str:
@@ -147,8 +146,8 @@ class Model:
     def run(self, design: Design = None, *, case: str | None = None, sensitivities: bool = True, partial: bool = False) -> Run:
         """Solves the motion of a design: position, velocity, acceleration, and their sensitivities by all design variables.
 
-        Raises `MotionStopped` where the motion ends before its last output time; with `partial`, what was solved is returned, and
-        `run.stop` says why it ends.
+        Raises `MotionStopped` if the motion ends before its last output time; with `partial`, the solved part is returned, and
+        `run.stop` has the reason.
         """
         index = self._index(case)
         run = Run(self, index, self._native.run(index, self._values(design), sensitivities))
@@ -159,7 +158,7 @@ class Model:
         return run
 
     def runs(self, design: Design = None, **options) -> dict[str, Run]:
-        """`run` in every case."""
+        """Runs every case."""
         return {case: self.run(design, case=case, **options) for case in self.cases}
 
     def designs(
@@ -177,11 +176,11 @@ class Model:
         workers: int | None = None,
         progress: Progress = None,
     ) -> Designs:
-        """Solves many designs at once, without a Python object per design or step.
+        """Solves many designs in one call, without a Python object per design or step.
 
-        `designs` has a row for each, with values of `variables`, or of all design variables; or it is a list of dictionaries. Of each
-        are kept: `outputs` of an `order` at the output times of the numbers `at` (all), the `metrics`, and the `sensitivities` of
-        both. Raises `MotionStopped` if one of them ends early; with `partial` its numbers are NaN, and `stops` says why.
+        `designs` has a row for each design, with values of `variables`, or of all design variables; or it is a list of dictionaries. The
+        result has `outputs` of an `order` at the output times with the indices `at` (all), the `metrics`, and the `sensitivities` of both.
+        Raises `MotionStopped` if a motion ends early; with `partial` its values are NaN, and `stops` has the reason.
         """
         index = self._index(case)
         rows = self._rows(designs, variables)
@@ -196,15 +195,15 @@ class Model:
         if found.stops and not partial:
             number, why = next(iter(found.stops.items()))
             error = MotionStopped((why,))
-            error.add_note(f"design {number} of {len(rows)}; `partial=True` keeps the others") if hasattr(error, "add_note") else None
+            error.add_note(f"design {number} of {len(rows)}; `partial=True` returns the others") if hasattr(error, "add_note") else None
             raise error
         return found
 
     def gradients(
         self, outputs: str | Iterable[str], design: Design = None, *, case: str | None = None, order: int | str = 0, method: str = "auto"
     ) -> np.ndarray:
-        """Derivatives of some outputs by all design variables, `[time, output, variable]`: by direct differentiation, adjoint, or
-        (`auto`) whichever is shorter. NaN by variables that the mechanism cannot follow."""
+        """Derivatives of some outputs by all design variables, `[time, output, variable]`: by direct differentiation, the adjoint method,
+        or (`auto`) the cheaper of both. NaN for inadmissible variables."""
         names = [outputs] if isinstance(outputs, str) else list(outputs)
         order = self._order(order, names)
         found = self._native.gradients(self._index(case), self._values(design), [self._output(name) for name in names], method)
@@ -219,18 +218,18 @@ class Model:
         chosen = list(self.variables) if variables is None else [variables] if isinstance(variables, str) else list(variables)
         for name in names:
             if not self._declared(name).by_position:
-                raise UsageError.saying(f"`{name}` does not follow from the position alone: there are no second derivatives of it")
+                raise UsageError.saying(f"`{name}` does not depend on the position only: it has no second derivatives")
         return self._native.second(
             self._index(case), self._values(design), [self._output(n) for n in names], [self._variable(v) for v in chosen]
         )
 
     def jerk(self, design: Design = None, *, case: str | None = None) -> dict[str, np.ndarray]:
-        """The third time derivatives of all bodies: per body `[time, 6]`, of the position and the angular one."""
+        """Third time derivatives of all bodies: per body `[time, 6]`, linear and angular."""
         found = self._native.jerk(self._index(case), self._values(design))
         return {body: found["jerk"][:, k] for k, body in enumerate(self.bodies)}
 
     def maps(self, *, progress: Progress = None) -> list[dict]:
-        """The cases that sweep two drivers over a grid, solved, as `maps.json` of the command line has them."""
+        """Solves the cases that sweep two drivers over a grid; the result is that of `maps.json` of the command line."""
         return json.loads(self._native.maps(listener(progress)))
 
     # Studies
@@ -238,7 +237,7 @@ class Model:
     def what_if(self, design: Design, *, case: str | None = None) -> Study:
         """Effect of a changed design on every measure and metric: exact, and predicted to first and second order.
 
-        As on the command line, coordinates of hardpoints are variables too: `{"tie_rod_outer.z": 2.0}`.
+        As on the command line, coordinates of hardpoints are also variables: `{"tie_rod_outer.z": 2.0}`.
         """
         whole = self._whole
         named = design if design is None or isinstance(design, Mapping) else dict(zip(self.variables, self._values(design)))
@@ -246,21 +245,21 @@ class Model:
 
     @cached_property
     def _whole(self) -> Model:
-        """The model with a variable for every coordinate, up to a maximum number."""
+        """Model with a variable for every coordinate, up to a maximum number."""
         return self.with_coordinates() if len(self.hardpoints) <= MOST_RANKED else self
 
     def verify(self, *, case: str | None = None, progress: Progress = None) -> Study:
-        """Compares all sensitivities with designs that are solved anew."""
+        """Compares all sensitivities with re-solved designs."""
         return outcome(self, self._native.verify(self._index(case), listener(progress)))
 
     def validity(self, *, case: str | None = None) -> list[dict]:
-        """Linear range of each sensitivity: the change up to which the design follows it."""
+        """Linear range of each sensitivity."""
         return json.loads(self._native.validity(self._index(case)))
 
     def optimize(
         self, *, starts: int | None = None, iterations: int | None = None, workers: int | None = None, progress: Progress = None
     ) -> Study:
-        """Searches for the design that serves `[optimize]` of the model best, in all cases."""
+        """Optimises the design for the goals of `[optimize]` in the model, in all cases."""
         text, design, exact = self._native.optimize(0, starts, iterations, workers, listener(progress))
         return outcome(self, text, design, exact)
 
@@ -273,7 +272,7 @@ class Model:
         workers: int | None = None,
         progress: Progress = None,
     ) -> Study:
-        """Tolerance study of the design variables; `allocate` (`rss`, `worst_case`) finds the loosest tolerances that keep the limits."""
+        """Analyses the tolerances of the design variables; `allocate` (`rss`, `worst_case`) finds the loosest tolerances that keep the limits."""
         return outcome(self, self._native.tolerance(samples, seed, allocate, workers, listener(progress)))
 
     def calibrate(
@@ -286,7 +285,7 @@ class Model:
         iterations: int = 100,
         progress: Progress = None,
     ) -> Study:
-        """Finds the design that explains what was measured: a CSV file (docs/calibrate.md has its columns), or a pandas table of the same."""
+        """Fits the design to measured data: a CSV file (docs/calibration.md lists its columns), or a pandas table with the same columns."""
         path, temporary = measured, None
         if not isinstance(measured, (str, os.PathLike)):
             import tempfile
@@ -305,14 +304,14 @@ class Model:
         return outcome(self, text, design, design)
 
     def sweep(self, *, workers: int | None = None, progress: Progress = None, **asked) -> SweepResult:
-        """Solves many designs in all cases, as `hardpoint sweep` does: `method` (`sobol`, `latin_hypercube`, `factorial`, `sobol_indices`),
-        `samples`, `seed`, `levels`, `ranges` (`{"lca_front_z": (-5, 5)}`), `curves` (names of measures whose whole curves are kept),
-        `designs` (a CSV file that lists them)."""
+        """Solves many designs in all cases, like `hardpoint sweep`: `method` (`sobol`, `latin_hypercube`, `factorial`, `sobol_indices`),
+        `samples`, `seed`, `levels`, `ranges` (`{"lca_front_z": (-5, 5)}`), `curves` (names of measures whose curves are stored),
+        `designs` (a CSV file of designs)."""
         columns, curves, text = self.sweep_plan(**asked).run(workers, listener(progress))
         return SweepResult(self, dict(columns), dict(curves), json.loads(text))
 
     def sweep_plan(self, **asked) -> _native.Sweep:
-        """The sweep, to be solved by parts."""
+        """Returns the sweep, to be solved in parts."""
         if "designs" in asked:
             asked["designs"] = os.fspath(asked["designs"])
         asked["ranges"] = {name: [float(a), float(b)] for name, (a, b) in dict(asked.get("ranges") or {}).items()}
@@ -323,11 +322,11 @@ class Model:
     # Designs
 
     def edited(self, design: Design) -> str:
-        """The text of the model file with a design written into it, comments and layout kept."""
+        """Returns the text of the model file with a design written into it; comments and layout are preserved."""
         return self._native.edited(self._values(design))
 
     def save(self, path: str | os.PathLike, design: Design = None) -> None:
-        """Writes the model file with a design in it, whole or not at all."""
+        """Writes the model file with a design in it, atomically."""
         files.write(path, self.text if design is None else self.edited(design))
 
     def _values(self, design: Design) -> list[float]:
@@ -341,7 +340,7 @@ class Model:
         values = np.asarray(design, dtype=float)
         if values.shape != (len(self.variables),):
             raise UsageError.saying(
-                f"a design is one value for each of the {len(self.variables)} design variables, or a dictionary; the shape given is {values.shape}"
+                f"a design has one value for each of the {len(self.variables)} design variables, or is a dictionary; the shape given is {values.shape}"
             )
         return values.tolist()
 
@@ -389,10 +388,10 @@ class Model:
 
     def _order(self, order: int | str, names: Iterable[str]) -> int:
         if order not in ORDERS:
-            raise UsageError.saying(f"`{order}` is no order; there are value (0), rate (1), acceleration (2)")
+            raise UsageError.saying(f"unknown order `{order}`; there are value (0), rate (1), acceleration (2)")
         for name in names:
             if ORDERS[order] >= len(self._declared(name).columns):
-                raise UsageError.saying(f"of `{name}` there is no {('value', 'rate', 'acceleration')[ORDERS[order]]}")
+                raise UsageError.saying(f"`{name}` has no {('value', 'rate', 'acceleration')[ORDERS[order]]}")
         return ORDERS[order]
 
 
@@ -411,12 +410,12 @@ def _opened(native: _native.Model) -> Model:
 
 
 def read(path: str | os.PathLike) -> Model:
-    """Reads a model file. Raises `ModelError` with everything that is wrong with it, `TopologyError` if it cannot be driven."""
+    """Reads a model file. Raises `ModelError` with all its errors, and `TopologyError` if it cannot be driven."""
     return _opened(_native.read(os.fspath(path)))
 
 
 def parse(text: str, name: str = "model.toml", folder: str | os.PathLike | None = None) -> Model:
-    """Reads a model from a text; files that it names lie in `folder`."""
+    """Reads a model from a text; files that it names are in `folder`."""
     return _opened(_native.parse(text, name, folder=None if folder is None else os.fspath(folder)))
 
 
@@ -435,7 +434,7 @@ def build(folder: str | os.PathLike | None = None, **sections) -> Model:
         ...     time={"end": 6.0, "steps": 100},
         ... )
 
-    `model.text` is the file that says the same; diagnostics show their places in it.
+    `model.text` is the equivalent file; diagnostics refer to it.
     """
     name = str(sections.get("name", "model"))
     text = json.dumps(sections, default=_plain)
@@ -447,12 +446,12 @@ def _plain(value: Any) -> Any:
         return value.tolist()
     if hasattr(value, "__fspath__"):
         return os.fspath(value)
-    raise UsageError.saying(f"a model is made of numbers, texts, lists and dictionaries; {value!r} is none of them")
+    raise UsageError.saying(f"a model consists of numbers, texts, lists and dictionaries, not of {value!r}")
 
 
 @lru_cache(maxsize=16)
 def _restored(text: str, file: str, files: tuple, added: tuple[bool, bool], case: int | None) -> Model:
-    """A model that was pickled; one that is sent again is the same, with its plan."""
+    """Restores a pickled model; a model that is sent again is shared, with its plan."""
     if case is not None:
         return Model(_restored(text, file, files, added, None)._native, case, added)
     native = _native.parse(text, file, files=dict(files))

@@ -12,7 +12,7 @@ from .model import Model
 
 
 def plain(name: str) -> str:
-    """A name as OpenMDAO takes it."""
+    """Converts a name to one that OpenMDAO allows."""
     return "".join(c if c.isalnum() or c == "_" else "_" for c in name)
 
 
@@ -38,7 +38,7 @@ class MechanismComp(om.ExplicitComponent):
         for part in self.function.parts:
             self.add_output(plain(part.name), shape=part.place.stop - part.place.start, desc=f"`{part.name}` [{part.unit}]")
         self.declare_partials("*", "*")
-        # Complex steps cannot go through the engine.
+        # The engine does not support complex steps.
         for name, step in zip(self.function.variables, self.function.steps):
             self.set_check_partial_options(plain(name), method="fd", form="central", step=step, step_calc="abs")
 

@@ -1,4 +1,4 @@
-"""Motions that have been solved."""
+"""Solved motions."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Metric:
-    """A number that a motion comes to."""
+    """One number of a measure's curve."""
 
     name: str
     unit: str
     value: float
-    """NaN where the motion does not reach what it is taken of."""
+    """Value; NaN if the motion ends before it is defined."""
     time: float | None
-    """When it is taken, s; `None` for what is taken of the whole curve."""
+    """Time of the value, s; `None` if it depends on the whole curve."""
     error: float | None
     """Error of the interpolation between output times."""
     sensitivities: dict[str, float]
-    """Derivatives by the design variables that the mechanism follows."""
+    """Derivatives by the admissible design variables."""
 
 
 class Body:
@@ -64,8 +64,8 @@ class BodySensitivity:
 
 
 class Run:
-    """The motion of one design in one case. Arrays go over the output times that were solved; they are made once, when first asked
-    for, and slices of them are views. They are read-only: to change numbers, copy them."""
+    """The motion of one design in one case. Arrays cover the solved output times; they are created on first use, and slices are views.
+    They are read-only: copy them to change values."""
 
     def __init__(self, model: Model, case: int, native: _native.Run):
         self.model = model
@@ -78,7 +78,7 @@ class Run:
 
     @property
     def case(self) -> str | None:
-        """The case."""
+        """Name of the case."""
         return self.model.cases[self._index] if self.model.cases else None
 
     @cached_property
@@ -88,7 +88,7 @@ class Run:
 
     @cached_property
     def design(self) -> dict[str, float]:
-        """The value of every design variable."""
+        """Values of all design variables."""
         return dict(zip(self.model.variables, self._native.design))
 
     def __len__(self) -> int:
@@ -105,14 +105,14 @@ class Run:
         return self._native.values()
 
     def values(self, name: str, order: int | str = 0) -> np.ndarray:
-        """A measure, or a coordinate of a point (`wheel.x`), over the output times; `order` 1 is its rate, 2 its acceleration. NaN
-        where it has no number at that time: the curvature of a path whose point rests."""
+        """Values of a measure, or of a coordinate of a point (`wheel.x`), over the output times; `order` 1 is its rate, 2 its acceleration.
+        NaN where it is undefined, such as the curvature of the path of a point at rest."""
         index = self.model._output(name)
         return self._values[index, self.model._order(order, [name])]
 
     def _derivatives(self, order: int) -> np.ndarray:
         if not self._followed:
-            raise UsageError.saying("the run was requested no sensitivities; leave `sensitivities=False` out")
+            raise UsageError.saying("the run was solved without sensitivities; leave `sensitivities=False` out")
         if order not in self._by_order:
             self._by_order[order] = self._native.sensitivities(order)
         return self._by_order[order]
@@ -123,7 +123,7 @@ class Run:
 
     @property
     def followed(self) -> tuple[str, ...]:
-        """The design variables that the mechanism can follow: those that there are sensitivities by."""
+        """Admissible design variables: those with sensitivities."""
         return tuple(name for name, (yes, _) in zip(self.model.variables, self._followed) if yes)
 
     def _follow(self, variable: str) -> int:
@@ -131,24 +131,24 @@ class Run:
         if self._followed:
             yes, why = self._followed[index]
             if not yes:
-                raise CannotFollow(diagnostics(why)) if why else CannotFollow.saying(f"the mechanism cannot follow `{variable}`")
+                raise CannotFollow(diagnostics(why)) if why else CannotFollow.saying(f"`{variable}` is inadmissible")
         return index
 
     def sensitivity(self, name: str, variable: str, order: int | str = 0) -> np.ndarray:
-        """The derivative of a measure or point coordinate by a design variable over the output times, at fixed time: exact, in the unit
-        of the one per unit of the other. Raises `CannotFollow` where there is none."""
+        """Exact derivative of a measure or point coordinate by a design variable over the output times, at fixed time, in the unit of the
+        output per unit of the variable. Raises `CannotFollow` if the variable is inadmissible."""
         index, order = self.model._output(name), self.model._order(order, [name])
         by = self._follow(variable)
         return self._derivatives(order)[index, by]
 
     def sensitivities(self, name: str | None = None, variables: Iterable[str] | None = None, order: int | str = 0) -> np.ndarray:
-        """The derivatives of one output, `[variable, time]`, or of all, `[output, variable, time]`, by some design variables: by all
-        in `followed`, if none are named."""
+        """Derivatives of one output, `[variable, time]`, or of all outputs, `[output, variable, time]`, by some design variables; by
+        default, by all in `followed`."""
         chosen = list(self.followed) if variables is None else list(variables)
         by = [self._follow(variable) for variable in chosen]
         order = self.model._order(order, [name] if name else [])
         found = self._derivatives(order)
-        # Where all are followed, nothing is copied.
+        # If all variables are admissible, nothing is copied.
         found = found if by == list(range(found.shape[1])) else frozen(found[:, by])
         return found if name is None else found[self.model._output(name)]
 
@@ -160,21 +160,21 @@ class Run:
         return 1 + self.model.bodies.index(name)
 
     def body(self, name: str) -> Body:
-        """The motion of a body."""
+        """Motion of a body."""
         return Body(name, self._native.body(self._body(name)))
 
     def body_sensitivity(self, name: str, variable: str) -> BodySensitivity:
         """Derivatives by a design variable."""
         by = self._follow(variable)
         if not self._followed:
-            raise UsageError.saying("the run was requested no sensitivities; leave `sensitivities=False` out")
+            raise UsageError.saying("the run was solved without sensitivities; leave `sensitivities=False` out")
         return BodySensitivity(name, self._native.body_sensitivity(self._body(name), by))
 
-    # What it comes to
+    # Metrics and diagnostics
 
     @cached_property
     def metrics(self) -> dict[str, Metric]:
-        """The metrics of the case, with their exact derivatives."""
+        """Metrics of the case, with their exact derivatives."""
         values, d = self._native.metrics()
         followed = [k for k, (yes, _) in enumerate(self._followed) if yes]
         names = list(self.model.variables)
@@ -191,14 +191,14 @@ class Run:
         }
 
     def metric(self, name: str) -> float:
-        """The value of a metric."""
+        """Value of a metric."""
         if name not in self.metrics:
             raise unknown("metric", name, self.metrics)
         return self.metrics[name].value
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Diagnostics of the motion: variables that cannot be followed or change nothing, positions near a dead point."""
+        """Diagnostics of the motion: inadmissible variables, variables without effect, positions near a dead point."""
         return diagnostics(self._native.diagnostics())
 
     def summary(self) -> dict:
@@ -206,7 +206,7 @@ class Run:
         return json.loads(self._native.summary())
 
     def page(self) -> display.Page:
-        """The page that `hardpoint run` writes: a studio, with the engine in it. Shown in a notebook, or saved."""
+        """The page that `hardpoint run` writes: a studio with the engine. Display it in a notebook, or save it."""
         return display.Page(self._native.page())
 
     def _repr_html_(self) -> str:
@@ -222,7 +222,7 @@ class Run:
         return columns
 
     def to_pandas(self):
-        """Measures and points with their rates, a column each, over time."""
+        """Table over time with a column for each measure, point and rate."""
         import pandas
 
         return pandas.DataFrame(self._columns())

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Study:
-    """A study that has ended: `facts` are those that the command line writes as JSON (docs/results.md), `tables` those that it prints."""
+    """A finished study: `facts` are those that the command line writes as JSON (docs/results.md), `tables` those that it prints."""
 
     def __init__(self, model: Model, facts: dict[str, Any], tables: list[dict], rounded: list[float] | None, exact: list[float] | None):
         self.model = model
@@ -24,9 +24,9 @@ class Study:
         self.tables = tables
         names = list(model.variables)
         self.design: dict[str, float] | None = dict(zip(names, exact)) if exact else None
-        """The design that was found: the value of every design variable."""
+        """Resulting design: the values of all design variables."""
         self.rounded: dict[str, float] | None = dict(zip(names, rounded)) if rounded else None
-        """Design with rounded numbers, as it is saved."""
+        """Resulting design with rounded numbers, as saved."""
 
     @property
     def status(self) -> str | None:
@@ -35,20 +35,20 @@ class Study:
 
     @property
     def message(self) -> str | None:
-        """Status in words, with an instruction."""
+        """Status as a sentence, with a suggested action."""
         return self.facts.get("message")
 
     def text(self) -> str:
-        """The text of the model file with the design that was found."""
+        """Text of the model file with the resulting design."""
         return self.model.edited(self._found())
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes it, whole or not at all."""
+        """Writes the model file with the resulting design, atomically."""
         self.model.save(path, self._found())
 
     def _found(self) -> dict[str, float]:
         if self.rounded is None:
-            raise UsageError.saying("the study has found no design")
+            raise UsageError.saying("the study has no resulting design")
         return self.rounded
 
     def __repr__(self) -> str:
@@ -64,26 +64,26 @@ def outcome(model: Model, text: str, rounded: list[float] | None = None, exact: 
 
 
 class SweepResult(Study):
-    """A sweep that has ended."""
+    """A finished sweep."""
 
     def __init__(self, model: Model, columns: dict[str, Any], curves: dict[str, Any], found: dict):
         super().__init__(model, found["facts"], found["tables"], None, None)
         self.columns: dict[str, np.ndarray | list[str]] = columns
-        """The table of designs: number, variables, metrics, and why a design failed (docs/sweep.md). NaN where there is no number."""
+        """Table of designs: number, variables, metrics, and the reason of a failure (docs/sweep.md). Undefined values are NaN."""
         self.curves: dict[str, np.ndarray | list[str]] = curves
-        """The table of curves; empty where none were requested."""
+        """Table of curves; empty if none were requested."""
 
     def __len__(self) -> int:
         return len(self.columns["design"])
 
     def to_pandas(self):
-        """The table of designs."""
+        """Table of designs."""
         import pandas
 
         return pandas.DataFrame(self.columns)
 
     def to_arrow(self):
-        """The table of designs."""
+        """Table of designs."""
         import pyarrow
 
         return pyarrow.table(self.columns)

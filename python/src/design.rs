@@ -1,17 +1,16 @@
-//! Designs as Python gives them.
+//! Designs as Python passes them.
 
 use hardpoint::model::VariableId;
 use hardpoint_file::ModelFile;
 
 use crate::failure::Failure;
 
-/// The changes, in SI, of a design: a value for every variable, NaN for what stays in the design configuration, or
-/// nothing at all.
+/// Changes of a design in SI. A design has a value for every variable, NaN for nominal values, or no value at all.
 pub(crate) fn changes(file: &ModelFile, values: &[f64]) -> Result<Vec<f64>, Failure> {
     let model = &file.model;
     if !values.is_empty() && values.len() != model.variables.len() {
         return Err(Failure::Misunderstood(format!(
-            "a design of this model is {} values, one for each design variable, and {} were given",
+            "a design of this model has {} values, one for each design variable; {} were given",
             model.variables.len(),
             values.len()
         )));
@@ -30,12 +29,12 @@ pub(crate) fn changes(file: &ModelFile, values: &[f64]) -> Result<Vec<f64>, Fail
     values.iter().enumerate().map(change).collect()
 }
 
-/// The value of a variable in the design configuration.
+/// Nominal value of a variable.
 pub(crate) fn drawn(file: &ModelFile, variable: VariableId) -> f64 {
     shown(file, variable, 0.0)
 }
 
-/// The value that a change makes.
+/// Value of a variable after a change.
 pub(crate) fn shown(file: &ModelFile, variable: VariableId, change: f64) -> f64 {
     let quantity = file.model.variables[variable.0].quantity;
     file.units.from_si(quantity, change + file.model.nominal_value(variable))

@@ -1,4 +1,4 @@
-//! Many designs at once, as one array.
+//! Many designs in one call, as one array.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::array::{array, array1};
-use crate::failure::{Failure, Kind, told};
+use crate::failure::{Failure, Kind, diagnostic_json};
 use crate::model::Model;
 use crate::run::derivatives;
 use crate::watch::patiently;
@@ -61,10 +61,10 @@ impl Kept {
 
 #[pymethods]
 impl Model {
-    /// Solves many designs, one in each row, in a case, and keeps of them: an order of some outputs at some output
-    /// times (by their numbers) `[design, output, time]`, their derivatives `[design, output, variable, time]`, all
-    /// metrics `[design, metric]` and theirs `[design, metric, variable]`. NaN where a motion ends before, or a
-    /// variable cannot be followed; `stops` says which do.
+    /// Solves many designs, one per row, in a case. Returns one order of some outputs at some output times (by index)
+    /// `[design, output, time]`, their derivatives `[design, output, variable, time]`, all metrics `[design, metric]`
+    /// and their derivatives `[design, metric, variable]`. Values are NaN after a stop and for inadmissible variables;
+    /// `stops` lists the stopped designs.
     #[pyo3(signature = (case, designs, outputs, order, at, sensitivities, metrics, workers=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn designs<'py>(
@@ -128,7 +128,7 @@ impl Model {
         Ok(found)
     }
 
-    /// Gradients of some outputs over the motion, direct, adjoint, or whichever is shorter: times and
+    /// Gradients of some outputs over the motion, direct, adjoint, or the cheaper of both: times and
     /// `[time, output, variable, order]`.
     fn gradients<'py>(
         &self,
@@ -145,15 +145,15 @@ impl Model {
             "adjoint" => GradientMethod::Adjoint,
             _ => {
                 return Err(Failure::Misunderstood(format!(
-                    "`{method}` is no method; there are auto, direct, adjoint"
+                    "unknown method `{method}`; there are auto, direct, adjoint"
                 ))
                 .into());
             }
         };
         let found = patiently(py, None, |watch| watch.over(analysis).gradients(&changes, &outputs, method))?;
         if let Some(stop) = &found.stop {
-            let told = diagnose::stop(file, stop, found.times.len(), None);
-            return Err(Failure::of_model(Kind::Stopped, file, &told).into());
+            let diagnostic = diagnose::stop(file, stop, found.times.len(), None);
+            return Err(Failure::of_model(Kind::Stopped, file, &diagnostic).into());
         }
         let (steps, variables) = (found.times.len(), found.variables);
         let mut d = Vec::with_capacity(steps * outputs.len() * variables * 3);
@@ -193,8 +193,8 @@ impl Model {
         let pairs: Vec<[usize; 2]> = (0..n).flat_map(|i| (0..=i).map(move |j| [i, j])).collect();
         let found = patiently(py, None, |watch| watch.over(analysis).second(&changes, &directions, &pairs))?;
         if let Some(stop) = &found.stop {
-            let told = diagnose::stop(file, stop, found.times.len(), None);
-            return Err(Failure::of_model(Kind::Stopped, file, &told).into());
+            let diagnostic = diagnose::stop(file, stop, found.times.len(), None);
+            return Err(Failure::of_model(Kind::Stopped, file, &diagnostic).into());
         }
         let (steps, count) = (found.times.len(), outputs.len());
         let mut all = vec![0.0; steps * count * n * n];
@@ -233,7 +233,7 @@ impl Model {
     }
 }
 
-/// Results that are requested of one design.
+/// Requested results of one design.
 fn keep(
     kept: &mut Kept,
     file: &hardpoint_file::ModelFile,
@@ -246,7 +246,7 @@ fn keep(
     let is_whole = solution.stop.is_none();
     if let Some(stop) = &solution.stop {
         let found = diagnose::stop_of_changed(file, stop, solution.motion.len());
-        kept.stops.push((n, told(file, &found).to_string()));
+        kept.stops.push((n, diagnostic_json(file, &found).to_string()));
     }
     kept.values_of(n, measured, |m| measured.outputs[m].dimension, |of| units.per_si(of));
     let (count, steps, variables) = (kept.outputs.len(), kept.at.len(), kept.variables);
@@ -280,7 +280,7 @@ fn keep(
     }
 }
 
-/// True if to go on, for what asks so.
+/// Returns whether to continue.
 pub(crate) fn flow(more: bool) -> ControlFlow<()> {
     if more { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }

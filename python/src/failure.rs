@@ -1,4 +1,4 @@
-//! Reasons why there is no answer, as exceptions of the package.
+//! Errors, as exceptions of the package.
 
 use hardpoint_file::{Diagnostic, Diagnostics, ModelFile};
 use pyo3::prelude::*;
@@ -7,17 +7,17 @@ use serde_json::{Value, json};
 /// Classes of `hardpoint.errors`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kind {
-    /// The file or text is no model.
+    /// The file or text is not a valid model.
     Model,
     /// The model cannot be driven.
     Topology,
     /// A motion ends before its last output time.
     Stopped,
-    /// A study cannot be done.
+    /// A study is impossible.
     Study,
 }
 
-/// Reason why there is no answer.
+/// An error.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// Diagnostics, each as JSON.
@@ -29,23 +29,23 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
-    /// Diagnostics of a reader of files.
+    /// Error from the diagnostics of the file reader.
     pub fn of_text(found: &Diagnostics) -> Self {
         let rendered = found.render(false);
         let mut list: Vec<Value> = found.list().iter().map(|d| diagnostic(d, String::new())).collect();
-        // All of them are rendered together, with their places in the text.
+        // All diagnostics are rendered together, with their positions in the text.
         if let Some(first) = list.first_mut() {
             first["rendered"] = rendered.into();
         }
         Self::Found(Kind::Model, list)
     }
 
-    /// Diagnostic of a model.
+    /// Error from a diagnostic of a model.
     pub fn of_model(kind: Kind, file: &ModelFile, found: &Diagnostic) -> Self {
-        Self::Found(kind, vec![told(file, found)])
+        Self::Found(kind, vec![diagnostic_json(file, found)])
     }
 
-    /// A study that cannot be done, and what to do.
+    /// Error of an impossible study, with a suggested fix.
     pub fn of_study(message: impl Into<String>) -> Self {
         let message = message.into();
         let rendered = format!("error: {message}");
@@ -53,14 +53,14 @@ impl Failure {
     }
 }
 
-/// An error without a place in a file, in the form of a diagnostic.
+/// An error without a position in a file, in the form of a diagnostic.
 fn plain(message: &str, rendered: &str) -> Value {
     json!({ "severity": "error", "code": null, "message": message, "file": null, "line": null, "column": null,
         "length": null, "element": null, "label": null, "notes": [], "help": null, "rendered": rendered })
 }
 
 /// JSON of a diagnostic of a model, with its rendered text.
-pub(crate) fn told(file: &ModelFile, d: &Diagnostic) -> Value {
+pub(crate) fn diagnostic_json(file: &ModelFile, d: &Diagnostic) -> Value {
     diagnostic(d, file.render(d, false))
 }
 

@@ -1,8 +1,8 @@
-//! The engine as `hardpoint._native`: arrays in and out, everything else as JSON. What users see is the package around
-//! it (`python/hardpoint`).
+//! The engine as `hardpoint._native`: arrays in and out, everything else as JSON. The package around it
+//! (`python/hardpoint`) is the public interface.
 //!
-//! Numbers are in the units of the model file. Designs are values of all design variables, NaN for what stays in the
-//! design configuration: of a parameter its own value, of all others a change.
+//! Numbers are in the units of the model file. Designs are values of all design variables, NaN for nominal values: the
+//! value itself for parameters, a change for all others.
 
 mod array;
 mod design;

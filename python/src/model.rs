@@ -19,14 +19,14 @@ use pyo3::prelude::*;
 use serde_json::{Value, json};
 
 use crate::design::{changes, drawn};
-use crate::failure::{Failure, Kind, told};
+use crate::failure::{Failure, Kind, diagnostic_json};
 
-/// A model, planned once for all that is asked of it.
+/// A model with its plans, made once.
 #[pyclass(frozen, module = "hardpoint._native")]
 pub(crate) struct Model {
     /// The file with all its cases.
     pub whole: ModelFile,
-    /// The file in each of its cases, or as it is where there are none.
+    /// The file in each of its cases, or the file itself without cases.
     pub cases: Vec<ModelFile>,
     planned: OnceLock<Result<Motions<'static>, (usize, TopologyError)>>,
 }
@@ -40,7 +40,7 @@ impl Model {
         Self { whole, cases, planned: OnceLock::new() }
     }
 
-    /// The plans of all its motions.
+    /// Plans of all motions.
     pub fn motions(&self) -> Result<&Motions<'static>, Failure> {
         let models = || self.cases.iter().map(|file| Arc::new(file.model.clone()));
         let planned = self.planned.get_or_init(|| Motions::of(models(), Formulation::Relative));
@@ -50,12 +50,12 @@ impl Model {
         })
     }
 
-    /// The plan of one of them.
+    /// Plan of one motion.
     pub fn analysis(&self, case: usize) -> Result<&Analysis<'static>, Failure> {
         Ok(&self.motions()?.analyses()[case])
     }
 
-    /// The changes that a design makes.
+    /// Changes of a design.
     pub fn changes(&self, design: &[f64]) -> Result<Vec<f64>, Failure> {
         changes(&self.whole, design)
     }
@@ -69,7 +69,7 @@ pub(crate) fn read(py: Python<'_>, path: &str) -> PyResult<Model> {
     Ok(Model::new(file))
 }
 
-/// Reads the text of a model; files that it names are looked for among the texts given, or else in a folder.
+/// Reads the text of a model; files that it names are taken from the given texts, or else from a folder.
 #[pyfunction]
 #[pyo3(signature = (text, name, files=None, folder=None, is_json=false))]
 pub(crate) fn parse(
@@ -94,7 +94,7 @@ pub(crate) fn parse(
     Ok(Model::new(file.map_err(|found| Failure::of_text(&found))?))
 }
 
-/// A model in JSON as the text of a file.
+/// Converts a model in JSON to the text of a file.
 fn toml_of(json: &str) -> Result<String, Failure> {
     let refused = |why: String| Failure::Misunderstood(format!("the model cannot be written as TOML: {why}"));
     let value: toml::Value = serde_json::from_str(json).map_err(|error| refused(error.to_string()))?;
@@ -103,25 +103,25 @@ fn toml_of(json: &str) -> Result<String, Failure> {
 
 #[pymethods]
 impl Model {
-    /// The text of the file.
+    /// Text of the file.
     #[getter]
     fn text(&self) -> &str {
         self.whole.text()
     }
 
-    /// The name of the file.
+    /// Name of the file.
     #[getter]
     fn file(&self) -> &str {
         self.whole.file_name()
     }
 
-    /// The texts of the files that it names.
+    /// Texts of the files that it names.
     #[getter]
     fn files(&self) -> BTreeMap<String, String> {
         self.whole.texts.clone()
     }
 
-    /// The same with a design variable for every coordinate of its hardpoints, and every tilt of its axes.
+    /// Returns the model with a design variable for every coordinate of its hardpoints, and every tilt of its axes.
     fn with_variables(&self, coordinates: bool, tilts: bool) -> Self {
         let mut whole = self.whole.clone();
         if coordinates {
@@ -192,18 +192,18 @@ impl Model {
             "outputs": outputs.collect::<Vec<_>>(),
             "motions": motions.collect::<Vec<_>>(),
             "grids": model.grids.iter().map(|g| &g.name).collect::<Vec<_>>(),
-            "remarks": file.remarks.iter().map(|d| told(file, d)).collect::<Vec<Value>>(),
+            "remarks": file.remarks.iter().map(|d| diagnostic_json(file, d)).collect::<Vec<Value>>(),
         })
         .to_string()
     }
 
-    /// Raises why the mechanism cannot be driven, if it cannot.
+    /// Raises an error if the mechanism cannot be driven.
     fn plan(&self) -> PyResult<()> {
         self.motions()?;
         Ok(())
     }
 
-    /// The text of the file with a design written into it.
+    /// Text of the file with a design written into it.
     fn edited(&self, design: Vec<f64>) -> PyResult<String> {
         let values = self.changes(&design)?;
         Ok(self.whole.edit(&values).map_err(|found| Failure::of_text(&found))?)

@@ -1,4 +1,4 @@
-//! One motion, solved.
+//! A solved motion.
 
 use std::sync::Arc;
 
@@ -21,11 +21,11 @@ use serde_json::Value;
 
 use crate::array::{array, array1};
 use crate::design::shown;
-use crate::failure::{Failure, Kind, told};
+use crate::failure::{Failure, Kind, diagnostic_json};
 use crate::model::Model;
 use crate::watch::Quick;
 
-/// A motion that has been solved.
+/// A solved motion.
 #[pyclass(frozen, module = "hardpoint._native")]
 pub(crate) struct Run {
     model: Py<Model>,
@@ -84,7 +84,7 @@ impl Run {
         metrics(&self.file().model, &self.solution)
     }
 
-    /// The motion as pages and summaries have it.
+    /// Motion in the form for pages and summaries.
     fn course(&self) -> Course {
         Course::of(&self.file().model, &self.solution)
     }
@@ -98,7 +98,7 @@ impl Run {
         array1(py, self.solution.motion.times.clone())
     }
 
-    /// The values of all design variables.
+    /// Values of all design variables.
     #[getter]
     fn design(&self) -> Vec<f64> {
         let file = self.file();
@@ -116,11 +116,10 @@ impl Run {
             true => diagnose::stop_of_changed(file, stop, solution.motion.len()),
             false => diagnose::stop(file, stop, solution.motion.len(), None),
         };
-        Some(told(file, &found).to_string())
+        Some(diagnostic_json(file, &found).to_string())
     }
 
-    /// Per variable, whether the mechanism follows it: true, or why not as the JSON of a diagnostic; nothing where no
-    /// sensitivities were solved.
+    /// Admissibility of each variable: true, or the reason as the JSON of a diagnostic; `None` without sensitivities.
     #[getter]
     fn followed(&self) -> PyResult<Vec<(bool, Option<String>)>> {
         let (file, model) = (self.file(), self.model.get());
@@ -132,13 +131,13 @@ impl Run {
         let why = |b: usize| {
             let name = format!("`{}`", file.model.variables[b].name);
             let found = all.iter().find(|d| d.code == "HP0501" && d.message.contains(&name))?;
-            Some(told(file, found).to_string())
+            Some(diagnostic_json(file, found).to_string())
         };
         let variables = 0..file.model.variables.len();
         Ok(variables.map(|b| if self.follows(b) { (true, None) } else { (false, why(b)) }).collect())
     }
 
-    /// All outputs: `[output, order, time]`, NaN where there is no number.
+    /// All outputs: `[output, order, time]`, NaN if undefined.
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (measured, units) = (&self.solution.measured, self.units());
         let (outputs, steps) = (measured.outputs.len(), measured.len());
@@ -156,8 +155,7 @@ impl Run {
         array(py, numbers, [outputs, 3, steps])
     }
 
-    /// Derivatives of an order of all outputs: `[output, variable, time]`; NaN by variables that the mechanism cannot
-    /// follow.
+    /// Derivatives of one order of all outputs: `[output, variable, time]`; NaN for inadmissible variables.
     fn sensitivities<'py>(&self, py: Python<'py>, order: usize) -> PyResult<Bound<'py, PyAny>> {
         let measured = &self.solution.measured;
         let (outputs, steps, file) = (measured.outputs.len(), measured.len(), self.file());
@@ -223,7 +221,7 @@ impl Run {
         array(py, numbers, [steps, 18])
     }
 
-    /// The metrics: value, time and error each, `NaN` where there is none, and their derivatives `[metric, variable]`.
+    /// Metrics: value, time and error of each, NaN if undefined, and their derivatives `[metric, variable]`.
     fn metrics<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyAny>; 2]> {
         let (model, units) = (&self.file().model, self.units());
         let mut values = Vec::new();
@@ -240,7 +238,7 @@ impl Run {
         Ok([array(py, values, [metrics, 3])?, array(py, d, [metrics, variables])?])
     }
 
-    /// The summary that the command line writes, as JSON.
+    /// Summary as written by the command line, as JSON.
     fn summary(&self) -> PyResult<String> {
         let (file, model) = (self.file(), self.model.get());
         let course = self.course();
@@ -255,15 +253,15 @@ impl Run {
         let course = self.course();
         let summary = Summary::new(file, model.analysis(self.case)?.topology(), &course);
         let all = diagnose::all(file, &summary, &course, None);
-        Ok(Value::Array(all.iter().map(|d| told(file, d)).collect()).to_string())
+        Ok(Value::Array(all.iter().map(|d| diagnostic_json(file, d)).collect()).to_string())
     }
 
-    /// The page of the motion.
+    /// Page of the motion.
     fn page(&self, py: Python<'_>) -> PyResult<String> {
         let (file, model) = (self.file(), self.model.get());
         let analysis = model.analysis(self.case)?;
         let is_changed = self.changes.iter().any(|b| *b != 0.0);
-        // The page is that of the drawing, with the changed design beside it.
+        // The page is that of the nominal design, with the changed design alongside.
         let today = match is_changed {
             true => Arc::new(model.solved(py, self.case, &[], true)?),
             false => self.solution.clone(),
@@ -289,7 +287,7 @@ impl Run {
     }
 }
 
-/// The derivatives of an order of output m by all variables at some output times: `[variable, time]`.
+/// Derivatives of one order of output m by all variables at some output times: `[variable, time]`.
 pub(crate) fn derivatives(
     measured: &MeasureResults,
     file: &ModelFile,
@@ -309,7 +307,7 @@ pub(crate) fn derivatives(
     }
 }
 
-/// Facts as JSON.
+/// Converts facts to JSON.
 pub(crate) fn json(facts: &impl serde::Serialize) -> String {
     serde_json::to_string(facts).expect("facts are plain data")
 }

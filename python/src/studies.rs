@@ -1,4 +1,4 @@
-//! Studies of a model; their outcome is the JSON that the command line writes, with its tables.
+//! Studies of a model; the result is the JSON that the command line writes, with its tables.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -41,16 +41,16 @@ fn outcome(facts: &impl Serialize, tables: &[Table]) -> String {
     json!({ "facts": facts, "tables": tables }).to_string()
 }
 
-/// The outcome of a search, the design found with its numbers rounded, and as it is.
+/// Result of a search: the facts, the optimised design with rounded numbers, and the exact one.
 type Searched = (String, Option<Vec<f64>>, Option<Vec<f64>>);
 
 impl Model {
-    /// The values of all variables of a design, as the file writes them.
+    /// Values of all variables of a design, in the units of the file.
     fn values_of(&self, changes: &[f64]) -> Vec<f64> {
         changes.iter().enumerate().map(|(k, b)| shown(&self.whole, VariableId(k), *b)).collect()
     }
 
-    /// The variables of these names, or all.
+    /// Variables with these names, or all.
     fn variables(&self, names: &[String]) -> Result<Vec<VariableId>, Failure> {
         let model = &self.whole.model;
         if names.is_empty() {
@@ -69,7 +69,7 @@ impl Model {
 
 #[pymethods]
 impl Model {
-    /// Searches for the best design.
+    /// Optimises the design.
     #[pyo3(signature = (first=0, starts=None, iterations=None, workers=None, progress=None))]
     fn optimize(
         &self,
@@ -83,7 +83,7 @@ impl Model {
         let (file, motions) = (&self.whole, self.motions()?);
         let Some(asked) = &file.model.optimization else {
             return Err(Failure::of_study(
-                "the model has no `[optimize]` table; add `[optimize.goals]` with the metrics that are to be small, and `bounds` to \
+                "the model has no `[optimize]` table; add `[optimize.goals]` with the metrics to minimise, and `bounds` to \
                  the design variables that may change",
             )
             .into());
@@ -93,7 +93,7 @@ impl Model {
         asked.iterations = iterations.unwrap_or(asked.iterations).max(1);
         let found = patiently(py, progress, |watch| {
             let mut ended = 0;
-            let mut told = |_: usize, told: SearchProgress<'_>| match told {
+            let mut report = |_: usize, event: SearchProgress<'_>| match event {
                 SearchProgress::Iteration(i) if asked.starts == 1 => watch.tell(i.number, asked.iterations),
                 SearchProgress::End(_) if asked.starts > 1 => {
                     ended += 1;
@@ -102,7 +102,7 @@ impl Model {
                 _ => flow(watch.more()),
             };
             let searching = OptimizationRequest {
-                progress: &mut told,
+                progress: &mut report,
                 more: &|| watch.more(),
                 threads: threads(workers),
                 first,
@@ -131,7 +131,7 @@ impl Model {
         let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
         let Some(mut asked) = asked else {
             return Err(Failure::of_study(
-                "the model does not say how far its design variables may be off; add `tolerance = 0.1` to those in `[design]` or \
+                "the design variables of the model have no tolerances; add `tolerance = 0.1` to those in `[design]` or \
                  `[parameters]` that may",
             )
             .into());
@@ -145,7 +145,7 @@ impl Model {
                 ("worst_case", _) => AllocationRule::Worst,
                 _ => {
                     return Err(Failure::Misunderstood(format!(
-                        "`{rule}` is no rule; there are rss, worst_case"
+                        "unknown rule `{rule}`; there are rss, worst_case"
                     ))
                     .into());
                 }
@@ -167,7 +167,7 @@ impl Model {
                 Failure::of_model(Kind::Stopped, case, &diagnose::stop(case, &rejection.stop, 0, None))
             }
             ToleranceError::NothingVaries => Failure::of_study(
-                "the mechanism can follow none of the variables with a tolerance; give tolerances to variables that it can follow",
+                "none of the variables with a tolerance is admissible; give tolerances to admissible variables",
             ),
         })?;
         let facts =
@@ -175,8 +175,7 @@ impl Model {
         Ok(outcome(&facts, &facts.tables()))
     }
 
-    /// Designs drawn within the tolerances, each by its number: `[design, variable]`. They are those of the tolerance
-    /// study.
+    /// Monte Carlo designs of the tolerance study by number: `[design, variable]`.
     #[pyo3(signature = (numbers, seed=None))]
     fn drawn_designs<'py>(
         &self,
@@ -204,7 +203,7 @@ impl Model {
         array(py, rows, [numbers.len(), file.model.variables.len()])
     }
 
-    /// Finds the design that explains what was measured: the outcome, and that design.
+    /// Fits the design to measured data: the result, and the fitted design.
     #[pyo3(signature = (measured, sigmas, variables, loss, iterations, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn calibrate(
@@ -226,7 +225,7 @@ impl Model {
             "cauchy" => Loss::Cauchy,
             _ => {
                 return Err(Failure::Misunderstood(format!(
-                    "`{loss}` is no loss; there are squares, huber, cauchy"
+                    "unknown loss `{loss}`; there are squares, huber, cauchy"
                 ))
                 .into());
             }
@@ -239,19 +238,19 @@ impl Model {
             iterations,
         };
         let found = patiently(py, progress, |watch| {
-            let mut told = |k: usize, _: f64| {
+            let mut report = |k: usize, _: f64| {
                 let _ = watch.tell(k, iterations);
             };
-            calibrate(&file.model, &asked, &mut told, &|| watch.more())
+            calibrate(&file.model, &asked, &mut report, &|| watch.more())
         })?;
         let found = found.map_err(|why| match why {
             CalibrationError::Topology(fault) => Failure::of_model(Kind::Topology, file, &diagnose::topology_fault(file, &fault)),
             CalibrationError::NothingReached(why) => {
-                Failure::of_study(format!("no posture of the table can be compared; on the way to the first: {why}"))
+                Failure::of_study(format!("no posture of the table can be reached; error on the path to the first: {why}"))
             }
-            CalibrationError::NothingVaries => Failure::of_study("the mechanism can follow none of the variables that are sought"),
+            CalibrationError::NothingVaries => Failure::of_study("none of the variables to fit is admissible"),
             CalibrationError::TooFewReadings { readings, variables } => Failure::of_study(format!(
-                "{readings} readings without standard deviations cannot tell {variables} variables and how exact they are; give `sigma`, \
+                "{readings} readings without standard deviations do not determine {variables} variables and their standard deviation; give `sigma`, \
                  seek fewer variables, or measure more"
             )),
         })?;
@@ -284,8 +283,8 @@ impl Model {
             }
             let changed = what_if(analysis, today, &changes);
             if let Some(stop) = &changed.exact.stop {
-                let told = diagnose::stop_of_changed(file, stop, changed.exact.motion.len());
-                return Err(Failure::of_model(Kind::Stopped, file, &told));
+                let diagnostic = diagnose::stop_of_changed(file, stop, changed.exact.motion.len());
+                return Err(Failure::of_model(Kind::Stopped, file, &diagnostic));
             }
             Ok(facts.changed(file, analysis.topology(), &changed))
         })??;
@@ -293,7 +292,7 @@ impl Model {
         Ok(outcome(&facts, &tables))
     }
 
-    /// Re-solves moved designs: how well sensitivities agree with their differences.
+    /// Compares the sensitivities with finite differences of re-solved designs.
     #[pyo3(signature = (case, progress=None))]
     fn verify(&self, py: Python<'_>, case: usize, progress: Option<Py<PyAny>>) -> PyResult<String> {
         let (file, analysis) = (&self.cases[case], self.analysis(case)?);

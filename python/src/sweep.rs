@@ -1,4 +1,4 @@
-//! Sweeps over designs: all of them here, or by parts wherever there is a worker.
+//! Sweeps over designs: in one call, or in parts on several workers.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -22,7 +22,7 @@ use crate::failure::Failure;
 use crate::model::Model;
 use crate::watch::patiently;
 
-/// Options besides those of the file.
+/// Options that override the file.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Asked {
@@ -36,7 +36,7 @@ struct Asked {
     cases: Vec<usize>,
 }
 
-/// A sweep that can be solved by parts. A part is the same wherever it is solved, to the last bit.
+/// A sweep that can be solved in parts. A part is the same on every worker, to the last bit.
 #[pyclass(frozen, module = "hardpoint._native")]
 pub(crate) struct Sweep {
     model: Py<Model>,
@@ -58,7 +58,7 @@ impl Model {
         if let Some(name) = &asked.method {
             let Some(k) = SweepMethod::NAMES.iter().position(|known| known == name) else {
                 return refused(format!(
-                    "`{name}` is no method; there are {}",
+                    "unknown method `{name}`; there are {}",
                     SweepMethod::NAMES.join(", ")
                 ));
             };
@@ -110,7 +110,7 @@ impl Model {
             }
         }
         if all.metrics.is_empty() && all.curves.is_empty() {
-            return refused("the model has no metrics that designs could be distinguished by; name curves that are to be kept".into());
+            return refused("the model has no metrics to compare designs; name curves to store".into());
         }
         Ok(all)
     }
@@ -118,7 +118,7 @@ impl Model {
 
 #[pymethods]
 impl Model {
-    /// A sweep over designs; what is asked besides the file is JSON.
+    /// Creates a sweep over designs; the options are JSON.
     fn sweep(this: Bound<'_, Self>, asked: &str) -> PyResult<Sweep> {
         let asked: Asked = serde_json::from_str(asked).map_err(|e| Failure::Misunderstood(e.to_string()))?;
         let model = this.get();
@@ -136,14 +136,14 @@ impl Model {
 }
 
 impl Sweep {
-    /// The sweep and its tables.
+    /// Plans the sweep and its tables.
     fn with<X>(&self, of: impl FnOnce(SweepInputs<'_>) -> X) -> Result<X, Failure> {
         let file = &self.model.get().whole;
         let designs = Designs::new(&file.model, &self.motions, &self.numbers, &self.asked).map_err(|why| {
             Failure::Misunderstood(match why {
-                SweepPlanError::NoRanges => "the model does not say which design variables are to change; give `ranges`".into(),
-                SweepPlanError::NoDesigns => "there is no design to be solved; give at least one sample".into(),
-                SweepPlanError::TooMany => format!("that would be more than {} designs; give fewer levels or variables", SweepSettings::MOST),
+                SweepPlanError::NoRanges => "the model has no ranges of design variables; give `ranges`".into(),
+                SweepPlanError::NoDesigns => "there are no designs; give at least one sample".into(),
+                SweepPlanError::TooMany => format!("more than {} designs; give fewer levels or variables", SweepSettings::MOST),
                 SweepPlanError::TooManyDimensions(most) => format!(
                     "Sobol's sequence is known for {most} variables, and for indices for {}; sweep over fewer, or by latin_hypercube",
                     most / 2
@@ -160,7 +160,7 @@ impl Sweep {
     }
 }
 
-/// The columns of a table: name, and cells as an array or a list of texts.
+/// Columns of a table: name, and cells as an array or a list of texts.
 type Columns<'py> = Vec<(String, Bound<'py, PyAny>)>;
 
 fn table<'py>(
@@ -191,14 +191,14 @@ impl Sweep {
         Ok(self.with(|swept| swept.sweep.plan().count())?)
     }
 
-    /// Parts begin with a multiple of this.
+    /// Number of designs per block; parts begin with a multiple of it.
     #[getter]
     fn block(&self) -> usize {
         BLOCK
     }
 
-    /// Solves some designs: the table of designs, and that of curves. `from` is a multiple of `block`, `to` one too, or
-    /// the end.
+    /// Solves some designs; returns the tables of designs and of curves. `from` is a multiple of `block`; `to` is, too,
+    /// or is the end.
     #[pyo3(signature = (from, to, workers=None, progress=None))]
     fn part<'py>(
         &self,
@@ -224,7 +224,7 @@ impl Sweep {
                     }
                 };
                 if from < to {
-                    // Blocks beyond the end would be begun by other threads.
+                    // Other threads would start blocks beyond the end.
                     let threads = if to == swept.sweep.plan().count() {
                         threads(workers)
                     } else {
@@ -238,7 +238,7 @@ impl Sweep {
         Ok((table(py, columns, rows)?, table(py, curve_columns, curves)?))
     }
 
-    /// Solves all designs: their table, that of curves, and the summary.
+    /// Solves all designs; returns the tables of designs and of curves, and the summary.
     #[pyo3(signature = (workers=None, progress=None))]
     fn run<'py>(
         &self,

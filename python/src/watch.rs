@@ -1,4 +1,4 @@
-//! Long work: the interpreter stays free, progress is reported, Ctrl-C is heard.
+//! Long work: the interpreter lock is released, progress is reported, Ctrl-C is handled.
 
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -13,30 +13,29 @@ use pyo3::prelude::*;
 
 use crate::failure::Failure;
 
-/// Milliseconds after which Python is asked again whether to go on.
+/// Interval in milliseconds between checks of signals and callbacks in Python.
 static PATIENCE: AtomicU64 = AtomicU64::new(50);
 
-/// Number of times that a listener has woken up since the module was loaded.
+/// Number of wake-ups of listeners since the module was loaded.
 static WAKE_UPS: AtomicUsize = AtomicUsize::new(0);
 
 fn patience() -> Duration {
     Duration::from_millis(PATIENCE.load(Ordering::Relaxed))
 }
 
-/// Sets the time after which long work looks for Ctrl-C and reports its progress, ms; returns the one before.
+/// Sets the interval in ms at which long work checks for Ctrl-C and reports its progress; returns the previous one.
 #[pyfunction]
 pub(crate) fn set_patience(milliseconds: u64) -> u64 {
     PATIENCE.swap(milliseconds, Ordering::Relaxed)
 }
 
-/// Number of times that long work has woken up the thread that waits for it: once at its end, and once for each time
-/// that patience ran out before.
+/// Number of wake-ups of the thread that waits for long work: once at its end, and once per interval before.
 #[pyfunction]
 pub(crate) fn wake_ups() -> usize {
     WAKE_UPS.load(Ordering::Relaxed)
 }
 
-/// Progress of the work, and the request to end it.
+/// Progress of the work, and the request to stop it.
 #[derive(Debug, Default)]
 pub(crate) struct Watch {
     ended: Arc<AtomicBool>,
@@ -45,17 +44,17 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Returns whether the work is still wanted.
+    /// Returns whether to continue.
     pub fn more(&self) -> bool {
         !self.ended.load(Ordering::Relaxed)
     }
 
-    /// The same analysis, which ends at its next output time when the work is not wanted any more.
+    /// Wraps an analysis so that it stops at its next output time on request.
     pub fn over<'m>(&self, analysis: &Analysis<'m>) -> Analysis<'m> {
         analysis.clone().ended_by(Arc::clone(&self.ended))
     }
 
-    /// The same for callbacks that continue or break.
+    /// Returns whether to continue, for callbacks with a `ControlFlow`.
     pub fn flow(&self) -> ControlFlow<()> {
         if self.more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
@@ -67,7 +66,7 @@ impl Watch {
         self.flow()
     }
 
-    /// Asks Python: returns a signal that has arrived, or an exception of the callback.
+    /// Checks Python for a signal, or an exception of the callback.
     fn ask(&self, py: Python<'_>, callback: Option<&Py<PyAny>>) -> PyResult<()> {
         py.check_signals()?;
         let (done, total) = (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed));
@@ -78,15 +77,15 @@ impl Watch {
     }
 }
 
-/// Does work on a thread of its own, with the interpreter free, while this one listens. An exception that is raised
-/// meanwhile ends the work and is the outcome.
+/// Runs work on a thread of its own, without the interpreter lock, while this one listens. An exception that is raised
+/// meanwhile stops the work and is returned.
 pub(crate) fn patiently<T: Send>(
     py: Python<'_>,
     callback: Option<Py<PyAny>>,
     work: impl FnOnce(&Watch) -> T + Send,
 ) -> Result<T, Failure> {
     let watch = Watch::default();
-    // Nothing is sent: the channel closes when the work ends, by whatever way, and that wakes the listener at once.
+    // Nothing is sent: the channel closes when the work ends for any reason, which wakes the listener at once.
     let (working, end) = mpsc::channel::<Infallible>();
     let (listened, callback) = (&watch, callback.as_ref());
     let (outcome, raised) = py.detach(move || {
@@ -116,12 +115,12 @@ pub(crate) fn patiently<T: Send>(
         return Err(error.into());
     }
     let outcome = outcome.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    // The end is reported too.
+    // The end is reported, too.
     watch.ask(py, callback)?;
     Ok(outcome)
 }
 
-/// Does short work on this thread, with the interpreter free; `Quick` is asked at every output time.
+/// Runs short work on this thread, without the interpreter lock; `Quick` is checked at every output time.
 pub(crate) struct Quick {
     asked: Instant,
     raised: Option<PyErr>,
@@ -132,7 +131,7 @@ impl Quick {
         Self { asked: Instant::now(), raised: None }
     }
 
-    /// Returns whether to go on.
+    /// Returns whether to continue.
     pub fn go_on(&mut self) -> ControlFlow<()> {
         if self.raised.is_some() {
             return ControlFlow::Break(());
@@ -150,7 +149,7 @@ impl Quick {
         }
     }
 
-    /// Returns the exception that was raised, if any.
+    /// Returns the raised exception, if any.
     pub fn end(self) -> Result<(), Failure> {
         self.raised.map_or(Ok(()), |error| Err(error.into()))
     }

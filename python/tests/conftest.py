@@ -1,4 +1,4 @@
-"""What the tests share."""
+"""Fixtures of the tests."""
 
 import json
 import os
@@ -12,12 +12,12 @@ import hardpoint
 ROOT = Path(__file__).resolve().parents[2]
 MODELS = ROOT / "models"
 REFERENCE = json.loads((ROOT / "crates/hardpoint-file/tests/reference.json").read_text())
-"""In SI: the cases that the Rust tests are held against, too."""
+"""Reference cases in SI, shared with the Rust tests."""
 
 
 @pytest.fixture(scope="session")
 def command():
-    """Runs the command line. The tests that compare with it are skipped where it is neither built nor named."""
+    """Runs the command line. The tests that compare with it are skipped if it is neither built nor named."""
     named = os.environ.get("HARDPOINT")
     program = Path(named or ROOT / "target/release/hardpoint")
     if not named and not program.exists():
@@ -36,5 +36,5 @@ def strut():
 
 @pytest.fixture(scope="session")
 def toe():
-    """The strut with variables, metrics, and two cases."""
+    """Strut with variables, metrics, and two cases."""
     return hardpoint.read(MODELS / "studies/strut_toe.toml")

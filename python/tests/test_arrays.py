@@ -1,4 +1,4 @@
-"""Results are read-only: what one reader does to an array, no other reader sees."""
+"""Results are read-only, so that readers cannot change shared arrays."""
 
 import inspect
 
@@ -28,7 +28,7 @@ ASKED = {
     "Designs": {"metric": (next(iter(hardpoint.read(MODELS / "studies/strut_toe.toml").metrics("bump"))),)},
     "SweepResult": {},
 }
-"""Arguments for the methods that return arrays; a test fails where one is missing."""
+"""Arguments for the methods that return arrays; a test fails if one is missing."""
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def results(strut):
 
 
 def inside(value):
-    """The arrays in a value."""
+    """Arrays in a value."""
     if isinstance(value, np.ndarray):
         yield value
     elif isinstance(value, dict):
@@ -58,14 +58,14 @@ def inside(value):
 
 
 def returning_arrays(of):
-    """The public methods whose results are arrays, by their annotations."""
+    """Public methods that return arrays, by their annotations."""
     for name, method in inspect.getmembers(of, inspect.isfunction):
         if not name.startswith("_") and "ndarray" in str(inspect.signature(method).return_annotation):
             yield name
 
 
 def arrays(result, asked):
-    """All arrays that an object gives away, by where they come from."""
+    """All arrays of an object, by source."""
     for name in dir(result):
         if name.startswith("_") or callable(getattr(type(result), name, None)):
             continue
@@ -92,7 +92,7 @@ def test_arrays_are_read_only(kind, results):
 
 
 def test_results_of_the_engine_stay_read_only(results):
-    """Nobody makes writeable what others have views of, nor what it is a view of."""
+    """Neither shared arrays nor their bases can be made writeable."""
     run, designs = results["Run"], results["Designs"]
     for array in (run.times, run.values("toe"), run.sensitivities("toe"), run.body(run.model.bodies[0]).position, designs.values):
         while array is not None and isinstance(array, np.ndarray):

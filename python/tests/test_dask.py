@@ -1,4 +1,4 @@
-"""Sweeps on several workers come to what one machine comes to, whatever becomes of the workers."""
+"""Sweeps on several workers have the results of a single machine, even if workers are lost."""
 
 import json
 import os
@@ -25,14 +25,14 @@ from distributed import Client, Future, LocalCluster  # noqa: E402
 MODELS = Path(__file__).resolve().parents[2] / "models"
 PART = 512
 SAMPLES = 3000
-"""Six parts, the last of them shorter."""
+"""Six parts, the last one shorter."""
 FAILING = {"ranges": {"tie_rod_outer_y": (-200, 200), "strut_top_x": (-300, 300)}, "samples": 1100}
 """Some of these struts lock."""
 
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-    """Three processes that die with what they do."""
+    """Three worker processes."""
     space = tmp_path_factory.mktemp("workers")
     with LocalCluster(
         n_workers=3, threads_per_worker=1, dashboard_address=":0", host="127.0.0.1", memory_limit=None, local_directory=str(space)
@@ -48,7 +48,7 @@ def client(cluster):
 
 @pytest.fixture(scope="module")
 def here(tmp_path_factory):
-    """Three workers in this process, which see what is patched in it."""
+    """Three workers in this process, which see its monkeypatches."""
     space = tmp_path_factory.mktemp("threads")
     with LocalCluster(
         n_workers=3, threads_per_worker=1, processes=False, dashboard_address=":0", memory_limit=None, local_directory=str(space)
@@ -63,12 +63,12 @@ def model():
 
 @pytest.fixture(scope="module")
 def alone(model):
-    """The sweep of one machine."""
+    """Sweep on one machine."""
     return model.sweep(samples=SAMPLES)
 
 
 def same(table, columns):
-    """Every bit of every column, in order."""
+    """All bits of all columns, in order."""
     assert table.column_names == list(columns)
     for name, cells in columns.items():
         ours = table[name].combine_chunks()
@@ -79,7 +79,7 @@ def same(table, columns):
 
 
 def files(store):
-    """The parts that are there: what indicates whether one was touched."""
+    """Stored parts, with a mark that changes when one is written."""
     return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns, path.read_bytes()) for path in Path(store).glob("*.parquet")}
 
 
@@ -144,17 +144,17 @@ def test_units_are_in_the_metadata(model, client, tmp_path):
     assert file.metadata.row_group(0).column(1).compression == "ZSTD"
 
 
-def test_progress_is_told(model, client, tmp_path):
-    told = []
-    hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=1100, progress=lambda *of: told.append(of))
-    assert len(told) == 3 and told[-1] == (1100, 1100) and told == sorted(told)
+def test_progress_is_reported(model, client, tmp_path):
+    reports = []
+    hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=1100, progress=lambda *of: reports.append(of))
+    assert len(reports) == 3 and reports[-1] == (1100, 1100) and reports == sorted(reports)
 
 
 # Losses
 
 
 def dies_writing(flag):
-    """Once, where a whole part is there, a worker writes half of one and is killed."""
+    """Once, after a complete part, a worker writes half a part and is killed."""
     from fsspec.implementations.local import LocalFileSystem
 
     whole = LocalFileSystem.pipe_file
@@ -183,12 +183,12 @@ def test_a_worker_is_killed_in_the_middle(model, alone, client, tmp_path):
     assert len(before) == 3 and killed in before
     assert killed not in client.run(os.getpid).values()
     same(done.read(), alone.columns)
-    # The half part is gone.
+    # The half part was removed.
     assert sorted(path.name for path in store.iterdir()) == sorted([*files(store), "sweep.json"])
     assert len(files(store)) == 6
 
 
-def test_a_part_that_kills_its_workers_is_told(model, tmp_path):
+def test_a_part_that_kills_its_workers_is_reported(model, tmp_path):
     def dies(flag):
         from fsspec.implementations.local import LocalFileSystem
 
@@ -209,7 +209,7 @@ def test_a_part_that_kills_its_workers_is_told(model, tmp_path):
 
 
 def doubled(shared, number):
-    """So much work that tasks of several workers are under way at once."""
+    """Enough work to keep several workers busy."""
     until = time.perf_counter() + 0.005
     while time.perf_counter() < until:
         pass
@@ -223,7 +223,7 @@ TASKS = 5
 
 @pytest.fixture
 def load():
-    """Processes that keep every core busy, where stress is requested."""
+    """Processes that keep every core busy, if stress is requested."""
     burning = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(STRESS > 1 and os.cpu_count() or 0)]
     yield
     for process in burning:
@@ -232,7 +232,7 @@ def load():
 
 
 def killing(cluster, enough, killed):
-    """Kills one worker after the other, when all of them are at work: one that dies while it starts is not started again."""
+    """Kills one worker after the other while all are busy: a worker that dies during its start is not restarted."""
     while not enough.wait(0.2):
         workers = list(cluster.workers.values())
         known = cluster.scheduler.workers
@@ -243,7 +243,7 @@ def killing(cluster, enough, killed):
 
 
 def sweeps(client, count):
-    """Many small sweeps, some of them given up: each finds all of its numbers, once."""
+    """Many small sweeps, some of them abandoned: each returns all of its numbers exactly once."""
     for sweep in range(count * STRESS):
         found = []
         tasks = hardpoint.dask._each(client, doubled, 2, range(TASKS), str)
@@ -259,8 +259,8 @@ def sweeps(client, count):
 
 @pytest.mark.timeout(600 * STRESS)
 def test_hundreds_of_sweeps_beside_another_client(client, here, load):
-    """Each client has an event loop of its own, and what waits for its tasks must wait there: elsewhere, wake-ups are lost.
-    Clients that are made later are where tasks are waited for if nothing else is said."""
+    """Each client has an event loop of its own, and a wait for its tasks must use it: elsewhere, wake-ups are lost. By default, the
+    loop of the last client is used."""
     with Client(here.cluster) as last:
         assert last.loop is not client.loop
         sweeps(client, 200)
@@ -268,7 +268,7 @@ def test_hundreds_of_sweeps_beside_another_client(client, here, load):
 
 @pytest.mark.timeout(600 * STRESS)
 def test_hundreds_of_sweeps_while_workers_are_killed(here, load, tmp_path):
-    # A local cluster gives up workers that it finds missing twice so far apart.
+    # A local cluster gives up workers that are missing in two checks at this interval.
     kept = dask.config.set({"distributed.deploy.lost-worker-timeout": "1 hour"})
     with kept, LocalCluster(
         n_workers=3, threads_per_worker=1, dashboard_address=":0", host="127.0.0.1", memory_limit=None, local_directory=str(tmp_path)
@@ -285,14 +285,14 @@ def test_hundreds_of_sweeps_while_workers_are_killed(here, load, tmp_path):
         assert len(killed) > 1
 
 
-def test_no_announcement_has_to_arrive(model, alone, here, monkeypatch, tmp_path):
-    """The end of a task is noticed even if nobody says so."""
+def test_a_lost_notification_does_not_block(model, alone, here, monkeypatch, tmp_path):
+    """The end of a task is noticed without an announcement."""
     monkeypatch.setattr(Future, "add_done_callback", lambda self, callback: None)
     done = hardpoint.dask.sweep(model, here, tmp_path, part=PART, samples=SAMPLES)
     same(done.read(), alone.columns)
 
 
-def test_a_cluster_without_workers_is_told(model, tmp_path):
+def test_a_cluster_without_workers_is_reported(model, tmp_path):
     with LocalCluster(n_workers=0, dashboard_address=":0", host="127.0.0.1", local_directory=str(tmp_path / "space")) as cluster, Client(
         cluster
     ) as client:
@@ -300,8 +300,8 @@ def test_a_cluster_without_workers_is_told(model, tmp_path):
             hardpoint.dask.sweep(model, client, tmp_path / "store", part=PART, samples=PART, patience=1.0)
 
 
-def test_what_takes_longer_than_patience_is_waited_for(here):
-    """A worker that is at work is no reason to end."""
+def test_a_busy_worker_is_waited_for(here):
+    """A busy worker does not end the wait."""
 
     def slow(shared, number):
         time.sleep(8)
@@ -310,7 +310,7 @@ def test_what_takes_longer_than_patience_is_waited_for(here):
     assert list(hardpoint.dask._each(here, slow, None, [7], str, patience=2.0)) == [(7, 7)]
 
 
-def test_what_a_task_raises_is_not_taken_for_a_silent_cluster(here):
+def test_an_exception_of_a_task_is_not_a_silent_cluster(here):
     for error in (OSError, TimeoutError):
 
         def raises(shared, number):
@@ -328,7 +328,7 @@ def enough(done, total):
     raise Enough
 
 
-def test_an_interrupted_sweep_goes_on(model, alone, client, tmp_path):
+def test_an_interrupted_sweep_resumes(model, alone, client, tmp_path):
     with pytest.raises(Enough):
         hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=SAMPLES, progress=enough)
     before = files(tmp_path)
@@ -337,7 +337,7 @@ def test_an_interrupted_sweep_goes_on(model, alone, client, tmp_path):
     done = hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=SAMPLES)
     untouched(before, tmp_path)
     same(done.read(), alone.columns)
-    # Once more there is nothing left to do.
+    # A repeated call has nothing left to do.
     before = files(tmp_path)
     hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=SAMPLES)
     assert len(before) == 6
@@ -347,7 +347,7 @@ def test_an_interrupted_sweep_goes_on(model, alone, client, tmp_path):
     same(again.read(), alone.columns)
 
 
-def test_what_is_not_whole_is_solved_again(model, alone, client, tmp_path):
+def test_incomplete_parts_are_solved_again(model, alone, client, tmp_path):
     asked = {"part": PART, "samples": SAMPLES}
     hardpoint.dask.sweep(model, client, tmp_path, **asked)
     whole = files(tmp_path)
@@ -359,7 +359,7 @@ def test_what_is_not_whole_is_solved_again(model, alone, client, tmp_path):
     shutil.copy(tmp_path / "other" / other.name, other)
     left = tmp_path / f".designs-00000512.parquet.{'0' * 32}.partial"
     left.write_bytes(b"PAR1")
-    with pytest.raises(hardpoint.StudyError, match="designs-00002048.parquet` is of another sweep"):
+    with pytest.raises(hardpoint.StudyError, match="designs-00002048.parquet` belongs to another sweep"):
         hardpoint.dask.Stored.read(_without(hardpoint.dask.opened(tmp_path), torn, empty, gone))
     done = hardpoint.dask.sweep(model, client, tmp_path, **asked)
     same(done.read(), alone.columns)
@@ -397,15 +397,15 @@ def test_another_sweep_at_the_store_is_refused(model, client, tmp_path):
     assert list(files(tmp_path)) == ["designs-00000000.parquet"]
 
 
-def test_designs_of_nobody_are_not_removed(model, client, tmp_path):
+def test_designs_without_a_record_are_not_removed(model, client, tmp_path):
     hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=100)
     before = files(tmp_path)
     for spoiled in ("", '{"sweep": 1}', "[]"):
         (tmp_path / "sweep.json").write_text(spoiled)
-        with pytest.raises(hardpoint.StudyError, match="nobody knows of which"):
+        with pytest.raises(hardpoint.StudyError, match="unknown, because its"):
             hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=100)
     (tmp_path / "sweep.json").unlink()
-    with pytest.raises(hardpoint.StudyError, match="nobody knows of which"):
+    with pytest.raises(hardpoint.StudyError, match="unknown, because its"):
         hardpoint.dask.sweep(model, client, tmp_path, part=PART, samples=100)
     with pytest.raises(hardpoint.StudyError, match="there is no sweep"):
         hardpoint.dask.opened(tmp_path)
@@ -424,24 +424,24 @@ def test_any_file_system_will_do(model, here, client, tmp_path):
     assert (tmp_path / "strut/sweep.json").exists()
 
 
-def test_a_store_that_the_client_does_not_share_is_told(model, here, monkeypatch, tmp_path):
-    """Workers write, and the client finds nothing."""
+def test_a_store_that_the_client_does_not_share_is_reported(model, here, monkeypatch, tmp_path):
+    """Workers write files that the client does not find."""
     known = hardpoint.dask._listing
     monkeypatch.setattr(hardpoint.dask, "_listing", lambda fs, root: [n for n in known(fs, root) if "parquet" not in n])
-    with pytest.raises(hardpoint.StudyError, match="one place for all of them"):
+    with pytest.raises(hardpoint.StudyError, match="all of them must share the store"):
         hardpoint.dask.sweep(model, here, tmp_path, part=PART, samples=10)
 
 
-def test_a_store_that_cannot_be_written_is_told(model, client, tmp_path):
+def test_a_store_that_cannot_be_written_is_reported(model, client, tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(hardpoint.StudyError, match="is no store"):
+    with pytest.raises(hardpoint.StudyError, match="is not a valid store"):
         hardpoint.dask.sweep(model, client, tmp_path / "file", part=PART, samples=10)
 
 
 # Errors
 
 
-def test_what_makes_no_sense_is_refused_before_anything_is_written(model, client, tmp_path):
+def test_invalid_requests_are_rejected_before_anything_is_written(model, client, tmp_path):
     store = tmp_path / "store"
     for asked, why in [
         ({"part": 1000}, "give `part=1024`"),
@@ -484,7 +484,7 @@ def test_a_worker_with_another_version_is_refused(model, client, tmp_path):
     assert not files(tmp_path)
 
 
-# What is sent
+# Data transfer
 
 
 def counts_plans():
@@ -544,14 +544,14 @@ def test_monte_carlo(toleranced, here, tmp_path):
         hardpoint.dask.monte_carlo(toleranced, here, tmp_path, 1100, seed=5, part=PART)
 
 
-def test_monte_carlo_tells_why_a_design_fails(model, here, monkeypatch, tmp_path):
+def test_monte_carlo_reports_why_a_design_fails(model, here, monkeypatch, tmp_path):
     rows = np.zeros((20, len(model.variables)))
     rows[[3, 7], list(model.variables).index("strut_top_x")] = -600, 5
     monkeypatch.setattr(hardpoint.dask, "_drawn", lambda model, numbers, seed: rows[numbers])
     table = hardpoint.dask.monte_carlo(model, here, tmp_path, 20, part=PART).read()
     failed = table["failed"].to_pylist()
     assert [k for k, why in enumerate(failed) if why] == [3]
-    # In bump it still moves.
+    # It still moves in the bump case.
     assert failed[3].startswith("steer: ") and "cannot move beyond" in failed[3]
     metrics = {case: [f"{case}.{name} [{unit}]" for name, unit in model.metrics(case).items() if unit != "1"][0] for case in model.cases}
     assert np.isnan(table[metrics["steer"]][3].as_py()) and np.isfinite(table[metrics["bump"]][3].as_py())
@@ -560,12 +560,12 @@ def test_monte_carlo_tells_why_a_design_fails(model, here, monkeypatch, tmp_path
 
 def test_searches_from_many_starts(here):
     model = hardpoint.read(MODELS / "studies/strut_toe.toml")
-    told = []
-    best, studies = hardpoint.dask.multi_start(model, here, 3, progress=lambda *of: told.append(of))
+    reports = []
+    best, studies = hardpoint.dask.multi_start(model, here, 3, progress=lambda *of: reports.append(of))
     local = hardpoint.dask.outcome(model, *optimized(model, 3))
     assert best.design == local.design and best.rounded == local.rounded
     assert best.facts["objective"]["after"] == local.facts["objective"]["after"]
-    assert len(studies) == 3 and best in studies and told == [(1, 3), (2, 3), (3, 3)]
+    assert len(studies) == 3 and best in studies and reports == [(1, 3), (2, 3), (3, 3)]
     assert studies[0].design == hardpoint.dask.outcome(model, *optimized(model, 1)).design
 
 

@@ -1,4 +1,4 @@
-"""DXF drawings as a reader of that format finds them."""
+"""DXF drawings, parsed by an independent reader."""
 
 import ezdxf
 import pytest

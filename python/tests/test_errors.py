@@ -1,4 +1,4 @@
-"""What goes wrong is reported by class, code, element, file and line, as the command line indicates it."""
+"""Errors have a class, code, element, file and line, as on the command line."""
 
 import pickle
 import signal
@@ -43,7 +43,7 @@ def test_a_motion_that_locks_keeps_what_it_solved(strut):
     assert (error.run.values("toe") == part.values("toe")).all() and np.isfinite(part.values("toe")).all()
 
 
-def test_designs_that_lock_are_named_or_kept_apart(strut):
+def test_designs_that_lock_raise_or_are_listed(strut):
     designs = [{"tie_rod_outer_z": x} for x in (0.0, 1000.0, 1.0)]
     with pytest.raises(hardpoint.MotionStopped):
         strut.designs(designs, "toe")
@@ -57,27 +57,27 @@ def test_designs_that_lock_are_named_or_kept_apart(strut):
     [
         (lambda m: m.run().values("toee"), "did you mean `toe`"),
         (lambda m: m.run().sensitivity("toe", "ball_joint_zz"), "did you mean `ball_joint_z`"),
-        (lambda m: m.run().values("toe", 3), "no order"),
+        (lambda m: m.run().values("toe", 3), "unknown order"),
         (lambda m: m.run().body("knuckel"), "did you mean `knuckle`"),
         (lambda m: m.run(case="bump"), "no case named `bump`"),
         (lambda m: m.run([1.0, 2.0]), "14 design variables"),
         (lambda m: m.run({"ball_joint_z": float("inf")}), "infinite"),
         (lambda m: m.designs(np.zeros((2, 3))), "14 variables"),
-        (lambda m: m.gradients("toe", method="both"), "no method"),
-        (lambda m: m.run(sensitivities=False).sensitivity("toe", "ball_joint_z"), "requested no sensitivities"),
+        (lambda m: m.gradients("toe", method="both"), "unknown method"),
+        (lambda m: m.run(sensitivities=False).sensitivity("toe", "ball_joint_z"), "solved without sensitivities"),
         (lambda m: m.sweep(ranges={"ball_joint_q": (0, 1)}), "did you mean"),
         (lambda m: m.sweep(colour="red"), "unknown field"),
         (lambda m: hardpoint.Function(m, ["ball_joint_z"], ["nothing"]), "no metric or measure"),
-        (lambda m: hardpoint.build(name="x", units={1, 2}), "made of numbers"),
+        (lambda m: hardpoint.build(name="x", units={1, 2}), "consists of numbers"),
     ],
 )
-def test_what_makes_no_sense_is_told(strut, ask, says):
+def test_invalid_requests_are_reported(strut, ask, says):
     with pytest.raises(hardpoint.UsageError, match=says) as raised:
         ask(strut)
     assert isinstance(raised.value, ValueError)
 
 
-def test_studies_that_cannot_be_done_say_what_to_add(strut):
+def test_impossible_studies_report_what_is_missing(strut):
     with pytest.raises(hardpoint.StudyError, match=r"\[optimize.goals\]"):
         strut.optimize()
     with pytest.raises(hardpoint.StudyError, match="tolerance"):
@@ -91,23 +91,23 @@ def test_a_model_with_cases_is_asked_for_one(toe):
 
 
 def test_an_exception_of_a_callback_ends_the_work(toe):
-    def told(done, total):
+    def report(done, total):
         raise KeyError("enough")
 
     with pytest.raises(KeyError, match="enough"):
-        toe.sweep(samples=1_000_000, ranges={"outer_z": (-1, 1)}, progress=told)
+        toe.sweep(samples=1_000_000, ranges={"outer_z": (-1, 1)}, progress=report)
 
 
 def test_control_c_ends_long_work(toe):
-    """The signal comes once work is known to go on, and there is more work than could be done before it is heard."""
+    """The signal is sent while work is known to run, and there is more work than could finish before it is noticed."""
 
-    def told(done, total):
+    def report(done, total):
         if done:
             signal.raise_signal(signal.SIGINT)
 
     assert threading.current_thread() is threading.main_thread()
     with pytest.raises(KeyboardInterrupt):
-        toe.sweep(samples=100_000_000, ranges={"outer_z": (-1, 1)}, progress=told)
+        toe.sweep(samples=100_000_000, ranges={"outer_z": (-1, 1)}, progress=report)
 
 
 def test_warnings_of_the_reader_are_warnings():

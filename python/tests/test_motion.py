@@ -11,7 +11,7 @@ import hardpoint
 from conftest import MODELS, REFERENCE
 
 NEAR = 1e-9
-"""As in the Rust tests: the output time itself is off by rounding, and accelerations change with it."""
+"""Tolerance as in the Rust tests: the output time has a rounding error, which changes the accelerations."""
 LENGTHS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 ANGLES = {"deg": np.pi / 180, "rad": 1.0}
 BODY = {"": "position", "v": "velocity", "omega_": "angular_velocity", "a": "acceleration", "alpha_": "angular_acceleration"}
@@ -19,7 +19,7 @@ BODY = {"": "position", "v": "velocity", "omega_": "angular_velocity", "a": "acc
 
 
 def si(model, unit):
-    """How many SI units a unit of a model is."""
+    """Size of a unit of a model in SI."""
     factor = 1.0
     over = 1
     for part in unit.replace("/", " / ").split():
@@ -85,7 +85,7 @@ def test_arrays_are_made_once_and_slices_are_views(strut):
     assert run.sensitivity("toe", "ball_joint_z").base is run.sensitivities("toe").base
 
 
-def test_a_design_is_the_drawing_moved(strut):
+def test_a_design_equals_the_changed_model(strut):
     by = 1e-3
     there, back, here = (strut.run({"tie_rod_outer_z": x}) for x in (by, -by, 0.0))
     slope = (there.values("toe") - back.values("toe")) / (2 * by)
@@ -112,7 +112,7 @@ def test_gradients_either_way_are_those_of_the_run(strut):
             assert found[:, k].T == pytest.approx(run.sensitivities(name, order=1), rel=1e-9, abs=1e-9)
 
 
-def test_many_designs_are_single_ones(strut):
+def test_many_designs_equal_single_runs(strut):
     rng = np.random.default_rng(7)
     designs = rng.normal(scale=0.5, size=(30, 3))
     names = ["tie_rod_outer_z", "ball_joint_y", "lca_tilt"]
@@ -187,6 +187,6 @@ def test_a_model_built_in_code_is_that_of_the_file():
     again = hardpoint.parse(built.text)
     run = built.run()
     assert (again.run().values("stroke") == run.values("stroke")).all()
-    # The pin's height makes the slider's speed: 2 pi rad/s * 30 mm upright.
+    # The slider's speed follows from the height of the pin: 2 pi rad/s * 30 mm when upright.
     assert run.values("stroke", "rate")[0] == pytest.approx(2 * np.pi * 30, rel=1e-12)
     assert run.sensitivity("stroke", "O_y", order=1)[0] == pytest.approx(-2 * np.pi, rel=1e-12)

@@ -20,7 +20,7 @@ MECHANISMS = {
 """Five models, each with rotations among the variables."""
 
 AGREE = 2e-6
-"""What central differences come to, as a part of the largest derivative."""
+"""Accuracy of central differences, relative to the largest derivative."""
 
 
 @pytest.fixture(params=MECHANISMS)
@@ -35,7 +35,7 @@ def differences(f, x):
 
 
 def somewhere(f):
-    """A design beside the drawing, where nothing is special."""
+    """A generic design close to the nominal one."""
     return f.start + 10 * f.steps
 
 
@@ -60,7 +60,7 @@ def test_check_partials(function):
         problem.set_val(name, value)
     problem.run_model()
     largest = abs(function.jacobian(somewhere(function))).max()
-    # Either tolerance will do: small derivatives are judged beside the largest.
+    # Either tolerance suffices: small derivatives are compared with the largest.
     data = problem.check_partials(out_stream=None)
     assert_check_partials(data, atol=AGREE * largest, rtol=0.0)
     for mode in ("fwd", "rev"):
@@ -85,7 +85,7 @@ def test_jax(function):
     exact = function.jacobian(x)
     assert np.array_equal(jax.jacfwd(f)(x), exact)
     assert np.allclose(jax.jit(jax.jacrev(f))(x), exact, rtol=1e-13, atol=0)
-    # Differences along a random way, as JAX takes them: in steps, so that all variables count alike.
+    # Differences along a random direction, as in JAX: scaled by the steps, so that all variables have the same weight.
     scale = 1 / abs(exact * function.steps).max()
     check_grads(lambda s: scale * f(x + s * function.steps), (np.zeros(len(x)),), order=1, modes=("fwd", "rev"), atol=1e-4, rtol=1e-4, eps=1.0)
     many = jax.vmap(f)(np.stack([x, x + function.steps]))
@@ -103,7 +103,7 @@ def test_casadi(function):
     assert np.array_equal(np.array(slopes(at)), function.jacobian(at))
 
 
-def test_scipy_finds_a_design_that_was_hidden():
+def test_scipy_finds_a_known_design():
     scipy = pytest.importorskip("scipy.optimize")
     model = hardpoint.read(MODELS / "macpherson.toml")
     f = hardpoint.Function(model, ["tie_rod_outer_z", "tie_rod_inner_z", "ball_joint_z"], ["toe", "camber"])
@@ -123,7 +123,7 @@ def test_scipy_minimises_a_metric(toe):
     assert found.fun < f.value(f.start)
 
 
-def test_openmdao_steps_back_from_what_locks(strut):
+def test_openmdao_backtracks_from_designs_that_lock(strut):
     om = pytest.importorskip("openmdao.api")
     from hardpoint.openmdao import MechanismComp
 

@@ -1,4 +1,4 @@
-"""Studies come to what the command line writes."""
+"""Studies have the results of the command line."""
 
 import json
 
@@ -9,16 +9,16 @@ import hardpoint
 from conftest import MODELS
 
 TIMES = ("seconds", "files", "timings")
-"""What differs from run to run."""
+"""Keys that differ from run to run."""
 
 
-def told(done):
+def printed(done):
     facts = json.loads(done.stdout)
     return {key: value for key, value in facts.items() if key not in TIMES}
 
 
 def same(study, facts):
-    """The files are named as they were given."""
+    """File names as they were given."""
     ours = json.loads(json.dumps({key: value for key, value in study.facts.items() if key not in TIMES}))
     assert ours == facts
 
@@ -27,7 +27,7 @@ def test_optimize(command):
     path = MODELS / "studies/strut_toe.toml"
     model = hardpoint.read(path)
     study = model.optimize()
-    same(study, told(command("optimize", path, "--json")))
+    same(study, printed(command("optimize", path, "--json")))
     assert study.status == "optimal"
     better = hardpoint.parse(study.text(), folder=path.parent)
     saved = {name: v for name, v in study.rounded.items()}
@@ -40,7 +40,7 @@ def test_optimize(command):
 def test_tolerance(command):
     path = MODELS / "studies/strut_tolerances.toml"
     study = hardpoint.read(path).tolerance(samples=1000)
-    same(study, told(command("tolerance", path, "--samples", 1000, "--json")))
+    same(study, printed(command("tolerance", path, "--samples", 1000, "--json")))
 
 
 def test_designs_drawn_are_those_of_the_tolerance_study(command, tmp_path):
@@ -61,7 +61,7 @@ def test_calibrate(command, tmp_path):
     path, data = MODELS / "studies/strut_calibrate.toml", MODELS / "studies/strut_measured.csv"
     model = hardpoint.read(path)
     study = model.calibrate(data)
-    same(study, told(command("calibrate", path, data, "--json")))
+    same(study, printed(command("calibrate", path, data, "--json")))
     pandas = pytest.importorskip("pandas")
     again = model.calibrate(pandas.read_csv(data, comment="#"))
     assert again.design == study.design
@@ -72,7 +72,7 @@ def test_sweep(command, tmp_path):
     model = hardpoint.read(path)
     found = model.sweep(samples=600)
     done = command("sweep", path, "--samples", 600, "-o", tmp_path, "--json")
-    facts = told(done)
+    facts = printed(done)
     same(found, facts)
     lines = (tmp_path / "designs.csv").read_text().splitlines()
     assert lines[0].split(",") == list(found.columns)
@@ -97,7 +97,7 @@ def test_a_sweep_by_parts_is_the_whole():
 
 def test_what_if_and_verify(strut, command):
     study = strut.what_if({"tie_rod_outer_z": 2.0})
-    facts = told(command("whatif", MODELS / "macpherson.toml", "--set", "tie_rod_outer_z=2", "--json"))
+    facts = printed(command("whatif", MODELS / "macpherson.toml", "--set", "tie_rod_outer_z=2", "--json"))
     assert study.facts.keys() == facts.keys()
     for key in facts.keys() - {"file"}:
         assert study.facts[key] == facts[key], key
@@ -114,7 +114,7 @@ def test_maps(command, tmp_path):
     assert model.maps() == json.loads((tmp_path / "maps.json").read_text())
 
 
-def test_what_a_notebook_shows(strut, toe):
+def test_display_in_a_notebook(strut, toe):
     page = strut.run().page()
     assert page.startswith("<!") and "<iframe" in page._repr_html_()
     assert "polyline" in strut.run()._repr_html_() and "toe" in strut._repr_html_()

@@ -1,4 +1,4 @@
-"""Long work: the end of it is noticed when it comes, and Ctrl-C long before."""
+"""Long work: its end is noticed at once, and Ctrl-C long before."""
 
 import os
 import signal
@@ -12,19 +12,19 @@ from conftest import MODELS
 from hardpoint import _native
 
 HOUR = 3_600_000
-"""Milliseconds: a listener that needs its patience to notice the end does not come back within the time limit of a test."""
+"""Milliseconds: a listener that notices the end only after this interval exceeds the time limit of a test."""
 
 
 @pytest.fixture
 def patience():
-    """Sets how often long work looks up."""
+    """Sets the check interval of long work."""
     before = _native.set_patience(HOUR)
     yield _native.set_patience
     _native.set_patience(before)
 
 
 def woken(work):
-    """How often the listener of some work wakes up."""
+    """Number of wake-ups of the listener of some work."""
     before = _native.wake_ups()
     work()
     return _native.wake_ups() - before
@@ -77,7 +77,7 @@ def test_an_exception_of_the_callback_ends_the_work(strut, patience):
 
 @pytest.fixture(scope="module")
 def slow():
-    """A motion with enough output times for each of its studies to take minutes."""
+    """A motion with enough output times that each study takes minutes."""
     text = (MODELS / "macpherson.toml").read_text()
     before, after = text.split("[time]")
     lines = [line if not line.startswith("steps") else "steps = 20000" for line in after.splitlines()]
@@ -91,7 +91,7 @@ MINUTES = {
     "validity": lambda model: model.validity(),
     "second_derivatives": lambda model: model.second_derivatives("toe"),
     "designs": lambda model: model.designs(np.zeros((512, 1)), "toe", variables=["tie_rod_outer_z"], at=[0]),
-    "designs_abreast": lambda model: model.designs(
+    "designs_in_batch": lambda model: model.designs(
         np.zeros((5120, 1)), "toe", variables=["tie_rod_outer_z"], at=[0], sensitivities=False
     ),
     "what_if": lambda model: [model.what_if({"tie_rod_outer_z": float(k)}) for k in range(1000)],
@@ -105,7 +105,7 @@ MINUTES = {
 @pytest.mark.parametrize("after", [0.05, 1.0])
 @pytest.mark.parametrize("name", MINUTES)
 def test_an_interruption_is_heard_between_two_output_times(name, after, slow):
-    """Within the time limit of the test, where the whole work takes longer."""
+    """Within the time limit of the test, although the complete work takes longer."""
     ended = threading.Event()
     timer = threading.Timer(after, lambda: ended.is_set() or os.kill(os.getpid(), signal.SIGINT))
     timer.start()

@@ -733,7 +733,7 @@ const AFTER_STUDIO: &str = "\
 The page is the one that `run` writes. The server adds what a page cannot do: it
 saves the model in place, notifies the page when the file changes on disk, opens other
 models of the folder, and runs long studies natively. It listens on this machine
-only, and answers requests with the token of the printed address. Ctrl-C ends it.
+only, and answers requests with the token of the printed address. Ctrl-C stops it.
 
 Without a model it shows all models of the current folder, or of `models` in it.
 With --port and --token, pages find the server again after a restart.

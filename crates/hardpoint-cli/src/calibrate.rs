@@ -18,13 +18,13 @@ use crate::pages::{FoundDesign, page};
 use crate::session::{Session, json_text};
 use crate::text;
 
-/// Fits, writes, and prints what was found.
+/// Fits the design, writes the results and prints a summary.
 pub fn run(options: &Calibrate) -> Outcome {
     let session = Session::begin(options.common.json);
     calibrate_in(&session, options).unwrap_or_else(|outcome| outcome)
 }
 
-/// The tables that are written, and the summary, which vouches for them.
+/// Result files; the summary is written last and marks them as complete.
 const FILES: [&str; 4] = ["residuals.csv", "covariance.csv", "report.html", "summary.json"];
 
 fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outcome> {
@@ -99,11 +99,11 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
     })
 }
 
-/// The variables of these names, or all.
+/// Variables with these names, or all.
 fn variables(session: &Session, file: &ModelFile, names: &[String]) -> Result<Vec<VariableId>, Outcome> {
     let model = &file.model;
     if model.variables.is_empty() {
-        let why = format!("`{}` has no design variables that could be off; add `[design]`", file.file_name());
+        let why = format!("`{}` has no design variables to fit; add `[design]`", file.file_name());
         return Err(session.misunderstood(&why));
     }
     if names.is_empty() {
@@ -145,7 +145,7 @@ fn sigmas(session: &Session, given: &[String]) -> Result<Vec<(String, f64)>, Out
         .collect()
 }
 
-/// Fits, telling of every iteration.
+/// Fits the design and reports every iteration.
 fn search(
     session: &Session,
     file: &ModelFile,
@@ -159,13 +159,13 @@ fn search(
     calibrate(&file.model, asked, &mut progress, &more).map_err(|why| match why {
         CalibrationError::Topology(fault) => session.cannot_be_driven(file, &fault),
         CalibrationError::NothingReached(why) => {
-            session.misunderstood(&format!("no posture of the table can be compared; on the way to the first: {why}"))
+            session.misunderstood(&format!("no posture of the table can be reached; error on the path to the first: {why}"))
         }
         CalibrationError::NothingVaries => {
-            session.misunderstood("the mechanism can follow none of the variables that are sought")
+            session.misunderstood("none of the variables to fit is admissible")
         }
         CalibrationError::TooFewReadings { readings, variables } => session.misunderstood(&format!(
-            "{readings} readings without standard deviations cannot tell {variables} variables and how exact they are; give `--sigma`, seek fewer \
+            "{readings} readings without standard deviations do not determine {variables} variables and their standard deviation; give `--sigma`, fit fewer \
              with `--variable`, or measure more"
         )),
     })
@@ -178,7 +178,7 @@ struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Tables, the page, and the summary last.
+    /// Writes tables, the page, and the summary last.
     fn write(&self, folder: &mut Folder, facts: &mut CalibrateFacts) -> Result<(), WriteError> {
         let of = &self.calibrated;
         folder.write("residuals.csv", |out| Ok(of.write_residuals(out)?))?;
@@ -194,13 +194,12 @@ impl Results<'_> {
         folder.write("summary.json", |out| out.write_all(json.as_bytes()))
     }
 
-    /// The design found beside the one in the design configuration, in the model's first motion; `None` where that does
-    /// not move at all.
+    /// Page of the model's first motion with the nominal and the fitted design; `None` if no position could be solved.
     fn page(&self, facts: &CalibrateFacts) -> Option<String> {
         let model = self.calibrated.file.model.motions().into_iter().next()?;
         let analysis = Analysis::with(&model, self.options.common.formulation()).ok()?;
         let design = &self.calibrated.found.design;
-        let found = FoundDesign { design, note: "The design that explains what was measured." };
+        let found = FoundDesign { design, note: "The design fitted to the measured data." };
         let finish = |page, today: &Solution| facts.page(&self.calibrated, page, &today.measured.outputs);
         page(self.calibrated.file, &analysis, Some(&found), finish)
     }

@@ -14,7 +14,7 @@ use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
 
-/// Examines a model and prints what it found.
+/// Checks a model and prints the findings.
 pub fn check(options: &Check) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, _: Option<&str>| check_in(&session, options, &file);
@@ -32,7 +32,7 @@ fn check_in(session: &Session, options: &Check, file: &ModelFile) -> Result<Outc
     Ok(outcome(&summary))
 }
 
-/// Solves a model's motion and says what is to be said of it.
+/// Solves a model's motion and summarises it with all diagnostics.
 pub fn examine(session: &Session, formulation: Formulation, file: &ModelFile) -> Result<Summary, Outcome> {
     let analysis = Analysis::with(&file.model, formulation).map_err(|fault| {
         if !session.is_json() {
@@ -83,7 +83,7 @@ fn facts_text(summary: &Summary) -> String {
         ("loops", facts.loops_line()),
         ("motion", format!("{} of {} steps solved", steps.solved, steps.asked)),
     ];
-    rows.extend(summary.effort.solved_by.clone().map(|by| ("even steps by", by)));
+    rows.extend(summary.effort.solved_by.clone().map(|by| ("steps solved by", by)));
     rows.extend(summary.margin.as_ref().map(|m| ("margin", m.line_from_start())));
     rows.push(("design variables", facts.variables_line()));
     let mut out = heading(&facts.name, facts.description.as_deref());

@@ -19,10 +19,10 @@ use crate::outcome::Outcome;
 use crate::session::{Session, json_text};
 use crate::text;
 
-/// All files of a comparison; the last one vouches for the others.
+/// All files of a comparison; the last one marks them as complete.
 const FILES: [&str; 3] = ["compare.html", "compare.csv", "compare.json"];
 
-/// Solves both models and prints how they differ.
+/// Solves both models and prints their differences.
 pub fn compare(options: &Compare) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, case: Option<&str>| compare_in(&session, options, file, case);
@@ -61,12 +61,12 @@ fn compare_in(
     let mut outcome = Outcome::Done;
     for (file, solution) in [(&file, &today), (&other, &exact)] {
         if let Some(stop) = &solution.stop {
-            let told = diagnose::stop(file, stop, solution.motion.len(), None);
+            let diagnostic = diagnose::stop(file, stop, solution.motion.len(), None);
             if solution.motion.is_empty() || session.interrupted() {
-                session.fail(file, &[told]);
+                session.fail(file, &[diagnostic]);
                 return Err(if session.interrupted() { Outcome::Interrupted } else { Outcome::Stopped });
             }
-            session.tell(file, &[told]);
+            session.tell(file, &[diagnostic]);
             outcome = Outcome::Stopped;
         }
     }
@@ -79,7 +79,7 @@ fn compare_in(
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("both have: {}", some_of(&names, ", ")),
         };
-        return Err(session.misunderstood(&format!("`{name}` is no measure of both models; {hint}")));
+        return Err(session.misunderstood(&format!("`{name}` is not a measure of both models; {hint}")));
     }
     let measures = &options.measure;
     let wanted = |name: &str| match measures.is_empty() {
@@ -90,7 +90,7 @@ fn compare_in(
     let mut written = Vec::new();
     if let Some(mut folder) = folder {
         let page = are_alike(both).then(|| {
-            // The other file's hardpoints, as changes of this one's.
+            // Hardpoints of the other file, as changes of this one.
             let mut change = vec![0.0; file.model.variables.len()];
             let mut known = file.model.clone();
             for h in &facts.hardpoints {
@@ -124,7 +124,7 @@ fn compare_in(
         written.extend(FILES[usize::from(!page_is_there)..].iter().map(|name| folder.path_of(name)));
         result.and_then(|()| folder.commit(&FILES)).map_err(|e| session.not_written(&e))?;
         if !page_is_there {
-            session.remark("the models have different bodies or measures: they cannot be shown together, and there is no page");
+            session.remark("the models have different bodies or measures: no page was written, because it cannot show them together");
         }
     }
     if session.is_json() {

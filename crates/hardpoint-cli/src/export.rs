@@ -13,7 +13,7 @@ use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
 
-/// Writes a model as a file of another program, and says what that does not say.
+/// Writes a model as a file of another program, and lists its unsupported features.
 pub fn export(options: &Export) -> Outcome {
     let session = Session::begin(options.json);
     if options.list {
@@ -24,7 +24,7 @@ pub fn export(options: &Export) -> Outcome {
         text::print(&text::pairs(&FORMATS.iter().map(row).collect::<Vec<_>>()));
         return Outcome::Done;
     }
-    // The command line asks for both unless it lists the formats.
+    // Both are required unless the formats are listed.
     let (Some(model), Some(to)) = (&options.model, &options.output) else { return Outcome::Misunderstood };
     export_to(&session, options, model, to).unwrap_or_else(|outcome| outcome)
 }
@@ -59,7 +59,7 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
     }
     let mut out = format!("{}: {}\n", to.display(), format.about);
     if !exported.unsupported.is_empty() {
-        out += "  not supported by the format, or written differently:\n";
+        out += "  unsupported, or exported with changes:\n";
         out.extend(exported.unsupported.iter().map(|u| format!("    {} `{}`: {}\n", u.kind, u.name, u.why)));
     }
     text::print(&out);

@@ -1,4 +1,4 @@
-//! Results appear whole or not at all.
+//! Folders of results: files appear whole or not at all.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -7,21 +7,21 @@ use std::sync::Mutex;
 
 use tempfile::{NamedTempFile, TempPath};
 
-/// Files of this size are written at once.
+/// Size of the write buffer in bytes.
 const BUFFER: usize = 1 << 20;
-/// Files under way end so; they are locked as long as somebody writes them.
+/// Suffix of unfinished files; they are locked while they are written.
 const SUFFIX: &str = ".part";
 
-/// Files under way, for a program that has to end at once.
+/// Unfinished files, to be removed if the program has to end at once.
 static UNDER_WAY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// A folder, with files that are written but not yet in place.
+/// A folder with files that are written but not yet in place.
 pub struct Folder {
     path: PathBuf,
     pending: Vec<(NamedTempFile, PathBuf)>,
 }
 
-/// A file under way.
+/// An unfinished file.
 pub struct PendingFile {
     file: BufWriter<File>,
     beside: TempPath,
@@ -30,15 +30,15 @@ pub struct PendingFile {
 
 /// A file or folder that could not be written.
 pub struct WriteError {
-    /// Which.
+    /// Path of the file or folder.
     pub path: PathBuf,
-    /// Why.
+    /// Cause.
     pub error: io::Error,
 }
 
 impl Folder {
-    /// The folder, made where it does not exist. Fails at once if nothing can be written there, so that a
-    /// long run is not lost. What a killed run left under way is removed.
+    /// Opens the folder; creates it if it does not exist. Fails at once if it is not writable, so that a long run is
+    /// not lost. Removes unfinished files of killed runs.
     pub fn open(path: &Path) -> Result<Self, WriteError> {
         let not_written = |error| WriteError { path: path.into(), error };
         std::fs::create_dir_all(path).map_err(not_written)?;
@@ -47,7 +47,7 @@ impl Folder {
         Ok(Self { path: path.into(), pending: Vec::new() })
     }
 
-    /// Begins a file beside its place.
+    /// Creates a file under a temporary name next to its final place.
     pub fn begin(&self, name: &str) -> Result<PendingFile, WriteError> {
         let path = self.path.join(name);
         match temporary(&self.path, name) {
@@ -59,7 +59,7 @@ impl Folder {
         }
     }
 
-    /// Ends a file.
+    /// Completes a file.
     pub fn end(&mut self, mut writing: PendingFile) -> Result<(), WriteError> {
         if let Err(error) = writing.flush() {
             return Err(writing.failed(error));
@@ -70,23 +70,22 @@ impl Folder {
         Ok(())
     }
 
-    /// Writes a file beside its place, and hands back what `content` indicates of it.
+    /// Writes a file under a temporary name and returns the result of `content`.
     pub fn write<T>(
         &mut self,
         name: &str,
         content: impl FnOnce(&mut PendingFile) -> io::Result<T>,
     ) -> Result<T, WriteError> {
         let mut writing = self.begin(name)?;
-        let told = content(&mut writing).map_err(|error| writing.failed(error))?;
-        self.end(writing).map(|()| told)
+        let output = content(&mut writing).map_err(|error| writing.failed(error))?;
+        self.end(writing).map(|()| output)
     }
 
-    /// Puts all files in their places, the last one last; files of this family that were not written now are removed,
-    /// so that nothing is next to them that is not of the same run.
+    /// Renames all files to their final names, the last one last. Removes files of this family from earlier runs.
     pub fn commit(mut self, family: &[&str]) -> Result<(), WriteError> {
         let last = self.pending.last().map(|(_, path)| path.clone());
         for path in family.iter().map(|name| self.path.join(name)) {
-            // The last one vouches for the others: while they change places, there is none.
+            // The last file indicates that the results are complete; it is absent while the others are replaced.
             let stays = self.pending.iter().any(|(_, p)| *p == path) && Some(&path) != last.as_ref();
             let removed = if stays { Ok(()) } else { std::fs::remove_file(&path) };
             if let Err(error) = removed.or_else(|e| if is_absent(&e) { Ok(()) } else { Err(e) }) {
@@ -101,7 +100,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Puts all files in their places, where there are none yet.
+    /// Renames all files to their final names; fails if one exists.
     pub fn commit_new(mut self) -> Result<(), WriteError> {
         for (file, path) in std::mem::take(&mut self.pending) {
             file.persist_noclobber(&path).map_err(|e| WriteError { path, error: e.error })?;
@@ -109,7 +108,7 @@ impl Folder {
         Ok(())
     }
 
-    /// The place of a file.
+    /// Path of a file.
     pub fn path_of(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
@@ -121,7 +120,7 @@ impl PendingFile {
         WriteError { path: self.path.clone(), error: error.into() }
     }
 
-    /// Another view of what is written, from its beginning.
+    /// Opens the unfinished file for reading, from its beginning.
     pub fn reopen(&mut self) -> io::Result<File> {
         self.file.flush()?;
         File::open(&self.beside)
@@ -154,21 +153,21 @@ fn is_absent(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::NotFound
 }
 
-/// Folder of the results of a case: one with its own name.
+/// Folder for the results of a case: a subfolder with its name.
 pub fn of_case(whole: &Path, case: Option<&str>) -> PathBuf {
     let Some(case) = case else { return whole.to_owned() };
     whole.join(file_name(case))
 }
 
-/// A name as part of a file's name: what not every system allows there as `%` and its number, so that no two names
-/// become one.
+/// Converts a name to a part of a file name: characters that some systems do not allow become `%` and their code, so
+/// that different names stay different.
 pub fn file_name(name: &str) -> String {
     let allowed = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '+');
     let part = |c: char| if allowed(c) { c.to_string() } else { format!("%{:02X}", u32::from(c)) };
     name.chars().map(part).collect()
 }
 
-/// Removes all files under way, for a program that has to end at once.
+/// Removes all unfinished files before the program ends at once.
 pub fn abandon() {
     under_way(|list| {
         for path in list.drain(..) {
@@ -185,14 +184,14 @@ fn temporary(folder: &Path, name: &str) -> io::Result<NamedTempFile> {
     let prefix = format!(".{name}.");
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(SUFFIX);
-    // Results are no secret: like other files, they are readable as far as the umask says.
+    // Results have the permissions of ordinary files: the umask applies.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     loop {
         let file = builder.tempfile_in(folder)?;
-        // On file systems without locks, nothing is ever taken for abandoned.
+        // On file systems without locks, no file counts as abandoned.
         let _ = file.as_file().try_lock();
-        // Another run may have taken it for abandoned before it was locked.
+        // Another run may have removed it before it was locked.
         if file.path().exists() {
             under_way(|list| list.push(file.path().to_owned()));
             return Ok(file);
@@ -200,7 +199,7 @@ fn temporary(folder: &Path, name: &str) -> io::Result<NamedTempFile> {
     }
 }
 
-/// Removes files under way that nobody writes any more.
+/// Removes unfinished files that no program writes any more.
 fn remove_abandoned(folder: &Path) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
@@ -229,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_left_under_way_is_removed_and_what_is_under_way_is_not() {
+    fn abandoned_files_are_removed_and_locked_files_are_not() {
         let folder = tempfile::tempdir().unwrap();
         let running = opened(folder.path());
         let mut writing = running.begin("motion.csv").unwrap_or_else(|e| panic!("{}", e.error));
@@ -246,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn files_of_an_earlier_run_do_not_stay_beside_the_new_ones() {
+    fn files_of_an_earlier_run_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["a", "b", "c"] {
             std::fs::write(folder.path().join(name), "old").unwrap();

@@ -18,14 +18,14 @@ use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
 
-/// Makes a model file of another program's mechanism, and checks it.
+/// Imports another program's mechanism as a model file and checks it.
 pub fn import(options: &Import) -> Outcome {
     let session = Session::begin(options.json);
     if options.list {
         list(&session);
         return Outcome::Done;
     }
-    // The command line asks for both unless it lists the formats.
+    // Both are required unless the formats are listed.
     let (Some(source), Some(to)) = (&options.source, &options.output) else { return Outcome::Misunderstood };
     import_to(&session, options, source, to).unwrap_or_else(|outcome| outcome)
 }
@@ -62,7 +62,7 @@ fn import_to(session: &Session, options: &Import, source: &Path, to: &Path) -> R
     }
     if let Some(fault) = &imported.fault {
         refused(session, fault);
-        session.remark(&format!("`{}` is written all the same, for you to mend", to.display()));
+        session.remark(&format!("`{}` was written anyway; correct it by hand", to.display()));
         return Err(Outcome::CannotBeDriven);
     }
     let file = session.read(to)?;
@@ -75,7 +75,7 @@ fn import_to(session: &Session, options: &Import, source: &Path, to: &Path) -> R
             "report": imported.report, "stored": difference, "check": summary,
         }));
     } else {
-        text::print(&told(&file, to, &imported, &summary, difference.as_ref()));
+        text::print(&report_text(&file, to, &imported, &summary, difference.as_ref()));
         session.tell(&file, &summary.diagnostics);
     }
     Ok(check::outcome(&summary))
@@ -91,7 +91,7 @@ fn format_named(session: &Session, name: &str) -> Result<&'static Format, Outcom
     })
 }
 
-/// Indicates what is wrong with a source.
+/// Reports the errors of a source.
 fn refused(session: &Session, problems: &ImportErrors) -> Outcome {
     if session.is_json() {
         let list: Vec<_> = problems.list().collect();
@@ -102,7 +102,7 @@ fn refused(session: &Session, problems: &ImportErrors) -> Outcome {
     Outcome::BadModel
 }
 
-/// A file that a source names: from its folder, or the two above it, as packages of robots are laid out.
+/// Reads a file that a source names: from its folder, or the two folders above it, as in robot packages.
 fn beside(folder: &Path, path: &str) -> Option<Vec<u8>> {
     let upwards = ["", "..", "../.."].map(|up| folder.join(up).join(path));
     let found = upwards.into_iter().find(|p| p.is_file())?;
@@ -111,7 +111,7 @@ fn beside(folder: &Path, path: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// The model and what it refers to; the model comes last, so that it never is there without them.
+/// Writes the model and the files that it refers to; the model comes last, so that it never exists without them.
 fn write(to: &Path, imported: &ImportedModel) -> Result<(), WriteError> {
     let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     for (name, bytes) in &imported.files {
@@ -137,7 +137,7 @@ fn compared(file: &ModelFile, imported: &ImportedModel) -> Option<Difference> {
     Some(series.compare(file, &analysis.solve(Run::new().without_sensitivities())))
 }
 
-fn told(
+fn report_text(
     file: &ModelFile,
     to: &Path,
     imported: &ImportedModel,
@@ -152,7 +152,7 @@ fn told(
     ];
     if !imported.files.is_empty() {
         let folder: PathBuf = imported.files[0].0.split('/').next().unwrap_or_default().into();
-        rows.push(("shapes", format!("{} in `{}` beside it", imported.files.len(), folder.display())));
+        rows.push(("shapes", format!("{} in `{}` next to it", imported.files.len(), folder.display())));
     }
     if let Some(d) = difference {
         let unit = file.units.length.symbol();

@@ -1,7 +1,7 @@
-//! Journal of a sweep on disk: a program that ends at any time loses only the block that it was writing.
+//! Journal of a sweep on disk: if the program is killed, only the current block is lost.
 //!
-//! A journal is a head that says which sweep it is of, then blocks, each with its length and a checksum. What a killed
-//! program has left of a block does not fit to these and is cut off when the journal is opened again.
+//! A journal has a header that identifies the sweep, then blocks, each with its length and a checksum. An incomplete
+//! block of a killed program fails this check and is cut off when the journal is opened again.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -10,32 +10,32 @@ use std::path::{Path, PathBuf};
 use hardpoint_study::StudyCost;
 use hardpoint_study::sweep::{SweptBlock, SweptCurves, SweptFailure};
 
-/// First bytes of a journal; another format gets another number.
+/// First bytes of a journal, with the version of the format.
 const HEAD: &[u8; 16] = b"hardpoint sweep1";
-/// Before every block: its length, and its checksum.
+/// Size of a block header: length and checksum.
 const FRAME: u64 = 16;
-/// Before the metrics in a block: first number, designs, motions, steps, metrics.
+/// Numbers before the metrics of a block: first number, designs, motions, steps, metrics.
 const OPENING: u64 = 40;
 
 /// Identity of the sweep of a journal.
 pub type Fingerprint = u128;
 
-/// A journal that is being written, or has been.
+/// A journal, open for reading and appending.
 pub struct Journal {
     file: File,
     path: Option<PathBuf>,
-    /// Start of each block, and its number of designs.
+    /// Start of each block and its number of designs.
     blocks: Vec<(u64, usize)>,
     end: u64,
 }
 
 /// Reason why a journal cannot be resumed.
 pub enum JournalError {
-    /// It is of another sweep.
+    /// The journal belongs to another sweep.
     Other,
-    /// Another program writes it.
+    /// Another program is writing the journal.
     Busy,
-    /// It cannot be read or written.
+    /// The journal cannot be read or written.
     Failed(io::Error),
 }
 
@@ -46,8 +46,8 @@ impl From<io::Error> for JournalError {
 }
 
 impl Journal {
-    /// The journal of a sweep: begun, or opened with all blocks that are whole; one `anew` begins from nothing,
-    /// whatever is there. Without a path it is a file that nobody else sees.
+    /// Creates the journal of a sweep, or opens it with all complete blocks; `anew` discards an existing one. Without a
+    /// path the journal is an anonymous file.
     pub fn open(path: Option<&Path>, fingerprint: Fingerprint, anew: bool) -> Result<Self, JournalError> {
         let Some(path) = path else {
             let mut journal = Self { file: tempfile::tempfile()?, path: None, blocks: Vec::new(), end: 0 };
@@ -57,7 +57,7 @@ impl Journal {
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => return Err(JournalError::Busy),
-            // Where there are no locks, nobody is kept out.
+            // On file systems without locks, other programs are not excluded.
             Err(TryLockError::Error(_)) | Ok(()) => {}
         }
         let mut journal = Self { file, path: Some(path.into()), blocks: Vec::new(), end: 0 };
@@ -83,7 +83,7 @@ impl Journal {
         Ok(())
     }
 
-    /// Finds the blocks that are whole and follow each other; the rest is cut off.
+    /// Finds the complete, consecutive blocks and cuts off the rest.
     fn find_blocks(&mut self, first: u64) -> io::Result<()> {
         let length = self.file.metadata()?.len();
         let mut reader = BufReader::new(&self.file);
@@ -108,7 +108,7 @@ impl Journal {
         self.file.seek(SeekFrom::Start(at)).map(drop)
     }
 
-    /// Number of designs that are in it, the first ones.
+    /// Number of stored designs, counted from the first one.
     pub fn designs(&self) -> usize {
         self.blocks.iter().map(|(_, designs)| designs).sum()
     }
@@ -126,7 +126,7 @@ impl Journal {
         Ok(())
     }
 
-    /// Shows all blocks in order.
+    /// Passes all blocks in order to `each`.
     pub fn each(&self, mut see: impl FnMut(SweptBlock) -> io::Result<()>) -> io::Result<()> {
         let mut file = &self.file;
         file.seek(SeekFrom::Start(self.blocks.first().map_or(self.end, |(at, _)| *at)))?;
@@ -141,7 +141,7 @@ impl Journal {
         file.seek(SeekFrom::Start(self.end)).map(drop)
     }
 
-    /// The values of one metric in all designs.
+    /// Values of one metric for all designs.
     pub fn column(&self, metric: usize) -> io::Result<Vec<f64>> {
         let mut file = &self.file;
         let mut found = Vec::with_capacity(self.designs());
@@ -158,14 +158,14 @@ impl Journal {
         Ok(found)
     }
 
-    /// Removes it: what it was for is done.
+    /// Removes the journal of a finished sweep.
     pub fn remove(self) -> io::Result<()> {
         self.path.map_or(Ok(()), std::fs::remove_file)
     }
 }
 
 fn broken() -> io::Error {
-    io::Error::other("what was written there has been changed meanwhile")
+    io::Error::other("the stored data have been changed meanwhile")
 }
 
 fn number(from: &mut impl Read) -> io::Result<u64> {
@@ -181,7 +181,7 @@ pub fn checksum(bytes: &[u8]) -> u128 {
     sum.0
 }
 
-/// A checksum of what is written to it.
+/// A writer that computes the checksum of its input.
 pub struct Checksum(pub u128);
 
 impl Default for Checksum {
@@ -235,7 +235,7 @@ fn encoded(block: &SweptBlock) -> Vec<u8> {
     out
 }
 
-/// A block, if that is one.
+/// Decodes a block; `None` if it is invalid.
 fn decoded(bytes: &[u8]) -> Option<SweptBlock> {
     let mut from = Decoder(bytes);
     let start = from.count()?;
@@ -343,7 +343,7 @@ mod tests {
             drop(journal);
             assert!(std::fs::read(&path).unwrap() == whole, "{length}");
         }
-        // A bit that fell over takes its block and all after it.
+        // A flipped bit invalidates its block and all later ones.
         let mut spoilt = whole.clone();
         spoilt[ends[1] as usize + 40] ^= 1;
         std::fs::write(&path, spoilt).unwrap();

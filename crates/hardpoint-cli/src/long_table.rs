@@ -1,4 +1,4 @@
-//! Long tables, written as they come: as CSV, or as Parquet.
+//! Long tables, written row by row as CSV or Parquet.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -17,19 +17,18 @@ use parquet::schema::types::{Type, TypePtr};
 use hardpoint_report::GENERATOR;
 use hardpoint_report::cells::Cells;
 
-/// A row group of Parquet has that many rows, fewer where they would have more than that many cells, so that the table
-/// need not fit into memory.
+/// Maximum number of rows and of cells of a Parquet row group, so that the table need not fit into memory.
 const GROUP_ROWS: usize = 1 << 16;
 const GROUP_CELLS: usize = 1 << 22;
-/// Columns of a table, by their names; the cells only say of which kind they are.
+/// Columns of a table by name; the cells give the column type only.
 pub type Kinds = Vec<(String, Cells)>;
 
 /// Format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableFormat {
-    /// Text, one row a line.
+    /// Text, one row per line.
     Csv,
-    /// Apache Parquet, not compressed: numbers hardly deflect.
+    /// Apache Parquet, not compressed: compression hardly reduces floating-point numbers.
     Parquet,
 }
 
@@ -43,7 +42,7 @@ impl TableFormat {
     }
 }
 
-/// A table under way. What is written depends on the rows alone, and not on how many came at once.
+/// A table that is being written. The file depends on the rows only, not on how they were grouped.
 pub struct TableWriter<W: Write + Send> {
     sink: Sink<W>,
 }
@@ -54,11 +53,10 @@ enum Sink<W: Write + Send> {
 }
 
 impl<W: Write + Send> TableWriter<W> {
-    /// Begins a table with these columns. `facts` about it, by key, go where the format has a place for them: into the
-    /// metadata of a Parquet file.
+    /// Creates a table with these columns. `facts`, by key, are written to the metadata of a Parquet file.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// Fails if the table cannot be written.
     pub fn new(out: W, format: TableFormat, columns: Kinds, facts: &[(&str, String)]) -> io::Result<Self> {
         let sink = match format {
             TableFormat::Csv => {
@@ -82,10 +80,10 @@ impl<W: Write + Send> TableWriter<W> {
         Ok(Self { sink })
     }
 
-    /// Adds rows: of every column as many cells.
+    /// Adds rows; all columns have the same number of cells.
     ///
     /// # Errors
-    /// Where they cannot be written.
+    /// Fails if the rows cannot be written.
     pub fn add(&mut self, rows: Vec<Cells>) -> io::Result<()> {
         match &mut self.sink {
             Sink::Csv(csv) => {
@@ -95,7 +93,7 @@ impl<W: Write + Send> TableWriter<W> {
                 Ok(())
             }
             Sink::Parquet { writer, pending, group } => {
-                // Groups end where they are full, wherever the rows came from.
+                // A group ends when it is full, independent of the calls that added the rows.
                 let mut rest = rows;
                 loop {
                     let room = *group - pending.first().map_or(0, Cells::len);
@@ -111,10 +109,10 @@ impl<W: Write + Send> TableWriter<W> {
         }
     }
 
-    /// Ends the table, and hands back what was written to.
+    /// Completes the table and returns the writer.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// Fails if the table cannot be written.
     pub fn end(self) -> io::Result<W> {
         match self.sink {
             Sink::Csv(csv) => csv.end(),
@@ -127,11 +125,11 @@ impl<W: Write + Send> TableWriter<W> {
         }
     }
 
-    /// Adds the rows of a Parquet file with these columns that are to be kept, by their cells in column `of`, which has
-    /// texts. False where it was not to go on.
+    /// Copies rows from a Parquet file with these columns; the text in column `of` selects them. Returns false if it
+    /// was cancelled.
     ///
     /// # Errors
-    /// Where either cannot be read or written.
+    /// Fails if a file cannot be read or written.
     pub fn add_file(
         &mut self,
         file: File,
@@ -160,7 +158,7 @@ fn fact((key, value): &(&str, String)) -> KeyValue {
     KeyValue::new((*key).to_owned(), value.clone())
 }
 
-/// The cells of a row group, column by column.
+/// Cells of a row group by column.
 fn read_group(group: &dyn RowGroupReader) -> parquet::errors::Result<Vec<Cells>> {
     let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
     let mut columns = Vec::new();
@@ -189,7 +187,7 @@ fn read_group(group: &dyn RowGroupReader) -> parquet::errors::Result<Vec<Cells>>
     Ok(columns)
 }
 
-/// Cells at their known positions, and `none` elsewhere.
+/// Expands cells to their positions, with `none` elsewhere.
 fn spread<T: Clone>(known: &[i16], cells: Vec<T>, none: T) -> Vec<T> {
     let mut cells = cells.into_iter();
     known.iter().map(|k| if *k > 0 { cells.next() } else { None }.unwrap_or_else(|| none.clone())).collect()
@@ -210,7 +208,7 @@ fn schema(columns: &Kinds) -> parquet::errors::Result<TypePtr> {
     Ok(Arc::new(Type::group_type_builder("rows").with_fields(fields).build()?))
 }
 
-/// Writes what is pending as a row group; nothing is pending then.
+/// Writes the pending rows as a row group.
 fn write_group<W: Write + Send>(
     writer: &mut SerializedFileWriter<W>,
     pending: &mut [Cells],
@@ -281,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reader_of_parquet_finds_what_was_written() {
+    fn a_reader_of_parquet_finds_all_rows() {
         let reader =
             SerializedFileReader::new(bytes::Bytes::from(written(TableFormat::Parquet, 512))).unwrap();
         assert_eq!(reader.num_row_groups(), 2);
@@ -330,9 +328,9 @@ mod tests {
         let found: Vec<i64> =
             reader.get_row_iter(None).unwrap().map(|row| row.unwrap().get_long(0).unwrap()).collect();
         assert!(found == expected && found.len() < ROWS);
-        let told = reader.metadata().file_metadata().key_value_metadata().unwrap();
-        let told: Vec<_> = told.iter().map(|f| (f.key.as_str(), f.value.clone())).collect();
-        assert_eq!(told, [("units", Some(facts[0].1.clone()))]);
+        let metadata = reader.metadata().file_metadata().key_value_metadata().unwrap();
+        let metadata: Vec<_> = metadata.iter().map(|f| (f.key.as_str(), f.value.clone())).collect();
+        assert_eq!(metadata, [("units", Some(facts[0].1.clone()))]);
         let mut once = true;
         assert!(!without(&mut || std::mem::take(&mut once)).0, "it can be ended between groups");
     }

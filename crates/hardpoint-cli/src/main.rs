@@ -41,7 +41,7 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version are results, everything else is a complaint.
+            // Help and version are results, everything else is an error.
             if let Err(failure) = error.print().and_then(|()| std::io::stdout().flush()) {
                 text::note_failure(failure);
             }

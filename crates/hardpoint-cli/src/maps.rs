@@ -1,4 +1,4 @@
-//! The maps of `hardpoint run`: cases that sweep two drivers over a grid.
+//! Maps of `hardpoint run`: cases that sweep two drivers over a grid.
 
 use std::io;
 use std::io::Write;
@@ -12,7 +12,7 @@ use hardpoint_study::grid::GridMap;
 use crate::folder::{Folder, WriteError};
 use crate::session::{Session, json_text};
 
-/// Solves all maps of a file, as far as the user has patience.
+/// Solves all maps of a file until the user interrupts.
 pub fn solved(session: &Session, file: &ModelFile, formulation: Formulation) -> Vec<MapFact> {
     if file.model.grids.is_empty() {
         return Vec::new();
@@ -24,12 +24,12 @@ pub fn solved(session: &Session, file: &ModelFile, formulation: Formulation) -> 
     maps.map(|map| MapFact::of(&file.model, file.units, &map)).collect()
 }
 
-/// Notes them in a summary.
+/// Adds the maps to a summary.
 pub fn note(maps: &[MapFact], summary: &mut Summary) {
     summary.maps = maps.iter().map(MapFact::line).collect();
 }
 
-/// Writes them, into files of these names.
+/// Writes the maps and returns the file names.
 pub fn write(maps: &[MapFact], folder: &mut Folder) -> Result<Vec<&'static str>, WriteError> {
     if maps.is_empty() {
         return Ok(Vec::new());

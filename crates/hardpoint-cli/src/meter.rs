@@ -5,34 +5,34 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Somebody who is no terminal and waits for work: a page.
+/// Receiver of progress reports other than a terminal: a page.
 pub trait Listener: Send + Sync {
-    /// Reports that a fraction of a part of the work is done.
+    /// Reports progress of a part of the work.
     fn progress(&self, what: &'static str, unit: &'static str, done: usize, of: usize);
-    /// A line on what the work came to on its way.
+    /// Reports an intermediate result as a line of text.
     fn line(&self, line: &str);
-    /// Reports that there is no result: the diagnostics as a document, and as text.
+    /// Reports a failure: the diagnostics as JSON and as text.
     fn refused(&self, diagnostics: serde_json::Value, text: &str);
 }
 
-/// A progress bar that appears only where something takes its time, and only on a terminal; what a listener hears of.
+/// A progress bar, shown only on a terminal and after a delay; a listener receives the progress instead.
 pub struct Meter {
     what: &'static str,
     unit: &'static str,
     started: Instant,
     bar: Option<ProgressBar>,
     listener: Option<Arc<dyn Listener>>,
-    /// Amount done before, for work whose rate is shown.
+    /// Amount done before the start, if the rate is shown.
     rate_after: Option<usize>,
 }
 
 impl Meter {
-    /// A meter of this work.
+    /// Creates a meter for this work.
     pub fn new(what: &'static str, unit: &'static str, listener: Option<Arc<dyn Listener>>) -> Self {
         Self { what, unit, started: Instant::now(), bar: None, listener, rate_after: None }
     }
 
-    /// A sign that work of unknown length goes on.
+    /// Creates a meter for work of unknown length.
     pub fn working(what: &'static str, listener: Option<Arc<dyn Listener>>) -> Self {
         let mut meter = Self::new(what, "", listener);
         match &meter.listener {
@@ -50,13 +50,13 @@ impl Meter {
         meter
     }
 
-    /// With its rate, of work of which so much was done before.
+    /// Also shows the rate; `done` is the amount done before.
     pub fn with_rate(mut self, done: usize) -> Self {
         self.rate_after = Some(done);
         self
     }
 
-    /// Shows how far the work is.
+    /// Shows the progress.
     pub fn show(&mut self, done: usize, total: usize) {
         const PATIENCE: Duration = Duration::from_millis(300);
         if let Some(listener) = &self.listener {
@@ -65,7 +65,7 @@ impl Meter {
         }
         if self.bar.is_none() && self.started.elapsed() > PATIENCE {
             let bar = ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::stderr());
-            // What is left of the line is the bar.
+            // The bar fills the rest of the line.
             let rate = self.rate_after.map_or("", |_| "{per_sec}, ");
             let template =
                 format!("{} {{wide_bar}} {{pos}} of {{len}} {}, {rate}{{eta}} left", self.what, self.unit);

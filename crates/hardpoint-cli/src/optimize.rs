@@ -21,7 +21,7 @@ use crate::pages::{FoundDesign, Study, page, threads};
 use crate::session::{Session, json_text};
 use crate::text;
 
-/// Searches for the best design, writes, and prints what was found.
+/// Optimises the design, writes the results and prints a summary.
 pub fn run(options: &Optimize) -> Outcome {
     let session = Session::begin(options.common.json);
     optimize_in(&session, options).unwrap_or_else(|outcome| outcome)
@@ -88,7 +88,7 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
     })
 }
 
-/// The design of a saved file, read as it was written and solved once more.
+/// Reads a saved file and solves its design again.
 fn judged_as_written(
     to: &Path,
     options: &Optimize,
@@ -108,7 +108,7 @@ fn judged_as_written(
     judge(&file.model, &motions, wanted, &[]).map_err(|refused| refused.why)
 }
 
-/// The request, by the file and besides: one case of it, that many starts and iterations.
+/// Settings from the file, overridden by options: a single case, the number of starts and iterations.
 pub fn asked(
     session: &Session,
     file: &ModelFile,
@@ -117,14 +117,14 @@ pub fn asked(
 ) -> Result<OptimizationSettings, Outcome> {
     let Some(asked) = &file.model.optimization else {
         let why = format!(
-            "`{}` has no `[optimize]` table; add `[optimize.goals]` with the metrics that are to be small, and `bounds` to the \
+            "`{}` has no `[optimize]` table; add `[optimize.goals]` with the metrics to minimise, and `bounds` to the \
              design variables that may change (docs/file-format.md)",
             file.file_name()
         );
         return Err(session.misunderstood(&why));
     };
     if let Some(case) = case.filter(|_| asked.goals.is_empty()) {
-        let why = format!("`--case {case}`: no goal of `[optimize]` is of this case; leave `--case` out");
+        let why = format!("`--case {case}`: `[optimize]` has no goal in this case; leave `--case` out");
         return Err(session.misunderstood(&why));
     }
     let mut asked = asked.clone();
@@ -133,7 +133,7 @@ pub fn asked(
     Ok(asked)
 }
 
-/// A search that has ended.
+/// A finished search.
 pub struct Search<'a> {
     file: &'a ModelFile,
     motions: &'a Motions<'a>,
@@ -144,7 +144,7 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Searches, telling of every iteration; of several searches, of the end of each.
+    /// Searches and reports every iteration; of several searches, the end of each.
     pub fn run(
         session: &Session,
         file: &'a ModelFile,
@@ -155,8 +155,8 @@ impl<'a> Search<'a> {
         let (model, units) = (&file.model, file.units);
         let many = asked.starts > 1;
         session.line(&text::bold(&model.name));
-        let mut progress = |k: usize, told: SearchProgress<'_>| {
-            let line = match told {
+        let mut progress = |k: usize, event: SearchProgress<'_>| {
+            let line = match event {
                 SearchProgress::Iteration(iteration) if !many => {
                     Some(iteration_line(model, units, iteration))
                 }
@@ -178,18 +178,17 @@ impl<'a> Search<'a> {
         Self { file, motions, asked, found, facts }
     }
 
-    /// The best design, if one moves at all.
+    /// Best design, if a position of any design could be solved.
     fn best(&self) -> Option<&[f64]> {
         self.found.best.and_then(|k| Some(&*self.found.searches[k].found.as_ref()?.design))
     }
 
-    /// The same with the searched variables at numbers of few digits in the file's units, as far as it then moves
-    /// alike.
+    /// Best design with its variables rounded to few digits in the file's units, as long as the motion stays the same.
     pub fn to_save(&self) -> Option<Vec<f64>> {
         Some(to_save(self.file, self.motions, self.asked, self.best()?))
     }
 
-    /// A page for each motion, and the summary last.
+    /// Writes a page for each motion, and the summary last.
     fn write(&mut self, folder: &mut Folder) -> Result<(), WriteError> {
         let pages = self.write_pages(folder)?;
         self.facts.files.extend(pages);
@@ -213,7 +212,7 @@ impl Study for Search<'_> {
     }
 
     fn page(&self, motion: usize) -> Option<String> {
-        let found = FoundDesign { design: self.best()?, note: "The design that the search found." };
+        let found = FoundDesign { design: self.best()?, note: "The optimised design." };
         let analysis = &self.motions.analyses()[motion];
         let finish =
             |page, today: &Solution| self.facts.page(page, analysis.model(), &today.measured.outputs);

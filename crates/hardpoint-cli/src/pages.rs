@@ -1,4 +1,4 @@
-//! The pages of studies: one for each motion, with what the study found beside the nominal design.
+//! Pages of studies: one for each motion, with the result of the study alongside the nominal design.
 
 use std::io::Write;
 use std::num::NonZero;
@@ -16,18 +16,18 @@ use hardpoint_study::Motions;
 
 use crate::folder::{Folder, WriteError, file_name};
 
-/// A page as HTML, with its case, where there are cases.
+/// A page as HTML, with its case if the model has cases.
 pub type Page = (Option<String>, String);
 
-/// A study of several motions that has ended.
+/// A finished study of several motions.
 pub trait Study {
     /// The model that was studied.
     fn file(&self) -> &ModelFile;
-    /// Motions that were.
+    /// Studied motions.
     fn motions(&self) -> &Motions<'_>;
     /// Index among all motions of the model.
     fn number(&self, motion: usize) -> usize;
-    /// The page of a motion; `None` where that does not move at all.
+    /// Page of a motion; `None` if no position could be solved.
     fn page(&self, motion: usize) -> Option<String>;
 
     /// All pages.
@@ -36,7 +36,7 @@ pub trait Study {
         (0..self.motions().analyses().len()).filter_map(move |k| Some((case(k), self.page(k)?)))
     }
 
-    /// Writes them, and names what was written.
+    /// Writes the pages and returns the file names.
     fn write_pages(&self, folder: &mut Folder) -> Result<Vec<String>, WriteError> {
         let mut written = Vec::new();
         for (case, html) in self.pages() {
@@ -56,8 +56,8 @@ pub struct FoundDesign<'a> {
     pub note: &'a str,
 }
 
-/// The page of one motion in the design configuration, and as found; `finish` adds what the study has to say. `None`
-/// where it does not move at all.
+/// Page of one motion with the nominal and the resulting design; `finish` adds the results of the study. `None` if no
+/// position could be solved.
 pub fn page(
     file: &ModelFile,
     analysis: &Analysis<'_>,

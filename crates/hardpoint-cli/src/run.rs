@@ -34,21 +34,21 @@ use crate::tables::Plan;
 use crate::text;
 use crate::workbook::Contents;
 
-/// The step of the differences that the report compares with, as part of the natural step: small enough for
-/// five digits, large enough to stay clear of round-off.
+/// Step of the finite differences in the report, relative to the natural step: small enough for five digits, large
+/// enough to avoid round-off.
 const STEP: f64 = 1e-4;
 /// Tolerance of motions solved with fewer output times, as a fraction of the mechanism's size.
 const SAME_MOTION: f64 = 1e-6;
-/// Message if they differ.
-const NOT_THE_SAME: &str = "with the output times that are kept, the motion does not come out the same: the sensitivities were not \
-    compared with re-solved designs, and how far they can be trusted is not known";
+/// Message if the motion with fewer output times differs.
+const NOT_THE_SAME: &str = "the motion changes if only the stored output times are solved: the sensitivities were not \
+    compared with re-solved designs, and their linear range is unknown";
 /// Message if sensitivities of bodies are not stored.
-const TOO_MANY: &str = "the sensitivities were not compared with re-solved designs, because they are too many to be held; \
-    `hardpoint verify` does that for fewer output times";
-/// Jerks of that many output times are held at once.
+const TOO_MANY: &str = "the sensitivities were not compared with re-solved designs, because they are too many to be stored; \
+    `hardpoint verify` compares them at fewer output times";
+/// Number of output times per window of jerks.
 const JERK_ROWS: usize = 256;
 
-/// All files that a run may write; the last one vouches for the others.
+/// All files that a run may write; the last one marks them as complete.
 const FILES: [&str; 18] = [
     "motion.csv",
     "sensitivity.csv",
@@ -84,7 +84,7 @@ pub fn run(options: &Run) -> Outcome {
         Ok(file) => file,
         Err(outcome) => return outcome,
     };
-    // The maps are those of the whole file, and every page has them.
+    // Every page has the maps of the whole file.
     let maps = match options.motions.case {
         None => maps::solved(&session, &file, options.common.formulation()),
         Some(_) => Vec::new(),
@@ -121,7 +121,7 @@ pub fn run(options: &Run) -> Outcome {
     written.map_or_else(|e| session.not_written(&e), |()| outcome)
 }
 
-/// Solves the case of that name if it is a grid, and nothing else.
+/// Solves only the case of that name, if it is a grid.
 fn grid_alone(
     session: &Session,
     options: &Run,
@@ -162,17 +162,17 @@ struct CaseDone {
     exit_code: u8,
 }
 
-/// The page of the file's first motion with the maps of a grid; `None` where that does not move.
+/// Page of the file's first motion with the maps of a grid; `None` if no position could be solved.
 fn page_of_maps(file: &ModelFile, formulation: Formulation, maps: &[MapFact]) -> Option<String> {
     let model = file.model.motions().into_iter().next()?;
     let analysis = Analysis::with(&model, formulation).ok()?;
     pages::page(file, &analysis, None, |page, _| MapFact::page(maps, page))
 }
 
-/// The page that is written of a motion, without writing it.
+/// Returns the report of a motion without writing it.
 ///
 /// # Errors
-/// Where there is nothing to be shown: it cannot be driven, or does not assemble.
+/// Fails if the mechanism cannot be driven, or does not assemble.
 pub fn page(
     session: &Session,
     file: &ModelFile,
@@ -263,15 +263,15 @@ fn run_in(
         if options.workbook {
             let contents =
                 Contents { file, course: &course, summary: &summary, suffix: options.format.suffix() };
-            let told = folder.write("motion.xlsx", |out| contents.write(out));
-            summary.left_out.extend(told.map_err(|e| session.not_written(&e))?);
+            let left_out = folder.write("motion.xlsx", |out| contents.write(out));
+            summary.left_out.extend(left_out.map_err(|e| session.not_written(&e))?);
             summary.files.push(folder.path_of("motion.xlsx").display().to_string());
         }
         if options.pdf {
             let contents =
                 Contents { file, course: &course, summary: &summary, suffix: options.format.suffix() };
-            let told = folder.write("report.pdf", |out| contents.write_pdf(out));
-            summary.left_out.extend(told.map_err(|e| session.not_written(&e))?);
+            let left_out = folder.write("report.pdf", |out| contents.write_pdf(out));
+            summary.left_out.extend(left_out.map_err(|e| session.not_written(&e))?);
             summary.files.push(folder.path_of("report.pdf").display().to_string());
         }
         if options.gltf {
@@ -284,7 +284,7 @@ fn run_in(
             );
             summary.files.push(folder.path_of("motion.glb").display().to_string());
         }
-        // Of a file with cases, the maps are those of the whole.
+        // In a file with cases, the summary of the whole file has the maps.
         if case.is_none() {
             maps::note(maps, &mut summary);
             let names = maps::write(maps, &mut folder).map_err(|e| session.not_written(&e))?;
@@ -324,9 +324,9 @@ fn default_folder(model: &Path) -> PathBuf {
     Path::new("results").join(model.file_stem().unwrap_or(model.as_os_str()))
 }
 
-/// The model with the output times that were kept of a long motion, for what is studied after it.
+/// The model with the stored output times of a long motion, for the studies after it.
 struct Sample {
-    /// `None` where all were kept.
+    /// `None` if all output times were stored.
     model: Option<Model>,
     formulation: Formulation,
 }
@@ -350,7 +350,7 @@ impl Sample {
     }
 }
 
-/// Linear range of the sensitivities, unless the user interrupts.
+/// Linear ranges of the sensitivities, unless the user interrupts.
 pub fn trusted(
     session: &Session,
     file: &ModelFile,
@@ -366,7 +366,7 @@ pub fn trusted(
     ValidityFact::all(&file.model, file.units, solution, &found)
 }
 
-/// Differences of a complete motion by every variable that it can follow, as far as the user has patience.
+/// Finite differences of a complete motion by every admissible variable, until the user interrupts.
 fn compare(session: &Session, analysis: &Analysis<'_>, solution: &Solution) -> Vec<Option<Difference>> {
     let model = analysis.model();
     let mut differences = vec![None; model.variables.len()];
@@ -405,7 +405,7 @@ fn write_jerk(
     let _working = session.working("third derivatives");
     let columns = Columns { model: &file.model, units: file.units, bodies: true, angles: None };
     folder.write("jerk.csv", |out| {
-        // Nothing can end this part of the work but the end of the program; nothing is in its place yet.
+        // Only the end of the program can interrupt this part; no file is in its place yet.
         session.patient(false);
         let mut table = JerkCsv::new(columns, out)?;
         let mut failure = None;
@@ -428,8 +428,7 @@ struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Compares the sensitivities with re-solved designs and says how far they can be trusted, as far as the user has
-    /// patience.
+    /// Compares the sensitivities with re-solved designs and determines their linear ranges, until the user interrupts.
     fn study(&mut self, session: &Session, formulation: Formulation, comparing: bool, summary: &mut Summary) {
         let (course, solution) = (self.course, &self.course.kept);
         if session.interrupted() || solution.motion.is_empty() {

@@ -28,7 +28,7 @@ use crate::text;
 
 /// Receiver of a session's reports.
 enum Audience {
-    /// Somebody who reads.
+    /// A terminal.
     Terminal,
     /// A program, which gets one JSON document.
     Program,
@@ -36,38 +36,38 @@ enum Audience {
     Page(Arc<dyn Listener>),
 }
 
-/// A command under way.
+/// A running command.
 pub struct Session {
     audience: Audience,
     started: Instant,
     interrupted: Arc<AtomicBool>,
     patient: Arc<AtomicBool>,
-    /// The documents of the cases that were done, while there are several.
+    /// JSON documents of the finished cases, if there are several.
     cases: Mutex<Option<Vec<serde_json::Value>>>,
-    /// The one that is being done.
+    /// Current case.
     case: Mutex<Option<String>>,
 }
 
-/// Results of that many bytes are held at once while a motion is solved: little enough to be written in no time.
+/// Size of a window of results in bytes: small enough to be written quickly.
 const WINDOW_BYTES: usize = 4 << 20;
-/// A window holds one output time per lane at least; where that takes more than this, the work is not begun.
+/// Maximum size of a window in bytes. A window has at least one output time per lane; if that is larger, nothing is
+/// solved.
 const MOST_BYTES: usize = 512 << 20;
-/// Motions that are studied as a whole may take that many bytes; longer ones are looked at every that many output
-/// times.
+/// Maximum size in bytes of a motion that is studied as a whole; longer motions are studied with fewer output times.
 const STUDY_BYTES: usize = 96 << 20;
 
 impl Session {
-    /// Begins; from now on Ctrl-C asks to stop, and another Ctrl-C later ends the program at once.
+    /// Begins a session. From now on Ctrl-C requests a stop, and a second Ctrl-C ends the program at once.
     pub fn begin(json: bool) -> Self {
         // Shells and job runners may send the same signal to a process and to its group.
         const SAME_REQUEST: Duration = Duration::from_millis(500);
-        /// Whoever looks at the request does so within this time.
+        /// Time within which running work notices the request.
         const PATIENCE: Duration = Duration::from_millis(700);
         let interrupted = Arc::new(AtomicBool::new(false));
         let patient = Arc::new(AtomicBool::new(false));
         let (flag, waits) = (Arc::clone(&interrupted), Arc::clone(&patient));
         let mut first = None;
-        // Without a handler Ctrl-C just ends the program, which is no reason not to run.
+        // Without a handler, Ctrl-C ends the program at once; that is acceptable.
         let _ = ctrlc::set_handler(move || {
             flag.store(true, Ordering::SeqCst);
             let again = first.get_or_insert_with(Instant::now).elapsed() > SAME_REQUEST;
@@ -86,7 +86,7 @@ impl Session {
         Self::of(audience, interrupted, patient)
     }
 
-    /// Session for a page, which may end it by this flag.
+    /// Session for a page, which may interrupt it with this flag.
     pub fn for_page(listener: Arc<dyn Listener>, interrupted: Arc<AtomicBool>) -> Self {
         Self::of(Audience::Page(listener), interrupted, Arc::new(AtomicBool::new(true)))
     }
@@ -113,17 +113,17 @@ impl Session {
         matches!(self.audience, Audience::Terminal)
     }
 
-    /// A meter of this work.
+    /// Creates a meter for this work.
     pub fn meter(&self, what: &'static str, unit: &'static str) -> Meter {
         Meter::new(what, unit, self.listener().cloned())
     }
 
-    /// A sign that work of unknown length goes on.
+    /// Creates a meter for work of unknown length.
     pub fn working(&self, what: &'static str) -> Meter {
         Meter::working(what, self.listener().cloned())
     }
 
-    /// A line on what the work came to on its way.
+    /// Reports an intermediate result as a line of text.
     pub fn line(&self, line: &str) {
         match &self.audience {
             Audience::Terminal => text::print(&format!("{line}\n")),
@@ -132,8 +132,8 @@ impl Session {
         }
     }
 
-    /// True if what is done now ends by itself soon after a request to stop, and has something to save. What is not
-    /// patient is ended where it is.
+    /// Sets whether the current work ends by itself soon after a request to stop, and has results to save. Other work
+    /// is aborted at once.
     pub fn patient(&self, yes: bool) {
         self.patient.store(yes, Ordering::SeqCst);
     }
@@ -148,7 +148,7 @@ impl Session {
         self.started.elapsed().as_secs_f64()
     }
 
-    /// Reads the model, or reports what is wrong with it.
+    /// Reads the model, or reports its errors.
     pub fn read(&self, path: &Path) -> Result<ModelFile, Outcome> {
         hardpoint_file::read(path).map_err(|error: ReadError| {
             self.not_read(error.diagnostics());
@@ -156,7 +156,7 @@ impl Session {
         })
     }
 
-    /// The bytes of a file of another program.
+    /// Reads the bytes of a file of another program.
     pub fn bytes_of(&self, path: &Path) -> Result<Vec<u8>, Outcome> {
         std::fs::read(path).map_err(|error| {
             let message = format!("`{}` cannot be read", path.display());
@@ -165,13 +165,13 @@ impl Session {
                 &message,
                 Some(path),
                 &error.to_string(),
-                "check the path, and that you may read it",
+                "check the path and the read permission",
             );
             Outcome::BadModel
         })
     }
 
-    /// Indicates what is wrong with a file that was read.
+    /// Reports the errors of a file.
     pub fn not_read(&self, diagnostics: &Diagnostics) {
         match &self.audience {
             Audience::Program => self.print_error(diagnostics.list()),
@@ -182,11 +182,11 @@ impl Session {
         }
     }
 
-    /// Reads the model and does a command for its motion; of a model with cases, for one case or for each of them, one
-    /// after the other. `each` is reported the case where there are several.
+    /// Reads the model and runs a command for its motion; for a model with cases, for one case or for all in turn.
+    /// `each` receives the name of the case if there are several.
     ///
     /// # Errors
-    /// Error if nothing could be started. The outcome of one case does not prevent the others.
+    /// Fails if nothing could be started. The outcome of one case does not prevent the others.
     pub fn for_motions(
         &self,
         path: &Path,
@@ -196,10 +196,10 @@ impl Session {
         self.for_motions_of(self.read(path)?, motions, each)
     }
 
-    /// The same for a model that was read.
+    /// Same as [`Session::for_motions`] for a model that was read.
     ///
     /// # Errors
-    /// As there.
+    /// Same as there.
     pub fn for_motions_of(
         &self,
         file: ModelFile,
@@ -236,10 +236,10 @@ impl Session {
         Ok(outcome)
     }
 
-    /// The case of a file that the command line names.
+    /// Case that the command line names.
     ///
     /// # Errors
-    /// Where it has none of that name, or where that is no motion.
+    /// Fails if there is no such case, or if it is not a motion.
     pub fn case(&self, file: &ModelFile, name: &str) -> Result<CaseId, Outcome> {
         if let Some(id) = file.model.case(name) {
             return Ok(id);
@@ -247,7 +247,7 @@ impl Session {
         let cases: Vec<&str> = file.model.cases.iter().map(|c| c.name.as_str()).collect();
         let why = match &cases[..] {
             _ if file.model.grids.iter().any(|grid| grid.name == name) => {
-                "it is a grid of positions and no motion, which `hardpoint run` solves".to_owned()
+                "it is a grid of positions, not a motion; `hardpoint run` solves it".to_owned()
             }
             [] => "there is no such case; the model has no cases".to_owned(),
             _ => match did_you_mean(name, cases.iter().copied()) {
@@ -258,10 +258,10 @@ impl Session {
         Err(self.misunderstood(&format!("`--case {name}`: {why}")))
     }
 
-    /// The motions of a model that a command is done for, by their numbers.
+    /// Indices of the motions for a command.
     ///
     /// # Errors
-    /// Error for a case that does not exist.
+    /// Fails if the case does not exist.
     pub fn numbers_of(&self, file: &ModelFile, motions: &Motions) -> Result<Vec<usize>, Outcome> {
         match &motions.case {
             Some(name) => Ok(vec![self.case(file, name)?.0]),
@@ -280,7 +280,7 @@ impl Session {
     /// Writes the model file with a changed design, whole or not at all.
     ///
     /// # Errors
-    /// Where the text does not support the changed design, or the file cannot be written.
+    /// Fails if the text does not support the changed design, or the file cannot be written.
     pub fn save(&self, file: &ModelFile, design: &[f64], to: &Path) -> Result<(), Outcome> {
         let text = self.edited(file, design)?;
         write_text(to, &text).map_err(|e| self.not_written(&e))
@@ -289,7 +289,7 @@ impl Session {
     /// Checks before the work that changes of some variables can be saved in the model's text.
     ///
     /// # Errors
-    /// Fails where the text has no number for one of them.
+    /// Fails if the text has no number for one of them.
     pub fn can_save(
         &self,
         file: &ModelFile,
@@ -303,11 +303,11 @@ impl Session {
         })
     }
 
-    /// Writes the model file with a changed design after a search: a failure is returned, so that the result can still
-    /// be shown.
+    /// Writes the model file with a changed design after a search. A failure is returned, not printed, so that the
+    /// result can still be shown.
     ///
     /// # Errors
-    /// The diagnostics, the cause in one line, and how the command ends.
+    /// Returns the diagnostics, the cause in one line, and the outcome of the command.
     pub fn save_result(
         &self,
         file: &ModelFile,
@@ -324,10 +324,10 @@ impl Session {
         })
     }
 
-    /// The model's text with a changed design.
+    /// Model text with a changed design.
     ///
     /// # Errors
-    /// Where the text does not support it.
+    /// Fails if the text does not support it.
     pub fn edited(&self, file: &ModelFile, design: &[f64]) -> Result<String, Outcome> {
         file.edit(design).map_err(|diagnostics| {
             self.fail(file, diagnostics.list());
@@ -335,10 +335,10 @@ impl Session {
         })
     }
 
-    /// The folder for results, where one is requested.
+    /// Folder for results, if requested.
     ///
     /// # Errors
-    /// Where nothing can be written there.
+    /// Fails if it is not writable.
     pub fn folder(&self, path: Option<&Path>) -> Result<Option<Folder>, Outcome> {
         path.map(Folder::open).transpose().map_err(|e| self.not_written(&e))
     }
@@ -346,7 +346,7 @@ impl Session {
     /// Checks that a file to save to is not the model itself.
     ///
     /// # Errors
-    /// Where it is.
+    /// Fails if it is the model itself.
     pub fn may_save(&self, model: &Path, to: Option<&Path>) -> Result<(), Outcome> {
         let same = |a: &Path, b: &Path| {
             a.canonicalize().ok().is_some_and(|a| b.canonicalize().is_ok_and(|b| a == b))
@@ -354,13 +354,13 @@ impl Session {
         match to {
             Some(to) if same(model, to) => {
                 let why = format!(
-                    "`{}` would overwrite what is read: the model file itself, or its source; write under another name",
+                    "`{}` would overwrite the model file itself, or its source; write under another name",
                     to.display()
                 );
                 Err(self.misunderstood(&why))
             }
             Some(to) if to.file_name().is_none() => {
-                Err(self.misunderstood(&format!("`{}` names no file", to.display())))
+                Err(self.misunderstood(&format!("`{}` is not a file name", to.display())))
             }
             _ => Ok(()),
         }
@@ -374,13 +374,13 @@ impl Session {
         Ok(match Execution::named(&name) {
             Some(execution) => analysis.executed(execution),
             None => {
-                self.remark("HARDPOINT_PATH is none of `scalar`, `tape` and `code`: it is not heeded");
+                self.remark("HARDPOINT_PATH must be `scalar`, `tape` or `code`: it is ignored");
                 analysis
             }
         })
     }
 
-    /// Indicates why the mechanism cannot be driven.
+    /// Reports why the mechanism cannot be driven.
     pub fn cannot_be_driven(&self, file: &ModelFile, fault: &TopologyError) -> Outcome {
         self.fail(file, &[diagnose::topology_fault(file, fault)]);
         Outcome::CannotBeDriven
@@ -391,7 +391,7 @@ impl Session {
         matches!(self.audience, Audience::Program)
     }
 
-    /// Solves motion and sensitivities, showing progress; a motion that is studied as a whole ([`Session::fits`]).
+    /// Solves motion and sensitivities with progress, for a motion that is studied as a whole ([`Session::fits`]).
     pub fn solve(&self, analysis: &Analysis<'_>) -> Solution {
         let mut meter = self.meter("solving", "steps");
         analysis.solve(Run::new().progress(|progress| {
@@ -400,11 +400,11 @@ impl Session {
         }))
     }
 
-    /// Solves the motion, with sensitivities or without, however long it is: `each` sees it window by window, and may
-    /// end it.
+    /// Solves a motion of any length, with or without sensitivities: `each` receives it window by window, and may stop
+    /// it.
     ///
     /// # Errors
-    /// Where a single window is too large, before anything is solved.
+    /// Fails before solving if a single window is too large.
     pub fn solve_in_windows(
         &self,
         analysis: &Analysis<'_>,
@@ -416,10 +416,10 @@ impl Session {
         if takes > MOST_BYTES {
             let (bodies, variables) = (model.bodies.len() - 1, model.variables.len());
             let message = format!(
-                "a few output times of {bodies} bodies by {variables} variables take {} of memory",
+                "one window of output times of {bodies} bodies by {variables} variables needs {} of memory",
                 bytes(takes as u64)
             );
-            let note = format!("at most {} are used for that; nothing was solved", bytes(MOST_BYTES as u64));
+            let note = format!("the limit is {}; nothing was solved", bytes(MOST_BYTES as u64));
             self.refuse(
                 "HP0603",
                 &message,
@@ -444,8 +444,7 @@ impl Session {
         Ok(gathering.end(&whole))
     }
 
-    /// Makes the motion of a model short enough to be studied as a whole, by leaving out output times, and reports
-    /// that.
+    /// Leaves out output times of a motion that is too long to be studied as a whole, and reports it.
     pub fn fits(&self, file: &mut ModelFile) {
         let most = usize::max(STUDY_BYTES / Footprint::of(&file.model, true).bytes().max(1), 2);
         let steps = file.model.times.len();
@@ -464,14 +463,14 @@ impl Session {
         }
     }
 
-    /// For what ends a run that was interrupted: go on unless the user asked to stop, and then for a moment still.
+    /// Condition for the end of an interrupted run: true until shortly after the user requested a stop.
     pub fn for_a_moment(&self) -> impl FnMut() -> bool {
         const MOMENT: Duration = Duration::from_millis(300);
         let mut asked = None;
         move || !self.interrupted() || asked.get_or_insert_with(Instant::now).elapsed() < MOMENT
     }
 
-    /// For the core's loops: go on unless the user asked to stop.
+    /// Condition for loops of the core: continue until the user requests a stop.
     pub fn go_on(&self) -> ControlFlow<()> {
         if self.interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
@@ -491,7 +490,7 @@ impl Session {
         }
     }
 
-    /// Indicates why there is no result.
+    /// Reports why there is no result.
     pub fn fail(&self, file: &ModelFile, diagnostics: &[Diagnostic]) {
         match &self.audience {
             Audience::Program => self.print_error(diagnostics),
@@ -503,51 +502,51 @@ impl Session {
         }
     }
 
-    /// Indicates that the command line asks for something that the model does not have.
+    /// Reports an invalid command line for this model.
     pub fn misunderstood(&self, why: &str) -> Outcome {
         self.refuse("HP0602", why, None, "nothing was solved", "see `hardpoint help`");
         Outcome::Misunderstood
     }
 
-    /// Indicates that a server cannot do its work.
+    /// Reports a failure of the server.
     pub fn not_served(&self, what: &str, why: &str, help: &str) -> Outcome {
         self.refuse("HP0604", what, None, why, help);
         Outcome::Misunderstood
     }
 
-    /// Indicates that a model cannot be begun.
+    /// Reports that a new model cannot be created.
     pub fn not_begun(&self, what: &str, why: &str, help: &str) -> Outcome {
         self.refuse("HP0605", what, None, why, help);
         Outcome::Misunderstood
     }
 
-    /// Says what is worth knowing before the work; not where stdout is a document for machines.
+    /// Prints a note before the work, unless stdout is a JSON document.
     pub fn remark(&self, what: &str) {
         if self.is_for_reading() {
             text::complain(&format!("note: {what}\n\n"));
         }
     }
 
-    /// Indicates that the user ended a run while it wrote.
+    /// Reports that the user interrupted a run while it wrote.
     pub fn ended_while_writing(&self, folder: &Path) {
         let note = format!("nothing in `{}` has changed", folder.display());
         self.refuse("HP0405", "interrupted while the results were written", None, &note, "run it again");
     }
 
-    /// Indicates that a result could not be written.
+    /// Reports that a result could not be written.
     pub fn not_written(&self, failure: &WriteError) -> Outcome {
         let message = format!("`{}` cannot be written", failure.path.display());
-        let help = "name a folder that you may write to with `-o`";
+        let help = "select a writable folder with `-o`";
         self.refuse("HP0601", &message, Some(&failure.path), &failure.error.to_string(), help);
         Outcome::NotWritten
     }
 
-    /// Indicates that stdout could not be written, if it could not; then that is how the command ends.
+    /// Reports a failure to write to stdout, if any; it replaces the outcome of the command.
     pub fn not_printed(outcome: Outcome) -> Outcome {
         match text::failed() {
             None => outcome,
             Some(error) => {
-                let help = "write somewhere with room, or use `-o`";
+                let help = "write to a disk with free space, or use `-o`";
                 let message = "the result could not be written to stdout";
                 text::complain(&text::error("HP0601", message, &error.to_string(), help));
                 Outcome::NotWritten
@@ -555,7 +554,7 @@ impl Session {
         }
     }
 
-    /// Indicates what is wrong but not in the model's file.
+    /// Reports an error that is not in the model file.
     fn refuse(&self, code: &str, message: &str, file: Option<&Path>, note: &str, help: &str) {
         let diagnostics = || {
             json!([{
@@ -591,12 +590,12 @@ impl Session {
     }
 }
 
-/// The document where there is no result.
+/// JSON document of a failed command.
 fn error_document(diagnostics: &[Diagnostic]) -> serde_json::Value {
     json!({ "generator": GENERATOR, "status": "error", "diagnostics": diagnostics })
 }
 
-/// A JSON document as it is printed and written.
+/// Formats a JSON document for printing and writing.
 pub fn json_text(document: &impl serde::Serialize) -> String {
     let mut text = serde_json::to_string_pretty(document).expect("results are plain data");
     text.push('\n');

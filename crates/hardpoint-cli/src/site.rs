@@ -17,7 +17,7 @@ use crate::{maps, run, text};
 /// Default folder of models.
 const MODELS: &str = "models";
 
-/// Writes the site; what cannot be shown is left out and reported.
+/// Writes the site; models that cannot be shown are left out and reported.
 pub fn run(options: &Site) -> Outcome {
     let session = Session::begin(false);
     site_in(&session, options).unwrap_or_else(|outcome| outcome)
@@ -26,17 +26,13 @@ pub fn run(options: &Site) -> Outcome {
 fn site_in(session: &Session, options: &Site) -> Result<Outcome, Outcome> {
     let models = if options.models.is_empty() { all_models() } else { options.models.clone() };
     if models.is_empty() {
-        let why = format!("there are no model files in `{MODELS}`; name those that are to be shown");
+        let why = format!("there are no model files in `{MODELS}`; name the models to show");
         return Err(session.misunderstood(&why));
     }
     let mut taken = HashSet::from(["index".to_owned()]);
     for model in &models {
         if !taken.insert(stem(model)) {
-            let why = format!(
-                "`{}` would be the second `{}.html`; name it otherwise",
-                model.display(),
-                stem(model)
-            );
+            let why = format!("`{}` would be the second `{}.html`; rename it", model.display(), stem(model));
             return Err(session.misunderstood(&why));
         }
     }
@@ -67,7 +63,7 @@ fn site_in(session: &Session, options: &Site) -> Result<Outcome, Outcome> {
     Ok(outcome)
 }
 
-/// All model files of the usual folder, by name.
+/// All model files of the default folder, sorted by name.
 fn all_models() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(MODELS).into_iter().flatten().flatten().map(|e| e.path());
     let mut models: Vec<PathBuf> = entries.filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
@@ -79,7 +75,7 @@ fn stem(model: &Path) -> String {
     model.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The pages of a model, and its card.
+/// Pages of a model, and its card in the gallery.
 fn card(session: &Session, model: &Path, folder: &mut Folder) -> Result<Card, Outcome> {
     let file = session.read(model)?;
     let maps = maps::solved(session, &file, Formulation::Relative);
@@ -109,7 +105,7 @@ fn card(session: &Session, model: &Path, folder: &mut Folder) -> Result<Card, Ou
     })
 }
 
-/// The address of a file beside the page: what is written `%` in its name is none of an address.
+/// Relative address of a file next to the page; `%` in its name is escaped.
 fn link(name: &str) -> String {
     name.replace('%', "%25")
 }

@@ -24,12 +24,12 @@ use crate::pages::{Page, Study, page, threads};
 use crate::session::{Session, json_text};
 use crate::text;
 
-/// Journal that an unfinished sweep leaves in its folder.
+/// Journal of an unfinished sweep in its folder.
 const JOURNAL: &str = "sweep.partial";
-/// The tables and the summary; of an earlier sweep none stays beside those of this one.
+/// Result files of a sweep; those of an earlier sweep are removed.
 const FILES: [&str; 5] = ["designs.csv", "designs.parquet", "curves.csv", "curves.parquet", "summary.json"];
 
-/// Sweeps over designs, writes, and prints what they come to.
+/// Sweeps over designs, writes the results and prints a summary.
 pub fn run(options: &Sweep) -> Outcome {
     let session = Session::begin(options.common.json);
     sweep_in(&session, options).unwrap_or_else(|outcome| outcome)
@@ -53,7 +53,7 @@ fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
     })
 }
 
-/// Sweeps over designs for a page; nothing is written, and all pages come back, each with its case.
+/// Sweeps over designs for a page: returns all pages with their cases and writes no file.
 pub fn for_page(
     session: &Session,
     file: &ModelFile,
@@ -66,7 +66,7 @@ pub fn for_page(
     })
 }
 
-/// Solves the designs; `end` makes of them what is to be made.
+/// Solves the designs; `end` turns them into the result.
 fn swept<X>(
     session: &Session,
     file: &ModelFile,
@@ -96,7 +96,7 @@ fn swept<X>(
     Ok((facts, made))
 }
 
-/// The request, by the file and by the command line.
+/// Sweep request from the file and the command line.
 fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<SweepSettings, Outcome> {
     let model = &file.model;
     let mut asked = model.sweeping.clone().unwrap_or_else(|| SweepSettings::of_bounds(model));
@@ -108,7 +108,7 @@ fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<SweepSe
         asked = SweepSettings { method: SweepMethod::Listed, ranges, listed, ..asked };
     }
     if asked.method == SweepMethod::Listed && options.method.is_some() {
-        let why = "`--method` chooses designs, and those of the list are chosen; leave out one of the two";
+        let why = "`--method` and a list of designs exclude each other; leave out one of them";
         return Err(session.misunderstood(why));
     }
     asked.method = options.method.map_or(asked.method, Method::of);
@@ -127,7 +127,7 @@ fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<SweepSe
         )?);
     }
     if asked.method == SweepMethod::Listed && !given.is_empty() {
-        return Err(session.misunderstood("`--range` has no say over a list of designs; leave it out"));
+        return Err(session.misunderstood("`--range` does not apply to a list of designs; leave it out"));
     }
     for one in given {
         match asked.ranges.iter_mut().find(|r| r.variable == one.variable) {
@@ -153,7 +153,7 @@ fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<SweepSe
     }
     if asked.metrics.is_empty() && asked.curves.is_empty() {
         let why = format!(
-            "`{}` has no metrics that designs could be distinguished by; declare some in `[metrics]`, or keep curves with `--curves NAME`",
+            "`{}` has no metrics to compare designs; declare some in `[metrics]`, or store curves with `--curves NAME`",
             file.file_name()
         );
         return Err(session.misunderstood(&why));
@@ -179,7 +179,7 @@ fn range(session: &Session, file: &ModelFile, text: &str, levels: usize) -> Resu
         return Err(refuse("both ends are numbers without units, in the units of the model file"));
     };
     if from >= to {
-        return Err(refuse("the range does not rise; give the lower end first"));
+        return Err(refuse("the range is not increasing; give the lower end first"));
     }
     let quantity = file.model.variables[k].quantity;
     let [low, high] = [from, to].map(|x| file.units.to_si(quantity, x) - file.model.nominal_value(variable));
@@ -189,13 +189,13 @@ fn range(session: &Session, file: &ModelFile, text: &str, levels: usize) -> Resu
 fn no_plan(why: SweepPlanError, file: &ModelFile) -> String {
     match why {
         SweepPlanError::NoRanges => format!(
-            "`{}` does not say which design variables are to change; give them `bounds` in `[design]` or `[parameters]`, ranges in \
+            "`{}` has no ranges of design variables; give them `bounds` in `[design]` or `[parameters]`, ranges in \
              `[sweep.variables]`, or use `--range NAME=FROM..TO` (docs/sweep.md)",
             file.file_name()
         ),
         SweepPlanError::NoDesigns => "there are no designs; give at least one with `--samples`".into(),
         SweepPlanError::TooMany => format!(
-            "that would be more than {} designs; give fewer levels, fewer variables, or use `--method sobol --samples N`",
+            "more than {} designs; give fewer levels, fewer variables, or use `--method sobol --samples N`",
             SweepSettings::MOST
         ),
         SweepPlanError::TooManyDimensions(most) => format!(
@@ -225,16 +225,16 @@ fn journal(
     match Journal::open(path.as_deref(), of, options.restart) {
         Ok(journal) => {
             if journal.designs() > 0 {
-                session.remark(&format!("going on after {} designs that `{shown}` has", journal.designs()));
+                session.remark(&format!("resuming after {} designs in `{shown}`", journal.designs()));
             }
             Ok(journal)
         }
         Err(JournalError::Other) => Err(session.misunderstood(&format!(
-            "`{shown}` is of a sweep that has not ended, over another model or other designs; use another folder with `-o`, or begin anew \
+            "`{shown}` belongs to an unfinished sweep of another model or other designs; use another folder with `-o`, or start again \
              with `--restart`"
         ))),
         Err(JournalError::Busy) => Err(session.misunderstood(&format!(
-            "`{shown}` is being written by another sweep; wait for its end, or use another folder with `-o`"
+            "another sweep is writing `{shown}`; wait until it ends, or use another folder with `-o`"
         ))),
         Err(JournalError::Failed(error)) => {
             Err(session.not_written(&WriteError { path: path.unwrap_or(JOURNAL.into()), error }))
@@ -242,7 +242,7 @@ fn journal(
     }
 }
 
-/// Solves what the journal does not have yet, showing how far it is.
+/// Solves the designs that the journal lacks, with progress.
 fn solve(
     session: &Session,
     designs: &Designs<'_>,
@@ -278,7 +278,7 @@ struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Tables, a page for each motion, and the summary last; the last file that was written is named.
+    /// Writes tables, a page for each motion, and the summary last; reports the last file.
     fn finish(
         &self,
         session: &Session,
@@ -297,8 +297,8 @@ impl Results<'_> {
         let (mut facts, plot) = self.facts(session, &tally)?;
         if facts.status == "interrupted" {
             facts.message += match &folder {
-                Some(_) => "; the same command goes on where it ended",
-                None => "; with `--output` the same command would go on where it ended",
+                Some(_) => "; the same command resumes it",
+                None => "; with `--output`, the same command would resume it",
             };
         }
         facts.files = files;
@@ -314,7 +314,7 @@ impl Results<'_> {
         Ok((facts, Some(summary)))
     }
 
-    /// All blocks counted.
+    /// Facts of all blocks.
     fn tally(&self, session: &Session) -> Result<Tally, Outcome> {
         let mut tally = Tally::default();
         let see = |block| {
@@ -383,7 +383,7 @@ impl Study for Pages<'_> {
         self.swept.numbers[motion]
     }
 
-    /// The nominal design, with what the sweep found.
+    /// Page of the nominal design with the results of the sweep.
     fn page(&self, motion: usize) -> Option<String> {
         let finish = |page, today: &Solution| {
             self.facts.page(&self.swept, self.plot, motion, page, &today.measured.outputs)

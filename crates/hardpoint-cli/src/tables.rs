@@ -1,4 +1,4 @@
-//! The tables that a run writes while it solves: which, how large, and in which format.
+//! Tables that a run writes while it solves: selection, size and format.
 
 use std::io;
 
@@ -18,15 +18,15 @@ use crate::folder::{Folder, PendingFile, WriteError};
 use crate::long_table::{TableFormat, TableWriter};
 use crate::session::json_text;
 
-/// The motion of more bodies than this is written only where it is requested.
+/// Maximum number of bodies whose motion is written by default.
 const MOST_BODIES: usize = 100;
-/// Sensitivities of more bodies times variables than this are written only where they are requested.
+/// Maximum number of bodies times variables whose sensitivities are written by default.
 const MOST_MOVED: usize = 200;
-/// Size above which writing is announced before the work.
+/// Size in bytes above which the output is announced before the run.
 const LARGE: u64 = 100 << 20;
-/// A number with all its digits, in CSV.
+/// Size of a number with all its digits, in CSV.
 const CSV_NUMBER: u64 = 19;
-/// The same as a double.
+/// Size of a number in binary formats.
 const DOUBLE: u64 = 8;
 
 /// Tables to write.
@@ -40,7 +40,7 @@ pub struct Plan<'m> {
 }
 
 impl<'m> Plan<'m> {
-    /// Those of a model.
+    /// Plans the tables of a model.
     pub fn new(file: &'m ModelFile, options: &Run) -> Self {
         let (model, units): (&Model, Units) = (&file.model, file.units);
         let bodies = model.bodies.len() - 1;
@@ -59,20 +59,20 @@ impl<'m> Plan<'m> {
             sensitivity: some(sensitivity).filter(|_| wanted),
             left_out: [
                 (!motion.bodies).then_some("the motion of the bodies"),
-                // Of a model with measures or points, these are what the user requested.
+                // In a model with measures or points, the user requested these.
                 (!sensitivity.bodies && wanted && (!has_outputs || !motion.bodies))
                     .then_some("the sensitivities of the bodies"),
             ],
         }
     }
 
-    /// Tables that are not written, and how to get them.
+    /// Note on tables that are not written, with the option that writes them.
     pub fn left_out(&self) -> Option<String> {
         let what: Vec<&str> = self.left_out.into_iter().flatten().collect();
-        (!what.is_empty()).then(|| format!("left out: {}; `--bodies` writes that", what.join(" and ")))
+        (!what.is_empty()).then(|| format!("left out: {}; `--bodies` writes them", what.join(" and ")))
     }
 
-    /// The names of the tables with about what they take.
+    /// Names of the tables with their approximate sizes.
     fn sizes(&self) -> Vec<(String, u64)> {
         let number = if self.format == Format::Csv { CSV_NUMBER } else { DOUBLE };
         let table = |name: &str, rows: u64, columns: usize| {
@@ -86,7 +86,7 @@ impl<'m> Plan<'m> {
         motion.into_iter().chain(sensitivity).collect()
     }
 
-    /// Announcement before the work if much will be written.
+    /// Announcement of large output before the run.
     pub fn announcement(&self, folder: &str) -> Option<String> {
         let sizes = self.sizes();
         let all: u64 = sizes.iter().map(|(_, size)| size).sum();
@@ -104,7 +104,7 @@ impl<'m> Plan<'m> {
         })
     }
 
-    /// Begins the tables.
+    /// Creates the tables.
     pub fn begin(self, folder: &Folder) -> Result<Tables<'m>, WriteError> {
         let begun = |name: &str, begin: &dyn Fn(PendingFile) -> io::Result<Table<'m>>| {
             let name = format!("{name}.{}", self.format.suffix());
@@ -145,11 +145,10 @@ impl<'m> Plan<'m> {
     }
 }
 
-/// The columns of a variable and its unit, which come after the time.
+/// Columns after the time: a variable and its unit.
 const VARIABLE: [&str; 2] = ["variable", "per"];
 
-/// Begins a Parquet file: time, texts, numbers. The metadata have what it is of, and the unit of each column of
-/// numbers.
+/// Creates a Parquet file: time, texts, numbers. The metadata have the model and the unit of each numeric column.
 fn parquet(
     out: PendingFile,
     columns: Columns<'_>,
@@ -167,7 +166,7 @@ fn parquet(
     TableWriter::new(out, TableFormat::Parquet, kinds.collect(), &facts)
 }
 
-/// A table under way.
+/// A table that is being written.
 enum Table<'m> {
     Motion(Box<MotionCsv<'m, PendingFile>>),
     MotionNpy(Columns<'m>, Npy<PendingFile>),
@@ -211,7 +210,7 @@ fn motion_cells(columns: &Columns<'_>, window: &Solution) -> Vec<Cells> {
     cells.into_iter().map(Cells::Numbers).collect()
 }
 
-/// By the variables that the window has sensitivities for.
+/// Rows for all variables with sensitivities in the window.
 fn sensitivity_cells(columns: &Columns<'_>, window: &Solution) -> Vec<Cells> {
     let (mut times, mut texts) = (Vec::new(), [Vec::new(), Vec::new()]);
     let mut cells = vec![Vec::new(); columns.of_sensitivities().len()];
@@ -231,12 +230,12 @@ fn sensitivity_cells(columns: &Columns<'_>, window: &Solution) -> Vec<Cells> {
     std::iter::once(Cells::Numbers(times)).chain(texts.map(Cells::Texts)).chain(numbers).collect()
 }
 
-/// Tables under way, by their names.
+/// Tables that are being written, by name.
 pub struct Tables<'m> {
     plan: Plan<'m>,
     motion: Option<(String, Table<'m>)>,
     sensitivity: Option<(String, Table<'m>)>,
-    /// Per variable, how many output times have sensitivities by it.
+    /// Number of output times with sensitivities, per variable.
     rows: Vec<usize>,
     failure: Option<(String, io::Error)>,
 }
@@ -244,14 +243,14 @@ pub struct Tables<'m> {
 /// Tables that were written.
 #[derive(Debug)]
 pub struct TableSummary {
-    /// The names of the files.
+    /// Names of the files.
     pub names: Vec<String>,
     /// Tables that were left out, with the reason.
     pub left_out: Option<String>,
 }
 
 impl Tables<'_> {
-    /// Writes the rows of a window; false where that failed, now or before.
+    /// Writes the rows of a window; returns false after a failure.
     pub fn add(&mut self, window: &Solution) -> bool {
         if self.failure.is_none() {
             self.failure = self.try_add(window).err();
@@ -273,8 +272,7 @@ impl Tables<'_> {
         Ok(())
     }
 
-    /// Ends the tables, without what turned out not to be followed. `go_on` says whether there is time to take that
-    /// out.
+    /// Completes the tables and removes rows of variables that proved inadmissible, as long as `go_on` returns true.
     pub fn end(
         self,
         folder: &mut Folder,
@@ -293,7 +291,7 @@ impl Tables<'_> {
             names.push(name);
         }
         let unknown: Vec<usize> = (0..answers.len()).filter(|b| cannot(&answers[*b])).collect();
-        // Where none of the variables can be followed, there is nothing to say.
+        // Without an admissible variable, there is no table.
         if let Some((name, mut table)) = sensitivity.filter(|_| unknown.len() < answers.len()) {
             let columns = plan.sensitivity.expect("it is under way");
             if let Table::SensitivityNpy(_, table) = &mut table {
@@ -302,7 +300,7 @@ impl Tables<'_> {
                 none.map_err(|e| failed(&name, folder, e))?;
             }
             let mut writing = table.end().map_err(|e| failed(&name, folder, e))?;
-            // Those of all variables, up to the last output time that has any of the unknown.
+            // Rows of all variables up to the last output time with rows to be removed.
             let last = unknown.iter().map(|b| rows[*b]).max().unwrap_or(0);
             let rows: usize = rows.iter().map(|n| n.min(&last)).sum();
             let whole = if rows == 0 || plan.format == Format::Npy {
@@ -342,7 +340,7 @@ impl Tables<'_> {
     }
 }
 
-/// Reason why there is no table of sensitivities.
+/// Message for a missing table of sensitivities.
 fn interrupted(name: &str) -> String {
     format!(
         "left out: `{name}`, because the run was interrupted before the rows of inadmissible variables were removed"

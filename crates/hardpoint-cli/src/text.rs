@@ -1,4 +1,4 @@
-//! Text for people: tables, headings, and what goes where.
+//! Text output: tables, headings, stdout and stderr.
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -17,8 +17,8 @@ const PLAIN: &str = "\x1b[0m";
 /// First error of writing to stdout.
 static FAILED: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
-/// Prints to stdout; escapes are dropped where it is no terminal. A reader that closed the pipe is no error; any other
-/// failure is kept for [`failed`].
+/// Prints to stdout, without colours unless it is a terminal. A closed pipe is not an error; any other failure is
+/// stored for [`failed`].
 pub fn print(text: &str) {
     let mut out = anstream::stdout().lock();
     if let Err(error) = out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {
@@ -38,12 +38,12 @@ pub fn failed() -> Option<std::io::Error> {
     FAILED.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
-/// Prints to stderr, likewise.
+/// Prints to stderr, without colours unless it is a terminal.
 pub fn complain(text: &str) {
     let _ = anstream::stderr().lock().write_all(printable(text).as_bytes());
 }
 
-/// Text that is safe on a terminal: control characters, and those that change the direction of writing, are escaped.
+/// Escapes control characters and those that change the direction of writing, so that the text is safe on a terminal.
 /// Line ends and colour sequences are kept.
 fn printable(text: &str) -> Cow<'_, str> {
     if !text.chars().any(|c| c != '\n' && is_odd(c)) {
@@ -71,14 +71,14 @@ fn printable(text: &str) -> Cow<'_, str> {
     out.into()
 }
 
-/// The length of a sequence that chooses a colour, where the text begins with one.
+/// Length of the colour sequence at the beginning of the text, if any.
 fn colour(text: &str) -> Option<usize> {
     let inside = text.strip_prefix("\x1b[")?;
     let length = inside.find(|c: char| !c.is_ascii_digit() && c != ';')?;
     inside[length..].starts_with('m').then_some(length + 3)
 }
 
-/// A name or another text of the user's as it is shown: without anything that a terminal would obey.
+/// Escapes a text of the user for display: no control characters for a terminal remain.
 pub fn shown(text: &str) -> Cow<'_, str> {
     if text.chars().any(is_odd) {
         text.chars().map(|c| if is_odd(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
@@ -92,12 +92,12 @@ pub fn stderr_in_color() -> bool {
     anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never
 }
 
-/// In bold.
+/// Formats a text in bold.
 pub fn bold(text: &str) -> String {
     format!("{BOLD}{}{PLAIN}", shown(text))
 }
 
-/// An error that is not about the model file, in the look of the others.
+/// Formats an error that is not about the model file like a diagnostic.
 pub fn error(code: &str, message: &str, note: &str, help: &str) -> String {
     format!(
         "{RED}error[{code}]{PLAIN}{BOLD}: {}{PLAIN}\n  {BOLD}= note{PLAIN}: {note}\n  {BOLD}= help{PLAIN}: {help}\n",
@@ -111,7 +111,7 @@ pub fn pairs(rows: &[(&str, String)]) -> String {
     rows.iter().map(|(label, value)| format!("  {label:width$}  {}\n", shown(value))).collect()
 }
 
-/// Notes that are no errors, a line each, after an empty one.
+/// Notes, one per line, after an empty line.
 pub fn notes(summary: &Summary) -> String {
     let ahead = summary.margin.as_ref().and_then(MarginFact::ahead);
     let lines = summary.model.all_notes().into_iter().chain(ahead).chain(summary.left_out.iter().cloned());
@@ -119,10 +119,10 @@ pub fn notes(summary: &Summary) -> String {
     if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
-/// Columns of text may be narrowed to that many characters; to less only where no single word is that long.
+/// Minimum width of a text column in characters, unless all its words are shorter.
 const NARROW: usize = 14;
 
-/// A table under its title, as wide as the terminal, or as it needs to be where there is none.
+/// Formats a table under its title, as wide as the terminal; without a terminal, as wide as its contents.
 pub fn table(table: &Table) -> String {
     let mut grid = empty_grid();
     if let Some((terminal_size::Width(width), _)) = terminal_size::terminal_size_of(std::io::stdout()) {
@@ -131,7 +131,7 @@ pub fn table(table: &Table) -> String {
     laid_out(grid, table)
 }
 
-/// A table after an empty line; nothing where it has no rows.
+/// Formats a table after an empty line; empty if it has no rows.
 pub fn section(of: &Table) -> String {
     if of.rows.is_empty() { String::new() } else { format!("\n{}", table(of)) }
 }
@@ -147,7 +147,7 @@ fn laid_out(mut grid: comfy_table::Table, table: &Table) -> String {
     for row in &table.rows {
         grid.add_row(row.iter().map(|cell| shown(cell)));
     }
-    // Numbers are never broken, and words only where they are long.
+    // Numbers are never broken, and only long words are.
     for (k, column) in grid.column_iter_mut().enumerate() {
         let cells = || table.rows.iter().filter_map(|row| row.get(k)).chain(table.header.get(k));
         let numbers = || table.rows.iter().filter_map(|row| row.get(k)).filter(|cell| !cell.is_empty());
@@ -164,7 +164,7 @@ fn laid_out(mut grid: comfy_table::Table, table: &Table) -> String {
     format!("{}\n{lines}", bold(&table.title))
 }
 
-/// True if a cell is a number with its unit, or is where there is none.
+/// True if a cell is a number with its unit, or a dash in its place.
 fn is_number(cell: &str) -> bool {
     let digits = cell.trim_start_matches(['-', '+', '±', '≥', '≤', '<', '>', ' ']);
     matches!(cell, "–" | "-")
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_that_a_terminal_would_obey_is_printed() {
+    fn control_characters_are_escaped() {
         assert_eq!(printable("a\nb"), "a\nb");
         assert_eq!(printable("\x1b[1;91mred\x1b[0m"), "\x1b[1;91mred\x1b[0m");
         let odd = "\x1b]0;title\x07 \x1b[2J \u{202e}x\u{2066}\r\u{9b}";

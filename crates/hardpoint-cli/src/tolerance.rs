@@ -58,21 +58,21 @@ fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outco
     Ok(if found.interrupted { Outcome::Interrupted } else { Outcome::Done })
 }
 
-/// The tables that are written, and the summary, which vouches for them.
+/// Result files; the summary is written last and marks them as complete.
 const FILES: [&str; 5] = ["metrics.csv", "contributions.csv", "bands.csv", "samples.csv", "summary.json"];
 
-/// The request besides what the file says.
+/// Options that override the file.
 #[derive(Default)]
 pub struct ToleranceOverrides {
-    /// Number of designs that are drawn.
+    /// Number of Monte Carlo designs.
     pub samples: Option<u32>,
-    /// From this number.
+    /// Seed of the random numbers.
     pub seed: Option<u32>,
-    /// The loosest tolerances are sought by this rule.
+    /// Rule of the allocation of the loosest tolerances.
     pub allocate: Option<Allocate>,
 }
 
-/// The request, by the file and besides.
+/// Settings from the file, overridden by options.
 pub fn asked(
     session: &Session,
     file: &ModelFile,
@@ -81,7 +81,7 @@ pub fn asked(
     let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
     let Some(mut asked) = asked else {
         let why = format!(
-            "`{}` does not say how far its design variables may be off; add `tolerance = 0.1` to those in `[design]` or \
+            "the design variables of `{}` have no tolerances; add `tolerance = 0.1` to those in `[design]` or \
              `[parameters]` that may (docs/tolerance.md)",
             file.file_name()
         );
@@ -99,8 +99,7 @@ pub fn asked(
         asked.allocation = Some(AllocationSettings { rule });
     }
     if asked.metrics.is_empty() && asked.curves.is_empty() && !has_metric_limits(&asked) {
-        let why =
-            format!("`{}` has neither metrics nor measures that tolerances could change", file.file_name());
+        let why = format!("`{}` has neither metrics nor measures to analyse", file.file_name());
         return Err(session.misunderstood(&why));
     }
     Ok(asked)
@@ -110,7 +109,7 @@ fn has_metric_limits(asked: &ToleranceSettings) -> bool {
     asked.limits.iter().any(|limit| matches!(limit.of, LimitTarget::Metric(_)))
 }
 
-/// Studies, showing how far it is.
+/// Runs the study with progress.
 pub fn examine(
     session: &Session,
     file: &ModelFile,
@@ -148,14 +147,14 @@ pub fn examine(
         ToleranceError::NothingVaries => {
             let names: Vec<&str> = asked.tolerances.iter().map(|t| t.name.as_str()).collect();
             session.misunderstood(&format!(
-                "the mechanism can follow none of the variables with a tolerance: {}",
+                "none of the variables with a tolerance is admissible: {}",
                 some_of(&names, ", ")
             ))
         }
     })
 }
 
-/// A study that has ended.
+/// A finished study.
 pub struct Results<'a> {
     studied: ToleranceInputs<'a>,
     motions: &'a Motions<'a>,
@@ -164,14 +163,14 @@ pub struct Results<'a> {
 }
 
 impl<'a> Results<'a> {
-    /// Result of a study that has just ended.
+    /// Creates the result of a finished study.
     pub fn of(session: &Session, studied: ToleranceInputs<'a>, motions: &'a Motions<'a>) -> Self {
         let mut facts = ToleranceFacts::of(&studied);
         facts.seconds = session.seconds();
         Self { studied, motions, facts }
     }
 
-    /// Tables, a page for each motion, and the summary last.
+    /// Writes tables, a page for each motion, and the summary last.
     fn write(&mut self, folder: &mut Folder) -> Result<(), WriteError> {
         let pages = self.write_pages(folder)?;
         self.facts.files.extend(pages);
@@ -206,7 +205,7 @@ impl Study for Results<'_> {
         self.studied.numbers[motion]
     }
 
-    /// The nominal design, with the bands beside its curves.
+    /// Page of the nominal design with the bands of its curves.
     fn page(&self, motion: usize) -> Option<String> {
         let finish =
             |page, today: &Solution| self.studied.page(&self.facts, motion, page, &today.measured.outputs);

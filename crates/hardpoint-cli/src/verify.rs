@@ -16,7 +16,7 @@ use crate::outcome::Outcome;
 use crate::session::{Session, json_text};
 use crate::text;
 
-/// Re-solves moved designs and prints how well they agree.
+/// Compares the sensitivities with re-solved designs and prints their agreement.
 pub fn verify(options: &Verify) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, case: Option<&str>| verify_in(&session, options, file, case);

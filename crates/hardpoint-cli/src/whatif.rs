@@ -22,17 +22,17 @@ use crate::run::trusted;
 use crate::session::{Session, json_text};
 use crate::text;
 
-/// Coordinates of more hardpoints than this are not ranked unasked.
+/// Maximum number of hardpoints whose coordinates are ranked by default.
 const MOST_RANKED: usize = 200;
-/// Variables that the ranking of a measure shows, of each unit.
+/// Number of variables of each unit in the ranking of a measure.
 const SHOWN: usize = 8;
 
-/// A change whose joints open by less than this part of the mechanism's size, or rad, is admissible as it is ...
+/// Joint opening below which a change is admissible, as a fraction of the mechanism's size, or in rad.
 const OPEN: f64 = 1e-9;
-/// ... and another one is offered where it is closed better by this factor.
+/// Factor by which the nearest admissible change must reduce the joint opening to be suggested.
 const NEARER: f64 = 1e3;
 
-/// Changes the design and prints what that does, or ranks the variables.
+/// Prints the effects of a design change, or ranks the variables.
 pub fn whatif(options: &Whatif) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, case: Option<&str>| whatif_in(&session, options, file, case);
@@ -76,7 +76,7 @@ fn whatif_in(
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
     if let Some(to) = &options.save {
         session.may_save(&options.common.model, Some(to))?;
-        // The design is one for all cases, and the file says them all.
+        // All cases share the design, so the saved file has all of them.
         let mut whole = session.read(&options.common.model)?;
         whole.model.variables.clone_from(&file.model.variables);
         session.save(&whole, &change, to)?;
@@ -142,8 +142,7 @@ fn whatif_in(
     Ok(outcome)
 }
 
-/// The nearest admissible change, and the model with the variables that it is of; `None` where the change is
-/// admissible.
+/// Nearest admissible change, and the model with its variables; `None` if the change is admissible.
 fn nearest_of(file: &ModelFile, options: &Whatif, change: &[f64]) -> Option<(Model, Vec<f64>)> {
     let mut model = file.model.clone();
     add_tilts(&mut model);
@@ -154,7 +153,7 @@ fn nearest_of(file: &ModelFile, options: &Whatif, change: &[f64]) -> Option<(Mod
     (asked > NEARER * found && asked > OPEN && moves).then_some((model, nearest.change))
 }
 
-/// A change of another model's variables as one of this model's, which is given those that it lacks.
+/// Converts a change of another model's variables to this model, and adds the variables that it lacks.
 fn taken_over(model: &mut Model, of: &Model, change: &[f64]) -> Vec<f64> {
     let mut own = Vec::new();
     for (variable, by) in of.variables.iter().zip(change).filter(|(_, by)| **by != 0.0) {
@@ -187,7 +186,7 @@ fn facts_text(facts: &WhatIfFacts, wanted: &dyn Fn(&str) -> bool) -> String {
     out
 }
 
-/// The variable of a `--set`, and its change in SI.
+/// Variable of a `--set` and its change in SI.
 fn setting(file: &mut ModelFile, text: &str) -> Result<(usize, f64), String> {
     let (name, value) = text
         .split_once('=')
@@ -198,7 +197,7 @@ fn setting(file: &mut ModelFile, text: &str) -> Result<(usize, f64), String> {
         let hint = did_you_mean(name, names.iter().map(String::as_str));
         let hint = hint.map_or(String::new(), |known| format!("; did you mean `{known}`?"));
         return Err(format!(
-            "`{name}` is no design variable, hardpoint coordinate (NAME.x) or joint tilt (NAME.tilt_x) of the model{hint}"
+            "`{name}` is not a design variable, hardpoint coordinate (NAME.x) or joint tilt (NAME.tilt_x) of the model{hint}"
         ));
     };
     let quantity = file.model.variables[variable.0].quantity;
@@ -206,15 +205,15 @@ fn setting(file: &mut ModelFile, text: &str) -> Result<(usize, f64), String> {
     Ok((variable.0, by))
 }
 
-/// A change as typed, in SI.
+/// Parses a change and converts it to SI.
 fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String> {
     let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    // The exponent of `1e3` is no unit.
+    // The exponent of `1e3` is not a unit.
     let (number, unit) = match text.parse::<f64>() {
         Ok(_) => (text, ""),
         Err(_) => (number, &text[number.len()..]),
     };
-    let value: f64 = number.trim().parse().map_err(|_| format!("`{text}` is no number with a unit"))?;
+    let value: f64 = number.trim().parse().map_err(|_| format!("`{text}` is not a number with a unit"))?;
     if !value.is_finite() {
         return Err(format!("`{text}` is not finite"));
     }
@@ -225,11 +224,9 @@ fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String> {
         (Quantity::Length, Some(unit), _) => Ok(unit.metres(value)),
         (Quantity::Angle, _, Some(unit)) => Ok(unit.radians(value)),
         (_, None, None) => Err(format!("there is no unit `{unit}`; write mm, cm, m, in, deg or rad")),
-        (Quantity::Length, ..) => Err(format!("it is a length, and {unit} is none")),
-        (Quantity::Angle, ..) => Err(format!("it is an angle, and {unit} is none")),
-        (Quantity::Number, ..) => {
-            Err(format!("it is a plain number and takes no unit, but `{unit}` was given"))
-        }
+        (Quantity::Length, ..) => Err(format!("it is a length, but {unit} is not a unit of length")),
+        (Quantity::Angle, ..) => Err(format!("it is an angle, but {unit} is not a unit of angle")),
+        (Quantity::Number, ..) => Err(format!("it is dimensionless, but the unit `{unit}` was given")),
     }
 }
 
@@ -244,5 +241,5 @@ fn measure(model: &Model, name: &str) -> Result<(), String> {
         || format!("; there are: {}", hardpoint_report::figures::some_of(&names, ", ")),
         |known| format!("; did you mean `{known}`?"),
     );
-    Err(format!("`{name}` is no measure of the model{hint}"))
+    Err(format!("`{name}` is not a measure of the model{hint}"))
 }

@@ -1,7 +1,6 @@
-//! `motion.xlsx`: a run as an Excel workbook, for those who read results there.
+//! `motion.xlsx`: a run as an Excel workbook.
 //!
-//! What does not fit into a sheet, or is more than a person scrolls through, is reported on the first sheet with the
-//! file that has it.
+//! The first sheet lists data that do not fit into a sheet, or are too long for one, with the file that has them.
 
 use std::io::Write;
 
@@ -27,7 +26,7 @@ const MOST_COLUMNS: usize = 16_384;
 const MOST_LETTERS: usize = 32_767;
 /// Maximum number of cells of a sheet over time, which is in memory until it is complete.
 const MOST_CELLS: usize = 1_000_000;
-/// Number of curves that have a chart.
+/// Maximum number of charts.
 const MOST_CHARTS: usize = 100;
 /// A chart, in pixels; rows of sheets are 20 high.
 const CHART: (u32, u32) = (560, 300);
@@ -36,7 +35,7 @@ const CHART_COLUMNS: u16 = 9;
 /// Number of significant digits that are shown; the cells have all of them.
 const SHOWN_DIGITS: i32 = 6;
 
-/// The names of the sheets.
+/// Names of the sheets.
 const MOTION: &str = "Motion";
 const CHARTS: &str = "Charts";
 const LARGEST: &str = "Largest sensitivities";
@@ -55,7 +54,7 @@ pub struct Contents<'a> {
     pub suffix: &'a str,
 }
 
-/// A sheet, and what there is to say of it.
+/// A sheet with its description.
 struct Sheet {
     worksheet: Worksheet,
     name: &'static str,
@@ -71,7 +70,7 @@ struct Series {
 }
 
 impl Contents<'_> {
-    /// Writes the workbook, and reports what is not in it.
+    /// Writes the workbook and returns notes on omitted data.
     ///
     /// # Errors
     /// Where `out` cannot be written.
@@ -92,12 +91,12 @@ impl Contents<'_> {
         let title = text(&self.summary.model.name);
         workbook.set_properties(&DocProperties::new().set_title(title).set_comment(GENERATOR));
         workbook.push_worksheet(self.about(&sheets)?);
-        let told =
+        let notes =
             sheets.iter().filter_map(|s| s.left_out.clone()).map(|s| format!("not in `motion.xlsx`: {s}"));
-        let told = told.collect();
+        let notes = notes.collect();
         sheets.into_iter().for_each(|sheet| workbook.push_worksheet(sheet.worksheet));
         workbook.save_to_writer(out)?;
-        Ok(told)
+        Ok(notes)
     }
 
     /// Facts about the run.
@@ -110,7 +109,7 @@ impl Contents<'_> {
         let ended = match (&summary.stop, summary.status) {
             (_, RunStatus::Complete) => "at its last output time".into(),
             (Some(stop), RunStatus::Stopped) => format!("early, {}: {}", stop.code, stop.message),
-            _ => "early: interrupted by the user; the part before is here".into(),
+            _ => "early: interrupted by the user; the part before it is included".into(),
         };
         let units = format!("{}, {}, s", self.file.units.length.symbol(), self.file.units.angle.symbol());
         let mut facts = vec![("model file", summary.model.file.clone())];
@@ -182,8 +181,7 @@ impl Contents<'_> {
         Ok(page.sheet)
     }
 
-    /// Every how-many-th of the output times that were kept go into that many columns, and what there is to say of
-    /// that.
+    /// Stride over the stored output times for a sheet with this number of columns, and a note if times are left out.
     fn every(&self, columns: usize) -> (usize, Option<String>) {
         let rows = usize::min(MOST_ROWS - 1, MOST_CELLS / columns.max(1)).max(1);
         let every = self.solution().motion.len().div_ceil(rows).max(1);
@@ -195,7 +193,7 @@ impl Contents<'_> {
         &self.course.kept
     }
 
-    /// The columns of the motion: bodies only where there is nothing else.
+    /// Columns of the motion; those of bodies only if there are no outputs.
     fn columns(&self) -> Columns<'_> {
         let bodies = self.solution().measured.outputs.is_empty();
         Columns { model: &self.file.model, units: self.file.units, bodies, angles: None }
@@ -219,7 +217,7 @@ impl Contents<'_> {
         }
         let what = if columns.bodies { "bodies" } else { "measures and points" };
         let wide = (all > series.len())
-            .then(|| format!("{} of {all} columns are here, which is all that a sheet has", series.len()));
+            .then(|| format!("only {} of {all} columns are here, the limit of a sheet", series.len()));
         let said: Vec<String> = thinned.into_iter().chain(wide).collect();
         Ok(Sheet {
             worksheet: over_time(MOTION, &series)?,
@@ -230,8 +228,7 @@ impl Contents<'_> {
         })
     }
 
-    /// The curves that a chart shows together, by their columns in the sheet of the motion: measures, or else points,
-    /// or bodies.
+    /// Curves of each chart, as columns of the motion sheet: measures, or else points, or bodies.
     fn curves(&self) -> Vec<(String, Vec<usize>)> {
         let columns: Vec<String> = self.columns().of_motion().into_iter().map(|c| c.name).collect();
         let column = |name: &str| columns.iter().position(|c| c == name).map(|k| k + 1);
@@ -281,7 +278,7 @@ impl Contents<'_> {
                     .set_marker(ChartMarker::new().set_none());
             }
             let unit = &headers[columns[0] - 1];
-            // Text that begins with `=` would be taken for a place in a sheet.
+            // Text that begins with `=` would be read as a cell reference.
             match columns[..] {
                 [column] => chart.title().set_name((MOTION, 0, column as u16)),
                 _ => chart.title().set_name(&text(&format!("place of {name}"))),
@@ -309,7 +306,7 @@ impl Contents<'_> {
         }))
     }
 
-    /// The outputs with charts and sensitivities here: measures, or points where there are none.
+    /// Outputs with charts and sensitivities: measures, or points if there are none.
     pub fn shown(&self) -> Vec<(usize, &Output)> {
         let outputs = || self.solution().measured.outputs.iter().enumerate();
         let measures: Vec<_> =
@@ -366,7 +363,7 @@ impl Contents<'_> {
         if solution.measured.variables == 0 || follows.is_empty() || outputs.is_empty() {
             return Ok(None);
         }
-        // Of more variables than a sheet has room for, those that move a measure most.
+        // If a sheet has no room for all variables, the most influential ones remain.
         let all = outputs.len();
         let each = usize::min(follows.len(), (MOST_COLUMNS - 1) / all).max(1);
         let outputs = &outputs[..usize::min(all, MOST_COLUMNS - 1)];
@@ -390,7 +387,7 @@ impl Contents<'_> {
             }
         }
         let few = (each < follows.len())
-            .then(|| format!("of {} variables only the {each} that move each most are here", follows.len()));
+            .then(|| format!("only the {each} most influential of {} variables are here", follows.len()));
         let wide = (all > outputs.len()).then(|| format!("only {} of {all} curves are here", outputs.len()));
         let said: Vec<String> = thinned.into_iter().chain(few).chain(wide).collect();
         let what =
@@ -407,7 +404,7 @@ impl Contents<'_> {
         }))
     }
 
-    /// The variables, those first that move an output most.
+    /// Variables, the most influential ones of an output first.
     fn strongest(&self, output: &Output, follows: &[usize]) -> Vec<usize> {
         let ranking =
             self.summary.sensitivities.iter().find(|r| r.measure == output.name && r.order == "value");
@@ -433,7 +430,7 @@ impl Contents<'_> {
         Ok(Sheet {
             worksheet: page.sheet,
             name: HARDPOINTS,
-            about: "the places of the hardpoints in the design configuration".into(),
+            about: "the coordinates of the hardpoints in the design configuration".into(),
             left_out: None,
         })
     }
@@ -456,7 +453,7 @@ fn over_time(name: &str, series: &[Series]) -> Result<Worksheet, XlsxError> {
     Ok(sheet)
 }
 
-/// As many decimals as the largest number of a column needs.
+/// Number format with the decimals that the largest number of a column needs.
 fn number_format(cells: &[f64]) -> String {
     let largest = cells.iter().map(|x| x.abs()).filter(|x| x.is_finite()).fold(0.0, f64::max);
     let whole = if largest > 0.0 { largest.log10().floor() as i32 + 1 } else { 1 };
@@ -471,7 +468,7 @@ fn bold() -> Format {
     Format::new().set_bold()
 }
 
-/// As much of a text as a cell holds.
+/// Truncates a text to the limit of a cell.
 fn text(text: &str) -> String {
     let mut room = MOST_LETTERS;
     let fits = |c: &char| {
@@ -540,7 +537,7 @@ impl Page {
                 Cell::Text(said) => {
                     self.sheet.write_string(self.next, column as u16, text(said))?;
                 }
-                // What is no number leaves an empty cell.
+                // A value that is not a number leaves an empty cell.
                 Cell::Number(x) if x.is_finite() => {
                     self.sheet.write_number(self.next, column as u16, *x)?;
                 }
@@ -551,7 +548,7 @@ impl Page {
         Ok(())
     }
 
-    /// With a heading; nothing where it has no rows.
+    /// Writes a table with a heading; writes nothing if it has no rows.
     fn table(
         &mut self,
         title: &str,

@@ -13,7 +13,7 @@ const NAMED: [(&[&str], &str); 4] = [
     (&["adams", "adamscar"], "x back, y right, z up"),
     (&["lotus", "lotusshark"], "x back, y right, z up"),
 ];
-/// Words for directions: along which axis of ISO 8855, and which way.
+/// Words for directions, each with its axis of ISO 8855 and its sign.
 const WORDS: [(&[&str], usize, f64); 6] = [
     (&["forward", "forwards", "front"], 0, 1.0),
     (&["back", "backward", "backwards", "rear", "rearward", "rearwards"], 0, -1.0),
@@ -24,7 +24,7 @@ const WORDS: [(&[&str], usize, f64); 6] = [
 ];
 
 impl Axes {
-    /// A place of the table in the axes of ISO 8855.
+    /// Converts a point of the table to the axes of ISO 8855.
     pub fn turned(self, place: [f64; 3]) -> [f64; 3] {
         // No -0.
         self.0.map(|(k, sign)| place[k] * sign + 0.0)
@@ -37,23 +37,23 @@ impl FromStr for Axes {
     fn from_str(text: &str) -> Result<Self, String> {
         let name = super::plain(text);
         let words = NAMED.iter().find(|n| n.0.contains(&name.as_str())).map_or(text, |n| n.1);
-        let like = "say them like \"x back, y right, z up\", or as `iso`, `sae`, `adams` or `lotus`";
+        let like = "write them like \"x back, y right, z up\", or as `iso`, `sae`, `adams` or `lotus`";
         let mut found: [Option<(usize, f64)>; 3] = [None; 3];
         let mut taken = [false; 3];
         for part in words.split(',') {
             let mut both = part.split_whitespace();
             let (Some(axis), Some(word), None) = (both.next(), both.next(), both.next()) else {
-                return Err(format!("`{}` is no axis with a direction; {like}", part.trim()));
+                return Err(format!("`{}` is not an axis with a direction; {like}", part.trim()));
             };
             let (axis, word) = (axis.to_lowercase(), word.to_lowercase());
             let Some(k) = ["x", "y", "z"].iter().position(|a| *a == axis) else {
-                return Err(format!("`{axis}` is no axis; {like}"));
+                return Err(format!("`{axis}` is not an axis; {like}"));
             };
             let Some((_, along, sign)) = WORDS.iter().find(|w| w.0.contains(&word.as_str())) else {
-                return Err(format!("`{word}` is no direction; {like}"));
+                return Err(format!("`{word}` is not a direction; {like}"));
             };
             if std::mem::replace(&mut taken[k], true) {
-                return Err(format!("`{axis}` is said twice; {like}"));
+                return Err(format!("`{axis}` occurs twice; {like}"));
             }
             if found[*along].replace((k, *sign)).is_some() {
                 return Err(format!("two axes go forward or back, left or right, or up or down; {like}"));
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn what_says_no_axes_is_told() {
+    fn invalid_axes_are_rejected() {
         for (text, part) in [
             ("x back, y right", "three axes"),
             ("x back, y forward, z up", "two axes"),

@@ -1,5 +1,5 @@
-//! Values of a template that follow from the hardpoints of a table, or contradict them: the radius of a wheel, a point
-//! of its axis, the travel of a case.
+//! Adapts values of a template to the hardpoints of a table: the radius of a wheel, a point of its axis, the travel of
+//! a case.
 
 use hardpoint::model::CaseId;
 use hardpoint::{Analysis, Run};
@@ -7,20 +7,20 @@ use hardpoint_file::{at_keys, hardpoint_in, with_keys};
 
 use crate::session::Session;
 
-/// A wheel's centre this much lower or higher than the template's, as factors, is on the ground at z = 0. Beyond, the
-/// table counts its heights from elsewhere.
+/// Range of a wheel's centre height relative to the template's in which the ground is taken to be at z = 0. Beyond it,
+/// the heights of the table have another origin.
 const RADII: [f64; 2] = [0.5, 2.0];
-/// Heights that agree to this part were meant to be equal.
+/// Relative tolerance of equal heights.
 const SAME: f64 = 1e-6;
-/// Number of parts in which the travel of a case is tried.
+/// Number of fractions of the travel of a case that are tried.
 const PARTS: u32 = 20;
-/// The axis of a wheel is this far from the y axis at most, as a cosine: 20 deg.
+/// Maximum angle between a wheel's axis and the y axis, as a cosine: 20 deg.
 const SIDEWAYS: f64 = 0.94;
 
 const SPINDLE: &str = "spindle";
 const CENTRE: &str = "wheel_centre";
 
-/// A point of the wheel's axis where the table has none: inboard of the centre as in the template, without camber and
+/// Adds a point of the wheel's axis if the table has none: inboard of the centre as in the template, without camber and
 /// toe.
 pub fn spindle(session: &Session, template: &str, wanted: &[String], places: &mut Vec<(String, [f64; 3])>) {
     let is_wanted = wanted.iter().any(|w| w == SPINDLE);
@@ -52,13 +52,13 @@ pub fn spindle(session: &Session, template: &str, wanted: &[String], places: &mu
     }
 }
 
-/// The text with what follows from the hardpoints; remarks say what was changed, and what could not be.
+/// Adapts the text to the hardpoints; remarks report the changes, and what could not be adapted.
 pub fn fitted(session: &Session, template: &str, text: String) -> String {
     let text = radii(session, template, text);
     travel(session, text)
 }
 
-/// Wheels stand on the ground at z = 0 as in the template.
+/// Sets the radii of wheels so that they touch the ground at z = 0, as in the template.
 fn radii(session: &Session, template: &str, mut text: String) -> String {
     let Ok(file) = hardpoint_file::parse(&text, "") else { return text };
     for wheel in &file.model.wheels {
@@ -89,7 +89,7 @@ fn radii(session: &Session, template: &str, mut text: String) -> String {
     text
 }
 
-/// Cases go as far as the linkage does.
+/// Reduces the travel of cases to the reach of the linkage.
 fn travel(session: &Session, mut text: String) -> String {
     let names: Vec<String> = match hardpoint_file::parse(&text, "") {
         Ok(file) => file.model.cases.iter().map(|c| c.name.clone()).collect(),
@@ -122,7 +122,7 @@ fn travel(session: &Session, mut text: String) -> String {
     text
 }
 
-/// The drivers that a case gives laws as text, with these.
+/// Drivers whose laws in a case are texts, with these laws.
 fn laws(text: &str, case: &str) -> Vec<(String, String)> {
     let Ok(file) = hardpoint_file::parse(text, "") else { return Vec::new() };
     let drivers = file.model.drivers.iter();
@@ -135,7 +135,7 @@ fn laws(text: &str, case: &str) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Returns whether the motion of a case goes to its end.
+/// Returns whether the motion of a case reaches its last output time.
 fn ends(text: &str, case: usize) -> bool {
     let Ok(file) = hardpoint_file::parse(text, "") else { return false };
     if case >= file.model.cases.len() {

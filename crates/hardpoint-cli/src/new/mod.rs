@@ -18,7 +18,7 @@ use crate::text;
 
 use axes::Axes;
 
-/// A model to begin from.
+/// A template.
 struct Template {
     name: &'static str,
     what: &'static str,
@@ -28,7 +28,7 @@ struct Template {
 }
 
 impl Template {
-    /// True if all that it has lies in the plane of x and y.
+    /// True if it is planar, in the plane of x and y.
     fn is_planar(&self) -> bool {
         self.text.contains("\nplanar = \"xy\"")
     }
@@ -56,7 +56,7 @@ static TEMPLATES: &[Template] = templates! {
     "delta": "Delta robot, by its dimensions as parameters", false;
 };
 
-/// Writes the model, or says why not.
+/// Writes the model, or reports an error.
 pub fn run(options: &New) -> Outcome {
     let session = Session::begin(false);
     if options.list {
@@ -74,7 +74,7 @@ fn list() -> String {
 fn begun(session: &Session, options: &New) -> Result<Outcome, Outcome> {
     let given = options.name.as_deref().unwrap_or(Path::new(""));
     let (path, name) = file_of(given).ok_or_else(|| {
-        session.misunderstood(&format!("`{}` names no file", text::shown(&given.display().to_string())))
+        session.misunderstood(&format!("`{}` is not a file name", text::shown(&given.display().to_string())))
     })?;
     if path.exists() {
         return Err(exists(session, &path));
@@ -88,7 +88,7 @@ fn begun(session: &Session, options: &New) -> Result<Outcome, Outcome> {
     if options.hardpoints.is_some() {
         model = fit::fitted(session, template.text, model);
     }
-    // With the user's places it is read as it will be, so that what is wrong with them is reported.
+    // The model with the user's hardpoints is read back, so that errors in them are reported.
     let problems = hardpoint_file::parse(&model, &path.display().to_string()).err();
     write(session, &path, &model)?;
     if let Some(problems) = problems {
@@ -103,7 +103,7 @@ fn begun(session: &Session, options: &New) -> Result<Outcome, Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The file for a name, and the name of the model in it.
+/// File for a name, and the name of the model in it.
 fn file_of(given: &Path) -> Option<(PathBuf, String)> {
     let is_toml = given.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     let file = given.file_name()?.to_str()?;
@@ -115,7 +115,7 @@ fn file_of(given: &Path) -> Option<(PathBuf, String)> {
 }
 
 fn exists(session: &Session, path: &Path) -> Outcome {
-    let what = format!("there is a file `{}` already", path.display());
+    let what = format!("the file `{}` exists already", path.display());
     session.not_begun(&what, "nothing was written", "choose another name")
 }
 
@@ -132,12 +132,14 @@ fn write(session: &Session, path: &Path, model: &str) -> Result<(), Outcome> {
     })
 }
 
-/// The template of that name; without a name, the one that is answered.
+/// Template of that name; without a name, the user is asked.
 fn template(session: &Session, name: Option<&str>) -> Result<&'static Template, Outcome> {
     let name = match name {
         Some(name) => name.to_owned(),
         None => asked(&format!("{}\ntemplate: ", list())).ok_or_else(|| {
-            session.misunderstood("no template is named; give one with `--template`, of those that `hardpoint new --list` shows")
+            session.misunderstood(
+                "no template given; select one with `--template`; `hardpoint new --list` shows them",
+            )
         })?,
     };
     let wanted = plain(&name);
@@ -146,7 +148,7 @@ fn template(session: &Session, name: Option<&str>) -> Result<&'static Template, 
         let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         let all: Vec<&str> = TEMPLATES.iter().map(|t| t.name).collect();
         let what = format!("there is no template `{}`{near}", text::shown(&name));
-        session.not_begun(&what, &format!("the templates: {}", all.join(", ")), "name one of them")
+        session.not_begun(&what, &format!("the templates: {}", all.join(", ")), "select one of them")
     })
 }
 
@@ -161,12 +163,12 @@ fn asked(question: &str) -> Option<String> {
     Some(answer.trim().to_owned()).filter(|answer| !answer.is_empty())
 }
 
-/// A name without capitals, hyphens and the like.
+/// Normalises a name: no capitals, hyphens and the like.
 fn plain(name: &str) -> String {
     name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// The places of the template's hardpoints out of a table, in mm and in the template's axes.
+/// Coordinates of the template's hardpoints from a table, in mm and in the template's axes.
 fn places(
     session: &Session,
     template: &Template,
@@ -177,16 +179,16 @@ fn places(
     let refused = |what: &str, why: &str, help: &str| session.not_begun(what, why, help);
     let wanted = hardpoint_file::hardpoints_in(template.text);
     if wanted.is_empty() {
-        let what = format!("the template `{}` has no hardpoints to place", template.name);
+        let what = format!("the template `{}` does not accept hardpoints", template.name);
         return Err(refused(
             &what,
-            "all of them follow its parameters",
-            "leave `--hardpoints` out, and change these",
+            "its hardpoints follow from its parameters",
+            "leave `--hardpoints` out, and change the parameters",
         ));
     }
     let table = table::read(file, template.is_planar()).map_err(|problem| {
         refused(
-            &format!("`{shown}` is no table of hardpoints"),
+            &format!("`{shown}` is not a table of hardpoints"),
             &problem,
             "give a name, x, y and z on each line",
         )
@@ -201,7 +203,7 @@ fn places(
     };
     let axes = axes.ok_or_else(|| {
         session.misunderstood(
-            "of the table no axes are said; give them with `--axes`, like `iso` or \"x back, y right, z up\"",
+            "the axes of the table are unknown; give them with `--axes`, like `iso` or \"x back, y right, z up\"",
         )
     })?;
     let axes: Axes =
@@ -234,13 +236,10 @@ fn places(
     }
     if !missing.is_empty() {
         let names: Vec<String> = missing.iter().map(|n| format!("`{n}`")).collect();
-        let what = format!("`{shown}` has no place of {}", names.join(", "));
-        let help = "add them, or name what is meant as the template does; a template without a table shows what each of them is";
-        return Err(refused(
-            &what,
-            "a model with some hardpoints of the template and some of the table would mean nothing",
-            help,
-        ));
+        let what = format!("`{shown}` lacks the hardpoint {}", names.join(", "));
+        let help =
+            "add them, or rename them as in the template; the template without a table shows each of them";
+        return Err(refused(&what, "hardpoints of the template and of the table cannot be mixed", help));
     }
     if template.is_planar() {
         in_one_plane(session, &places, &shown)?;
@@ -248,7 +247,7 @@ fn places(
     Ok(places)
 }
 
-/// A length in mm with the digits that it has: a power of ten moves its decimal point, and inches leave no round-off.
+/// Converts a length to mm and keeps its digits: powers of ten move the decimal point, and inches leave no round-off.
 fn millimetres(unit: LengthUnit, x: f64) -> f64 {
     let moved = |by: i32| {
         let text = format!("{x:e}");
@@ -259,16 +258,16 @@ fn millimetres(unit: LengthUnit, x: f64) -> f64 {
         LengthUnit::Millimetre => Some(x),
         LengthUnit::Centimetre => moved(1),
         LengthUnit::Metre => moved(3),
-        // Fifteen digits are those that arithmetic in double precision leaves.
+        // Arithmetic in double precision keeps fifteen digits.
         LengthUnit::Inch => format!("{:.14e}", x * 25.4).parse().ok(),
     };
     moved.unwrap_or_else(|| unit.metres(x) * 1e3)
 }
 
-/// The unit of a table: the one that is said with it, or in it, or that somebody answers.
+/// Unit of a table: from the command line, from the table, or from the user's answer.
 fn unit(session: &Session, options: &New, said: Option<&str>, shown: &str) -> Result<LengthUnit, Outcome> {
     let named = |text: &str| LengthUnit::ALL.into_iter().find(|u| u.symbol() == text);
-    let known = "a unit is mm, cm, m or in";
+    let known = "valid units: mm, cm, m or in";
     let wrong = |text: &str| session.misunderstood(&format!("`--units {}`: {known}", text::shown(text)));
     let given = options.units.as_deref().map(|text| named(text).ok_or_else(|| wrong(text))).transpose()?;
     let Some(said) = said else {
@@ -276,7 +275,7 @@ fn unit(session: &Session, options: &New, said: Option<&str>, shown: &str) -> Re
             Some(unit) => Ok(unit),
             None => {
                 let text = asked("unit of the table (mm, cm, m, in): ").ok_or_else(|| {
-                    session.misunderstood("of the table no unit is said; give one with `--units`")
+                    session.misunderstood("the unit of the table is unknown; give it with `--units`")
                 })?;
                 named(&text).ok_or_else(|| wrong(&text))
             }
@@ -293,13 +292,13 @@ fn unit(session: &Session, options: &New, said: Option<&str>, shown: &str) -> Re
     }
 }
 
-/// The hardpoints of a planar template lie in its plane, z = 0; one that is parallel to it will do.
+/// Checks that the hardpoints of a planar template lie in its plane, z = 0, or in a parallel plane.
 fn in_one_plane(session: &Session, places: &[(String, [f64; 3])], shown: &str) -> Result<(), Outcome> {
     let Some((first, [_, _, z])) = places.first() else { return Ok(()) };
     if let Some((other, [_, _, there])) = places.iter().find(|(_, p)| p[2] != *z) {
         let what = format!("the hardpoints of `{shown}` do not lie in the plane of x and y");
         let why = format!("`{first}` is at z = {z} mm, `{other}` at z = {there} mm");
-        let help = "leave their z out, or say with `--axes` which of the coordinates lie in the plane, \
+        let help = "leave their z out, or select the coordinates in the plane with `--axes`, \
                     like \"x forward, z left, y up\" for those in x and z";
         return Err(session.not_begun(&what, &why, help));
     }

@@ -5,14 +5,14 @@ use std::path::Path;
 use calamine::{Data, Reader};
 use hardpoint_file::csv_table::original;
 
-/// A larger file is no table of hardpoints.
+/// Maximum size of a file.
 const LARGEST: u64 = 16 << 20;
 
 /// Contents of a table.
 #[derive(Debug, PartialEq)]
 pub struct Hardpoints {
     pub rows: Vec<Row>,
-    /// The unit of its coordinates, where the names of its columns say it, as in `x [mm]`.
+    /// Unit of its coordinates, if the column names have one, as in `x [mm]`.
     pub unit: Option<String>,
 }
 
@@ -25,7 +25,7 @@ pub struct Row {
     pub place: [f64; 3],
 }
 
-/// All rows of a table; what is wrong with it in words. One of points in a plane may have no z, which is 0 then.
+/// Reads all rows of a table; the error is a sentence. In a table of points in a plane, z may be absent; it is 0 then.
 pub fn read(path: &Path, in_plane: bool) -> Result<Hardpoints, String> {
     let size = std::fs::metadata(path).map_err(|e| e.to_string())?.len();
     if size > LARGEST {
@@ -39,7 +39,7 @@ pub fn read(path: &Path, in_plane: bool) -> Result<Hardpoints, String> {
     hardpoints(&cells, in_plane)
 }
 
-/// The cells of the first sheet that has any.
+/// Cells of the first sheet that is not empty.
 fn sheet(path: &Path) -> Result<Vec<Vec<String>>, String> {
     let mut book = calamine::open_workbook_auto(path).map_err(|e| e.to_string())?;
     for name in book.sheet_names() {
@@ -49,7 +49,7 @@ fn sheet(path: &Path) -> Result<Vec<Vec<String>>, String> {
             cell => cell.to_string(),
         };
         if !range.is_empty() {
-            // Lines count from the top of the sheet.
+            // Lines are counted from the top of the sheet.
             let above = range.start().map_or(0, |(row, _)| row as usize);
             let rows = range.rows().map(|row| row.iter().map(cell).collect());
             return Ok(std::iter::repeat_n(Vec::new(), above).chain(rows).collect());
@@ -58,7 +58,7 @@ fn sheet(path: &Path) -> Result<Vec<Vec<String>>, String> {
     Err("none of its sheets has a cell".into())
 }
 
-/// The cells of a text, which semicolons, tabs or commas keep apart. Where it is not commas, numbers may have a decimal
+/// Cells of a text, separated by semicolons, tabs or commas. Unless commas separate them, numbers may have a decimal
 /// comma.
 fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
     let text = std::fs::read_to_string(path).map_err(|e| match e.kind() {
@@ -79,7 +79,7 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
     let mut cells: Vec<Vec<String>> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| e.to_string())?;
-        // A record's position is that of the empty lines and remarks before it.
+        // The position of a record is the start of the empty lines and comments before it.
         let line = record.position().map_or(0, |p| {
             let before = text[p.byte() as usize..].lines().take_while(|l| l.is_empty() || l.starts_with('#'));
             p.line() as usize + before.count()
@@ -96,8 +96,7 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
     Ok(cells)
 }
 
-/// The text without the `#` before the names of its columns: a line above the first row that heads columns x and y is
-/// no remark.
+/// Removes the `#` before the column names: a line above the first row with columns x and y is a header, not a comment.
 fn with_header(text: &str, first: &str, delimiter: u8) -> String {
     let mut out = text.to_owned();
     let above = text.lines().take_while(|l| l.trim().is_empty() || l.starts_with('#'));
@@ -107,19 +106,19 @@ fn with_header(text: &str, first: &str, delimiter: u8) -> String {
     };
     if let Some(line) = above.filter(|l| l.starts_with('#')).filter(heads).last().filter(|_| !heads(&first)) {
         let at = line.as_ptr() as usize - text.as_ptr() as usize;
-        // Of the same length, so that positions stay.
+        // The replacement has the same length, so that positions stay.
         out.replace_range(at..=at, " ");
     }
     out
 }
 
-/// A number with a decimal comma, with a point; all else as it is.
+/// Replaces the decimal comma of a number with a point; other text is unchanged.
 fn pointed(cell: &str) -> String {
     let with_point = cell.replacen(',', ".", 1);
     if number(&with_point).is_some() { with_point } else { cell.to_owned() }
 }
 
-/// Names and places; the first line that is not empty may name the columns.
+/// Names and coordinates; the first line that is not empty may be a header.
 fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, String> {
     let filled = |row: &&Vec<String>| row.iter().any(|cell| !cell.trim().is_empty());
     let lines = || (1..).zip(cells).filter(|(_, row)| filled(row));
@@ -136,7 +135,7 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
             for (k, axis) in (1..).zip(["x", "y", "z"]) {
                 columns[k] = titles.iter().position(|(t, _)| t == axis);
                 if columns[k].is_none() && !(in_plane && axis == "z") {
-                    return Err(format!("line {line} names its columns, and none of them `{axis}`"));
+                    return Err(format!("line {line} is a header without a column `{axis}`"));
                 }
             }
             let called = |t: &str| ["name", "hardpoint", "point"].contains(&t);
@@ -144,12 +143,10 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
             columns[0] =
                 name.or_else(|| (0..titles.len().min(4)).find(|k| !columns[1..].contains(&Some(*k))));
             if columns[0].is_none() {
-                return Err(format!(
-                    "line {line} names its columns, and none of them holds names of hardpoints"
-                ));
+                return Err(format!("line {line} is a header without a column for the names of hardpoints"));
             }
             unit = unit_of(columns[1..].iter().flatten().map(|k| &titles[*k].1), line)?;
-            // Units may stand in a line of their own.
+            // Units may be on a line of their own.
             if let Some((line, units)) =
                 lines().find(|(l, _)| *l > begin).filter(|(_, r)| is_units(r, &columns))
             {
@@ -159,7 +156,7 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
                     columns[1..].iter().flatten().map(|k| units.get(*k).and_then(symbol)).collect();
                 let below = unit_of(below.iter(), line)?;
                 if unit.is_some() && unit != below {
-                    return Err(format!("line {line} has other units than the names of its columns"));
+                    return Err(format!("the units in line {line} contradict those of the column names"));
                 }
                 (unit, begin) = (below, line);
             }
@@ -177,9 +174,9 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
             let Some(text) = columns[k + 1].map(cell) else { continue };
             place[k] = number(text).ok_or_else(|| match number(name) {
                 Some(_) if text.is_empty() => {
-                    format!("line {line} has numbers alone: a hardpoint has its name before x, y and z")
+                    format!("line {line} has no name: write the name of the hardpoint before x, y and z")
                 }
-                _ => format!("line {line}: `{text}` is no number for {axis}"),
+                _ => format!("line {line}: `{text}` is not a number for {axis}"),
             })?;
         }
         rows.push(Row { line, name: name.to_owned(), place });
@@ -200,14 +197,14 @@ fn number(cell: &str) -> Option<f64> {
     cell.trim().parse::<f64>().ok().filter(|x| x.is_finite())
 }
 
-/// Title of a column, and the unit behind it: `X [mm]` is x in mm.
+/// Splits a column title into name and unit: `X [mm]` is x in mm.
 fn title(cell: &str) -> (String, Option<String>) {
     let (name, rest) = cell.split_once(['[', '(']).unwrap_or((cell, ""));
     let unit = rest.trim().trim_end_matches([']', ')']).trim().to_lowercase();
     (name.trim().to_lowercase(), Some(unit).filter(|unit| !unit.is_empty()))
 }
 
-/// The unit that columns have in common; none where none of them has one.
+/// Common unit of the columns; `None` if they have no unit.
 fn unit_of<'t>(
     mut units: impl Iterator<Item = &'t Option<String>>,
     line: usize,
@@ -282,23 +279,23 @@ mod tests {
                 "{text}"
             );
         }
-        assert!(of("A,1,2\nB,1,2\n", false).unwrap_err().contains("no number for z"));
+        assert!(of("A,1,2\nB,1,2\n", false).unwrap_err().contains("not a number for z"));
     }
 
     #[test]
-    fn what_is_no_table_is_told_with_its_line() {
+    fn an_invalid_table_is_reported_with_its_line() {
         for (text, part) in [
             ("", "no rows"),
-            ("name,x,y\nA,1,2\n", "none of them `z`"),
-            ("A,1,2,3\nB,1,2\n", "line 2: `` is no number for z"),
-            ("A,1,2,3\nB,1,\"2,5\",3\n", "line 2: `2,5` is no number for y"),
-            ("A;1;2;3\nB;1;2.000,5;3\n", "line 2: `2.000,5` is no number for y"),
+            ("name,x,y\nA,1,2\n", "without a column `z`"),
+            ("A,1,2,3\nB,1,2\n", "line 2: `` is not a number for z"),
+            ("A,1,2,3\nB,1,\"2,5\",3\n", "line 2: `2,5` is not a number for y"),
+            ("A;1;2;3\nB;1;2.000,5;3\n", "line 2: `2.000,5` is not a number for y"),
             ("A,1,2,3\n,1,2,3\n", "line 2 has no name"),
             ("A,1,2,inf\n", "line 1: `inf`"),
-            ("x,y,z\n1,2,3\n", "none of them holds names"),
-            ("1,2,3\n4,5,6\n", "line 1 has numbers alone"),
+            ("x,y,z\n1,2,3\n", "without a column for the names"),
+            ("1,2,3\n4,5,6\n", "line 1 has no name"),
             ("name,x,y,z\n-,mm,mm,m\nA,1,2,3\n", "line 2 has columns in mm and in m"),
-            ("name,x [mm],y [mm],z [mm]\n-,m,m,m\nA,1,2,3\n", "line 2 has other units"),
+            ("name,x [mm],y [mm],z [mm]\n-,m,m,m\nA,1,2,3\n", "units in line 2 contradict"),
             ("name,x [mm],y [mm],z [m]\nA,1,2,3\n", "line 1 has columns in mm and in m"),
             ("name,x [mm],y,z\nA,1,2,3\n", "line 1 has columns in mm and in no unit"),
         ] {

@@ -1,4 +1,4 @@
-//! `report.pdf`: a run on paper. Facts, curves, and influences, without a browser.
+//! `report.pdf`: a run on paper with facts, curves and influences.
 
 mod paper;
 mod plot;
@@ -13,43 +13,43 @@ use crate::workbook::Contents;
 use paper::{BLACK, BLUE, GREY, MARGIN, PAGE, Paper, RED, SMALL, STRONG, TEXT, TITLE};
 use plot::Plot;
 
-/// Number of curves that are drawn.
+/// Maximum number of curves.
 const MOST_CURVES: usize = 200;
-/// Number of variables that are ranked at each measure.
+/// Maximum number of variables in the ranking of a measure.
 const MOST_RANKED: usize = 12;
 /// Positions of the columns of tables.
 const FACTS: [f32; 2] = [0.0, 90.0];
 const FIGURES: [f32; 3] = [0.0, 130.0, 220.0];
 const VARIABLES: [f32; 4] = [0.0, 130.0, 220.0, 400.0];
 const RANKED: [f32; 4] = [0.0, 170.0, 290.0, 410.0];
-/// The longest bar of a ranking.
+/// Length of the longest bar of a ranking.
 const BAR: f32 = 110.0;
 
 impl Contents<'_> {
-    /// Writes the document, and indicates what is not in it.
+    /// Writes the document and returns notes on omitted data.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// Fails if `out` cannot be written.
     pub fn write_pdf(&self, out: &mut impl Write) -> io::Result<Vec<String>> {
         let mut paper = Paper::new();
         self.head(&mut paper);
-        let mut told: Vec<String> = self.drawn(&mut paper).into_iter().collect();
+        let mut left_out: Vec<String> = self.drawn(&mut paper).into_iter().collect();
         let rankings =
             self.summary.sensitivities.iter().filter(|r| r.order == "value" && !r.largest.is_empty());
         let rankings: Vec<&Ranking> = rankings.collect();
         if !rankings.is_empty() {
-            paper.heading("What moves them", 3.0 * TEXT.line());
-            let most = "The largest sensitivity to each variable over the motion, with its sign and when it is; bars compare variables of one unit.";
+            paper.heading("Most influential variables", 3.0 * TEXT.line());
+            let most = "The largest sensitivity to each variable over the motion, with its sign and time; bars compare variables of one unit.";
             paper.paragraph(TEXT, GREY, most);
         }
         rankings.iter().for_each(|ranking| ranked(&mut paper, ranking));
         if rankings.iter().any(|ranking| ranking.largest.len() > MOST_RANKED) {
-            told.push(format!(
-                "of each measure only the {MOST_RANKED} variables that move it most; `summary.json` has all"
+            left_out.push(format!(
+                "only the {MOST_RANKED} most influential variables of each measure are shown; `summary.json` has all"
             ));
         }
         paper.end(&self.summary.model.name, GENERATOR, out)?;
-        Ok(told.into_iter().map(|told| format!("not in `report.pdf`: {told}")).collect())
+        Ok(left_out.into_iter().map(|left_out| format!("not in `report.pdf`: {left_out}")).collect())
     }
 
     /// Writes the name of the model and the facts of the run.
@@ -72,7 +72,7 @@ impl Contents<'_> {
         facts.for_each(|(what, said)| paper.row(TEXT, &FACTS, &[what, &said]));
         if let Some(margin) = summary.margin.as_ref() {
             let least = format!("{} at t = {} s", number(margin.least), number(margin.time));
-            paper.row(TEXT, &FACTS, &["least margin", &least]);
+            paper.row(TEXT, &FACTS, &["minimum margin", &least]);
         }
         let worth = |d: &&hardpoint_file::Diagnostic| d.severity != hardpoint_file::Severity::Note;
         for d in summary.diagnostics.iter().filter(worth) {
@@ -88,7 +88,7 @@ impl Contents<'_> {
         }
         if !summary.model.variables.is_empty() {
             paper.heading("Design variables", 2.0 * TEXT.line());
-            paper.row(STRONG, &VARIABLES, &["variable", "unit", "what changes", "over the motion"]);
+            paper.row(STRONG, &VARIABLES, &["variable", "unit", "quantity", "over the motion"]);
             for variable in &summary.model.variables {
                 let unit = if variable.unit == "1" { "-" } else { &variable.unit };
                 let cells = [&variable.name, unit, &variable.change, variable.admissibility_text()];
@@ -97,8 +97,8 @@ impl Contents<'_> {
         }
     }
 
-    /// The curves of the measures, or of the points where there are none, two beside each other; says which are not
-    /// here.
+    /// Draws the curves of the measures, or of the points if there are none, two in a row; returns a note on omitted
+    /// curves.
     fn drawn(&self, paper: &mut Paper) -> Option<String> {
         let (solution, units) = (&self.course.kept, self.file.units);
         let outputs = self.shown();
@@ -125,7 +125,7 @@ impl Contents<'_> {
     }
 }
 
-/// The variables that move a measure, those first that move it most.
+/// Draws the most influential variables of a measure.
 fn ranked(paper: &mut Paper, ranking: &Ranking) {
     paper.need(4.0 * TEXT.line());
     paper.y -= 0.6 * TEXT.line();

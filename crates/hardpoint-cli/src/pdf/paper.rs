@@ -1,4 +1,4 @@
-//! Pages of A4 with text and lines on them, in points from the lower left corner.
+//! A4 pages with text and lines, in points from the lower left corner.
 
 use std::io::{self, Write};
 
@@ -7,9 +7,9 @@ use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 /// Width and height of a page.
 pub const PAGE: (f32, f32) = (595.0, 842.0);
 pub const MARGIN: f32 = 50.0;
-/// From one baseline to the next, in sizes of the text.
+/// Line spacing, in text sizes.
 const LEADING: f32 = 1.35;
-/// Bold letters are wider by about this.
+/// Approximate width ratio of bold letters.
 const BOLD: f32 = 1.07;
 const FONTS: [(Name<'static>, Name<'static>); 2] =
     [(Name(b"F1"), Name(b"Helvetica")), (Name(b"F2"), Name(b"Helvetica-Bold"))];
@@ -22,7 +22,7 @@ const WIDTHS: [u16; 95] = [
     556, 333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500, 222, 833, 556, 556, 556, 556, 333, 500,
     278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
 ];
-/// The same of all other letters that it has, at most.
+/// Maximum width of all other letters of the font.
 const WIDEST: u16 = 722;
 
 /// Style of a line of text.
@@ -57,8 +57,7 @@ impl Face {
         thousandths as f32 * 1e-3 * self.size * if self.is_bold { BOLD } else { 1.0 }
     }
 
-    /// The lines of a text that are no wider than this, broken at blanks; words that are wider by themselves are broken
-    /// anywhere.
+    /// Breaks a text into lines of this width, at blanks; a word that is wider is broken anywhere.
     pub fn lines(self, text: &str, width: f32) -> Vec<String> {
         let mut lines = Vec::new();
         for paragraph in text.lines() {
@@ -90,7 +89,7 @@ fn width_of(byte: u8) -> u16 {
     byte.checked_sub(b' ').and_then(|k| WIDTHS.get(usize::from(k))).copied().unwrap_or(WIDEST)
 }
 
-/// A text in the encoding of the pages (Windows-1252), and whether all of it could be said; what cannot is `?`.
+/// Encodes a text for the pages (Windows-1252), and returns whether all letters exist; others become `?`.
 fn bytes(text: &str) -> (Vec<u8>, bool) {
     let mut whole = true;
     let byte = |c: char| match c {
@@ -113,13 +112,13 @@ fn bytes(text: &str) -> (Vec<u8>, bool) {
     (all, whole)
 }
 
-/// A document while it is written, from the top of its first page on.
+/// A document that is being written, from the top of its first page.
 pub struct Paper {
     /// Contents of the full pages, and of the current one.
     pages: Vec<Content>,
     /// Position on the last page, from the top.
     pub y: f32,
-    /// True if all letters could be said.
+    /// True if the font has all letters.
     is_whole: bool,
 }
 
@@ -128,7 +127,7 @@ impl Paper {
         Self { pages: vec![Content::new()], y: PAGE.1 - MARGIN, is_whole: true }
     }
 
-    /// Goes to the next page where there is no more room for so much.
+    /// Starts the next page if there is not enough room.
     pub fn need(&mut self, height: f32) {
         if self.y - height < MARGIN {
             self.pages.push(Content::new());
@@ -140,7 +139,7 @@ impl Paper {
         self.pages.last_mut().expect("there is a page from the beginning on")
     }
 
-    /// A line of text that begins here, upwards if it is turned.
+    /// Writes a line of text that begins here, upwards if it is turned.
     pub fn text(&mut self, face: Face, colour: Colour, [x, y]: [f32; 2], is_turned: bool, text: &str) {
         let (bytes, whole) = bytes(text);
         self.is_whole &= whole;
@@ -152,7 +151,7 @@ impl Paper {
         content.show(Str(&bytes)).end_text();
     }
 
-    /// A text over the whole width, in as many lines as it takes.
+    /// Writes a text over the whole width, broken into lines.
     pub fn paragraph(&mut self, face: Face, colour: Colour, text: &str) {
         for line in face.lines(text, PAGE.0 - 2.0 * MARGIN) {
             self.need(face.line());
@@ -161,7 +160,7 @@ impl Paper {
         }
     }
 
-    /// A heading, which does not stand alone at the foot of a page.
+    /// Writes a heading, never alone at the foot of a page.
     pub fn heading(&mut self, text: &str, with: f32) {
         self.need(2.0 * HEADING.line() + with);
         self.y -= HEADING.size;
@@ -169,8 +168,7 @@ impl Paper {
         self.y -= 0.4 * HEADING.size;
     }
 
-    /// A row of a table: texts in columns that begin at these places, from the left margin, each in as many lines as it
-    /// takes.
+    /// Writes a row of a table: texts in columns at these positions from the left margin, each broken into lines.
     pub fn row(&mut self, face: Face, columns: &[f32], cells: &[&str]) {
         /// Between two columns.
         const GAP: f32 = 8.0;
@@ -190,7 +188,7 @@ impl Paper {
         }
     }
 
-    /// Lines from point to point; a place that is no number leaves a gap, and a point alone is a dot.
+    /// Draws a polyline; a point that is not a number leaves a gap, and a single point is a dot.
     pub fn lines(&mut self, colour: Colour, width: f32, points: impl IntoIterator<Item = [f32; 2]>) {
         let content = self.content();
         content.set_stroke_rgb(colour[0], colour[1], colour[2]).set_line_width(width);
@@ -210,20 +208,20 @@ impl Paper {
         content.stroke();
     }
 
-    /// A filled rectangle.
+    /// Draws a filled rectangle.
     pub fn bar(&mut self, colour: Colour, [x, y]: [f32; 2], width: f32, height: f32) {
         self.content().set_fill_rgb(colour[0], colour[1], colour[2]).rect(x, y, width, height).fill_nonzero();
     }
 
-    /// Ends the document: each page gets its foot, and a number.
+    /// Completes the document: each page gets a footer with its number.
     ///
     /// # Errors
-    /// Where `out` cannot be written.
+    /// Fails if `out` cannot be written.
     pub fn end(mut self, title: &str, generator: &str, out: &mut impl Write) -> io::Result<()> {
         let foot = if bytes(title).1 && self.is_whole {
             format!("{title}, {generator}")
         } else {
-            format!("{title}, {generator}; ? is a letter that the font of this document lacks")
+            format!("{title}, {generator}; ? replaces letters that the font lacks")
         };
         let pages = self.pages.len();
         let contents = std::mem::take(&mut self.pages);
@@ -278,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_that_the_font_lacks_are_told() {
+    fn letters_that_the_font_lacks_are_reported() {
         assert_eq!(bytes("\u{fc}ber 2 \u{b5}m \u{2013}"), (b"\xfcber 2 \xb5m \x96".to_vec(), true));
         assert_eq!(bytes("\u{3c6}1"), (b"?1".to_vec(), false));
     }

@@ -4,21 +4,21 @@ use hardpoint_report::figures::rounded;
 
 use super::paper::{BLACK, BLUE, Face, GREY, PALE, Paper, SMALL, STRONG};
 
-/// Width and height with all that is written around it.
+/// Width and height with labels.
 pub const SIZE: (f32, f32) = (240.0, 146.0);
 /// Room left of, below, right of and above the curve.
 const AROUND: [f32; 4] = [46.0, 26.0, 8.0, 16.0];
-/// Number of values at least that have a mark on an axis, where these are round.
+/// Minimum number of round values with a mark on an axis.
 const MARKS: f64 = 4.0;
 /// Maximum number of intervals of a curve, each drawn with its lowest and its highest point: more cannot be
 /// distinguished on paper.
 const STRETCHES: usize = 600;
-/// Room over and under a curve, as a part of its height.
+/// Space above and below a curve, as a fraction of its height.
 const ROOM: f64 = 0.05;
-/// A curve that leaves its mean by less than this part of it is a line: what is seen of it would be round-off.
+/// A curve whose relative deviation from its mean is below this is drawn as a line: the rest is round-off.
 const FLAT: f64 = 1e-9;
 
-/// A curve, with what it is called and the unit of its values.
+/// A curve with its name and unit.
 pub struct Plot<'a> {
     pub name: &'a str,
     pub unit: &'a str,
@@ -27,7 +27,7 @@ pub struct Plot<'a> {
 }
 
 impl Plot<'_> {
-    /// Draws it with its lower left corner here.
+    /// Draws the plot with its lower left corner here.
     pub fn draw(&self, paper: &mut Paper, [left, bottom]: [f32; 2]) {
         let (x, y) = (left + AROUND[0], bottom + AROUND[1]);
         let (width, height) = (SIZE.0 - AROUND[0] - AROUND[2], SIZE.1 - AROUND[1] - AROUND[3]);
@@ -40,7 +40,7 @@ impl Plot<'_> {
             [low - room, high + room]
         });
         let (Some(time), Some(values)) = (time, values) else {
-            paper.text(SMALL, GREY, [x, y + height / 2.0], false, "no number at any time");
+            paper.text(SMALL, GREY, [x, y + height / 2.0], false, "no value at any time");
             return;
         };
         for (mark, label) in labelled(values) {
@@ -64,7 +64,7 @@ impl Plot<'_> {
         paper.lines(BLUE, 1.1, self.shown().into_iter().map(place));
     }
 
-    /// The points that are drawn, by their numbers.
+    /// Indices of the points that are drawn.
     fn shown(&self) -> Vec<usize> {
         let all = self.values.len();
         if all <= 2 * STRETCHES {
@@ -72,7 +72,7 @@ impl Plot<'_> {
         }
         let stretch = |s: usize| {
             let points = s * all / STRETCHES..(s + 1) * all / STRETCHES;
-            // A gap stays one.
+            // Gaps remain.
             let gap = points.clone().find(|k| !self.values[*k].is_finite());
             let by = |a: &usize, b: &usize| self.values[*a].total_cmp(&self.values[*b]);
             let known = || points.clone().filter(|k| self.values[*k].is_finite());
@@ -86,7 +86,7 @@ impl Plot<'_> {
     }
 }
 
-/// As much of a text as this wide.
+/// Truncates a text to this width.
 fn fitting(face: Face, text: &str, width: f32) -> String {
     if face.width(text) <= width {
         return text.to_owned();
@@ -101,7 +101,7 @@ fn fitting(face: Face, text: &str, width: f32) -> String {
     shown + "\u{2026}"
 }
 
-/// The lowest and the highest number, apart; none where there is no number.
+/// Range of the numbers, widened if they are equal; `None` if there is no number.
 fn range(values: &[f64]) -> Option<[f64; 2]> {
     let known = || values.iter().copied().filter(|v| v.is_finite());
     let (low, high) = (known().reduce(f64::min)?, known().reduce(f64::max)?);
@@ -119,11 +119,11 @@ fn marks([low, high]: [f64; 2]) -> Vec<f64> {
     let power = 10f64.powf(rough.log10().floor());
     let step = [5.0, 2.0, 1.0].into_iter().map(|k| k * power).find(|step| *step <= rough).unwrap_or(power);
     let (first, last) = ((low / step).ceil(), (high / step).floor());
-    // Times the step rather than added up, and no -0.
+    // Multiples of the step instead of a running sum, and no -0.
     (0..=(last - first) as usize).map(|k| (first + k as f64) * step + 0.0).collect()
 }
 
-/// Marks with their numbers, in as many digits as tell them apart.
+/// Marks with their numbers, with enough digits to distinguish them.
 fn labelled(range: [f64; 2]) -> Vec<(f64, String)> {
     let marks = marks(range);
     let greatest = marks.iter().fold(0f64, |all, m| all.max(m.abs()));

@@ -1,11 +1,11 @@
-//! Who may ask: whoever has the token, from this machine, by a page of this server.
+//! Access control: requests need the token, must come from this machine, and from a page of this server.
 
 use hyper::header::{self, HeaderMap, HeaderValue};
 use hyper::{Method, Uri};
 
-/// The name of the header that carries the token.
+/// Name of the header that carries the token.
 pub const HEADER: &str = "x-hardpoint-token";
-/// Whoever writes a token by hand writes one of at least that many letters.
+/// Minimum length of a token that the user chooses.
 pub const SHORTEST_TOKEN: usize = 16;
 
 /// Address of a server, and the conditions for its requests.
@@ -19,14 +19,14 @@ pub struct Address {
 /// Source of a request's token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TokenSource {
-    /// In the address: from the terminal.
+    /// The address, as printed on the terminal.
     InAddress,
-    /// As a page of the server does.
+    /// A header or cookie, as sent by a page of the server.
     ByPage,
 }
 
 impl Address {
-    /// This port, with this token.
+    /// Access control for this port and token.
     pub fn new(port: u16, token: String) -> Self {
         let mut hosts = vec![format!("127.0.0.1:{port}"), format!("localhost:{port}")];
         if port == 80 {
@@ -45,8 +45,7 @@ impl Address {
         &self.token
     }
 
-    /// The cookie that the page of that address gets; browsers tell cookies of different ports apart by their names
-    /// only.
+    /// Cookie of the page at that address; browsers distinguish cookies of different ports by their names only.
     pub fn cookie(&self) -> String {
         format!("{}={}; Path=/; HttpOnly; SameSite=Strict", self.cookie_name(), self.token)
     }
@@ -55,10 +54,10 @@ impl Address {
         format!("hardpoint-{}", self.port)
     }
 
-    /// True if a request may pass, or why not.
+    /// Checks a request and returns the source of its token.
     ///
     /// # Errors
-    /// Why not, in a sentence for whoever sent it.
+    /// The reason as a sentence for the client.
     pub fn lets_in(
         &self,
         method: &Method,
@@ -70,7 +69,7 @@ impl Address {
         const TOKEN: &str =
             "This needs the token of the address that `hardpoint studio` has printed: open that address.";
         let is_ours = |host: &str| self.hosts.iter().any(|h| h.eq_ignore_ascii_case(host));
-        // An address that is written out in the request counts in place of the header, and then both are there.
+        // An absolute address in the request takes precedence over the host header; both are checked.
         let named = one(headers, header::HOST).is_some_and(is_ours);
         if !named || !uri.authority().is_none_or(|a| is_ours(a.as_str())) {
             return Err(HOST);
@@ -84,8 +83,7 @@ impl Address {
         let in_address = uri.query().is_some_and(|q| {
             form_urlencoded::parse(q.as_bytes()).any(|(key, value)| key == "token" && self.is_token(&value))
         });
-        // Browsers say from where a request comes, also where it has no origin. Following a link with the token is
-        // allowed.
+        // Browsers report the site of a request even without an origin. Following a link with the token is allowed.
         let site = headers.get_all("sec-fetch-site").iter().all(|v| v == "same-origin" || v == "none");
         let follows_link = method == Method::GET && one(headers, "sec-fetch-mode") == Some("navigate");
         if !(site || in_address && follows_link) {
@@ -108,27 +106,27 @@ impl Address {
         pairs.any(|(key, value)| key == name && self.is_token(value))
     }
 
-    /// Takes the same time whatever the difference.
+    /// Compares in constant time.
     fn is_token(&self, token: &str) -> bool {
         let pairs = token.bytes().zip(self.token.bytes());
         token.len() == self.token.len() && pairs.fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
     }
 }
 
-/// A header that is there once, as text.
+/// Value of a header that occurs exactly once, as text.
 fn one(headers: &HeaderMap, name: impl header::AsHeaderName) -> Option<&str> {
     let mut values = headers.get_all(name).iter();
     values.next().filter(|_| values.next().is_none())?.to_str().ok()
 }
 
-/// A token that nobody guesses.
+/// A random token.
 pub fn random_token() -> Result<String, getrandom::Error> {
     let mut bytes = [0_u8; 16];
     getrandom::fill(&mut bytes)?;
     Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
 }
 
-/// A token that the user gives.
+/// Parses a token given by the user.
 pub fn given_token(text: &str) -> Result<String, String> {
     let is_plain = text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_');
     if is_plain && text.len() >= SHORTEST_TOKEN {

@@ -1,4 +1,4 @@
-//! The model files of one folder: what a page may read and write, and nothing else.
+//! Model files of one folder: the only files that a page may read and write.
 
 use std::collections::HashMap;
 use std::io::{self, ErrorKind, Read, Write};
@@ -13,16 +13,16 @@ use crate::journal::checksum;
 
 /// Ending of all model files.
 const ENDING: &str = ".toml";
-/// No file system has longer names.
+/// Maximum length of a file name.
 const LONGEST_NAME: usize = 255;
 
 /// A folder of models.
 pub struct Models {
-    /// As the user wrote it: so it is shown in diagnostics. Empty is the current one.
+    /// Path as the user wrote it, for diagnostics; empty for the current folder.
     path: PathBuf,
-    /// As the system knows it.
+    /// Canonical path.
     real: PathBuf,
-    /// Who saved which file last, and what was in it then; held while a file is saved.
+    /// Last page that saved each file, with the saved revision; locked while a file is saved.
     saved: Mutex<HashMap<String, (Revision, String)>>,
 }
 
@@ -40,7 +40,7 @@ pub type Revision = String;
 pub struct Entry {
     /// Name of the file.
     pub file: String,
-    /// The model's name; the file's where it cannot be read.
+    /// Name of the model; the file name if the model cannot be read.
     pub title: String,
     /// Description in the model.
     pub description: Option<String>,
@@ -48,35 +48,35 @@ pub struct Entry {
     pub cases: Vec<String>,
     /// Number of its problems.
     pub problems: usize,
-    /// When it was changed, seconds since 1970.
+    /// Time of the last change, in seconds since 1970.
     pub changed: Option<f64>,
 }
 
 /// Reason why a file was not read or written.
 pub enum FileError {
-    /// The name is none of a model file in this folder.
+    /// The name is not valid for a model file in this folder.
     Name,
-    /// There is none of that name.
+    /// There is no file of that name.
     Absent,
-    /// There is one of that name.
+    /// There is a file of that name already.
     Exists,
-    /// It has another text meanwhile.
+    /// The file has changed meanwhile.
     Changed(Text),
-    /// It is larger than any model.
+    /// The file is too large for a model.
     TooLarge,
-    /// Something else, in a sentence.
+    /// Another error, as a sentence.
     Failed(String),
 }
 
 impl Models {
-    /// Those of this folder.
+    /// Models of this folder.
     pub fn of(path: &Path) -> io::Result<Self> {
         let current = path.as_os_str().is_empty();
         let real = if current { Path::new(".") } else { path }.canonicalize()?;
         Ok(Self { path: path.into(), real, saved: Mutex::default() })
     }
 
-    /// The folder, from the root.
+    /// Absolute path of the folder.
     pub fn whole_path(&self) -> &Path {
         &self.real
     }
@@ -92,16 +92,16 @@ impl Models {
         }
     }
 
-    /// True if a model in this folder may be called so.
+    /// True if the name is valid for a model in this folder.
     pub fn is_name(&self, name: &str) -> bool {
         self.place(name).is_ok()
     }
 
-    /// The file of that name itself, whatever links to it; it lies in the folder.
+    /// Target of a file name after links are resolved; it must be in the folder.
     fn existing(&self, name: &str) -> Result<PathBuf, FileError> {
         let place = self.place(name)?;
         let real = place.canonicalize().map_err(FileError::of)?;
-        // A pipe or a device would be waited for.
+        // Reading from a pipe or a device would block.
         let is_file = real.metadata().map_err(FileError::of)?.is_file();
         if is_file && real.parent() == Some(&*self.real) { Ok(real) } else { Err(FileError::Name) }
     }
@@ -125,7 +125,7 @@ impl Models {
         parse_in(Some(&self.path), text, &self.path.join(name).display().to_string())
     }
 
-    /// Saves a text in place of the one of that revision, whole or not at all, for the page `by`.
+    /// Replaces the text of that revision, whole or not at all, for the page `by`.
     pub fn save(&self, name: &str, text: &str, before: &str, by: &str) -> Result<Revision, FileError> {
         let mut saved = self.saved();
         let real = self.existing(name)?;
@@ -137,7 +137,7 @@ impl Models {
         if permissions.readonly() {
             return Err(FileError::Failed(format!("`{name}` is read-only")));
         }
-        // What links to a file still does when it was saved.
+        // Links to the file remain valid.
         let own_name = real.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         self.written(&own_name, text, |folder| folder.commit(&[]))?;
         let _ = std::fs::set_permissions(&real, permissions);
@@ -172,7 +172,7 @@ impl Models {
         })
     }
 
-    /// True if what is in a file now was put there by this page.
+    /// True if this page saved the current text of the file.
     pub fn was_saved_by(&self, name: &str, revision: &str, by: &str) -> bool {
         self.saved().get(name).is_some_and(|(saved, page)| saved == revision && page == by)
     }
@@ -181,7 +181,7 @@ impl Models {
         self.saved.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// All models, by the names of their files. What is no model, by the looks of it, is left out.
+    /// All models, sorted by file name. Files that do not look like models are left out.
     pub fn list(&self) -> Vec<Entry> {
         let Ok(entries) = std::fs::read_dir(&self.real) else { return Vec::new() };
         let mut names: Vec<String> =
@@ -214,7 +214,7 @@ impl Models {
     }
 }
 
-/// True if somebody who writes this means a mechanism: there are many other TOML files.
+/// True if the text looks like a mechanism: there are many other TOML files.
 fn looks_like_a_model(text: &str) -> bool {
     const TABLES: [&str; 3] = ["hardpoints", "bodies", "joints"];
     let heads = |line: &str| TABLES.iter().any(|t| line.trim_start_matches('[').starts_with(t));

@@ -1,14 +1,14 @@
 //! `hardpoint studio`: the page of a model from a server on this machine, which saves, watches files and runs long
 //! studies.
 //!
-//! | file | what |
+//! | file | contents |
 //! |---|---|
-//! | `address.rs` | who may ask |
-//! | `server.rs` | connections, limits, how answers go out |
-//! | `routes.rs` | what can be requested |
+//! | `address.rs` | access control |
+//! | `server.rs` | connections, limits, responses |
+//! | `routes.rs` | requests and their answers |
 //! | `folder.rs` | the model files of the folder, read and saved |
 //! | `page.rs` | pages of models, the gallery |
-//! | `watch.rs` | what a page hears of without asking |
+//! | `watch.rs` | events for pages |
 //! | `studies.rs` | studies in threads of their own |
 
 mod address;
@@ -42,11 +42,11 @@ struct Studio {
     opened: Option<String>,
     pages: page::Pages,
     studies: studies::Studies,
-    /// Set when the server is to end.
+    /// Set when the server is to stop.
     ending: Arc<AtomicBool>,
 }
 
-/// Serves until the user ends it.
+/// Serves until the user stops it.
 pub fn run(options: &args::Studio) -> Outcome {
     let session = Session::begin(false);
     studio_in(&session, options).unwrap_or_else(|outcome| outcome)
@@ -64,18 +64,22 @@ fn studio_in(session: &Session, options: &args::Studio) -> Result<Outcome, Outco
         .map_err(|e| failed(format!("the folder `{}` cannot be read", path.display()), &e))?;
     if let Some(name) = opened.as_ref().filter(|name| !models.is_name(name)) {
         let why = format!(
-            "`{name}` is no name of a model file: those end with `.toml`, and lie in the folder itself"
+            "`{name}` is not a model file: its name must end with `.toml`, and it must be in the folder itself"
         );
         return Err(session.misunderstood(&why));
     }
     let random =
-        || address::random_token().map_err(|e| failed("this system has no random numbers".into(), &e));
+        || address::random_token().map_err(|e| failed("the system provides no random numbers".into(), &e));
     let token = options.token.clone().map_or_else(random, Ok)?;
     let listening = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port))
         .and_then(|listener| Ok((listener.local_addr()?.port(), listener)));
     let (port, listener) = listening.map_err(|e| {
-        let what = format!("port {} of this machine cannot be listened on", options.port);
-        session.not_served(&what, &e.to_string(), "name another with `--port`, or end what has this one")
+        let what = format!("cannot listen on port {} of this machine", options.port);
+        session.not_served(
+            &what,
+            &e.to_string(),
+            "select another port with `--port`, or stop the program that uses this one",
+        )
     })?;
     let address = address::Address::new(port, token);
     let to_open = address.to_open();
@@ -91,19 +95,19 @@ fn studio_in(session: &Session, options: &args::Studio) -> Result<Outcome, Outco
     session.patient(true);
     text::print(&format!("{to_open}\n"));
     if !options.no_browser && can_be_seen() {
-        // Whoever sees no browser open has the address.
+        // If no browser opens, the user has the address.
         if let Err(error) = open::that_detached(&to_open) {
             session.remark(&format!("no browser could be opened ({error}); open the address above"));
         }
     }
     if std::io::stderr().is_terminal() {
-        text::complain("Ctrl-C ends it.\n");
+        text::complain("Press Ctrl-C to stop the server.\n");
     }
     let served = server::serve(listener, &studio, session);
-    served.map(|()| Outcome::Done).map_err(|e| failed("the server could not go on".into(), &e))
+    served.map(|()| Outcome::Done).map_err(|e| failed("the server failed".into(), &e))
 }
 
-/// The folder of a model, and its name in it. The model may be wrong in any way, but it is there.
+/// Folder of a model and its name in it. The model must exist; it may have errors.
 fn of_model(session: &Session, model: &Path) -> Result<(PathBuf, Option<String>), Outcome> {
     if model.is_dir() {
         return Ok((model.into(), None));
@@ -127,7 +131,7 @@ fn of_gallery() -> PathBuf {
     if !has_models(here) && has_models(beside) { beside.into() } else { here.into() }
 }
 
-/// True if a browser could be seen.
+/// True if a browser could be displayed.
 fn can_be_seen() -> bool {
     let given = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
     !cfg!(any(target_os = "linux", target_os = "freebsd"))

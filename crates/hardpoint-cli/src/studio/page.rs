@@ -1,4 +1,4 @@
-//! Pages of models, as `run` makes them, and of all models.
+//! Pages of models, as written by `run`, and the gallery.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -23,16 +23,16 @@ use super::server::Answer;
 #[derive(Serialize)]
 struct About<'a> {
     token: &'a str,
-    /// The model file that the page shows; none in the gallery.
+    /// Model file of the page; `None` for the gallery.
     file: Option<&'a str>,
-    /// The revision of the text that it shows.
+    /// Revision of the model text.
     revision: Option<&'a str>,
-    /// The case that it shows, of a model with cases.
+    /// Case of the page, if the model has cases.
     case: Option<&'a str>,
     cases: Vec<&'a str>,
 }
 
-/// Pages are made one after the other, each for all who requested it before it was begun.
+/// Page generation: one page at a time; the last page serves all requests that arrived before it was started.
 #[derive(Default)]
 pub struct Pages {
     clock: AtomicU64,
@@ -52,7 +52,7 @@ impl Pages {
     }
 }
 
-/// The page of a model as it is on disk now.
+/// Page of a model in its current state on disk.
 pub async fn model(studio: Arc<Studio>, file: String, case: Option<String>) -> Answer {
     let asked = studio.pages.tick();
     let mut last = studio.pages.last.lock().await;
@@ -85,7 +85,10 @@ fn made(studio: &Studio, name: &str, case: Option<&str>) -> Result<String, Answe
         Ok(file) => file,
         Err(wrong) => {
             let lines: Vec<usize> = wrong.list().iter().filter_map(|d| d.line).collect();
-            return Ok(told(&gallery::trouble(name, &wrong.render(false), &found.text, &lines), &about));
+            return Ok(with_facts(
+                &gallery::trouble(name, &wrong.render(false), &found.text, &lines),
+                &about,
+            ));
         }
     };
     about.cases = file.model.cases.iter().map(|c| c.name.as_str()).collect();
@@ -99,7 +102,7 @@ fn made(studio: &Studio, name: &str, case: Option<&str>) -> Result<String, Answe
         run::page(&session, one.as_ref().unwrap_or(&file), &maps, Formulation::Relative)
     });
     Ok(match html {
-        Ok(html) => told(&html, &about),
+        Ok(html) => with_facts(&html, &about),
         Err(_) => {
             let (diagnostics, text) = heard.refusal();
             let lines = diagnostics
@@ -107,12 +110,13 @@ fn made(studio: &Studio, name: &str, case: Option<&str>) -> Result<String, Answe
                 .into_iter()
                 .flatten()
                 .filter_map(|d| Some(d["line"].as_u64()? as usize));
-            told(&gallery::trouble(name, &text, &found.text, &lines.collect::<Vec<_>>()), &about)
+            with_facts(&gallery::trouble(name, &text, &found.text, &lines.collect::<Vec<_>>()), &about)
         }
     })
 }
 
-fn told(page: &str, about: &About<'_>) -> String {
+/// Adds the facts about the server to a page.
+fn with_facts(page: &str, about: &About<'_>) -> String {
     served(page, about).expect("names are plain data")
 }
 
@@ -149,7 +153,7 @@ pub async fn gallery(studio: Arc<Studio>) -> Answer {
             case: None,
             cases: Vec::new(),
         };
-        Ok(told(&gallery::gallery("Models", &lead, &cards), &about))
+        Ok(with_facts(&gallery::gallery("Models", &lead, &cards), &about))
     });
     match made.await {
         Ok(html) => Answer::page(StatusCode::OK, html),

@@ -15,7 +15,7 @@ use super::server::{Answer, body};
 use super::studies::StudyRequest;
 use super::{Studio, page, watch};
 
-/// The query of an address; of a key that is there twice the last.
+/// Query of an address; of repeated keys, the last one counts.
 struct Query(HashMap<String, String>);
 
 impl Query {
@@ -33,13 +33,13 @@ impl Query {
         self.get("file").map(Into::into).ok_or_else(|| Answer::refusal(StatusCode::BAD_REQUEST, why))
     }
 
-    /// Identity of the page that asks; changes by one page are reported to the others.
+    /// Identity of the requesting page; changes by one page are reported to the others.
     fn client(&self) -> String {
         self.get("client").unwrap_or_default().into()
     }
 }
 
-/// The answer to a request that may pass.
+/// Answers an authorised request.
 pub async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Answer {
     let (method, query) = (request.method().clone(), Query::of(request.uri()));
     let path = request.uri().path().to_owned();
@@ -63,7 +63,7 @@ pub async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Answer {
         (["api", "study", id, "report.html"], &Method::GET) => {
             of_study(&studio, id, |s| match s.report(query.get("case")) {
                 Some(html) => Answer::page(StatusCode::OK, html),
-                None => Answer::refusal(StatusCode::NOT_FOUND, "the study has no report, or not yet"),
+                None => Answer::refusal(StatusCode::NOT_FOUND, "the study has no report yet"),
             })
         }
         (parts, _) => Err(match allowed(parts) {
@@ -71,7 +71,7 @@ pub async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Answer {
                 let why = format!("{path} takes {methods} only");
                 Answer::refusal(StatusCode::METHOD_NOT_ALLOWED, &why).with(header::ALLOW, methods)
             }
-            None => Answer::refusal(StatusCode::NOT_FOUND, "there is nothing at this address"),
+            None => Answer::refusal(StatusCode::NOT_FOUND, "there is no resource at this address"),
         }),
     };
     let (Ok(answer) | Err(answer)) = answer;
@@ -89,13 +89,13 @@ fn allowed(parts: &[&str]) -> Option<&'static str> {
     }
 }
 
-/// Does what waits for the disk or for a solution, where nobody else waits for it.
+/// Runs blocking work, such as file access or solving, in a thread of its own.
 pub async fn blocking<X: Send + 'static>(
     what: impl FnOnce() -> Result<X, Answer> + Send + 'static,
 ) -> Result<X, Answer> {
     match tokio::task::spawn_blocking(what).await {
         Ok(done) => done,
-        Err(_) => Err(Answer::refusal(StatusCode::INTERNAL_SERVER_ERROR, "this is a fault of the program")),
+        Err(_) => Err(Answer::refusal(StatusCode::INTERNAL_SERVER_ERROR, "internal error of the program")),
     }
 }
 
@@ -127,14 +127,14 @@ async fn text(studio: Arc<Studio>, query: &Query) -> Result<Answer, Answer> {
 async fn save(studio: Arc<Studio>, query: &Query, request: Request<Incoming>) -> Result<Answer, Answer> {
     let (file, client, anyway) = (query.file()?, query.client(), query.get("anyway") == Some("1"));
     let Some(before) = request.headers().get(header::IF_MATCH).and_then(|v| v.to_str().ok()) else {
-        let why = "say in `If-Match` which revision is to be replaced";
+        let why = "name the revision to be replaced in `If-Match`";
         return Err(Answer::refusal(StatusCode::PRECONDITION_REQUIRED, why));
     };
     let before = before.trim_matches('"').to_owned();
     let text = text_of(request).await?;
     blocking(move || {
         let models = &studio.models;
-        // That somebody else changed the file is said before anything about the text.
+        // A conflict on disk is reported before errors of the text.
         let now = models.read(&file).map_err(|why| no_file(&file, why))?;
         if now.revision != before {
             return Err(no_file(&file, FileError::Changed(now)));
@@ -173,7 +173,7 @@ fn is_model(studio: &Studio, file: &str, text: &str, anyway: bool) -> Result<(),
 async fn begin(studio: Arc<Studio>, request: Request<Incoming>) -> Result<Answer, Answer> {
     let bytes = body(request).await?;
     let asked: StudyRequest = serde_json::from_slice(&bytes)
-        .map_err(|e| Answer::refusal(StatusCode::BAD_REQUEST, &format!("the request is no study: {e}")))?;
+        .map_err(|e| Answer::refusal(StatusCode::BAD_REQUEST, &format!("invalid study request: {e}")))?;
     blocking(move || {
         if !studio.models.is_name(&asked.file) {
             return Err(no_file(&asked.file, FileError::Name));
@@ -182,7 +182,7 @@ async fn begin(studio: Arc<Studio>, request: Request<Incoming>) -> Result<Answer
         match studio.studies.begin(file, asked) {
             Some(study) => Ok(Answer::json(StatusCode::ACCEPTED, &study.document())),
             None => {
-                let why = "two studies are under way already: wait for the end of one, or cancel it";
+                let why = "two studies are running already: wait until one ends, or cancel it";
                 Err(Answer::refusal(StatusCode::TOO_MANY_REQUESTS, why))
             }
         }
@@ -196,7 +196,7 @@ fn of_study(
     what: impl FnOnce(&super::studies::Study) -> Answer,
 ) -> Result<Answer, Answer> {
     let study = studio.studies.get(id);
-    let absent = || Answer::refusal(StatusCode::NOT_FOUND, "there is no such study, or no more");
+    let absent = || Answer::refusal(StatusCode::NOT_FOUND, "there is no such study any more");
     study.map(|s| what(&s)).ok_or_else(absent)
 }
 
@@ -211,7 +211,7 @@ pub fn no_file(name: &str, why: FileError) -> Answer {
     let (status, sentence): (StatusCode, Cow<'_, str>) = match why {
         FileError::Name => {
             let why = format!(
-                "`{name}` is not the name of a model in this folder: those are plain names that end with `.toml`"
+                "`{name}` is not a valid name of a model in this folder: use a plain name that ends with `.toml`"
             );
             (StatusCode::BAD_REQUEST, why.into())
         }

@@ -1,4 +1,4 @@
-//! Connections: who may ask, how long and how much, and how answers go out.
+//! Connections: access, limits on time and size, and responses.
 
 use std::convert::Infallible;
 use std::io;
@@ -29,32 +29,32 @@ use super::Studio;
 use super::address::TokenSource;
 use super::routes;
 
-/// Number of connections at once; more of them wait until others end.
+/// Maximum number of simultaneous connections; further ones wait.
 const CONNECTIONS: usize = 256;
-/// The head of a request comes within this time, and the next one of a connection, too.
+/// Time limit for the head of a request, and for the next request of a connection.
 const HEAD: Duration = Duration::from_secs(20);
-/// The body of a request does.
+/// Time limit for the body of a request.
 const BODY: Duration = Duration::from_secs(60);
-/// Time limit of reading a body that is not wanted.
+/// Time limit for discarding an unused body.
 const PAUSE: Duration = Duration::from_secs(2);
-/// Whoever takes nothing of an answer for so long is gone.
+/// A client that accepts no data for this time is disconnected.
 const STALLED: Duration = Duration::from_secs(60);
-/// The head of a request has at most that many bytes and headers.
+/// Maximum size of the head of a request in bytes, and its number of headers.
 const HEAD_BYTES: usize = 16 << 10;
 const HEADERS: usize = 64;
-/// Around a text of the largest size: what JSON makes of it.
+/// Maximum size of a body: a text of the largest size, escaped as JSON.
 const BODY_BYTES: usize = LARGEST_FILE as usize + (1 << 20);
 /// Interval of checks whether the user wants the server to end.
 const LOOK: Duration = Duration::from_millis(200);
-/// Time limit of current requests at the end.
+/// Time limit for pending requests at shutdown.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// Policy of the page: it may draw itself from its own contents, run its engine, and ask this server.
+/// Content security policy: the page may use its own contents, run its engine, and contact this server.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; style-src 'unsafe-inline'; \
     img-src data: blob:; font-src data:; worker-src blob:; connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; \
     frame-ancestors 'none'";
 
-/// The body of an answer: all at once, or as it comes.
+/// Body of an answer: complete, or a stream.
 pub type Content = Either<Full<Bytes>, Channel<Bytes, Infallible>>;
 
 /// An answer.
@@ -66,7 +66,7 @@ impl Answer {
         Self::of(status, kind, Either::Left(Full::new(content.into())))
     }
 
-    /// One that goes on and on.
+    /// Answer with a stream of events.
     pub fn stream(kind: &'static str, content: Channel<Bytes, Infallible>) -> Self {
         Self::of(StatusCode::OK, kind, Either::Right(content))
     }
@@ -78,17 +78,17 @@ impl Answer {
         Self(Box::new(response))
     }
 
-    /// A page.
+    /// Answer with a page.
     pub fn page(status: StatusCode, html: impl Into<Bytes>) -> Self {
         Self::new(status, "text/html; charset=utf-8", html)
     }
 
-    /// A document.
+    /// Answer with a JSON document.
     pub fn json(status: StatusCode, document: &serde_json::Value) -> Self {
         Self::new(status, "application/json", document.to_string())
     }
 
-    /// A sentence.
+    /// Answer with plain text.
     pub fn text(status: StatusCode, sentence: &str) -> Self {
         Self::new(status, "text/plain; charset=utf-8", format!("{sentence}\n"))
     }
@@ -98,7 +98,7 @@ impl Answer {
         Self::json(status, &serde_json::json!({ "error": why }))
     }
 
-    /// With one more header; one that cannot be written is left out.
+    /// Adds a header; an invalid one is ignored.
     pub fn with(mut self, name: HeaderName, value: &str) -> Self {
         if let Ok(value) = HeaderValue::from_str(value) {
             self.0.headers_mut().insert(name, value);
@@ -107,7 +107,7 @@ impl Answer {
     }
 }
 
-/// Serves until the user ends it.
+/// Serves until the user stops it.
 pub fn serve(listener: std::net::TcpListener, studio: &Arc<Studio>, session: &Session) -> io::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_io()
@@ -131,7 +131,7 @@ pub fn serve(listener: std::net::TcpListener, studio: &Arc<Studio>, session: &Se
 }
 
 async fn accept(listener: TcpListener, studio: Arc<Studio>) {
-    /// After a failure, of which having too many files open is the likely one, others may end first.
+    /// Waits after a failure, most likely too many open files, so that other connections can end.
     const AGAIN: Duration = Duration::from_millis(100);
     let places = Arc::new(Semaphore::new(CONNECTIONS));
     loop {
@@ -143,7 +143,7 @@ async fn accept(listener: TcpListener, studio: Arc<Studio>) {
         let studio = Arc::clone(&studio);
         tokio::spawn(async move {
             let answer = |request| answer(Arc::clone(&studio), request);
-            // What goes wrong on a connection is the other side's affair.
+            // Errors of a connection concern the client only.
             let _ = http1::Builder::new()
                 .timer(TokioTimer::new())
                 .header_read_timeout(HEAD)
@@ -164,7 +164,7 @@ async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Result<Respo
             Answer::text(StatusCode::FORBIDDEN, why)
         }
         Ok(TokenSource::InAddress) if request.method() == Method::GET && request.uri().path() == "/" => {
-            // The token stays in a cookie, and not in the address, which is seen and kept.
+            // The token moves to a cookie, because the address is visible and stored in the history.
             let rest = request.uri().query().unwrap_or_default();
             let rest = form_urlencoded::parse(rest.as_bytes()).filter(|(key, _)| key != "token");
             let query = form_urlencoded::Serializer::new(String::new()).extend_pairs(rest).finish();
@@ -174,10 +174,10 @@ async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Result<Respo
                 .with(header::SET_COOKIE, &studio.address.cookie())
         }
         Ok(_) => {
-            // What a request does, it does whole, whether somebody waits for its answer or not.
+            // A request is completed even if the client no longer waits for the answer.
             let done = tokio::spawn(routes::answer(studio, request)).await;
             done.unwrap_or_else(|_| {
-                Answer::refusal(StatusCode::INTERNAL_SERVER_ERROR, "this is a fault of the program")
+                Answer::refusal(StatusCode::INTERNAL_SERVER_ERROR, "internal error of the program")
             })
         }
     };
@@ -196,7 +196,7 @@ async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Result<Respo
     Ok(response)
 }
 
-/// The body of a request, or the answer where it is too large or does not come.
+/// Reads the body of a request; the error is the answer if it is too large or incomplete.
 pub async fn body(request: Request<Incoming>) -> Result<Vec<u8>, Answer> {
     let mut body = request.into_body();
     let all = match body.size_hint().lower() > BODY_BYTES as u64 {
@@ -207,18 +207,21 @@ pub async fn body(request: Request<Incoming>) -> Result<Vec<u8>, Answer> {
         tokio::spawn(swallow(body));
         match why {
             Unread::TooLarge => {
-                let why = format!("a model has {} MiB at most", LARGEST_FILE >> 20);
+                let why = format!("the maximum size of a model is {} MiB", LARGEST_FILE >> 20);
                 Answer::refusal(StatusCode::PAYLOAD_TOO_LARGE, &why)
             }
             Unread::TooSlow => {
-                Answer::refusal(StatusCode::REQUEST_TIMEOUT, "the request does not come to its end")
+                Answer::refusal(StatusCode::REQUEST_TIMEOUT, "the request is incomplete: time limit exceeded")
             }
-            Unread::Broken => Answer::refusal(StatusCode::BAD_REQUEST, "the request is broken off"),
+            Unread::Broken => Answer::refusal(
+                StatusCode::BAD_REQUEST,
+                "the connection was closed before the end of the request",
+            ),
         }
     })
 }
 
-/// Reason why there is no body.
+/// Reason for a missing body.
 enum Unread {
     TooLarge,
     TooSlow,
@@ -237,13 +240,13 @@ async fn all_of(body: &mut Incoming) -> Result<Vec<u8>, Unread> {
     Ok(all)
 }
 
-/// Lets a body run out that nobody reads: many who send see no answer before they have sent all.
+/// Discards an unused body: many clients read no answer before they have sent everything.
 async fn swallow(mut body: Incoming) {
     let all = async { while let Ok(Some(Ok(_))) = timeout(PAUSE, body.frame()).await {} };
     let _ = timeout(BODY, all).await;
 }
 
-/// A connection that ends where the other side takes nothing for long.
+/// A connection that is closed if the client accepts no data for too long.
 struct Impatient {
     stream: TcpStream,
     since: Option<Pin<Box<Sleep>>>,
@@ -254,7 +257,7 @@ impl Impatient {
         Self { stream, since: None }
     }
 
-    /// Result of writing, unless it has been waiting for too long.
+    /// Result of writing, or an error after the time limit.
     fn waited<X>(&mut self, written: Poll<io::Result<X>>, context: &mut Context<'_>) -> Poll<io::Result<X>> {
         if written.is_ready() {
             self.since = None;

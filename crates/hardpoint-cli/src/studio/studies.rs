@@ -1,5 +1,5 @@
-//! Studies that take long, each in a thread of its own: requested, watched, cancelled, kept until others have been
-//! done.
+//! Long studies, each in a thread of its own: started, watched, cancelled; the results are stored until newer studies
+//! replace them.
 
 use std::collections::VecDeque;
 use std::num::NonZero;
@@ -25,13 +25,13 @@ use crate::pages::{Page, Study as _};
 use crate::session::Session;
 use crate::{args, optimize, sweep, tolerance};
 
-/// Each of them takes all cores; another waits for its turn at the user's hand, not at ours.
+/// Maximum number of running studies. Each uses all cores; further requests are rejected, not queued.
 const AT_ONCE: usize = 2;
 /// Number of finished studies that are stored with their pages.
 const KEPT: usize = 8;
-/// Pages hear of progress no more often than this.
+/// Minimum interval between two progress events.
 const PACE: Duration = Duration::from_millis(100);
-/// A page that is behind by that many events misses some, and asks for the state.
+/// Maximum number of pending events; a page that is further behind loses some and requests the state.
 const EVENTS: usize = 256;
 
 /// Request of a page for a study.
@@ -40,14 +40,14 @@ const EVENTS: usize = 256;
 pub struct StudyRequest {
     /// The kind of study.
     pub what: StudyKind,
-    /// Name of the model file, for what it names beside it.
+    /// Name of the model file, to resolve relative file names.
     pub file: String,
     /// The model as the page has it.
     pub text: String,
-    /// One case of it only.
+    /// Single case to study.
     #[serde(default)]
     pub case: Option<String>,
-    /// The request besides what the text says.
+    /// Options that override the text.
     #[serde(default)]
     pub options: Options,
 }
@@ -56,15 +56,15 @@ pub struct StudyRequest {
 #[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StudyKind {
-    /// As `hardpoint optimize`.
+    /// `hardpoint optimize`.
     Optimize,
-    /// As `hardpoint tolerance`.
+    /// `hardpoint tolerance`.
     Tolerance,
-    /// As `hardpoint sweep`.
+    /// `hardpoint sweep`.
     Sweep,
 }
 
-/// As the options of the command line of the same name.
+/// Options, as those of the command line with the same names.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Options {
@@ -82,7 +82,7 @@ enum Rule {
     WorstCase,
 }
 
-/// A study under way, or ended.
+/// A running or finished study.
 pub struct Study {
     id: u64,
     what: StudyKind,
@@ -94,7 +94,7 @@ pub struct Study {
 #[derive(Default)]
 struct State {
     progress: Value,
-    told: Option<Instant>,
+    last_report: Option<Instant>,
     lines: Vec<String>,
     end: Option<End>,
 }
@@ -105,7 +105,7 @@ struct End {
     state: &'static str,
     message: String,
     diagnostics: Value,
-    /// The model's text with the design found.
+    /// Model text with the optimised design.
     text: Option<String>,
     tables: Vec<Table>,
     pages: Vec<Page>,
@@ -144,13 +144,13 @@ impl Studies {
         self.events.subscribe()
     }
 
-    /// One of them.
+    /// Study with this number.
     pub fn get(&self, id: &str) -> Option<Arc<Study>> {
         let id: u64 = id.parse().ok()?;
         self.list().iter().find(|s| s.id == id).cloned()
     }
 
-    /// Begins one; `None` where too many are under way.
+    /// Starts a study; `None` if too many are running.
     pub fn begin(&self, file: ModelFile, asked: StudyRequest) -> Option<Arc<Study>> {
         let study = {
             let mut list = self.list();
@@ -176,12 +176,12 @@ impl Studies {
             .name(format!("study {}", study.id))
             .spawn(move || working.work(&file, &asked));
         if let Err(error) = begun {
-            study.end(End::failed(format!("the study could not be begun: {error}")));
+            study.end(End::failed(format!("the study could not be started: {error}")));
         }
         Some(study)
     }
 
-    /// Asks all to end.
+    /// Cancels all studies.
     pub fn cancel_all(&self) {
         self.list().iter().for_each(|s| s.cancel());
     }
@@ -192,7 +192,7 @@ impl Studies {
 }
 
 impl Study {
-    /// Asks it to end: soon, and with what it has found.
+    /// Cancels the study: it ends soon, with the results so far.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::SeqCst);
     }
@@ -201,7 +201,7 @@ impl Study {
         self.state().end.is_some()
     }
 
-    /// Everything about it but its pages, which are named.
+    /// State of the study as JSON, with the names of its pages but not their contents.
     pub fn document(&self) -> Value {
         let state = self.state();
         let Some(end) = &state.end else {
@@ -226,7 +226,7 @@ impl Study {
         })
     }
 
-    /// The page of a case, or the first one.
+    /// Page of a case, or the first page.
     pub fn report(&self, case: Option<&str>) -> Option<String> {
         let state = self.state();
         let pages = &state.end.as_ref()?.pages;
@@ -243,14 +243,14 @@ impl Study {
 
     fn tell(&self, mut event: Value) {
         event["id"] = self.id.into();
-        // Nobody may be listening.
+        // There may be no receiver.
         let _ = self.events.send(event.to_string().into());
     }
 
     fn end(&self, end: End) {
         self.state().end.get_or_insert(end);
         let mut document = self.document();
-        // The whole is fetched by whoever wants it.
+        // Pages fetch the complete state themselves.
         for heavy in ["text", "tables", "lines"] {
             document.as_object_mut().map(|d| d.remove(heavy));
         }
@@ -273,12 +273,12 @@ impl Study {
                 let state = if outcome == Outcome::Interrupted { "cancelled" } else { "failed" };
                 End { state, diagnostics, ..End::failed(message) }
             }
-            Err(_) => End::failed("the study ended by a fault of the program; the terminal says more"),
+            Err(_) => End::failed("the study ended with an internal error; the terminal shows the details"),
         });
     }
 }
 
-/// Reports of a study while it works.
+/// Progress reports of a running study.
 struct Heard {
     study: Arc<Study>,
     refusal: Mutex<Option<(Value, String)>>,
@@ -289,10 +289,10 @@ impl Listener for Heard {
         let progress = json!({ "what": what, "unit": unit, "done": done, "of": of });
         let mut state = self.study.state();
         state.progress = progress.clone();
-        if state.told.is_some_and(|at| at.elapsed() < PACE) && done < of {
+        if state.last_report.is_some_and(|at| at.elapsed() < PACE) && done < of {
             return;
         }
-        state.told = Some(Instant::now());
+        state.last_report = Some(Instant::now());
         drop(state);
         self.study.tell(json!({ "state": "running", "progress": progress }));
     }
@@ -322,7 +322,7 @@ fn optimized(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Resul
     let mut search = optimize::Search::run(session, &file, &motions, &wanted, None);
     let edited = search.to_save().map(|design| file.edit(&design)).transpose();
     let mut diagnostics = Vec::new();
-    // A result that the text cannot take is still shown.
+    // A result that cannot be written into the text is still shown.
     let text = edited.unwrap_or_else(|found| {
         diagnostics = found.list().to_vec();
         search.facts.not_saved(diagnostics.first().map_or("", |d| d.message.as_str()));
@@ -380,7 +380,7 @@ fn swept(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result<En
     })
 }
 
-/// As the command line has it.
+/// Applies the limit of the command line.
 fn at_most(session: &Session, samples: Option<u32>, most: u32) -> Result<(), Outcome> {
     match samples {
         Some(n) if n > most => {

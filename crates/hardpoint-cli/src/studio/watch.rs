@@ -1,4 +1,4 @@
-//! Events for a page: its file changed on disk, a study made progress, the server is still there.
+//! Events for a page: a change of its file on disk, progress of a study, a sign of life of the server.
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -15,12 +15,12 @@ use super::server::Answer;
 
 /// Interval of reading a file: reported times of the last change are not reliable on all systems, and models are small.
 const POLL: Duration = Duration::from_millis(500);
-/// After that many looks the page hears that the server is there.
+/// Number of file checks between two signs of life.
 const ALIVE: u32 = 4;
-/// A page that takes nothing is behind by that many events before the connection waits for it.
+/// Maximum number of unsent events of a slow page before the connection waits for it.
 const WAITING: usize = 16;
 
-/// The events for a page that shows this file.
+/// Event stream for a page that shows this file.
 pub fn events(studio: Arc<Studio>, file: Option<&str>, client: String) -> Answer {
     let (sender, channel) = Channel::new(WAITING);
     tokio::spawn(watch(studio, file.map(Into::into), client, sender));
@@ -39,7 +39,7 @@ async fn watch(studio: Arc<Studio>, file: Option<String>, client: String, mut to
     loop {
         let sent = match timeout_at(next, studies.recv()).await {
             Ok(Ok(event)) => send(&mut to, "study", &event).await,
-            // Whoever missed something asks for the state of the study.
+            // A page that missed events requests the state of the study.
             Ok(Err(RecvError::Lagged(_))) => send(&mut to, "missed", "{}").await,
             Ok(Err(RecvError::Closed)) => return,
             Err(_) => {
@@ -71,9 +71,9 @@ async fn send(to: &mut Sender<Bytes, Infallible>, name: &str, data: &str) -> Res
 /// State of the files on disk.
 #[derive(Default)]
 struct Look {
-    /// None where there is no such file.
+    /// `None` if there is no such file.
     revision: Option<String>,
-    /// It was saved by the page itself.
+    /// True if the page itself saved it.
     is_own: bool,
 }
 

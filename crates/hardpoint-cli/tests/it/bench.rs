@@ -1,4 +1,4 @@
-//! A folder of its own for every test, and the command in it.
+//! A folder for each test, and the command in it.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// With these model files of `tests/models`.
+    /// Creates a folder with these model files of `tests/models`.
     pub fn with(models: &[&str]) -> Self {
         let bench = Self { folder: TempDir::new().unwrap() };
         for name in models {
@@ -24,7 +24,7 @@ impl Bench {
         bench
     }
 
-    /// With a file of this text, which is there as a whole at once: a server that watches it never reads half of it.
+    /// Writes a file atomically, so that a server that watches it never reads half of it.
     pub fn put(&self, name: &str, text: &str) {
         let beside = self.folder.path().with_extension("put");
         std::fs::write(&beside, text).unwrap();
@@ -43,19 +43,19 @@ impl Bench {
         serde_json::from_str(&self.text(name)).unwrap()
     }
 
-    /// Data of a page. A curve in it is a list of tracks; equal curves have the same.
+    /// Reads the data of a page. A curve is a list of tracks; equal curves share them.
     pub fn page(&self, name: &str) -> serde_json::Value {
         let html = self.text(name);
         let (_, data) = html.split_once("id=\"payload\">").unwrap();
         let (data, _) = data.split_once("</script>").unwrap();
         let mut block = Vec::new();
         DeflateDecoder::new(&*BASE64_STANDARD.decode(data.trim()).unwrap()).read_to_end(&mut block).unwrap();
-        // The block begins with four numbers, the first of which is the length of the JSON behind them.
+        // The block begins with four numbers; the first one is the length of the JSON after them.
         let length = u32::from_le_bytes(block[..4].try_into().unwrap()) as usize;
         serde_json::from_slice(&block[16..16 + length]).unwrap()
     }
 
-    /// The names in a folder, sorted.
+    /// Names in a folder, sorted.
     pub fn list(&self, name: &str) -> Vec<String> {
         let Ok(entries) = std::fs::read_dir(self.path(name)) else { return Vec::new() };
         let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
@@ -77,7 +77,7 @@ impl Bench {
         self.command(arguments).output().unwrap()
     }
 
-    /// stdout, stderr and exit code as one text.
+    /// Output, error output and exit code as one text.
     pub fn shown(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();

@@ -64,7 +64,7 @@ fn the_strut_that_was_measured_is_found_although_one_reading_is_a_slip() {
     assert_eq!((&page["sweep"]["what"], &page["designs"][0]["name"]), (&"posture".into(), &"found".into()));
     assert!(bench.text("as_built.toml").contains("# What may be off."));
 
-    // What is saved explains the readings in the design configuration.
+    // The nominal design of the saved file fits the readings.
     let again = ["calibrate", "as_built.toml", "strut_measured.csv", "--loss", "huber", "--json"];
     let again: serde_json::Value = serde_json::from_slice(&bench.run(&again).stdout).unwrap();
     let [before, after] = [0, 1].map(|k| again["objective"][k].as_f64().unwrap());
@@ -72,9 +72,9 @@ fn the_strut_that_was_measured_is_found_although_one_reading_is_a_slip() {
 }
 
 #[test]
-fn what_cannot_be_calibrated_is_told() {
+fn invalid_calibrations_are_rejected() {
     let bench = bench();
-    let told = |arguments: &[&str], code: i32, words: &str| {
+    let assert_rejected = |arguments: &[&str], code: i32, words: &str| {
         let all: Vec<&str> =
             ["calibrate", "strut_calibrate.toml"].into_iter().chain(arguments.iter().copied()).collect();
         let output = bench.run(&all);
@@ -82,12 +82,12 @@ fn what_cannot_be_calibrated_is_told() {
         assert_eq!(output.status.code(), Some(code), "{text}");
         assert!(text.contains(words), "{words}: {text}");
     };
-    told(&["nowhere.csv"], 3, "`nowhere.csv` cannot be read");
-    told(&["strut_measured.csv", "--variable", "strut_top"], 2, "did you mean `strut_top_x`?");
-    told(&["strut_measured.csv", "--sigma", "toe"], 2, "--sigma toe=0.02");
-    told(&["strut_measured.csv", "--save", "strut_calibrate.toml"], 2, "the model file itself");
+    assert_rejected(&["nowhere.csv"], 3, "`nowhere.csv` cannot be read");
+    assert_rejected(&["strut_measured.csv", "--variable", "strut_top"], 2, "did you mean `strut_top_x`?");
+    assert_rejected(&["strut_measured.csv", "--sigma", "toe"], 2, "--sigma toe=0.02");
+    assert_rejected(&["strut_measured.csv", "--save", "strut_calibrate.toml"], 2, "the model file itself");
     bench.put("few.csv", "strut_drive,toe\n0,0.2\n10,0.1\n");
-    told(&["few.csv"], 2, "give `--sigma`");
+    assert_rejected(&["few.csv"], 2, "give `--sigma`");
     bench.put("far.csv", "strut_drive,toe\n4000,0.2\n");
-    told(&["far.csv", "--sigma", "toe=0.1"], 2, "no posture of the table can be compared");
+    assert_rejected(&["far.csv", "--sigma", "toe=0.1"], 2, "no posture of the table can be reached");
 }

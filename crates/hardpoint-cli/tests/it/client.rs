@@ -1,4 +1,4 @@
-//! A studio under way, and requests to it byte by byte.
+//! A running studio, and requests to it byte by byte.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
@@ -7,10 +7,10 @@ use std::time::Duration;
 
 use crate::bench::Bench;
 
-/// After which a server counts as hung, whatever the machine does besides.
+/// Time limit after which a server counts as hung, even on a busy machine.
 const HANG: Duration = Duration::from_secs(900);
 
-/// The command, with the address that it printed.
+/// The running command with the address that it printed.
 pub struct Server {
     child: Child,
     pub port: u16,
@@ -29,7 +29,7 @@ impl Reply {
         serde_json::from_str(&self.body).unwrap_or_else(|e| panic!("{e}: {}", self.body))
     }
 
-    /// The value of a header.
+    /// Value of a header.
     pub fn header(&self, name: &str) -> Option<&str> {
         let lines = self.head.lines().filter_map(|line| line.split_once(": "));
         lines.into_iter().find(|(key, _)| key.eq_ignore_ascii_case(name)).map(|(_, value)| value)
@@ -37,7 +37,7 @@ impl Reply {
 }
 
 impl Server {
-    /// Started in the folder of a bench.
+    /// Starts the server in the folder of a bench.
     pub fn start(bench: &Bench, arguments: &[&str]) -> Self {
         let all = [&["studio", "--no-browser"], arguments].concat();
         let mut child = bench.command(&all).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
@@ -56,7 +56,7 @@ impl Server {
         stream
     }
 
-    /// The head of a request with the token, to be resumed.
+    /// Head of a request with the token, to be continued.
     pub fn head(&self, method: &str, path: &str) -> String {
         let Self { port, token, .. } = self;
         format!(
@@ -64,17 +64,17 @@ impl Server {
         )
     }
 
-    /// Sends these bytes and reads all that comes.
+    /// Sends these bytes and reads the complete answer.
     pub fn raw(&self, bytes: &[u8]) -> Vec<u8> {
         let mut stream = self.connect();
-        // Whoever is refused may not be listened to until the end.
+        // The server may close a rejected connection before it has read everything.
         let _ = stream.write_all(bytes);
         let mut reply = Vec::new();
         let _ = stream.read_to_end(&mut reply);
         reply
     }
 
-    /// A whole request as it is.
+    /// Sends a complete request unchanged.
     pub fn send(&self, request: &str) -> Reply {
         reply(&self.raw(request.as_bytes()))
     }
@@ -83,13 +83,13 @@ impl Server {
         self.send(&(self.head("GET", path) + "\r\n"))
     }
 
-    /// A request with a body, and with headers that each end their line.
+    /// Sends a request with headers, each with its line end, and a body.
     pub fn ask(&self, method: &str, path: &str, headers: &str, body: &str) -> Reply {
         let head = self.head(method, path);
         self.send(&format!("{head}{headers}content-length: {}\r\n\r\n{body}", body.len()))
     }
 
-    /// A text put in place of the one of that revision.
+    /// Replaces the text of that revision.
     pub fn put(&self, query: &str, revision: &str, text: &str) -> Reply {
         self.ask("PUT", &format!("/api/model?{query}"), &format!("if-match: \"{revision}\"\r\n"), text)
     }
@@ -105,7 +105,7 @@ impl Server {
         Events(BufReader::new(stream))
     }
 
-    /// As Ctrl-C does.
+    /// Interrupts the server, as with Ctrl-C.
     pub fn interrupt(mut self) -> ExitStatus {
         let kill =
             std::process::Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().unwrap();
@@ -129,7 +129,7 @@ impl Drop for Server {
 pub struct Events(BufReader<TcpStream>);
 
 impl Events {
-    /// The next event that is no sign of life.
+    /// Next event other than a sign of life.
     pub fn next(&mut self) -> (String, serde_json::Value) {
         let mut name = String::new();
         loop {
@@ -143,7 +143,7 @@ impl Events {
         }
     }
 
-    /// The next of that name.
+    /// Next event of that name.
     pub fn next_of(&mut self, wanted: &str) -> serde_json::Value {
         loop {
             let (name, data) = self.next();

@@ -1,4 +1,4 @@
-//! `skeleton.dxf` as a reader of DXF finds it. The Python tests hold every drawing against a reader of its own.
+//! `skeleton.dxf` as a DXF reader parses it. The Python tests compare every drawing with an independent reader.
 
 use std::collections::HashSet;
 
@@ -20,13 +20,13 @@ impl Drawing {
         Self(groups)
     }
 
-    /// The value that follows the name of a header variable.
+    /// Value of a header variable.
     fn header(&self, name: &str) -> &str {
         let at = self.0.iter().position(|(code, value)| *code == 9 && value == name).unwrap();
         &self.0[at + 1].1
     }
 
-    /// The groups of every object of a kind: entities, records of tables.
+    /// Groups of every object of a kind: entities, records of tables.
     fn all(&self, kind: &str) -> Vec<&[(i32, String)]> {
         let starts: Vec<usize> = (0..self.0.len()).filter(|&k| self.0[k].0 == 0).collect();
         starts.windows(2).map(|w| &self.0[w[0]..w[1]]).filter(|object| object[0].1 == kind).collect()
@@ -47,7 +47,7 @@ fn exported(bench: &Bench, model: &str) -> (Drawing, String) {
     (Drawing::read(&bench.text("out.dxf")), String::from_utf8(output.stdout).unwrap())
 }
 
-/// Lines by their layer: their ends.
+/// End points of lines, with their layers.
 fn lines(drawing: &Drawing) -> Vec<(String, [[f64; 3]; 2])> {
     drawing.all("LINE").iter().map(|l| (value(l, 8).to_owned(), [point(l, 10), point(l, 11)])).collect()
 }
@@ -78,7 +78,7 @@ fn handles_are_unique_and_below_the_seed() {
 
 #[test]
 fn a_skeleton_has_the_hardpoints_by_name_and_lines_for_bodies() {
-    /// Lengths of some hundred mm through m and back.
+    /// Round-off of lengths of some hundred mm, converted to m and back.
     const ROUNDED: f64 = 1e-10;
     let bench = Bench::with(&["slider.toml"]);
     let (drawing, said) = exported(&bench, "slider.toml");

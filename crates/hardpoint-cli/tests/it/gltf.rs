@@ -6,7 +6,7 @@ use gltf::animation::util::ReadOutputs;
 
 use crate::bench::Bench;
 
-/// Numbers of single precision agree to so much, relatively: the file has no more digits.
+/// Relative tolerance: the file has single precision.
 const SINGLE: f64 = 1e-6;
 
 struct Animated {
@@ -105,7 +105,7 @@ fn same_as_table(bench: &Bench, folder: &str, bodies: &[&str]) {
                 let metres = number(format!("{body}.{axis}")) / 1000.0;
                 assert!((f64::from(at(&path.places, k)[c]) - metres).abs() <= SINGLE, "{body} at {t}");
             }
-            // A quaternion and its negative are the same turn.
+            // A quaternion and its negative are the same rotation.
             let turn = ["qx", "qy", "qz", "qw"].map(|q| number(format!("{body}.{q}")));
             let dot: f64 = at(&path.turns, k).iter().zip(turn).map(|(a, b)| f64::from(*a) * b).sum();
             assert!((dot.abs() - 1.0).abs() <= SINGLE, "{body} at {t}: {dot}");
@@ -133,7 +133,7 @@ fn an_animation_has_the_poses_of_the_motion() {
         let got = turned(turn, ours);
         assert!(got.iter().zip(theirs).all(|(a, b)| (a - b).abs() <= SINGLE), "{got:?}");
     }
-    // The slider only slides: it has no track of its turns.
+    // The slider only translates: it has no rotation track.
     let of = |name: &str| {
         let channels = glb.document.animations().flat_map(|a| a.channels().collect::<Vec<_>>());
         channels.filter(|c| c.target().node().name() == Some(name)).count()
@@ -166,8 +166,7 @@ fn a_body_with_a_mesh_is_shown_in_it() {
     let glb = Animated::open(&bench, "out/motion.glb");
     let corners = glb.corners("crank");
     assert_eq!(corners.len(), 3);
-    // In the design configuration, at t = 0: its frame put where the motion begins, the corners are where the file has
-    // them.
+    // In the design configuration, at t = 0, the corners are at their positions in the file.
     let path = &glb.paths()["crank"];
     let placed = |c: [f32; 3]| {
         let v = turned(path.turns[0], c.map(f64::from));
@@ -192,7 +191,7 @@ fn rods_that_are_joints_are_stretched_between_their_ends() {
     let (spring, slider) = (&paths["spring"], &paths["slider"]);
     assert_eq!(spring.scales.len(), 41);
     for k in 0..41 {
-        // From A, at the origin, to C, where the slider was drawn with its frame.
+        // From A, at the origin, to C, the origin of the slider in the design configuration.
         let end = turned(at(&spring.turns, k), [0.0, 0.0, f64::from(spring.scales[k][2])]);
         let start = at(&spring.places, k);
         let moved = f64::from(slider.places[k][0]) - f64::from(slider.places[0][0]);

@@ -1,4 +1,4 @@
-//! Output under snapshots; durations and round-off are hidden, nothing else.
+//! Snapshots of the output; only durations and round-off are hidden.
 
 use crate::bench::Bench;
 
@@ -89,7 +89,7 @@ fn a_motion_past_its_limit_ends_with_5() {
     let bench = Bench::with(&["short_rod.toml"]);
     assert_shown!("limit", bench.shown(&["run", "short_rod.toml"]));
     assert_shown!("limit_verify", bench.shown(&["verify", "short_rod.toml"]));
-    // The start itself is out of reach: the path there from the design configuration ends.
+    // The start is out of reach: the path to it from the design configuration ends.
     bench.put("far.toml", &bench.text("short_rod.toml").replace("360*t", "90 + 360*t"));
     assert_shown!("limit_at_start", bench.shown(&["run", "far.toml"]));
 }

@@ -23,7 +23,7 @@ fn with(name: &str, text: &str) -> tempfile::TempDir {
 }
 
 #[test]
-fn an_imported_model_passes_check_and_has_its_shapes_beside_it() {
+fn an_imported_model_passes_check_and_has_its_shapes_next_to_it() {
     let folder = with("door.urdf", ROBOT);
     let out =
         hardpoint(folder.path()).args(["import", "door.urdf", "-o", "models/door.toml"]).assert().success();
@@ -53,11 +53,14 @@ fn as_json_an_import_is_one_document() {
 }
 
 #[test]
-fn a_broken_source_is_told_with_its_place_and_writes_nothing() {
+fn a_broken_source_is_reported_with_its_position_and_writes_nothing() {
     let folder = with("door.urdf", &ROBOT.replace("child link=\"leaf\"", "child link=\"leef\""));
     let out = hardpoint(folder.path()).args(["import", "door.urdf", "-o", "door.toml"]).assert().code(3);
-    let told = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
-    assert!(told.contains("HP0803") && told.contains("door.urdf:4:40") && told.contains("`leaf`"), "{told}");
+    let output = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+    assert!(
+        output.contains("HP0803") && output.contains("door.urdf:4:40") && output.contains("`leaf`"),
+        "{output}"
+    );
     assert!(!folder.path().join("door.toml").exists());
     let out = hardpoint(folder.path()).args(["import", "none.urdf", "-o", "door.toml"]).assert().code(3);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("HP0809"));
@@ -76,12 +79,12 @@ fn the_formats_are_listed_and_an_unknown_one_is_named() {
 }
 
 #[test]
-fn an_exported_model_is_imported_again_and_what_it_does_not_say_is_named() {
+fn an_exported_model_is_imported_again_and_unsupported_features_are_listed() {
     let folder = with("door.urdf", ROBOT);
     hardpoint(folder.path()).args(["import", "door.urdf", "-o", "door.toml"]).assert().success();
     let out = hardpoint(folder.path()).args(["export", "door.toml", "-o", "again.urdf"]).assert().success();
-    let told = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
-    assert!(told.contains("driver `hinge_input`: URDF does not support motions"), "{told}");
+    let output = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
+    assert!(output.contains("driver `hinge_input`: URDF does not support motions"), "{output}");
     hardpoint(folder.path()).args(["import", "again.urdf", "-o", "again.toml"]).assert().success();
     let out = hardpoint(folder.path()).args(["export", "door.toml", "-o", "door.step"]).assert().code(2);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("csv, teimorbit, urdf, mjcf"));
@@ -95,33 +98,33 @@ const OPEN: &str = r#"<robot name="fourbar"><link name="base"/><link name="crank
 <loop><frame1>coupler</frame1><frame2>rocker</frame2></loop></robot>"#;
 
 #[test]
-fn a_loop_that_is_left_open_is_told_first_and_closed_where_the_user_says() {
+fn an_open_loop_is_reported_first_and_closed_on_request() {
     let folder = with("open.urdf", OPEN);
     let run = |arguments: &[&str]| {
         let arguments = [&["import", "open.urdf", "-o", "open.toml"], arguments].concat();
         hardpoint(folder.path()).args(arguments).assert()
     };
     let out = run(&[]).success();
-    let told = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
-    let first: Vec<&str> = told.lines().take(4).collect();
+    let output = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
+    let first: Vec<&str> = output.lines().take(4).collect();
     assert!(
         first[1].contains("`--close coupler=rocker`")
             && first[2].contains("fixed in the design configuration"),
-        "{told}"
+        "{output}"
     );
-    assert!(first[3].contains("not understood"), "{told}");
+    assert!(first[3].contains("not understood"), "{output}");
     let out = run(&["--json"]).success();
     let document: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
     assert_eq!(document["report"]["remarks"].as_array().unwrap().len(), 2);
     let entries = document["report"]["entries"].as_array().unwrap();
     assert!(entries.iter().any(|e| e["fate"] == "not_understood" && e["kind"] == "loop"), "{document}");
     let out = run(&["--close", "coupler@2,0,0=rocker@0,1,0"]).success();
-    let told = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
-    assert!(told.contains("1, prescribed by 1 driver") && told.contains("101 of 101 steps"), "{told}");
-    // Frames that cannot meet are no mechanism: the crank's end is one metre off at best.
+    let output = String::from_utf8_lossy(&out.get_output().stdout).into_owned();
+    assert!(output.contains("1, prescribed by 1 driver") && output.contains("101 of 101 steps"), "{output}");
+    // Frames that cannot meet are an error: the minimum distance to the crank's end is one metre.
     let out = run(&["--close", "coupler=rocker"]).code(5);
-    let told = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
-    assert!(told.contains("HP0406") && told.contains("`coupler_rocker`"), "{told}");
+    let output = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+    assert!(output.contains("HP0406") && output.contains("`coupler_rocker`"), "{output}");
     run(&["--close", "coupler"]).code(2);
     run(&["--close", "coupler=nowhere"]).code(3);
 }

@@ -1,4 +1,4 @@
-//! The command as its users meet it: output, files and exit codes.
+//! The command as users see it: output, files and exit codes.
 
 mod bench;
 mod calibrate;

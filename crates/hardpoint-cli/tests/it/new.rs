@@ -1,4 +1,4 @@
-//! Models that are begun from templates.
+//! New models from templates.
 
 use std::path::Path;
 
@@ -14,8 +14,8 @@ fn templates() -> Vec<String> {
     text.lines().filter_map(|l| Some(l.split_whitespace().next()?.to_owned())).collect()
 }
 
-/// Output, without the folder that it was in.
-fn said(bench: &Bench, arguments: &[&str]) -> (Option<i32>, String) {
+/// Exit code and error output, without the name of the folder.
+fn output_of(bench: &Bench, arguments: &[&str]) -> (Option<i32>, String) {
     let output = bench.run(arguments);
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
 }
@@ -39,9 +39,9 @@ fn every_template_is_a_model_with_everything_that_checks_and_runs_at_once() {
         assert!(model.variables.len() >= 4 && model.optimization.is_some(), "{template}");
         let output = bench.run(&["check", "mine.toml"]);
         assert_eq!(output.status.code(), Some(0), "{template}");
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert!(!told.contains("warning"), "{template}: {told}");
-        // Pins in a plane say the same about what is perpendicular to it; nothing else does.
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(!message.contains("warning"), "{template}: {message}");
+        // Pins of a planar mechanism have redundant rows perpendicular to the plane; other models have none.
         let redundant = Analysis::new(model).unwrap().topology().redundant().count();
         assert!(redundant == 0 || text.contains("\nplanar = "), "{template}");
         let output = bench.run(&["run", "mine.toml", "-o", "results"]);
@@ -56,12 +56,12 @@ fn every_template_is_a_model_with_everything_that_checks_and_runs_at_once() {
 }
 
 #[test]
-fn what_a_template_is_to_be_optimised_for_can_be_reached() {
+fn the_goals_of_every_template_can_be_reached() {
     for template in templates() {
         let bench = Bench::with(&[]);
         bench.run(&["new", "mine", "-t", &template]);
-        let (code, told) = said(&bench, &["optimize", "mine.toml"]);
-        assert_eq!(code, Some(0), "{template}: {told}");
+        let (code, message) = output_of(&bench, &["optimize", "mine.toml"]);
+        assert_eq!(code, Some(0), "{template}: {message}");
     }
 }
 
@@ -88,30 +88,31 @@ fn a_table_places_the_hardpoints_in_its_units_and_axes() {
     book.save(bench.path("points.xlsx")).unwrap();
     for (table, axes) in [("points.csv", "adams"), ("points.xlsx", "x back, z up, y right")] {
         let name = table.replace('.', "_");
-        let told = said(
+        let message = output_of(
             &bench,
             &["new", &name, "-t", "macpherson", "--hardpoints", table, "--units", "in", "--axes", axes],
         );
-        assert_eq!(told, (Some(0), String::new()));
+        assert_eq!(message, (Some(0), String::new()));
         let placed = bench.text(&format!("{name}.toml"));
         assert_eq!(placed, bench.text("plain.toml").replace("\"plain\"", &format!("\"{name}\"")));
     }
     // A plane has two coordinates.
     bench.put("bar.csv", "A,0,0,0\nB,35,61,0\nC,250,190,0\nD,300,0,0\nP,130,200,0\n");
-    let told = said(&bench, &["new", "bar", "-t", "four-bar", "--hardpoints", "bar.csv", "--units", "mm"]);
-    assert_eq!(told, (Some(0), String::new()));
+    let message =
+        output_of(&bench, &["new", "bar", "-t", "four-bar", "--hardpoints", "bar.csv", "--units", "mm"]);
+    assert_eq!(message, (Some(0), String::new()));
     assert!(bench.text("bar.toml").contains("B = [35, 61] "));
-    // The same without the third coordinate, its unit in the names of the columns, decimal commas as a spreadsheet
-    // writes them.
+    // The same without the third coordinate, with the unit in the column names and with decimal commas as in a
+    // spreadsheet.
     bench.put("flat.csv", "Name;x [cm];y [cm]\nA;0;0\nB;3,5;6,1\nC;25;19\nD;30;0\nP;13;20\n");
-    let told = said(&bench, &["new", "flat", "-t", "four-bar", "--hardpoints", "flat.csv"]);
-    assert_eq!(told, (Some(0), String::new()));
+    let message = output_of(&bench, &["new", "flat", "-t", "four-bar", "--hardpoints", "flat.csv"]);
+    assert_eq!(message, (Some(0), String::new()));
     assert_eq!(bench.text("flat.toml"), bench.text("bar.toml").replace("\"bar\"", "\"flat\""));
-    // A plane that is parallel to that of the template is reported.
+    // A plane parallel to that of the template is accepted and reported.
     bench.put("above.csv", "A,0,0,7\nB,35,61,7\nC,250,190,7\nD,300,0,7\nP,130,200,7\n");
-    let (code, told) =
-        said(&bench, &["new", "above", "-t", "four-bar", "--hardpoints", "above.csv", "--units", "mm"]);
-    assert!(code == Some(0) && told.contains("at z = 7 mm: the model has them at z = 0"), "{told}");
+    let (code, message) =
+        output_of(&bench, &["new", "above", "-t", "four-bar", "--hardpoints", "above.csv", "--units", "mm"]);
+    assert!(code == Some(0) && message.contains("at z = 7 mm: the model has them at z = 0"), "{message}");
 }
 
 #[test]
@@ -123,8 +124,8 @@ fn a_table_of_the_right_side_makes_a_right_wheel() {
     let line = |h: &Hardpoint| format!("{},{}\n", h.name, place(h).map(|x| x.to_string()).join(","));
     bench.put("right.csv", &left.hardpoints.iter().filter(|h| !h.unnamed).map(line).collect::<String>());
     let table = ["--hardpoints", "right.csv", "--units", "mm", "--axes", "iso"];
-    let told = said(&bench, &[&["new", "right", "-t", "double-wishbone"], &table[..]].concat());
-    assert_eq!(told, (Some(0), String::new()));
+    let message = output_of(&bench, &[&["new", "right", "-t", "double-wishbone"], &table[..]].concat());
+    assert_eq!(message, (Some(0), String::new()));
     let right = hardpoint_file::read(&bench.path("right.toml")).unwrap().model;
     assert_eq!([&left, &right].map(|m| m.wheels[0].side), [Side::Left, Side::Right]);
     let camber = |m: &Model| {
@@ -140,55 +141,54 @@ const SMALL: &str = "name,x,y,z\nuca_front,-100,-400,350\nuca_rear,100,-400,350\
     tie_rod_outer,50,-570,230\nwheel_centre,0,-650,250\n";
 
 #[test]
-fn values_of_a_template_that_contradict_the_hardpoints_are_derived_and_told() {
+fn values_of_a_template_that_contradict_the_hardpoints_are_derived_and_reported() {
     let bench = Bench::with(&[]);
     bench.put("small.csv", &format!("{SMALL}spindle,0,-600,250\n"));
     bench.put("hash.csv", &SMALL.replacen("name", "#name", 1).replacen("\nuca", "\n-,mm,mm,mm\nuca", 1));
     bench.put("metres.csv", "upper_ball,0,-0.6,0.4166666666666667\n");
     let begin = |name: &str, table: &str, units: &[&str]| {
         let arguments = ["new", name, "-t", "double-wishbone", "--hardpoints", table, "--axes", "iso"];
-        said(&bench, &[&arguments[..], units].concat())
+        output_of(&bench, &[&arguments[..], units].concat())
     };
-    let (code, told) = begin("small", "small.csv", &["--units", "mm"]);
-    assert_eq!(code, Some(0), "{told}");
-    assert!(told.contains("the radius of `wheel` is 250 mm"), "{told}");
-    assert!(told.contains("the travel of case `steer` is beyond this linkage"), "{told}");
+    let (code, message) = begin("small", "small.csv", &["--units", "mm"]);
+    assert_eq!(code, Some(0), "{message}");
+    assert!(message.contains("the radius of `wheel` is 250 mm"), "{message}");
+    assert!(message.contains("the travel of case `steer` is beyond this linkage"), "{message}");
     let text = bench.text("small.toml");
     for part in ["[0, -600, 83.33333333333333]", "416.6666666666667]", "\nradius = 250\n"] {
         assert!(text.contains(part), "{part}: {text}");
     }
-    // All cases go to their ends.
-    assert_eq!(said(&bench, &["run", "small.toml", "-o", "results"]).0, Some(0));
+    // All cases reach their last output time.
+    assert_eq!(output_of(&bench, &["run", "small.toml", "-o", "results"]).0, Some(0));
     // Its header after a `#`, units in a line, and no point of the axis.
-    let (code, told) = begin("hash", "hash.csv", &[]);
+    let (code, message) = begin("hash", "hash.csv", &[]);
     assert!(
-        code == Some(0) && told.contains("the table has no `spindle`: it is placed 70 mm inboard"),
-        "{told}"
+        code == Some(0) && message.contains("the table has no `spindle`: it is placed 70 mm inboard"),
+        "{message}"
     );
     assert!(bench.text("hash.toml").contains("spindle = [0, -580, 250]"));
-    // Heights that count from elsewhere.
+    // Heights with another origin.
     let high: String = SMALL.replace(",250\n", ",-20\n");
     bench.put("high.csv", &high);
-    let (_, told) = begin("high", "high.csv", &["--units", "mm"]);
-    assert!(told.contains("the radius of `wheel` remains 310 mm"), "{told}");
+    let (_, message) = begin("high", "high.csv", &["--units", "mm"]);
+    assert!(message.contains("the radius of `wheel` remains 310 mm"), "{message}");
     bench.put("bare.csv", "x,y,z\n1,2,3\n");
-    let (code, told) = begin("bare", "bare.csv", &["--units", "mm"]);
-    assert!(code == Some(2) && told.contains("none of them holds names of hardpoints"), "{told}");
+    let (code, message) = begin("bare", "bare.csv", &["--units", "mm"]);
+    assert!(code == Some(2) && message.contains("without a column for the names of hardpoints"), "{message}");
 }
 
 #[test]
 fn tables_of_hardpoints_import_again() {
-    /// Coordinates are written as short as they give the same places again; turning them half round changes signs
-    /// alone.
+    /// Coordinates are written with the fewest digits that restore them; half a turn only changes signs.
     const SAME: f64 = 1e-12;
     for model in ["double_wishbone", "macpherson", "five_link", "front_axle"] {
         let file = format!("{model}.toml");
         let bench = Bench::with(&[]);
         let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
         bench.put(&file, &std::fs::read_to_string(gallery.join(&file)).unwrap());
-        assert_eq!(said(&bench, &["export", &file, "-o", "points.sub"]).0, Some(0), "{model}");
-        let (code, told) = said(&bench, &["import", "points.sub", "-o", "back.toml"]);
-        assert_eq!(code, Some(0), "{model}: {told}");
+        assert_eq!(output_of(&bench, &["export", &file, "-o", "points.sub"]).0, Some(0), "{model}");
+        let (code, message) = output_of(&bench, &["import", "points.sub", "-o", "back.toml"]);
+        assert_eq!(code, Some(0), "{model}: {message}");
         let [out, back] =
             [file.as_str(), "back.toml"].map(|f| hardpoint_file::read(&bench.path(f)).unwrap().model);
         for own in out.hardpoints.iter().filter(|h| !h.unnamed) {
@@ -201,7 +201,7 @@ fn tables_of_hardpoints_import_again() {
 }
 
 #[test]
-fn the_page_about_it_says_what_works() {
+fn the_commands_of_its_document_work() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/new.md");
     let page = std::fs::read_to_string(page).unwrap();
     let bench = Bench::with(&[]);
@@ -209,8 +209,8 @@ fn the_page_about_it_says_what_works() {
     let commands: Vec<&str> = page.lines().filter_map(|l| l.strip_prefix("    hardpoint ")).collect();
     assert_eq!(commands.len(), 4, "{commands:?}");
     for command in commands {
-        let told = said(&bench, &command.split(' ').collect::<Vec<_>>());
-        assert_eq!(told.0, Some(0), "{command}: {}", told.1);
+        let message = output_of(&bench, &command.split(' ').collect::<Vec<_>>());
+        assert_eq!(message.0, Some(0), "{command}: {}", message.1);
     }
     assert!(bench.text("press.toml").contains("C = [228.6, 12.7] "));
     let output = bench.run(&["new", "--list"]);
@@ -221,7 +221,7 @@ fn the_page_about_it_says_what_works() {
 }
 
 #[test]
-fn what_cannot_be_begun_is_told_and_leaves_nothing() {
+fn invalid_requests_are_rejected_and_leave_no_file() {
     let bench = Bench::with(&[]);
     bench.put("mine.toml", "there\n");
     bench.put("points.csv", "A,0,0,0\nB,35,60,0\nC,250,190,0\nE,300,0,0\nPP,130,200,0\n");
@@ -233,14 +233,14 @@ fn what_cannot_be_begun_is_told_and_leaves_nothing() {
     bench.put("inches.csv", "name,x [in],y [in]\nA,0,0\n");
     let table = ["-t", "four-bar", "--hardpoints"];
     for (arguments, code, parts) in [
-        (vec!["new", "mine", "-t", "four-bar"], 2, vec!["there is a file `mine.toml` already"]),
-        (vec!["new", "mine.toml", "-t", "four-bar"], 2, vec!["there is a file `mine.toml` already"]),
+        (vec!["new", "mine", "-t", "four-bar"], 2, vec!["the file `mine.toml` exists already"]),
+        (vec!["new", "mine.toml", "-t", "four-bar"], 2, vec!["the file `mine.toml` exists already"]),
         (vec!["new", "other", "-t", "fourbar2"], 2, vec!["did you mean `four-bar`?", "slider-crank"]),
         (vec!["new", "other"], 2, vec!["--template", "--list"]),
         (
             vec!["new", "other", "-t", "delta", "--hardpoints", "points.csv"],
             2,
-            vec!["no hardpoints to place"],
+            vec!["does not accept hardpoints"],
         ),
         ([&["new", "other"], &table[..], &["points.csv"]].concat(), 2, vec!["--units"]),
         (
@@ -251,12 +251,12 @@ fn what_cannot_be_begun_is_told_and_leaves_nothing() {
         (
             [&["new", "other"], &table[..], &["points.csv", "--units", "mm"]].concat(),
             2,
-            vec!["no hardpoint `E`", "no hardpoint `PP`: it is not used", "no place of `D`, `P`"],
+            vec!["no hardpoint `E`", "no hardpoint `PP`: it is not used", "lacks the hardpoint `D`, `P`"],
         ),
         (
             vec!["new", "other", "-t", "slider-crank", "--hardpoints", "slip.csv", "--units", "mm"],
             2,
-            vec!["no hardpoint `rial`: it is not used; did you mean `rail`?", "no place of `rail`"],
+            vec!["no hardpoint `rial`: it is not used; did you mean `rail`?", "lacks the hardpoint `rail`"],
         ),
         (
             vec!["new", "other", "-t", "slider-crank", "--hardpoints", "twice.csv", "--units", "mm"],
@@ -266,7 +266,7 @@ fn what_cannot_be_begun_is_told_and_leaves_nothing() {
         (
             [&["new", "other"], &table[..], &["words.csv", "--units", "mm"]].concat(),
             2,
-            vec!["line 2: `sixty` is no number for y"],
+            vec!["line 2: `sixty` is not a number for y"],
         ),
         ([&["new", "other"], &table[..], &["none.csv", "--units", "mm"]].concat(), 2, vec!["`none.csv`"]),
         (
@@ -302,10 +302,10 @@ fn what_cannot_be_begun_is_told_and_leaves_nothing() {
             vec!["--axes"],
         ),
     ] {
-        let (found, told) = said(&bench, &arguments);
-        assert_eq!(found, Some(code), "{arguments:?}: {told}");
+        let (found, message) = output_of(&bench, &arguments);
+        assert_eq!(found, Some(code), "{arguments:?}: {message}");
         for part in parts {
-            assert!(told.contains(part), "{arguments:?}: {told}");
+            assert!(message.contains(part), "{arguments:?}: {message}");
         }
         assert_eq!(
             bench.list("."),

@@ -8,7 +8,7 @@ fn root() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// With these files of `models`.
+/// Creates a folder with these files of `models`.
 fn bench(names: &[&str]) -> Bench {
     let bench = Bench::with(&[]);
     for name in names {
@@ -26,12 +26,11 @@ fn the_tutorial_finds_the_toe_curve_as_it_prints_it() {
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&output.stderr));
     let tutorial = std::fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
-    // How long it took is the machine's; what is left of the gradient, and the last steps of a search that is nearly there, are
-    // round-off's.
+    // Durations depend on the machine; the remaining gradient and the last iterations depend on round-off.
     let iteration = |line: &str| line.trim_start().chars().next().is_some_and(|c| ('2'..='9').contains(&c));
     let varies = ["time taken", "optimality", "evaluated", "saved ", "out/", "saved:"];
-    let told = |line: &&str| !varies.iter().any(|word| line.contains(word)) && !iteration(line);
-    let lines: Vec<&str> = text.lines().filter(told).collect();
+    let is_fixed = |line: &&str| !varies.iter().any(|word| line.contains(word)) && !iteration(line);
+    let lines: Vec<&str> = text.lines().filter(is_fixed).collect();
     assert!(lines.len() > 25, "{text}");
     for line in lines {
         assert!(tutorial.contains(line.trim_end()), "the tutorial does not have this line: {line}");
@@ -41,13 +40,13 @@ fn the_tutorial_finds_the_toe_curve_as_it_prints_it() {
     let summary = bench.json("out/summary.json");
     assert_eq!(summary["status"], "optimal");
     assert!(summary["evaluations"]["designs"].as_u64().unwrap() < 20, "{}", summary["evaluations"]);
-    // Of the goals' own gradient, which is a hundredth of that at the start.
+    // Relative to the gradient of the goals, which is a hundredth of that at the start.
     assert!(summary["kkt"].as_f64().unwrap() <= 1e-6);
     let variables = summary["variables"].as_array().unwrap();
     assert_eq!(variables.len(), 5);
     assert!(variables.iter().all(|v| v["start"] == 0.0 && v["end"].as_f64().unwrap().abs() <= 15.0 + 1e-9));
 
-    // The page opens on toe over travel, with the design found, and with what was wanted of it.
+    // The page opens on toe over travel, with the optimised design and its target.
     let page = bench.page("out/report-bump.html");
     let quantity =
         |name: &str| page["quantities"].as_array().unwrap().iter().position(|q| q["name"] == name).unwrap();
@@ -55,7 +54,7 @@ fn the_tutorial_finds_the_toe_curve_as_it_prints_it() {
     assert_eq!(page["designs"][0]["name"], "found");
     assert!(!page["quantities"][quantity("toe")]["wanted"].as_array().unwrap().is_empty());
 
-    // The saved file is the design found: its search has nothing left to do.
+    // The saved file has the optimised design: a new search finds no improvement.
     let saved = bench.text("found.toml");
     assert!(saved.contains("tie_rod_inner = [-200, 215, -35]                # D"), "{saved}");
     let again = bench.run(&["optimize", "found.toml", "--json"]);
@@ -77,14 +76,14 @@ fn the_known_four_bar_is_found_and_saved_in_plain_numbers() {
     for line in ["A = [0, 0, 0]", "B = [40, 200, 0]", "C = [360, 600, 0]", "D = [400, 0, 0]"] {
         assert!(saved.contains(line), "{saved}");
     }
-    // All but the hardpoints and the bounds of the variables stays as it was, to the letter.
+    // Everything but the hardpoints and the bounds of the variables is unchanged.
     let drawn = bench.text("four_bar_inverse.toml");
     let kept = drawn.lines().zip(saved.lines()).filter(|(a, b)| a == b).count();
     assert_eq!((drawn.lines().count(), kept), (saved.lines().count(), saved.lines().count() - 12));
 }
 
 #[test]
-fn what_cannot_be_searched_or_saved_is_told() {
+fn invalid_searches_are_rejected() {
     let bench = bench(&["four_bar.toml", "four_bar_inverse.toml", "four_bar_inverse.csv"]);
     let refused = |arguments: &[&str], code: i32, words: &[&str]| {
         let output = bench.run(arguments);
@@ -102,7 +101,7 @@ fn what_cannot_be_searched_or_saved_is_told() {
 }
 
 #[test]
-fn commands_do_all_cases_or_the_one_asked_for() {
+fn commands_run_all_cases_or_the_requested_one() {
     let bench = bench(&["strut_toe.toml"]);
     let output = bench.run(&["run", "strut_toe.toml", "-o", "out", "--no-compare"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
@@ -135,7 +134,7 @@ fn commands_do_all_cases_or_the_one_asked_for() {
 }
 
 #[test]
-fn what_happens_in_a_case_is_told_with_its_name() {
+fn diagnostics_of_a_case_have_its_name() {
     let bench = bench(&["strut_toe.toml", "strut_tolerances.toml"]);
     let beyond = |name: &str| {
         let text = bench.text(name);
@@ -144,7 +143,7 @@ fn what_happens_in_a_case_is_told_with_its_name() {
         text.contains("4000")
     };
     assert!(beyond("strut_toe.toml") && beyond("strut_tolerances.toml"));
-    let told = |command: &str, name: &str| {
+    let output_of = |command: &str, name: &str| {
         let output = bench.run(&[command, name]);
         assert_ne!(output.status.code(), Some(0));
         [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat()
@@ -152,7 +151,7 @@ fn what_happens_in_a_case_is_told_with_its_name() {
     for (command, name) in
         [("check", "strut_toe.toml"), ("optimize", "strut_toe.toml"), ("tolerance", "strut_tolerances.toml")]
     {
-        let text = told(command, name);
+        let text = output_of(command, name);
         assert!(text.contains("case `bump`: the mechanism"), "{text}");
         assert!(!text.contains("case `steer`: "), "{text}");
     }
@@ -165,7 +164,7 @@ fn one_case_is_searched_by_itself_with_its_own_goals_and_limits() {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(bench.list("out"), ["report-bump.html", "summary.json"]);
     let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    // Ackermann is of the other case, and no longer in the way.
+    // The Ackermann goal belongs to the other case and is ignored.
     assert!(!summary.to_string().contains("ackermann"), "{summary}");
     let alone = summary["objective"]["after"].as_f64().unwrap();
     let both = bench.run(&["optimize", "strut_toe.toml", "--json"]);
@@ -173,7 +172,7 @@ fn one_case_is_searched_by_itself_with_its_own_goals_and_limits() {
     assert!(alone <= both["objective"]["after"].as_f64().unwrap() * (1.0 + 1e-9));
     let none = bench.run(&["optimize", "strut_toe.toml", "--case", "steer"]);
     assert_eq!(none.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&none.stderr).contains("no goal of `[optimize]` is of this case"));
+    assert!(String::from_utf8_lossy(&none.stderr).contains("`[optimize]` has no goal in this case"));
 }
 
 #[test]
@@ -186,10 +185,10 @@ fn a_grid_is_solved_by_itself_and_every_page_of_the_file_has_it() {
     let output = bench.run(&["run", "mapped.toml", "--case", "map", "-o", "map"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(bench.list("map"), ["map_sensitivity.csv", "maps.csv", "maps.json", "report.html"]);
-    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(
-        told.contains("Map `map` over strut_drive and rack_drive") && told.contains("maps.csv"),
-        "{told}"
+        printed.contains("Map `map` over strut_drive and rack_drive") && printed.contains("maps.csv"),
+        "{printed}"
     );
     assert_eq!(bench.run(&["run", "mapped.toml", "-o", "all", "--no-compare"]).status.code(), Some(0));
     assert_eq!(bench.text("all/maps.csv"), bench.text("map/maps.csv"));
@@ -206,7 +205,7 @@ fn a_grid_is_solved_by_itself_and_every_page_of_the_file_has_it() {
             (&"toe".into(), &"deg".into(), 5)
         );
     }
-    // One motion by itself has no map.
+    // A single motion has no map.
     assert_eq!(
         bench.run(&["run", "mapped.toml", "--case", "bump", "-o", "one", "--no-compare"]).status.code(),
         Some(0)
@@ -214,7 +213,7 @@ fn a_grid_is_solved_by_itself_and_every_page_of_the_file_has_it() {
     assert!(!bench.list("one").contains(&"maps.csv".to_string()));
     let check = bench.run(&["check", "mapped.toml", "--case", "map"]);
     assert_eq!(check.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&check.stderr).contains("a grid of positions and no motion"));
+    assert!(String::from_utf8_lossy(&check.stderr).contains("a grid of positions, not a motion"));
 }
 
 #[test]
@@ -234,13 +233,13 @@ fn two_files_are_compared_in_every_case_that_both_have() {
     ];
     assert_eq!(bench.run(&changed).status.code(), Some(0));
     let output = bench.run(&["compare", "strut_toe.toml", "higher.toml", "-o", "out"]);
-    let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{told}{}", String::from_utf8_lossy(&output.stderr));
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{printed}{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(bench.list("out/bump"), ["compare.csv", "compare.html", "compare.json"]);
     for line in ["rack_centre.z", "tie_rod_inner.z", "ackermann", "toe_error", "wheel_travel"] {
-        assert!(told.contains(line), "{line}: {told}");
+        assert!(printed.contains(line), "{line}: {printed}");
     }
-    // The second file is the design that the what-if had solved.
+    // The second file is the design of the what-if.
     let (compared, solved) = (bench.json("out/bump/compare.json"), bench.json("whatif/whatif.json"));
     let measure = |document: &serde_json::Value, name: &str| {
         document["measures"].as_array().unwrap().iter().find(|m| m["measure"] == name).unwrap().clone()
@@ -286,7 +285,7 @@ time = { end = 1, steps = 4 }
 "#;
 
 #[test]
-fn what_cannot_be_saved_is_known_before_the_search() {
+fn a_design_that_cannot_be_saved_is_rejected_before_the_search() {
     let bench = Bench::with(&[]);
     bench.put(
         "one.toml",
@@ -296,7 +295,7 @@ fn what_cannot_be_saved_is_known_before_the_search() {
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{text}");
     assert!(text.contains("HP0505") && text.contains("bounds of its own"), "{text}");
-    assert!(!text.contains("objective"), "the search has not begun: {text}");
+    assert!(!text.contains("objective"), "the search has not started: {text}");
     assert!(!bench.path("found.toml").exists());
     // Without saving it is searched.
     assert_eq!(bench.run(&["optimize", "one.toml"]).status.code(), Some(0));
@@ -337,7 +336,7 @@ fn a_result_that_cannot_be_written_is_still_shown() {
     assert!(text.contains("could not be saved") && text.contains("A_y"), "{text}");
 }
 
-/// A slider-crank driven by its slider, with a law from a file beside the model; the rod and the crank are in line
+/// A slider-crank driven by its slider, with a law from a file next to the model; the rod and the crank are in line
 /// after 10.6 mm.
 const PULLED: &str = r#"
 name = "pulled"
@@ -361,7 +360,7 @@ fn a_saved_design_that_stops_or_comes_too_near_to_a_singular_position_is_no_opti
         let bench = Bench::with(&[]);
         bench.put("pulled.toml", &format!("{PULLED}{margin}"));
         bench.put("travel.csv", &table(5.0));
-        // Where the design is saved, another file is beside it.
+        // The saved model is next to another file of that name.
         std::fs::create_dir(bench.path("elsewhere")).unwrap();
         bench.put("elsewhere/travel.csv", &table(travel));
         let run = ["optimize", "pulled.toml", "--save", "elsewhere/found.toml"];
@@ -379,7 +378,7 @@ fn a_saved_design_that_stops_or_comes_too_near_to_a_singular_position_is_no_opti
         ("", 12.0, "cannot move beyond"),
         ("optimize.min_margin = 0.15\n", 12.0, "cannot move beyond"),
         ("optimize.min_margin = 0.15\n", 10.0, "less than 0.15"),
-        // A margin that the nominal design keeps, and that the saved one keeps by less.
+        // The nominal design exceeds this margin; the saved one does not.
         ("optimize.min_margin = 0.15\n", 5.1, ""),
     ] {
         let (code, json, text) = saved(margin, travel);

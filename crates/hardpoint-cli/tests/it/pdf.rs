@@ -1,4 +1,4 @@
-//! `report.pdf` as a reader of it finds it: what its pages say, and where its curves go.
+//! Texts and curves of `report.pdf`.
 
 use serde_json::Value;
 
@@ -6,7 +6,7 @@ use crate::bench::Bench;
 
 /// Blue, in which curves are drawn.
 const CURVE: &str = "0.02 0.37 0.73 RG";
-/// Places on paper are written in single precision, as parts of some 100 points.
+/// Tolerance of positions on paper: single precision at some 100 points.
 const ON_PAPER: f64 = 1e-5;
 
 fn document(bench: &Bench, name: &str) -> String {
@@ -15,8 +15,8 @@ fn document(bench: &Bench, name: &str) -> String {
     bytes.into_iter().map(char::from).collect()
 }
 
-/// All that is on the pages, text by text.
-fn said(document: &str) -> Vec<String> {
+/// All texts of the pages.
+fn texts(document: &str) -> Vec<String> {
     let texts = document.lines().filter_map(|line| line.trim().strip_suffix(" Tj"));
     let text = |shown: &str| {
         shown.trim_start_matches('(').trim_end_matches(')').replace("\\(", "(").replace("\\)", ")")
@@ -24,7 +24,7 @@ fn said(document: &str) -> Vec<String> {
     texts.map(text).collect()
 }
 
-/// The points of each curve.
+/// Points of each curve.
 fn curves(document: &str) -> Vec<Vec<[f64; 2]>> {
     let drawn = document.split(CURVE).skip(1);
     let point = |line: &str| {
@@ -35,20 +35,20 @@ fn curves(document: &str) -> Vec<Vec<[f64; 2]>> {
     drawn.map(|path| path.lines().take_while(|line| line.trim() != "S").filter_map(point).collect()).collect()
 }
 
-/// Between 0 and 1 as between their lowest and their highest.
+/// Values scaled to the range from 0 to 1.
 fn normalised(values: impl Iterator<Item = f64> + Clone) -> Vec<f64> {
     let (low, high) = (values.clone().fold(f64::MAX, f64::min), values.clone().fold(f64::MIN, f64::max));
     values.map(|v| (v - low) / (high - low)).collect()
 }
 
 #[test]
-fn the_pages_say_what_was_run_and_draw_every_measure_as_it_is() {
+fn the_pages_describe_the_run_and_draw_every_measure() {
     let bench = Bench::with(&["slider.toml"]);
     let output = bench.run(&["run", "slider.toml", "-o", "out", "--pdf"]);
     assert!(output.status.success());
     let document = document(&bench, "out/report.pdf");
-    let said = said(&document);
-    let has = |text: &str| assert!(said.iter().any(|s| s == text), "{text} is not among {said:?}");
+    let texts = texts(&document);
+    let has = |text: &str| assert!(texts.iter().any(|s| s == text), "{text} is not among {texts:?}");
     let summary: Value = serde_json::from_str(&bench.text("out/summary.json")).unwrap();
     has(summary["model"]["name"].as_str().unwrap());
     has("mm, deg, s");
@@ -58,7 +58,7 @@ fn the_pages_say_what_was_run_and_draw_every_measure_as_it_is() {
     for variable in summary["model"]["variables"].as_array().unwrap() {
         has(variable["name"].as_str().unwrap());
     }
-    // The strongest variable of the first measure that is ranked, with its sensitivity.
+    // The most influential variable of the first ranked measure, with its sensitivity.
     let mut rankings = summary["sensitivities"].as_array().unwrap().iter();
     let first = rankings
         .find(|r| r["order"] == "value" && r["largest"].as_array().is_some_and(|list| !list.is_empty()));
@@ -93,21 +93,18 @@ fn the_pages_say_what_was_run_and_draw_every_measure_as_it_is() {
             );
         }
     }
-    // A run that does not write it leaves none of an earlier one.
+    // A run without the option removes the file of an earlier run.
     assert!(bench.run(&["run", "slider.toml", "-o", "out"]).status.success());
     assert!(!bench.list("out").contains(&"report.pdf".to_owned()));
 }
 
 #[test]
-fn a_name_in_letters_that_the_pages_lack_is_told() {
+fn letters_that_the_font_lacks_are_reported() {
     let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml");
     let name = text.lines().find(|line| line.starts_with("name = ")).unwrap();
     bench.put("slider.toml", &text.replace(name, "name = \"\u{447}\""));
     assert!(bench.run(&["run", "slider.toml", "-o", "out", "--pdf"]).status.success());
-    let said = said(&document(&bench, "out/report.pdf"));
-    assert!(
-        said.iter().any(|s| s.contains("? is a letter that the font of this document lacks")),
-        "{said:?}"
-    );
+    let texts = texts(&document(&bench, "out/report.pdf"));
+    assert!(texts.iter().any(|s| s.contains("? replaces letters that the font lacks")), "{texts:?}");
 }

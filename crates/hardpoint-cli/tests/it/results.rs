@@ -1,4 +1,4 @@
-//! The files that the commands leave, and what stops them.
+//! Result files of the commands, and their stops.
 
 use std::path::Path;
 
@@ -46,7 +46,7 @@ fn both_formulations_write_the_same_motion() {
 }
 
 #[test]
-fn loads_of_joints_are_written_and_what_they_share_is_empty() {
+fn joint_loads_are_written_and_indeterminate_ones_are_empty() {
     let bench = Bench::with(&[]);
     let press = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/press.toml");
     let output = bench.run(&["run", press.to_str().unwrap(), "-o", "out"]);
@@ -71,7 +71,7 @@ fn loads_of_joints_are_written_and_what_they_share_is_empty() {
         let [x, y, u, v] = columns.map(|k| row[k].parse::<f64>().unwrap());
         let radial = pins[seen];
         assert!((x.hypot(y) - radial).abs() < 1e-9 * radial && (u.hypot(v) - radial).abs() < 1e-9 * radial);
-        // Along the pin, hinges of a plane share what there is.
+        // Along the pin, the reactions of planar hinges are indeterminate.
         assert!(row[column("force.z [N]")].is_empty() && row[column("moment.x [N*m]")].is_empty());
         assert!(!row[column("moment.z [N*m]")].is_empty());
         seen += 1;
@@ -108,7 +108,7 @@ fn drivers_are_written_with_their_power_and_the_work_that_they_did() {
         before = Some((t, power));
     }
     assert_eq!(drivers.len(), motion.len());
-    // Over a turn the tool and the grease take 9.1 J.
+    // Over a turn the tool and the grease dissipate 9.1 J.
     assert!((sum - 9.1).abs() < 0.05, "{sum}");
 }
 
@@ -123,7 +123,7 @@ fn a_motion_past_its_limit_leaves_the_part_that_was_solved() {
     assert_eq!(summary["stop"]["code"], "HP0401");
     assert_eq!(summary["steps"]["solved"], 8);
     assert_eq!(rows(&bench.text("out/motion.csv")), 8);
-    // Where the four-bar stretches: rod and rocker in line, 123.69 + 183.85 mm from pivot to pin.
+    // The four-bar is stretched: rod and rocker in line, 123.69 + 183.85 mm from pivot to pin.
     let motor = summary["stop"]["drivers"][0]["value"].as_f64().unwrap();
     let (rod, rocker) = (120.0_f64.hypot(30.0), 130.0_f64.hypot(130.0));
     let cosine = (100.0_f64.powi(2) + 250.0_f64.powi(2) - (rod + rocker).powi(2)) / (2.0 * 100.0 * 250.0);
@@ -141,13 +141,12 @@ fn an_interrupted_run_leaves_the_part_that_was_solved() {
     let long =
         bench.text("slider.toml").replace("steps = 40", "steps = 1000000").replace("40*sin", "0.1*sin");
     bench.put("long.toml", &long);
-    // How long after its start a run has solved something and not yet everything depends on the machine, so it is
-    // searched for.
+    // The time at which a run is half finished depends on the machine, so it is searched for.
     let mut pause = Duration::from_millis(10);
     let output = loop {
         let mut command = bench.command(&["run", "long.toml", "-o", "out"]);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        // The folder is made after the handler is set and before anything is solved.
+        // The folder is created after the handler is set and before anything is solved.
         while !bench.path("out").is_dir() {
             assert_eq!(child.try_wait().unwrap(), None, "the run ended without its folder");
             std::thread::sleep(Duration::from_millis(1));
@@ -193,7 +192,7 @@ fn verify_passes_on_the_best_steps_and_names_the_worst() {
     let verdict = bench.json("out/verify.json");
     assert_eq!(verdict["passed"], true);
     assert_eq!(verdict["checks"][2]["outcome"], "cannot_follow");
-    // While truncation rules, the deviation falls by ten for each half decade of the step.
+    // While truncation dominates, the deviation decreases by ten per half decade of the step.
     for check in &verdict["checks"].as_array().unwrap()[..2] {
         let error = |k: usize| check["sweep"][k]["error"].as_f64().unwrap();
         assert!((8.0..12.0).contains(&(error(0) / error(1))), "{check}");
@@ -201,7 +200,7 @@ fn verify_passes_on_the_best_steps_and_names_the_worst() {
     }
     assert_eq!(verdict["differences"], "central");
 
-    // One-sided, by ten for a whole decade, and not as far.
+    // One-sided differences: by ten per decade, to a larger minimum.
     for side in ["forward", "backward"] {
         let output = bench.run(&["verify", "slider.toml", "--differences", side, "--json"]);
         assert_eq!(output.status.code(), Some(0));
@@ -217,7 +216,7 @@ fn verify_passes_on_the_best_steps_and_names_the_worst() {
     }
 }
 
-/// The crank pin so far outboard, the rod is too short for the motion; inboard it is not.
+/// With the crank pin farther outboard, the rod is too short for the motion; farther inboard it is not.
 #[test]
 fn a_backward_difference_serves_where_the_other_side_cannot_be_assembled() {
     let bench = Bench::with(&["slider.toml"]);
@@ -289,7 +288,7 @@ fn a_long_motion_is_thinned_for_the_page_and_whole_in_the_tables() {
     let status = bench.page("out/report.html")["status"]["message"].to_string();
     assert!(status.contains("This page shows every "), "{status}");
     assert_eq!(rows(&bench.text("out/motion.csv")), 30001);
-    // `guide_jam` cannot be followed, which is known at the end only.
+    // `guide_jam` is inadmissible, which is known only at the end.
     let sensitivities = bench.text("out/sensitivity.csv");
     assert_eq!(rows(&sensitivities), 2 * 30001);
     assert!(!sensitivities.contains("guide_jam"));
@@ -306,12 +305,12 @@ fn a_long_motion_is_thinned_for_the_page_and_whole_in_the_tables() {
 }
 
 #[test]
-fn arrays_hold_what_the_tables_hold() {
+fn arrays_equal_the_tables() {
     let bench = Bench::with(&["slider.toml"]);
     assert!(bench.run(&["run", "slider.toml", "-o", "out", "--bodies"]).status.success());
     let [motion, sensitivity] = ["motion", "sensitivity"].map(|f| bench.text(&format!("out/{f}.csv")));
     assert!(bench.run(&["run", "slider.toml", "-o", "out", "--bodies", "--format", "npy"]).status.success());
-    // The tables of the earlier run do not stay beside the arrays.
+    // The tables of the earlier run are removed.
     let files = ["columns.json", "motion.npy", "report.html", "sensitivity.npy", "summary.json"];
     assert_eq!(bench.list("out"), files);
     let columns = bench.json("out/columns.json");
@@ -344,7 +343,7 @@ fn arrays_hold_what_the_tables_hold() {
 }
 
 #[test]
-fn parquet_holds_what_the_tables_hold_with_their_units() {
+fn parquet_equals_the_tables_and_has_units() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
 
@@ -386,13 +385,13 @@ fn parquet_holds_what_the_tables_hold_with_their_units() {
 }
 
 #[test]
-fn nothing_is_written_that_nobody_asked_for() {
+fn only_requested_files_are_written() {
     let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml");
     let (before, after) = text.split_once("[design]").unwrap();
     let (_, after) = after.split_once("[points]").unwrap();
     bench.put("plain.toml", &format!("{before}[points]{after}"));
-    // What an earlier run of the model with variables left does not stay.
+    // Files of an earlier run of the model with variables are removed.
     assert!(bench.run(&["run", "slider.toml", "-o", "out", "--jerk"]).status.success());
     assert!(bench.list("out").contains(&"jerk.csv".to_owned()));
     bench.put("out/notes.txt", "mine");
@@ -424,7 +423,7 @@ fn names_that_spreadsheets_would_run_are_text() {
 }
 
 #[test]
-fn nothing_that_a_terminal_obeys_is_printed() {
+fn control_characters_are_never_printed() {
     let bench = Bench::with(&["slider.toml"]);
     let odd = "\"a\\u001b[2J\\u202eb\" =";
     bench.put("odd.toml", &bench.text("slider.toml").replace("guide_jam =", odd).replace("stroke =", odd));
@@ -450,7 +449,7 @@ fn a_full_disk_behind_stdout_ends_with_6_and_a_closed_pipe_quietly() {
         let output = bench.command(command).stdout(full).stderr(Stdio::piped()).output().unwrap();
         assert_eq!(output.status.code(), Some(6), "{command:?}");
         assert!(String::from_utf8(output.stderr).unwrap().contains("error[HP0601]"), "{command:?}");
-        // Nobody reads.
+        // The reader is closed.
         let mut child = bench.command(command).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         assert_eq!(child.wait_with_output().unwrap().status.code(), Some(0), "{command:?}");
@@ -458,7 +457,7 @@ fn a_full_disk_behind_stdout_ends_with_6_and_a_closed_pipe_quietly() {
 }
 
 #[test]
-fn what_a_killed_run_left_is_removed_by_the_next() {
+fn files_of_a_killed_run_are_removed_by_the_next() {
     let bench = Bench::with(&["slider.toml"]);
     std::fs::create_dir(bench.path("out")).unwrap();
     bench.put("out/.motion.csv.aB3.part", "half");
@@ -467,7 +466,7 @@ fn what_a_killed_run_left_is_removed_by_the_next() {
 }
 
 #[test]
-fn work_that_no_memory_holds_is_refused_before_it_begins() {
+fn a_run_that_exceeds_memory_is_rejected_at_once() {
     use std::fmt::Write;
     let bench = Bench::with(&["slider.toml"]);
     let mut text = bench.text("slider.toml");

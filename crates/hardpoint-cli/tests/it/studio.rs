@@ -1,4 +1,4 @@
-//! `hardpoint studio` as pages, other programs and vandals meet it; `hardpoint site`.
+//! `hardpoint studio` for pages, other programs and attackers; `hardpoint site`.
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -51,20 +51,20 @@ fn the_page_is_that_of_run_and_its_token_moves_from_the_address_to_a_cookie() {
     assert!(bench.text("results/slider/report.html").contains("id=\"server\"></script>"));
     let mut written = bench.page("results/slider/report.html");
     for of in [&mut served, &mut written] {
-        // How long it took is the machine's.
+        // Durations depend on the machine.
         of.as_object_mut().unwrap().remove("summary");
         of.as_object_mut().unwrap().remove("checks");
     }
     assert_eq!(served, written);
 
-    let told = about(&page.body);
-    assert_eq!((&told["file"], &told["token"]), (&"slider.toml".into(), &server.token.as_str().into()));
-    assert_eq!(told["revision"], server.revision("slider.toml"));
+    let facts = about(&page.body);
+    assert_eq!((&facts["file"], &facts["token"]), (&"slider.toml".into(), &server.token.as_str().into()));
+    assert_eq!(facts["revision"], server.revision("slider.toml"));
     assert_eq!(server.interrupt().code(), Some(0));
 }
 
 #[test]
-fn whoever_has_no_token_or_comes_from_elsewhere_is_refused_in_a_sentence() {
+fn requests_without_token_or_of_other_origin_are_rejected_with_a_reason() {
     let bench = slider();
     let server = Server::start(&bench, &["slider.toml", "--token", TOKEN]);
     assert_eq!(server.token, TOKEN);
@@ -125,7 +125,7 @@ fn a_text_is_saved_over_the_revision_that_it_was_made_from_and_no_other() {
     let revision_of_mine = saved.json()["revision"].as_str().unwrap().to_owned();
     assert_eq!(server.revision("slider.toml"), revision_of_mine);
 
-    // Somebody else was there: their text comes back, and stays.
+    // Another program changed the file: its text is returned and stays.
     let theirs = format!("{before}# theirs\n");
     bench.put("slider.toml", &theirs);
     let conflict = server.put("file=slider.toml", &revision_of_mine, &before);
@@ -143,7 +143,7 @@ fn a_text_is_saved_over_the_revision_that_it_was_made_from_and_no_other() {
     assert_eq!(bench.text("slider.toml"), theirs);
     assert_eq!(server.put("file=slider.toml&anyway=1", &revision, &wrong).status, 200);
     assert_eq!(bench.text("slider.toml"), wrong);
-    // It is shown then, with what is wrong.
+    // The page then shows the errors.
     let page = server.get("/");
     assert_eq!(page.status, 200);
     assert!(page.body.contains("data-testid=\"trouble\"") && page.body.contains("class=\"at\""));
@@ -161,7 +161,7 @@ fn a_text_is_saved_over_the_revision_that_it_was_made_from_and_no_other() {
 }
 
 #[test]
-fn no_name_leads_out_of_the_folder_or_to_what_is_no_model() {
+fn no_name_leads_out_of_the_folder_or_to_other_files() {
     let bench = slider();
     let text = bench.text("slider.toml");
     std::fs::create_dir(bench.path("inside")).unwrap();
@@ -258,10 +258,10 @@ fn no_name_leads_out_of_the_folder_or_to_what_is_no_model() {
     assert_eq!(listed["models"].as_array().unwrap().len(), 1, "{listed}");
 }
 
-/// A symbolic link that stays in the folder is another name: what it links to is saved, and it still links there.
+/// A symbolic link within the folder is another name: its target is saved, and the link remains.
 #[cfg(unix)]
 #[test]
-fn what_links_to_a_model_still_does_when_that_was_saved() {
+fn links_to_a_model_survive_saving() {
     use std::os::unix::fs::PermissionsExt;
     let bench = slider();
     std::os::unix::fs::symlink("slider.toml", bench.path("link.toml")).unwrap();
@@ -282,15 +282,15 @@ fn what_links_to_a_model_still_does_when_that_was_saved() {
 }
 
 #[test]
-fn bodies_are_as_large_as_models_may_be_and_methods_are_those_that_there_are() {
+fn sizes_of_bodies_and_methods_are_checked() {
     let bench = slider();
     let server = Server::start(&bench, &["slider.toml"]);
     let head = server.head("PUT", "/api/model?file=slider.toml") + "if-match: x\r\n";
-    // Reported beforehand: nothing of it needs to come.
-    let told = server.send(&format!("{head}content-length: 1000000000000\r\n\r\n"));
-    assert_eq!(told.status, 413, "{}", told.head);
-    assert!(told.json()["error"].as_str().unwrap().contains("64 MiB"));
-    // Reported by nobody.
+    // Rejected by its declared length, before the body arrives.
+    let reply = server.send(&format!("{head}content-length: 1000000000000\r\n\r\n"));
+    assert_eq!(reply.status, 413, "{}", reply.head);
+    assert!(reply.json()["error"].as_str().unwrap().contains("64 MiB"));
+    // Without a declared length.
     let mut stream = server.connect();
     stream.write_all(format!("{head}transfer-encoding: chunked\r\n\r\n").as_bytes()).unwrap();
     let chunk = [format!("{:x}\r\n", 1 << 20).into_bytes(), vec![b'#'; 1 << 20], b"\r\n".to_vec()].concat();
@@ -327,7 +327,7 @@ fn bodies_are_as_large_as_models_may_be_and_methods_are_those_that_there_are() {
 }
 
 #[test]
-fn garbage_and_those_who_never_end_keep_nobody_else_from_their_answers() {
+fn invalid_and_unfinished_requests_do_not_block_other_clients() {
     let bench = slider();
     let server = Server::start(&bench, &["slider.toml"]);
     let mut garbage: Vec<Vec<u8>> = [
@@ -357,7 +357,7 @@ fn garbage_and_those_who_never_end_keep_nobody_else_from_their_answers() {
         let text = String::from_utf8_lossy(&reply);
         assert!(reply.is_empty() || text.starts_with("HTTP/1.1 4"), "{text}");
     }
-    // Heads and bodies that stop in the middle, and answers that nobody takes.
+    // Incomplete heads and bodies, and answers that are never read.
     let body =
         server.head("PUT", "/api/model?file=slider.toml") + "if-match: x\r\ncontent-length: 100\r\n\r\nhalf";
     let whole = server.head("GET", "/") + "\r\n";
@@ -375,7 +375,7 @@ fn garbage_and_those_who_never_end_keep_nobody_else_from_their_answers() {
 }
 
 #[test]
-fn fifty_clients_at_once_all_get_what_they_asked_for() {
+fn fifty_simultaneous_clients_get_their_answers() {
     let bench = slider();
     let server = Server::start(&bench, &["slider.toml"]);
     let text = bench.text("slider.toml");
@@ -392,7 +392,7 @@ fn fifty_clients_at_once_all_get_what_they_asked_for() {
                     assert_eq!(server.ask("POST", &format!("/api/model?file={name}"), "", &own).status, 201);
                     assert_eq!(server.get(&format!("/api/model?file={name}")).json()["text"], own);
                     assert_eq!(server.get(&format!("/nothing/{k}")).status, 404);
-                    // One of those who save over the same revision comes first.
+                    // Of several clients that save over the same revision, only the first succeeds.
                     server.get("/").body
                 })
             })
@@ -418,7 +418,7 @@ fn fifty_clients_at_once_all_get_what_they_asked_for() {
 }
 
 #[test]
-fn a_page_hears_when_others_change_its_file_and_not_of_what_it_saved_itself() {
+fn a_page_receives_changes_by_others_and_not_its_own() {
     let bench = slider();
     let text = bench.text("slider.toml");
     let server = Server::start(&bench, &["slider.toml"]);
@@ -448,7 +448,7 @@ fn a_page_hears_when_others_change_its_file_and_not_of_what_it_saved_itself() {
 }
 
 #[test]
-fn a_search_tells_how_it_goes_and_gives_a_report_and_the_text_of_what_it_found() {
+fn a_search_reports_progress_and_returns_a_report_and_the_optimised_model() {
     let bench = slider();
     let text = study_file("strut_toe.toml");
     bench.put("strut.toml", &text);
@@ -487,7 +487,7 @@ fn a_search_tells_how_it_goes_and_gives_a_report_and_the_text_of_what_it_found()
 
     let wrong = serde_json::json!({ "what": "optimize", "file": "strut.toml", "text": "name = 1" });
     assert_eq!(server.ask("POST", "/api/study", "", &wrong.to_string()).status, 422);
-    // What cannot be searched is reported when the study ends.
+    // A model that cannot be searched is reported when the study ends.
     let slider =
         serde_json::json!({ "what": "optimize", "file": "slider.toml", "text": bench.text("slider.toml") });
     let id = server.ask("POST", "/api/study", "", &slider.to_string()).json()["id"].clone();
@@ -522,7 +522,7 @@ fn a_sweep_leaves_its_designs_on_the_page_and_nothing_on_disk() {
 }
 
 #[test]
-fn a_study_is_cancelled_with_what_it_has_found_and_no_more_than_two_go_on() {
+fn a_cancelled_study_keeps_its_results_and_at_most_two_run() {
     let bench = slider();
     let text = study_file("strut_tolerances.toml");
     let server = Server::start(&bench, &["slider.toml"]);
@@ -555,7 +555,7 @@ fn a_study_is_cancelled_with_what_it_has_found_and_no_more_than_two_go_on() {
     let report = server.get(end["reports"][0]["link"].as_str().unwrap());
     assert!(!payload(&bench, &report.body)["designs"].as_array().unwrap().is_empty());
     assert_eq!(server.get(&format!("/api/study/{second}")).json()["state"], "running");
-    // A server that ends takes its studies with it.
+    // A server cancels its studies when it stops.
     assert_eq!(server.interrupt().code(), Some(0));
 }
 
@@ -575,14 +575,14 @@ fn a_server_that_was_killed_is_found_again_on_its_port_with_its_token() {
 
     let taken = bench.run(&["studio", "--no-browser", "--port", &port]);
     assert_eq!(taken.status.code(), Some(2));
-    let told = String::from_utf8_lossy(&taken.stderr);
-    assert!(told.contains("HP0604") && told.contains("--port"), "{told}");
+    let message = String::from_utf8_lossy(&taken.stderr);
+    assert!(message.contains("HP0604") && message.contains("--port"), "{message}");
     assert_eq!(bench.run(&["studio", "--no-browser", "--token", "short"]).status.code(), Some(2));
     assert_eq!(bench.run(&["studio", "--no-browser", "none.toml"]).status.code(), Some(3));
 }
 
 #[test]
-fn without_a_model_all_models_are_shown_and_what_is_none_is_not() {
+fn without_a_model_all_models_are_shown_and_no_other_files() {
     let bench = Bench::with(&[]);
     std::fs::create_dir(bench.path("models")).unwrap();
     let slider = slider().text("slider.toml");

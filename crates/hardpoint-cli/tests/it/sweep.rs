@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::bench::Bench;
 
 const STRUT: &str = "strut_sweep.toml";
-/// The designs of a block: what is kept of a sweep that is killed are whole blocks.
+/// Number of designs per block: a killed sweep keeps complete blocks.
 const BLOCK: usize = 512;
 
 fn bench() -> Bench {
@@ -24,7 +24,7 @@ fn done(bench: &Bench, arguments: &[&str]) -> String {
     text + &errors
 }
 
-/// All files of a folder but for the time that it took, which no two runs share.
+/// All files of a folder without the durations, which differ between runs.
 fn files(bench: &Bench, folder: &str) -> Vec<(String, Vec<u8>)> {
     let content = |name: String| {
         let mut bytes = std::fs::read(bench.path(&format!("{folder}/{name}"))).unwrap();
@@ -45,7 +45,7 @@ fn same(bench: &Bench, a: &str, b: &str) {
 }
 
 #[test]
-fn the_strut_is_swept_told_and_written() {
+fn the_sweep_of_the_strut_is_printed_and_written() {
     let bench = bench();
     let text = done(&bench, &["--samples", "600", "-o", "out"]);
     for words in [
@@ -60,7 +60,7 @@ fn the_strut_is_swept_told_and_written() {
     let summary = bench.json("out/summary.json");
     assert_eq!((&summary["study"], &summary["status"]), (&"sweep".into(), &"complete".into()));
     assert_eq!(summary["evaluations"]["steps"], 600 * (81 + 61));
-    // What the summary says of the extremes is what the table has.
+    // The extremes in the summary are those of the table.
     let mut table = csv::Reader::from_path(bench.path("out/designs.csv")).unwrap();
     let headers = table.headers().unwrap().clone();
     assert_eq!(headers.get(1), Some("lca_front_z [mm]"));
@@ -79,7 +79,7 @@ fn the_strut_is_swept_told_and_written() {
 }
 
 #[test]
-fn a_sweep_that_is_killed_and_gone_on_with_equals_one_that_was_not() {
+fn a_killed_and_resumed_sweep_equals_an_uninterrupted_one() {
     let bench = bench();
     for format in ["csv", "parquet"] {
         let common = ["--samples", "20000", "--curves", "toe", "--format", format];
@@ -87,7 +87,7 @@ fn a_sweep_that_is_killed_and_gone_on_with_equals_one_that_was_not() {
         done(&bench, &[&common[..], &["-o", &whole, "--threads", "2"]].concat());
         let broken = format!("broken_{format}");
         let arguments = [&["sweep", STRUT], &common[..], &["-o", &broken, "--threads", "1"]].concat();
-        // Killed three times, wherever it is, and resumed on as many threads as it likes.
+        // Killed three times at arbitrary moments and resumed on any number of threads.
         let journal = bench.path(&broken).join("sweep.partial");
         let length = || std::fs::metadata(&journal).map_or(0, |m| m.len());
         let mut before = 0;
@@ -106,7 +106,7 @@ fn a_sweep_that_is_killed_and_gone_on_with_equals_one_that_was_not() {
             assert_eq!(bench.list(&broken), ["sweep.partial"]);
         }
         let text = done(&bench, &[&common[..], &["-o", &broken]].concat());
-        assert!(text.contains("note: going on after "), "{text}");
+        assert!(text.contains("note: resuming after "), "{text}");
         same(&bench, &whole, &broken);
     }
 }
@@ -116,7 +116,7 @@ fn wherever_a_journal_was_cut_the_rest_is_the_same() {
     let bench = bench();
     let common = ["--samples", "1500", "--method", "latin-hypercube", "--seed", "7"];
     done(&bench, &[&common[..], &["-o", "whole"]].concat());
-    // A journal of all: from a run that is killed while it writes would do; here the folder cannot take the table.
+    // A complete journal: the run fails to write the table.
     std::fs::create_dir_all(bench.path("full/designs.csv")).unwrap();
     let output = bench.run(&[&["sweep", STRUT], &common[..], &["-o", "full"]].concat());
     assert_eq!(output.status.code(), Some(6), "{}", String::from_utf8_lossy(&output.stderr));
@@ -128,8 +128,8 @@ fn wherever_a_journal_was_cut_the_rest_is_the_same() {
         std::fs::write(bench.path(&folder).join("sweep.partial"), &journal[..length]).unwrap();
         let text = done(&bench, &[&common[..], &["-o", &folder]].concat());
         let kept = if part == 1.0 { 1500 } else { (part * 1500.0) as usize / BLOCK * BLOCK };
-        let told = text.contains(&format!("going on after {kept} designs"));
-        assert_eq!(told, kept > 0, "{text}");
+        let is_resumed = text.contains(&format!("resuming after {kept} designs"));
+        assert_eq!(is_resumed, kept > 0, "{text}");
         same(&bench, "whole", &folder);
     }
 }
@@ -145,7 +145,7 @@ fn a_journal_of_another_sweep_is_not_lost_by_mistake() {
     let output = run(&["--seed", "2"]);
     let errors = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{errors}");
-    assert!(errors.contains("`out/sweep.partial` is of a sweep that has not ended"), "{errors}");
+    assert!(errors.contains("`out/sweep.partial` belongs to an unfinished sweep"), "{errors}");
     assert!(errors.contains("--restart"), "{errors}");
     std::fs::remove_dir(bench.path("out/designs.csv")).unwrap();
     assert_eq!(run(&["--seed", "2", "--restart"]).status.code(), Some(0));
@@ -166,9 +166,9 @@ fn designs_that_fail_keep_their_rows_and_their_reasons() {
         "{table}"
     );
     assert!(rows[1].starts_with("0,0,0,-0.44") && rows[1].ends_with(','), "{table}");
-    // It is steered, and does not reach the end of bump.
+    // It completes the steer case, but not the bump case.
     assert!(rows[2].starts_with("1,0,5000,,,,0.13") && rows[2].contains(",,,bump: the mechanism"), "{table}");
-    // Curves of a design that moves, at every output time of both cases.
+    // Curves of a complete design at every output time of both cases.
     let curves = bench.text("out/curves.csv");
     assert_eq!(curves.lines().next(), Some("design,case,time [s],camber [deg]"));
     assert_eq!(curves.lines().filter(|l| l.starts_with("2,steer,")).count(), 61);
@@ -178,7 +178,7 @@ fn designs_that_fail_keep_their_rows_and_their_reasons() {
 }
 
 #[test]
-fn a_factorial_and_indices_have_as_many_designs_as_they_must() {
+fn factorials_and_sobol_indices_have_the_right_number_of_designs() {
     let bench = bench();
     let json = |arguments: &[&str]| -> serde_json::Value {
         let output = bench.run(&[&["sweep", STRUT, "--json"], arguments].concat());
@@ -194,13 +194,13 @@ fn a_factorial_and_indices_have_as_many_designs_as_they_must() {
         let of = |key: &str| -> f64 {
             metric["influences"].as_array().unwrap().iter().map(|i| i[key].as_f64().unwrap()).sum()
         };
-        // Nearly linear: first orders make up most of it, and totals a little more than all.
+        // Nearly linear: first-order indices sum to just below one, total indices to just above.
         assert!((0.6..1.1).contains(&of("first")) && (0.9..1.6).contains(&of("total")), "{metric}");
     }
 }
 
 #[test]
-fn what_cannot_be_swept_is_refused_with_what_to_do() {
+fn invalid_sweeps_are_rejected_with_help() {
     let bench = bench();
     let refused = |arguments: &[&str], code: i32, words: &[&str]| {
         let output = bench.run(&[&["sweep", STRUT], arguments].concat());
@@ -213,7 +213,7 @@ fn what_cannot_be_swept_is_refused_with_what_to_do() {
         2,
         &["there is no design variable", "did you mean `lca_front_z`?"],
     );
-    refused(&["--range", "lca_front_z=5..-5"], 2, &["does not rise"]);
+    refused(&["--range", "lca_front_z=5..-5"], 2, &["is not increasing"]);
     refused(&["--range", "lca_front_z=-5mm..5mm"], 2, &["without units"]);
     refused(&["--range", "lca_front_z"], 2, &["NAME=FROM..TO"]);
     refused(&["--curves", "tow"], 2, &["there is no such measure", "did you mean `toe`?"]);
@@ -235,7 +235,7 @@ fn what_cannot_be_swept_is_refused_with_what_to_do() {
 
 #[test]
 #[cfg(unix)]
-fn a_sweep_that_is_interrupted_says_so_keeps_what_it_has_and_goes_on() {
+fn an_interrupted_sweep_keeps_its_designs_and_resumes() {
     let bench = bench();
     let common = ["--samples", "60000", "--threads", "1"];
     let mut command = bench.command(&[&["sweep", STRUT], &common[..], &["-o", "out"]].concat());
@@ -251,7 +251,7 @@ fn a_sweep_that_is_interrupted_says_so_keeps_what_it_has_and_goes_on() {
     let output = child.wait_with_output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(130), "{text}");
-    assert!(text.contains("the same command goes on where it ended"), "{text}");
+    assert!(text.contains("the same command resumes it"), "{text}");
     let summary = bench.json("out/summary.json");
     assert_eq!(summary["status"], "interrupted");
     let rows = bench.text("out/designs.csv").lines().count() - 1;

@@ -31,7 +31,7 @@ fn without_mesh(line: &str) -> String {
     }
 }
 
-/// Joints by name, type, bodies, place and axis.
+/// Joints by name, type, bodies, position and axis.
 fn joints(file: &ModelFile) -> Vec<(String, &'static str, [String; 2], Vec3, Vec3)> {
     let m = &file.model;
     let mut list: Vec<_> = m
@@ -46,9 +46,9 @@ fn joints(file: &ModelFile) -> Vec<(String, &'static str, [String; 2], Vec3, Vec
     list
 }
 
-/// True if two models have the same joints between the same bodies at the same places.
+/// True if two models have the same joints between the same bodies at the same positions.
 fn same(a: &ModelFile, b: &ModelFile) {
-    /// Sums of places along a tree differ by so much of a metre.
+    /// Tolerance in metres: round-off of positions added along a tree.
     const ROUNDED: f64 = 1e-12;
     let (a, b) = (joints(a), joints(b));
     assert_eq!(a.len(), b.len(), "{a:#?}\n{b:#?}");
@@ -66,7 +66,7 @@ fn there_and_back(name: &str, format: &str, file: &str) {
     let second = model(&again.text);
     same(&first, &second);
     assert_eq!(first.model.couplers.len(), second.model.couplers.len());
-    // Only the names that the format has no room for could change on the first way.
+    // Only names that the format does not allow change on the first export.
     let names = |f: &ModelFile| {
         f.model.bodies.iter().map(|b| b.name.clone()).collect::<std::collections::BTreeSet<_>>()
     };
@@ -82,7 +82,7 @@ fn robots_come_back_the_same() {
     there_and_back("mjcf/four_bar.xml", "mjcf", "again.xml");
 }
 
-/// A model of the gallery, and what comes back of it by way of a format.
+/// A model of the gallery, and its re-import from a format.
 fn by_way_of(name: &str, format: &str) -> (ModelFile, ModelFile) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
     let first = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
@@ -97,7 +97,7 @@ fn by_way_of(name: &str, format: &str) -> (ModelFile, ModelFile) {
 
 #[test]
 fn hinges_rods_and_bodies_that_these_alone_hold_come_back_from_mjcf() {
-    // Loops of hinges in the plane and in space, parallelograms of rods, a platform that nothing but rods holds.
+    // Loops of hinges in the plane and in space, parallelograms of rods, a platform supported by rods only.
     for name in
         ["bennett", "bricard", "jansen", "watt_six_bar", "sarrus", "delta", "rssr", "double_wishbone_4x4"]
     {
@@ -111,7 +111,7 @@ fn hinges_rods_and_bodies_that_these_alone_hold_come_back_from_mjcf() {
 }
 
 #[test]
-fn what_moves_like_several_joints_in_a_row_is_written_so() {
+fn joints_of_several_freedoms_are_written_as_a_chain() {
     let (first, second) = by_way_of("hooke", "mjcf");
     let kinds = |f: &ModelFile| {
         f.model
@@ -145,9 +145,9 @@ fn hardpoints_come_back_to_the_last_digit() {
 }
 
 #[test]
-fn what_a_format_cannot_say_is_named() {
+fn unsupported_features_of_a_format_are_listed() {
     let file = model(&source("suspension-explorer/wishbone.yaml"));
-    let told: Vec<String> = ["csv", "urdf", "mjcf"]
+    let lists: Vec<String> = ["csv", "urdf", "mjcf"]
         .iter()
         .map(|format| {
             let exported = Format::named(format).unwrap().export(&file);
@@ -160,14 +160,14 @@ fn what_a_format_cannot_say_is_named() {
         })
         .collect();
     insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "../snapshots" }, {
-        insta::assert_snapshot!("export_unsaid", told.join("\n"));
+        insta::assert_snapshot!("export_unsaid", lists.join("\n"));
     });
 }
 
 /// Suspensions of the gallery: with one side, with both, on rods, on a strut.
 #[test]
 fn a_teimorbit_table_that_was_exported_is_a_suspension_again() {
-    /// Millimetres through metres and back.
+    /// Round-off of millimetres converted to metres and back.
     const ROUNDED: f64 = 1e-9;
     for model in ["double_wishbone", "double_wishbone_4x4", "macpherson", "front_axle", "five_link"] {
         let bench = Bench::with(&[]);
@@ -182,7 +182,7 @@ fn a_teimorbit_table_that_was_exported_is_a_suspension_again() {
         let places = |path: &Path| {
             let file = hardpoint_file::read(path).unwrap_or_else(|e| panic!("{model}: {e}"));
             let named = file.model.hardpoints.iter().filter(|h| !h.unnamed);
-            // The side is before the name there, and behind it here.
+            // The side is a prefix there, and a suffix here.
             let bare = |name: &str| {
                 let side = ["left", "right"].into_iter().find(|side| name.contains(side)).unwrap_or("");
                 let short = name.replace(&format!("{side}_"), "").replace(&format!("_{side}"), "");
@@ -204,7 +204,7 @@ fn a_teimorbit_table_that_was_exported_is_a_suspension_again() {
     }
 }
 
-/// A linkage whose names hold what no other format can: a tab, a new line, a bell, and what becomes the same without
+/// A linkage with names that no other format allows: with a tab, a new line, a bell, and names that are equal without
 /// them.
 const NAMES: &str = r#"
 name = "tab\there"
@@ -241,7 +241,7 @@ steps = 10
 "#;
 
 #[test]
-fn names_that_a_format_cannot_hold_are_written_otherwise_and_told() {
+fn names_that_a_format_does_not_allow_are_changed_and_reported() {
     let file = hardpoint_file::parse(NAMES, "names.toml").unwrap_or_else(|e| panic!("{e}"));
     for (format, name) in
         [("urdf", "names.urdf"), ("mjcf", "names.xml"), ("dxf", "names.dxf"), ("teimorbit", "names.sub")]
@@ -250,9 +250,9 @@ fn names_that_a_format_cannot_hold_are_written_otherwise_and_told() {
         // DXF ends its lines as on Windows.
         let odd = exported.text.chars().find(|c| c.is_control() && !['\n', '\r'].contains(c));
         assert_eq!(odd, None, "{format}: {}", exported.text);
-        let told: Vec<&str> = exported.unsupported.iter().map(|u| u.name.as_str()).collect();
+        let reported: Vec<&str> = exported.unsupported.iter().map(|u| u.name.as_str()).collect();
         for renamed in ["tab\\there", "crank\\u{7}", "one\\nline", "pair\\u{1}"] {
-            assert!(told.contains(&renamed), "{format}: {told:?}");
+            assert!(reported.contains(&renamed), "{format}: {reported:?}");
         }
         if !["urdf", "mjcf"].contains(&format) {
             continue;
@@ -267,14 +267,13 @@ fn names_that_a_format_cannot_hold_are_written_otherwise_and_told() {
         }
         let joints: Vec<&str> = again.model.named_joints().map(|(_, j)| j.name.as_str()).collect();
         assert!(joints.contains(&"one_line") && joints.contains(&"one_line_2"), "{format}: {joints:?}");
-        // The constant of the coupler comes along: 2 third + 3 one_line = 30 deg, third = 15 deg where the other is at
-        // zero.
+        // The constant of the coupler is preserved: 2 third + 3 one_line = 30 deg, so third = 15 deg at one_line = 0.
         let coupler = &again.model.couplers[0];
         if format == "mjcf" {
             let first = coupler.terms[0].coefficient;
             assert!((coupler.constant / first - 15.0_f64.to_radians()).abs() < 1e-12, "{coupler:?}");
         } else {
-            // URDF draws it where the offset has it.
+            // URDF has it at the offset.
             let third = again.model.bodies.iter().find(|b| b.name.starts_with("a<b>")).unwrap();
             assert!((third.frame.rot.cols[2].x - 15.0_f64.to_radians().sin()).abs() < 1e-12, "{third:?}");
         }

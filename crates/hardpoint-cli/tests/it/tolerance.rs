@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::bench::Bench;
 
-/// With these files of `models`.
+/// Creates a folder with these files of `models`.
 fn bench(names: &[&str]) -> Bench {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let bench = Bench::with(&[]);
@@ -17,7 +17,7 @@ fn bench(names: &[&str]) -> Bench {
 }
 
 #[test]
-fn the_tolerances_of_the_strut_are_told_and_written() {
+fn the_tolerance_study_of_the_strut_is_printed_and_written() {
     let bench = bench(&["strut_tolerances.toml"]);
     let output = bench.run(&["tolerance", "strut_tolerances.toml", "--samples", "2000", "-o", "out"]);
     let text = String::from_utf8(output.stdout).unwrap();
@@ -39,7 +39,7 @@ fn the_tolerances_of_the_strut_are_told_and_written() {
     let summary = bench.json("out/summary.json");
     assert_eq!((&summary["study"], &summary["status"]), (&"tolerance".into(), &"complete".into()));
     assert_eq!(summary["samples"], 2000);
-    // The tolerance of a point is at each of its coordinates.
+    // The tolerance of a point applies to each of its coordinates.
     let variables = summary["variables"].as_array().unwrap();
     assert_eq!((variables.len(), &variables[0]["name"]), (10, &"ball_joint_x".into()));
     assert_eq!((&variables[0]["tolerance"], &variables[0]["start"]), (&"ball_joint".into(), &0.3.into()));
@@ -61,7 +61,7 @@ fn the_tolerances_of_the_strut_are_told_and_written() {
     // A row for each output time of each curve, and for each design.
     let rows = |name: &str| bench.text(&format!("out/{name}")).lines().count();
     assert_eq!((rows("samples.csv"), rows("metrics.csv"), rows("bands.csv")), (2001, 5, 1 + 2 * (81 + 61)));
-    // The page opens on the limited metric's curve, with both edges of its band.
+    // The page opens on the curve of the limited metric, with both edges of its band.
     let page = bench.page("out/report-bump.html");
     let toe = page["quantities"].as_array().unwrap().iter().position(|q| q["name"] == "toe").unwrap();
     assert_eq!(page["first"], toe);
@@ -103,7 +103,7 @@ fn one_case_another_seed_and_no_designs_are_done_as_asked() {
 }
 
 #[test]
-fn what_cannot_be_studied_is_told() {
+fn invalid_tolerance_studies_are_rejected() {
     let bench = bench(&["four_bar.toml", "strut_tolerances.toml"]);
     let refused = |arguments: &[&str], words: &[&str]| {
         let output = bench.run(arguments);
@@ -128,13 +128,13 @@ fn an_interrupted_study_keeps_the_designs_that_were_drawn() {
     use std::process::Stdio;
     use std::time::Duration;
     let bench = bench(&["strut_tolerances.toml"]);
-    // How long it takes to draw something depends on the machine, so it is searched for.
+    // The duration of the sampling depends on the machine, so it is searched for.
     let mut pause = Duration::from_millis(50);
     let output = loop {
         let arguments = ["tolerance", "strut_tolerances.toml", "--samples", "10000000", "-o", "out"];
         let mut command = bench.command(&arguments);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        // The folder is made after the handler is set.
+        // The folder is created after the handler is set.
         while !bench.path("out").is_dir() {
             assert_eq!(child.try_wait().unwrap(), None, "it ended without its folder");
             std::thread::sleep(Duration::from_millis(1));
@@ -163,7 +163,7 @@ fn an_interrupted_study_keeps_the_designs_that_were_drawn() {
     assert!(!shown.contains("NaN") && !shown.contains("\u{2013} %"), "{shown}");
 }
 
-/// A study of a model of these tests: what it prints, and its summary.
+/// Runs a study of a model of these tests; returns the output and the summary.
 fn studied(name: &str, samples: &str) -> (String, serde_json::Value) {
     let bench = Bench::with(&[]);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models").join(name);
@@ -173,14 +173,14 @@ fn studied(name: &str, samples: &str) -> (String, serde_json::Value) {
     (String::from_utf8(output.stdout).unwrap(), bench.json("out/summary.json"))
 }
 
-/// The share of a variable.
+/// Contribution of a variable.
 fn share(metric: &serde_json::Value, variable: &str) -> f64 {
     let all = metric["contributions"].as_array().unwrap();
     all.iter().find(|c| c["variable"] == variable).unwrap()["share"].as_f64().unwrap()
 }
 
 #[test]
-fn where_linear_statistics_are_off_the_designs_drawn_come_first_and_it_is_said_why() {
+fn where_linear_statistics_fail_the_monte_carlo_results_come_first_with_the_reason() {
     let (text, json) = studied("tolerance_kink.toml", "3000");
     let [linear, span] = [&json["metrics"][0], &json["metrics"][2]];
     assert_eq!((&linear["told_by"], &linear["nonlinear"]), (&"linear".into(), &serde_json::Value::Null));
@@ -189,15 +189,14 @@ fn where_linear_statistics_are_off_the_designs_drawn_come_first_and_it_is_said_w
     for words in ["skewness", "0.135 %", "median", "99.865 %", "use the sampled designs", "interactions"] {
         assert!(text.contains(words), "{words}: {text}");
     }
-    // Standard deviation and mean of the row are those drawn.
+    // Standard deviation and mean of the row are those of the Monte Carlo designs.
     let row = text.lines().find(|l| l.trim_start().starts_with("span")).unwrap();
     assert!(row.contains("drawn"), "{row}");
 }
 
 #[test]
 fn contributions_come_from_the_model_of_the_spread() {
-    // The stroke goes with the crank and with the square of the offset: 2 a + c e^2 with c = 4 a b/(b^2 - a^2)/(2 b)
-    // ...
+    // The stroke is linear in the crank and quadratic in the offset: 2 a + c e^2 with c = 4 a b/(b^2 - a^2)/(2 b) ...
     let (_, drawn) = studied("tolerance_curved.toml", "4000");
     let (_, derived) = studied("tolerance_curved.toml", "0");
     for (json, from) in [(&drawn, "drawn"), (&derived, "second_order")] {

@@ -1,4 +1,4 @@
-//! `hardpoint whatif`: the tutorial, and what it refuses.
+//! `hardpoint whatif`: the tutorial, and rejected requests.
 
 use std::path::Path;
 
@@ -47,7 +47,7 @@ fn the_tutorial_takes_the_bump_steer_out() {
     let [today, first, second, exact] = ["today", "first", "second", "exact"].map(|c| curve(toe, c));
     assert!((spread(&today) - 1.8146).abs() < 1e-3 && (spread(&exact) - 0.0688).abs() < 1e-3);
     let error =
-        |foreseen: &[f64]| foreseen.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        |prediction: &[f64]| prediction.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let (first, second) = (error(&first), error(&second));
     assert!(first < 0.02 && second < first / 20.0, "{first} {second}");
     assert!(document["follows"].as_str().unwrap().starts_with("admissible"));
@@ -64,7 +64,7 @@ fn the_tutorial_takes_the_bump_steer_out() {
             let asked = if variable["name"] == "tie_rod_inner_z" { 32.0 } else { 0.0 };
             assert!((by.as_f64().unwrap() - asked).abs() < 1e-9, "{variable}");
         }
-        // The tie rod has no say in the arm's angle: not a digit differs. In toe it has.
+        // The tie rod does not affect the arm's angle: not a digit differs. It affects toe.
         let value = |name: &str| &design["quantities"][quantity(name)]["value"];
         assert_eq!(*value("lca_angle"), quantities[quantity("lca_angle")]["value"]);
         assert_ne!(*value("toe"), quantities[quantity("toe")]["value"]);
@@ -89,24 +89,24 @@ fn the_tutorial_takes_the_bump_steer_out() {
 }
 
 #[test]
-fn what_cannot_be_set_or_measured_is_refused_with_what_there_is() {
+fn invalid_changes_and_measures_are_rejected_with_suggestions() {
     let bench = Bench::with(&[]);
     ride(&bench);
-    for (arguments, told) in [
+    for (arguments, expected) in [
         (["--set", "tie_rod_outr.z=2"], "did you mean `tie_rod_outer.z`?"),
-        (["--set", "tie_rod_outer.z=2deg"], "it is a length, and deg is none"),
+        (["--set", "tie_rod_outer.z=2deg"], "it is a length, but deg is not a unit of length"),
         (["--set", "tie_rod_outer.z=2furlong"], "there is no unit `furlong`"),
         (["--set", "tie_rod_outer.z=inf"], "is not finite"),
         (["--set", "tie_rod_outer.z"], "write NAME=CHANGE"),
         (["--set", "lca_pivot.tilt_y=1e400deg"], "is not finite"),
         (["--measure", "tow"], "did you mean `toe`?"),
-        (["--over", "nonsense"], "is no measure of the model"),
+        (["--over", "nonsense"], "is not a measure of the model"),
     ] {
         let output = bench.run(&[&["whatif", "ride.toml"][..], &arguments].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(output.stdout.is_empty());
         let text = String::from_utf8(output.stderr).unwrap();
-        assert!(text.contains(told) && text.contains("HP0602"), "{text}");
+        assert!(text.contains(expected) && text.contains("HP0602"), "{text}");
     }
 }
 
@@ -126,14 +126,14 @@ fn a_variable_and_its_coordinate_are_one() {
     assert_eq!(names, ranked("tie_rod_inner_z=1mm"));
     assert!(names.iter().any(|n| n == "tie_rod_inner_z") && !names.iter().any(|n| n == "tie_rod_inner.z"));
 
-    // Set under both names, it would be unclear by how much.
+    // A change under both names would be ambiguous.
     let twice = ["whatif", "ride.toml", "--set", "tie_rod_inner.z=1mm", "--set", "tie_rod_inner_z=2mm"];
     let output = bench.run(&twice);
     assert_eq!(output.status.code(), Some(2));
     let text = String::from_utf8(output.stderr).unwrap();
     assert!(text.contains("`tie_rod_inner_z` is set already"), "{text}");
 
-    // Against its axis it is the same coordinate.
+    // With a reversed axis it is the same coordinate.
     let text = bench.text("ride.toml") + "\n[design.down]\nmove = \"strut_top\"\nalong = \"-z\"\n";
     bench.put("down.toml", &text);
     let output = bench.run(&["whatif", "down.toml", "--json"]);
@@ -145,7 +145,7 @@ fn a_variable_and_its_coordinate_are_one() {
 }
 
 #[test]
-fn a_change_beyond_the_bounds_is_told_and_solved() {
+fn a_change_beyond_the_bounds_is_reported_and_solved() {
     let bench = Bench::with(&[]);
     ride(&bench);
     let text =
@@ -154,17 +154,20 @@ fn a_change_beyond_the_bounds_is_told_and_solved() {
     let changed = |by: &str| bench.run(&["whatif", "ride.toml", "--set", by, "--measure", "toe"]);
     let output = changed("up=3mm");
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(told.contains("warning[HP0504]: the change of `up` by 3 mm is outside its bounds"), "{told}");
-    assert!(told.contains("changes of -1 mm to 2 mm"), "{told}");
+    let warning = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        warning.contains("warning[HP0504]: the change of `up` by 3 mm is outside its bounds"),
+        "{warning}"
+    );
+    assert!(warning.contains("changes of -1 mm to 2 mm"), "{warning}");
     assert!(changed("up=2mm").stderr.is_empty());
-    // Under the hardpoint's name, too.
+    // The same under the name of the hardpoint.
     assert!(!changed("strut_top.z=-1.5mm").stderr.is_empty());
 }
 
-/// A planar mechanism cannot follow the tilt of one joint out of its plane, but that of all four.
+/// In a planar mechanism, tilting one joint out of the plane is inadmissible; tilting all four is admissible.
 #[test]
-fn a_change_that_cannot_be_followed_is_offered_with_what_makes_it_admissible() {
+fn an_inadmissible_change_is_reported_with_the_nearest_admissible_one() {
     let bench = Bench::with(&[]);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/slider_crank.toml");
     bench.put("slider_crank.toml", &std::fs::read_to_string(path).unwrap());
@@ -181,7 +184,7 @@ fn a_change_that_cannot_be_followed_is_offered_with_what_makes_it_admissible() {
     let offer = String::from_utf8(bench.run(&set).stdout).unwrap();
     assert!(offer.contains("`--admissible` makes this change instead"), "{offer}");
 
-    // Accepted, the whole motion is solved and everything is predicted.
+    // With the admissible change, the whole motion is solved and predicted.
     let taken = bench.run(&[&set[..], &["--admissible", "--json"]].concat());
     assert_eq!(taken.status.code(), Some(0), "{}", String::from_utf8_lossy(&taken.stderr));
     let document: Value = serde_json::from_slice(&taken.stdout).unwrap();

@@ -15,11 +15,11 @@ fn sheet(bench: &Bench, name: &str, sheet: &str) -> Range<Data> {
 }
 
 /// All cells of a sheet as text.
-fn said(sheet: &Range<Data>) -> String {
+fn texts(sheet: &Range<Data>) -> String {
     sheet.rows().map(|row| row.iter().map(|c| format!("{c} ")).collect::<String>() + "\n").collect()
 }
 
-/// The column under a header; empty cells are NaN.
+/// Column under a header; empty cells are NaN.
 fn column(sheet: &Range<Data>, header: &str) -> Vec<f64> {
     let mut rows = sheet.rows();
     let headers = rows.next().unwrap();
@@ -77,10 +77,10 @@ fn a_workbook_holds_the_numbers_of_the_tables_to_the_last_digit() {
             same(&column(&sensitivities, &format!("d {measure} / d {variable} [{unit}/{per}]")), &cells);
         }
     }
-    // The variable that cannot be followed has no columns.
+    // The inadmissible variable has no columns.
     assert_eq!(sensitivities.width(), 5);
 
-    // The largest are those of the summary.
+    // The largest sensitivities are those of the summary.
     let summary = bench.json("out/summary.json");
     let largest = book.worksheet_range("Largest sensitivities").unwrap();
     let first = &summary["sensitivities"]
@@ -96,7 +96,7 @@ fn a_workbook_holds_the_numbers_of_the_tables_to_the_last_digit() {
     );
     let hardpoints = book.worksheet_range("Hardpoints").unwrap();
     assert_eq!(column(&hardpoints, "x [mm]"), [0.0, 30.0, 150.0]);
-    let about = said(&book.worksheet_range("About").unwrap());
+    let about = texts(&book.worksheet_range("About").unwrap());
     for fact in [
         "slider-crank for tests",
         "mm, deg, s",
@@ -108,7 +108,7 @@ fn a_workbook_holds_the_numbers_of_the_tables_to_the_last_digit() {
     }
     let files = summary["files"].as_array().unwrap();
     assert!(files.iter().any(|f| f.as_str().unwrap().ends_with("motion.xlsx")), "{files:?}");
-    // What the next run does not write is removed.
+    // Files that the next run does not write are removed.
     assert!(bench.run(&["run", "slider.toml", "-o", "out"]).status.success());
     assert!(!bench.list("out").contains(&"motion.xlsx".into()));
 }
@@ -131,11 +131,11 @@ fn every_measure_has_a_chart_of_its_column() {
 }
 
 #[test]
-fn a_motion_that_stops_says_why_in_its_workbook() {
+fn the_workbook_of_a_stopped_motion_has_the_reason() {
     let bench = Bench::with(&["short_rod.toml"]);
     let output = bench.run(&["run", "short_rod.toml", "-o", "out", "--workbook"]);
     assert_eq!(output.status.code(), Some(5));
-    let about = said(&sheet(&bench, "out/motion.xlsx", "About"));
+    let about = texts(&sheet(&bench, "out/motion.xlsx", "About"));
     assert!(about.contains("8 of 101") && about.contains("early, HP0401: "), "{about}");
     assert_eq!(sheet(&bench, "out/motion.xlsx", "Motion").height(), 9);
 }
@@ -156,7 +156,7 @@ fn a_workbook_without_measures_has_the_bodies_and_names_are_no_formulas() {
 }
 
 #[test]
-fn what_does_not_fit_into_a_workbook_is_told() {
+fn data_that_do_not_fit_into_a_workbook_are_listed() {
     const STEPS: usize = 70_000;
     let bench = Bench::with(&["slider.toml"]);
     bench.put("long.toml", &bench.text("slider.toml").replace("steps = 40", &format!("steps = {STEPS}")));
@@ -176,11 +176,11 @@ fn what_does_not_fit_into_a_workbook_is_told() {
     let every = STEPS.div_ceil(times.len() - 1);
     assert!(every > 1);
     assert_eq!(times[1], every as f64 / STEPS as f64);
-    let told = format!("sheet `Motion`: only one output time in {every} is here; `motion.npy` has all");
-    let about = said(&sheet(&bench, "out/motion.xlsx", "About"));
-    assert!(about.contains(&told), "{about}");
+    let note = format!("sheet `Motion`: only one output time in {every} is here; `motion.npy` has all");
+    let about = texts(&sheet(&bench, "out/motion.xlsx", "About"));
+    assert!(about.contains(&note), "{about}");
     let left_out = bench.json("out/summary.json")["left_out"].to_string();
-    assert!(left_out.contains(&told), "{left_out}");
+    assert!(left_out.contains(&note), "{left_out}");
 }
 
 #[test]
@@ -191,7 +191,7 @@ fn every_case_has_a_workbook() {
     let output = bench.run(&["run", "cases.toml", "-o", "out", "--workbook"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     for case in ["slow", "fast"] {
-        let about = said(&sheet(&bench, &format!("out/{case}/motion.xlsx"), "About"));
+        let about = texts(&sheet(&bench, &format!("out/{case}/motion.xlsx"), "About"));
         assert!(about.contains(&format!("case {case}")), "{about}");
     }
 }
