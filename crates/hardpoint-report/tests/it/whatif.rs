@@ -212,9 +212,9 @@ fn the_page_opens_on_the_requested_outputs_and_ranks_each_variable_once() {
     let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
     assert_eq!((page.first, page.over), (quantity("camber"), quantity("wheel_travel")));
     let titles: Vec<&str> = page.checks.iter().map(|t| t.title.as_str()).collect();
-    let told =
+    let expected =
         ["The change", "What if tie_rod_inner_z by 20 mm", "What moves toe most", "What moves camber most"];
-    assert_eq!(titles[..4], told);
+    assert_eq!(titles[..4], expected);
     assert!(!titles.contains(&"What moves half_track most") && titles.contains(&"Design variables"));
     let measures: Vec<&str> = page.checks[1].rows.iter().map(|row| row[0].as_str()).collect();
     assert_eq!(measures, ["toe", "camber"]);
@@ -294,10 +294,10 @@ fn a_changed_design_that_locks_has_gaps_and_the_page_has_the_reason() {
         assert!(design.margin.iter().all(|margin| known(margin, 1) == there));
     }
     assert!(!page.status.complete);
-    let told = format!(
+    let expected = format!(
         "The changed design was solved for {solved} of {all} steps: the mechanism cannot move beyond t = 0.720265 s, with `motor` at 259.3 deg (HP0401). Today's design: all {all} steps were solved."
     );
-    assert_eq!(page.status.message, told);
+    assert_eq!(page.status.message, expected);
 
     // The range of a part of the curve is not that of the whole; where the crank is at 90 deg, both designs were
     // solved.
@@ -328,7 +328,13 @@ fn a_changed_design_that_does_not_assemble_has_only_the_reason_on_its_page() {
 
     // The nominal design is written anyway.
     let stop = found.exact.stop.as_ref().unwrap();
-    let told = diagnose::stop_of_changed(&file, stop, 0);
-    assert!(told.message.starts_with("the changed design: the mechanism does not assemble"), "{told:?}");
-    assert!(told.notes.contains(&"0 of 401 steps of the changed design were solved".to_owned()), "{told:?}");
+    let diagnostic = diagnose::stop_of_changed(&file, stop, 0);
+    assert!(
+        diagnostic.message.starts_with("the changed design: the mechanism does not assemble"),
+        "{diagnostic:?}"
+    );
+    assert!(
+        diagnostic.notes.contains(&"0 of 401 steps of the changed design were solved".to_owned()),
+        "{diagnostic:?}"
+    );
 }
