@@ -22,7 +22,7 @@ export default defineConfig({
   test: {
     include: ['test/**/*.test.ts'],
     globalSetup: 'test/samples.ts',
-    // On two cores Vitest would by itself run one file after the other, each of which waits for its browser most of the time.
+    // On two cores Vitest would run one file after the other, although each mostly waits for its browser.
     maxWorkers: Math.max(2, availableParallelism()),
     testTimeout: TEST,
     hookTimeout: TEST,

@@ -58,18 +58,17 @@ export function padded(low: number | null, high: number | null): [number, number
 /** Below this part of its largest, a rate is that of a turning point. */
 const TURNS = 1e-4
 
-/** Below this part of its largest, a rate is that of a motion about to turn. */
+/** Fraction of its maximum below which a rate belongs to a motion about to reverse. */
 const TURNING = 0.25
 /**
- * A rate that will be less than this part of its largest where the abscissa turns, turns with it: what is left bends on
- * the way.
+ * Fraction of its maximum below which a rate is zero at the turn of the abscissa, except for curvature.
  */
 const WITH_IT = 0.1
 
 /**
- * How much `y` changes per change of `x` along the motion, from the rates and accelerations of both: where `x` turns
- * back, and its rate with that of `y` is nothing, from the accelerations. NaN where neither indicates; and where `x` is
- * about to turn while `y` goes on: there `y` does not follow `x`, and what it is at a certain `x` says nothing. /
+ * Slope `dy/dx` along the motion, from the rates of both; at a turn of `x`, where both rates are zero, from the
+ * accelerations. NaN if neither determines it, or if `x` is about to turn while `y` does not: `y` is then not a
+ * function of `x`.
  */
 export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Curve, Curve]): Curve {
   const [fastest, steepest, liveliest] = [peak(x[1]), peak(x[2]), peak(y[1])]
@@ -85,8 +84,7 @@ export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Cur
 }
 
 /**
- * How much `y` changes per change of `x` while a driver moves alone, from what both do then; NaN where the driver does
- * next to nothing to `x`. /
+ * Slope `dy/dx` while one driver moves alone, from the rates of both; NaN if the driver hardly moves `x`.
  */
 export function slopeAlone(y: Curve, x: Curve): Curve {
   const least = peak(x) * TURNS
@@ -129,7 +127,7 @@ export function stepAt(times: Curve, time: number): number {
   return low + (time - times[low]) / (times[high] - times[low])
 }
 
-/** A curve without what is nothing but rounding next to `scale`, the largest of its kind. */
+/** A curve with values that are rounding next to `scale`, the largest of its kind, set to zero. */
 export function quiet(curve: Curve, scale: number): Curve {
   const largest = rounded(peak(curve), Math.max(scale, 1)) || Math.max(scale, 1)
   return curve.map((value) => rounded(value, largest))

@@ -20,7 +20,7 @@ const MOST_POWERS = 6
 const GLASS = 'M6.5 2a4.5 4.5 0 1 0 0 9a4.5 4.5 0 1 0 0 -9M10 10l4 4M4.5 6.5h4M6.5 4.5v4'
 /** A press that moves by less than this is a click, px. */
 const CLICK = 4
-/** A step of the zoom, and of moving what is seen, as parts of what is seen. */
+/** Factor of a zoom step, and step of a shift as a fraction of the visible range. */
 const CLOSER = 0.5
 const ASIDE = 0.25
 
@@ -40,7 +40,7 @@ export interface Content {
   /** Unit of the vertical axis, empty for a pure number. */
   unit: string
   lines: Line[]
-  /** From a power of ten to another; what is not positive is left out. */
+  /** From a power of ten to another; values that are not positive are left out. */
   logarithmic?: boolean
   /** Abscissa of the curves instead of time. */
   over?: { label: string; unit: string; curve: Curve }
@@ -66,7 +66,7 @@ export interface Overlay {
 /**
  * Curves over time or over another quantity, with a legend above that reads the values under the pointer, or at the
  * moment shown; dragging moves the time. Dragging along the horizontal axis, or with Shift, shows that part of the
- * abscissa: of time in all plots that share a `Zoom`, of another quantity in this one. /
+ * abscissa: of time in all plots that share a `Zoom`, of another quantity in this one.
  */
 export class Plot {
   readonly element: HTMLElement
@@ -91,8 +91,30 @@ export class Plot {
   #left?: number
   /** Visible part if the curves are over another quantity. */
   #own = new Zoom()
-  #closer = el('button', { type: 'button', class: 'icon', 'data-testid': 'closer', title: 'Closer (+); drag along the axis, or with Shift, to choose what is seen', 'aria-label': 'see closer', onclick: () => this.#scale(CLOSER) }, svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: GLASS })))
-  #whole = el('button', { type: 'button', class: 'icon', 'data-testid': 'whole', title: 'The whole (0)', 'aria-label': 'show the whole', onclick: () => this.#see(undefined) }, 'whole')
+  #closer = el(
+    'button',
+    {
+      type: 'button',
+      class: 'icon',
+      'data-testid': 'closer',
+      title: 'Zoom in (+); drag along the axis, or drag with Shift, to select a range',
+      'aria-label': 'zoom in',
+      onclick: () => this.#scale(CLOSER),
+    },
+    svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: GLASS })),
+  )
+  #whole = el(
+    'button',
+    {
+      type: 'button',
+      class: 'icon',
+      'data-testid': 'whole',
+      title: 'Whole range (0)',
+      'aria-label': 'show the whole range',
+      onclick: () => this.#see(undefined),
+    },
+    'whole',
+  )
   /** Size of the area, px, from its observer. */
   #extent?: { width: number; height: number }
 
@@ -179,7 +201,7 @@ export class Plot {
     const values = (_: uPlot, splits: number[]) => splits.map((value) => number(value, 6))
     const { over, logarithmic } = content
     const across = (low: number | null, high: number | null) => this.content.part ?? (over ? padded(low, high) : [low, high])
-    // What uPlot finds is that of whole steps, and over another quantity that of all of them.
+    // uPlot finds whole steps only, and over another quantity among all of them.
     const upright = (low: number | null, high: number | null) => {
       const [least, most] = (this.content.part && this.#ordinates()) ?? [low, high]
       if (logarithmic) return decades(least, most)
@@ -224,7 +246,7 @@ export class Plot {
       : el('span', {}, ...parts))
   }
 
-  /** The pointer reads the curves; pressed, it moves the time, or chooses what is seen. */
+  /** The pointer reads the curves; pressed, it moves the time, or selects the visible range. */
   #follow({ over, root }: uPlot): void {
     const axis = root.querySelector<HTMLElement>('.u-axis')!
     axis.classList.add('abscissa')
@@ -268,7 +290,7 @@ export class Plot {
     } else this.#showTime()
   }
 
-  /** Shows what will be seen once the pointer is let go. */
+  /** Shows the range that releasing the pointer selects. */
   #stretch(to: number): void {
     const [left, right] = between(this.#from!, to)
     this.#band.hidden = right - left < CLICK
@@ -299,7 +321,7 @@ export class Plot {
     return shiftKey && share ? () => this.content.part && this.#see(moved(this.content.part, share)) : undefined
   }
 
-  /** Number of times as much of the abscissa, round the moment shown where it is seen. */
+  /** Scales the visible range of the abscissa by a factor, about the current time if that is visible. */
   #scale(factor: number): void {
     const part = this.content.part ?? this.#all()
     const [low, high] = part
@@ -358,7 +380,7 @@ function figure4(value: number, unit: string): string {
   return `${number(value, 4)} ${pretty(unit)}`.trimEnd()
 }
 
-/** The part of an axis' range that what is wanted makes larger. */
+/** The range of an axis, extended to the targets. */
 function reaching(low: number | null, high: number | null, { wanted = [] }: Content): [number | null, number | null] {
   if (low === null || high === null) return [low, high]
   const ends = wanted.flatMap((band) => [band.low, band.high]).filter((end) => end !== null)
@@ -368,10 +390,10 @@ function reaching(low: number | null, high: number | null, { wanted = [] }: Cont
   return [Math.min(low, ...near), Math.max(high, ...near)]
 }
 
-/** Width of what is wanted at one abscissa, px. */
+/** Width of a target at one abscissa, px. */
 const GATE = 10
 
-/** Bands of what is wanted, behind the curves. */
+/** Bands of targets, behind the curves. */
 function drawWanted(u: uPlot, { wanted = [] }: Content): void {
   const { ctx, bbox } = u
   ctx.save()

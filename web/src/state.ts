@@ -30,7 +30,7 @@ export interface Choice {
  */
 export class State {
   choice: Choice
-  /** By how much each variable is changed from the model as loaded, in its unit. */
+  /** Change of each variable from the model as loaded, in its unit. */
   readonly changes: number[]
   /** The same of coordinates of hardpoints that no variable is, by name. */
   readonly moves = new Map<string, number>()
@@ -60,7 +60,7 @@ export class State {
   #edition = 0
   #ending = new AbortController()
 
-  /** Ends what listens beyond the page's own elements, when the page is made anew. */
+  /** Removes listeners beyond the page's own elements when the page is rebuilt. */
   get ended(): AbortSignal {
     return this.#ending.signal
   }
@@ -103,7 +103,7 @@ export class State {
     return `${this.#edition} ${this.choice.compared}`
   }
 
-  /** The report whose sensitivities are shown: that of the present design, as soon as it is there. */
+  /** The report whose sensitivities are shown: that of the present design once it is solved. */
   get senses(): Report {
     return this.#sensed?.report ?? this.report
   }
@@ -113,7 +113,7 @@ export class State {
     return (this.#sensed?.settings ?? '[]') === JSON.stringify(this.settings)
   }
 
-  /** The solved design that the changes make; none where they are predicted, or there are none. */
+  /** The solved changed design; undefined if it is predicted, or if there are no changes. */
   get present(): Design | undefined {
     if (this.#solved) return this.#solved
     if (this.moves.size > 0) return undefined
@@ -136,7 +136,7 @@ export class State {
   }
 
   /** True if the present design is predicted to first order instead of solved. */
-  get foreseen(): boolean {
+  get isPredicted(): boolean {
     return this.changed && !this.present
   }
 
@@ -271,7 +271,7 @@ export class State {
   #changed(variable = this.choice.variable): void {
     const other = variable !== this.choice.variable
     this.choice.variable = variable
-    // What is solved is shown when it is; what is predicted, at once.
+    // Solved results are shown when they arrive; predictions at once.
     if (!this.solver) this.#edition++
     if (!this.solver || other) this.choose({})
     this.solver?.()

@@ -42,7 +42,7 @@ export function moved([low, high]: Part, share: number): Part {
   return [low + by, high + by]
 }
 
-/** The part itself, or the next one that lies within the whole; none where that is the whole. */
+/** The range, shifted into the whole; undefined if it is the whole. */
 export function within([low, high]: Part, whole: Part): Part | undefined {
   const width = high - low
   if (!(width < whole[1] - whole[0])) return undefined
@@ -50,7 +50,7 @@ export function within([low, high]: Part, whole: Part): Part | undefined {
   return [from, from + width]
 }
 
-/** The part itself, or as much round its middle as can be seen. */
+/** The range, or the smallest visible range about its middle. */
 export function atLeast([low, high]: Part, whole: Part): Part {
   const half = Math.max(high - low, LEAST * (whole[1] - whole[0])) / 2
   const middle = (low + high) / 2

@@ -113,7 +113,7 @@ describe('what a reader takes away', () => {
     const tutorial = await visit(browser, inject('samples').tutorial)
     const svg = await taken('export-plot-svg', tutorial.page)
     const words = await wordsOf(svg)
-    for (const word of ['toe', 'wheel_travel', 'changed', 'original', 'foreseen']) expect(words).toContain(word)
+    for (const word of ['toe', 'wheel_travel', 'changed', 'original', 'predicted to first order']) expect(words).toContain(word)
     if (IMAGES) writeFileSync(join(IMAGES, 'tutorial.svg'), svg)
     await tutorial.page.context().close()
   })

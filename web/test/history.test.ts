@@ -92,8 +92,8 @@ test('reset and a design with a name are steps that can be undone', () => {
 
 test('designs are named, renamed and forgotten', () => {
   const history = new History(first())
-  let told = 0
-  history.onChange(() => told++)
+  let calls = 0
+  history.onChange(() => calls++)
   const [one, two] = [history.keep(), history.keep()]
   expect(history.snapshots.map(({ name }) => name)).toEqual(['design 1', 'design 2'])
   history.rename(one, '')
@@ -101,5 +101,5 @@ test('designs are named, renamed and forgotten', () => {
   history.forget(one)
   expect(history.snapshots.map(({ name }) => name)).toEqual(['soft'])
   expect(history.keep().name).toBe('design 1')
-  expect(told).toBe(6)
+  expect(calls).toBe(6)
 })

@@ -226,7 +226,7 @@ impl MarginCourse {
             if self.start.is_none() {
                 (self.start, self.span[0]) = (Some(margin), t);
             }
-            // Of equal periods the first has the minimum, independent of round-off. Written so that NaN is the minimum.
+            // Of equal periods the first has the minimum, independent of round-off. NaN is the minimum.
             if self.least.is_none_or(|(least, _)| !(margin.value >= least.value * (1.0 - AS_LARGE))) {
                 self.least = Some((margin, t));
             }

@@ -132,8 +132,8 @@ fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
     let gaps: Vec<GapFact> = stop.remains.iter().map(|g| GapFact::new(&file.model, file.units, g)).collect();
     let at_best = |g: &GapFact| format!("{} `{}` stays open by {} at best", g.kind, g.name, g.size_text());
     // The headline already contains the largest gap.
-    let told = usize::from(stop.kind == StopKind::DoesNotAssemble);
-    let mut notes: Vec<String> = gaps.iter().take(MOST_GAPS).skip(told).map(at_best).collect();
+    let in_headline = usize::from(stop.kind == StopKind::DoesNotAssemble);
+    let mut notes: Vec<String> = gaps.iter().take(MOST_GAPS).skip(in_headline).map(at_best).collect();
     if gaps.len() > MOST_GAPS {
         notes.push(format!("{} more stay open by less", gaps.len() - MOST_GAPS));
     }
@@ -225,7 +225,7 @@ fn rigid(file: &ModelFile, facts: &Facts) -> Option<Diagnostic> {
 fn residual(file: &ModelFile, facts: &Facts, residual: f64) -> Option<Diagnostic> {
     let model = &file.model;
     let (shortest, size) = (model.shortest(), model.size());
-    // Written so that NaN is reported.
+    // NaN is reported.
     if residual <= (VISIBLE * shortest).max(LEAST_VISIBLE) {
         return None;
     }
@@ -271,7 +271,7 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
         let without_length =
             model.elements.iter().filter(|e| has_no_length(model, &found.motion, k, &e.kind));
         let without_length: Vec<String> = without_length.map(|e| e.name.clone()).collect();
-        let rubs = model.elements.iter().any(|e| e.kind.rubs());
+        let has_friction = model.elements.iter().any(|e| e.kind.rubs());
         let names = |kinds: &dyn Fn(usize) -> bool| -> Vec<String> {
             let of =
                 model.elements.iter().enumerate().filter(|(e, element)| element.kind.rubs() && kinds(*e));
@@ -286,7 +286,7 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
         } else if is_compliance {
             d.note("compliant elements need a support, and redundant constraints support one another")
                 .help("release only drivers that something else supports, and remove redundant constraints: `check` names them")
-        } else if !rubs {
+        } else if !has_friction {
             d.note("redundant constraints share it, depending on their stiffness")
                 .help("measure what is not shared (in a plane `radial`, or components in it), or remove a redundant constraint: `check` names them")
         } else {

@@ -902,8 +902,8 @@ fn variables(file: &ModelFile, asked: &OptimizationSettings, best: &SearchResult
             ActiveConstraint::Upper(of) if of == k => Some(("upper", *worth)),
             _ => None,
         };
-        let told = |(_, worth): &(&str, f64)| worth * (bounds[1] - bounds[0]) > SLIGHT * objective;
-        let binds = best.optimality.binding.iter().filter_map(binds).find(told);
+        let is_relevant = |(_, worth): &(&str, f64)| worth * (bounds[1] - bounds[0]) > SLIGHT * objective;
+        let binds = best.optimality.binding.iter().filter_map(binds).find(is_relevant);
         SearchedVariable {
             name: variable.name.clone(),
             unit: variable_unit(model, units, variable),

@@ -139,7 +139,7 @@ pub struct ModelText {
     pub files: BTreeMap<String, String>,
     /// Case of this motion, if the model has cases.
     pub case: Option<String>,
-    /// Detail of the motion on the page; as much as fits if not given.
+    /// Detail of the motion on the page; by default the highest that fits.
     pub shown: Option<Detail>,
 }
 

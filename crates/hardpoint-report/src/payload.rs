@@ -103,7 +103,7 @@ pub fn report(
     Ok(page::file(&payload.title, &data))
 }
 
-/// Finished payload with as much detail as fits into a page, packed already if its size had to be measured.
+/// Finished payload with the highest detail that fits into a page, packed already if its size had to be measured.
 fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payload, Option<Vec<u8>>) {
     let (model, solution) = (&request.file.model, &request.course.kept);
     let size = Size {

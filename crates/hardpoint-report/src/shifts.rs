@@ -1,8 +1,8 @@
 //! First-order motion of bodies by the design variables, stored for runs with too many sensitivities to store
 //! completely.
 //!
-//! The page draws a changed design from these six numbers per body and variable, as `f32`. Rates and accelerations,
-//! twice as many numbers, are omitted.
+//! The page draws a changed design from these six numbers per body and variable, as `f32`. Rates and accelerations
+//! would triple their number and are omitted.
 
 use hardpoint::Solution;
 use hardpoint::model::{BodyId, VariableId};

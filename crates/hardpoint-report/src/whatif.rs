@@ -154,9 +154,9 @@ impl WhatIfFacts {
         };
         for (m, output) in measured.outputs.iter().enumerate() {
             let shown = |x: f64| units.from_si(output.dimension, x);
-            let prediction_quality = what_if.prediction_quality(m);
+            let quality = what_if.prediction_quality(m);
             let steps = || 0..what_if.len();
-            let prediction = |order: usize| match prediction_quality {
+            let prediction = |order: usize| match quality {
                 Some(f) if f.errors[order].is_some() => {
                     steps().map(|k| shown(what_if.predicted(k, m)[order])).collect()
                 }
@@ -170,9 +170,9 @@ impl WhatIfFacts {
                 unit: unit(units, output.dimension),
                 change: change.map(|(x, _)| shown(x)),
                 time: change.map(|(_, k)| what_if.today.motion.times[k]),
-                errors: prediction_quality.map(|f| f.errors.map(|e| e.map(shown))),
-                linear_up_to: prediction_quality.and_then(|f| f.linear_up_to).filter(|x| x.is_finite()),
-                exactly_linear: prediction_quality.and_then(|f| f.linear_up_to).is_some_and(f64::is_infinite),
+                errors: quality.map(|f| f.errors.map(|e| e.map(shown))),
+                linear_up_to: quality.and_then(|f| f.linear_up_to).filter(|x| x.is_finite()),
+                exactly_linear: quality.and_then(|f| f.linear_up_to).is_some_and(f64::is_infinite),
                 today: steps().map(|k| shown(measured.value(k, m)[0])).collect(),
                 first: prediction(0),
                 second: prediction(1),

@@ -1,4 +1,4 @@
-/** Puts a text in place of what is from one place to another. */
+/** Replaces the text between two positions. */
 export interface Change {
   from: number
   to: number
@@ -6,8 +6,8 @@ export interface Change {
 }
 
 /**
- * What makes one text of another, both in lines: as little as is between what both begin and end with, line by line
- * where both have the same number of lines in between. A line break counts one. /
+ * Changes from one text to another, both in lines: the part between their common beginning and end, line by line if
+ * both have the same number of lines there. A line break counts as one character.
  */
 export function changes(before: readonly string[], after: readonly string[]): Change[] {
   const least = Math.min(before.length, after.length)

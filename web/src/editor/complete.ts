@@ -1,6 +1,6 @@
 import { namesIn, outline, quoted, standing, text } from './toml'
 
-/** As much of a JSON schema as is asked here. */
+/** The parts of a JSON schema that are used here. */
 export interface Schema {
   description?: string
   $ref?: string
@@ -17,7 +17,7 @@ export interface Schema {
   const?: unknown
 }
 
-/** A word that could stand where one is being written. */
+/** A completion of the word at the cursor. */
 export interface Suggestion {
   label: string
   /** Text to insert. */

@@ -10,7 +10,7 @@ export interface Checker {
 
 /** A study under way in a worker of its own. */
 export interface Running<T> {
-  /** Calls back with what is done of how much, where that is known, and a line about it. */
+  /** Calls back with the work done, the total if known, and a line of text. */
   onProgress(listener: (done: number, total: number | null, line: string) => void): void
   /** Ends it soon; the result is then the best so far. */
   cancel(): void
@@ -21,7 +21,7 @@ export interface Running<T> {
 /** Result of a study. */
 export interface StudyResult {
   tables: Table[]
-  /** The design found, as changes from the text that was studied; none where nothing better was found. */
+  /** The optimised design, as changes from the studied text; null if none is better. */
   change: VariableSetting[] | null
   /** The text with the design found, its comments kept. */
   text: string | null

@@ -11,8 +11,8 @@ interface Exports {
 /** Answers a request with a block of bytes, at once. */
 export type Ask = (request: Request) => ArrayBuffer
 
-/** An engine of its own; `tell` hears how far a study is. */
-export async function instantiate(module: WebAssembly.Module, tell: (told: ProgressReply) => void): Promise<Ask> {
+/** Creates an engine; `tell` receives the progress of studies. */
+export async function instantiate(module: WebAssembly.Module, tell: (progress: ProgressReply) => void): Promise<Ask> {
   let why = ''
   const text = (place: number, length: number) => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))
   const page = {

@@ -7,10 +7,10 @@ import EngineWorker from './worker?worker&inline'
 interface Waiting {
   done: (block: ArrayBuffer) => void
   failed: (error: Error) => void
-  tell?: (told: ProgressReply) => void
+  tell?: (progress: ProgressReply) => void
 }
 
-/** An engine in a worker of its own. What is asked is answered in order. */
+/** An engine in a worker of its own. Requests are answered in order. */
 export class Solver {
   #worker?: Worker
   #waiting = new Map<number, Waiting>()
@@ -18,7 +18,7 @@ export class Solver {
 
   constructor(private readonly module: WebAssembly.Module) {}
 
-  async ask<T>(request: Request, tell?: (told: ProgressReply) => void): Promise<Answer<T>> {
+  async ask<T>(request: Request, tell?: (progress: ProgressReply) => void): Promise<Answer<T>> {
     const worker = (this.#worker ??= this.#start())
     const number = ++this.#number
     const block = await new Promise<ArrayBuffer>((done, failed) => {
@@ -28,7 +28,7 @@ export class Solver {
     return answer<T>(block)
   }
 
-  /** Ends it, whatever it is at; what is asked later is asked of a new one. */
+  /** Ends the worker at once; later requests start a new one. */
   stop(): void {
     this.#worker?.terminate()
     this.#worker = undefined
@@ -42,10 +42,10 @@ export class Solver {
     worker.addEventListener('message', ({ data }: MessageEvent<Report>) => {
       const waiting = this.#waiting.get(data.number)
       if (!waiting) return
-      if ('told' in data) return waiting.tell?.(data.told)
+      if ('progress' in data) return waiting.tell?.(data.progress)
       this.#waiting.delete(data.number)
       if ('block' in data) return waiting.done(data.block)
-      // After a panic its memory is not to be trusted.
+      // After a panic its memory may be inconsistent.
       waiting.failed(new Error(`the engine failed: ${data.broken}`))
       this.stop()
     })
@@ -57,7 +57,7 @@ export class Solver {
   }
 }
 
-/** The engine's binary that a page carries; none where it carries none, or the browser runs no WebAssembly. */
+/** The engine binary of a page; undefined if it has none, or if the browser does not support WebAssembly. */
 export async function binary(): Promise<WebAssembly.Module | undefined> {
   const text = document.getElementById('engine')?.textContent?.trim()
   if (!text || typeof WebAssembly === 'undefined') return undefined

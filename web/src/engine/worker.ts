@@ -3,8 +3,8 @@ import type { Request, ProgressReply } from './protocol'
 
 /** To the worker: the binary first, then requests by number. */
 export type Order = { module: WebAssembly.Module } | { number: number; request: Request }
-/** From it: what a request came to, or how far it is. */
-export type Report = { number: number } & ({ block: ArrayBuffer } | { told: ProgressReply } | { broken: string })
+/** From the worker: the answer to a request, its progress, or an error. */
+export type Report = { number: number } & ({ block: ArrayBuffer } | { progress: ProgressReply } | { broken: string })
 
 let engine: Promise<Ask> | undefined
 let number = 0
@@ -12,7 +12,7 @@ let number = 0
 addEventListener('message', async ({ data }: MessageEvent<Order>) => {
   const send = (report: Report, moved: ArrayBuffer[] = []) => postMessage(report, { transfer: moved })
   if ('module' in data) {
-    engine = instantiate(data.module, (told) => send({ number, told }))
+    engine = instantiate(data.module, (progress) => send({ number, progress }))
     return
   }
   try {

@@ -50,8 +50,8 @@ interface Stroke {
 }
 
 /**
- * What is drawn, as vectors: faces from the farthest to the nearest (painter's order), their outlines and folds, and
- * lines. Faces that cross one another are not cut; shadows and textures are left out. /
+ * The drawing as vectors: faces from the farthest to the nearest (painter's order), their outlines and folds, and
+ * lines. Faces that cross one another are not cut; shadows and textures are left out.
  */
 export function viewSvg(roots: Object3D[], camera: Camera, picture: Picture): Blob {
   const { width, height, view, label, labels = [] } = picture
@@ -132,7 +132,7 @@ function fatLines(line: LineSegments2, camera: Camera, picture: Picture): Stroke
     const [from, to] = [at(k, start), at(k, end)]
     const [a, b] = [from, to].map((place) => projected(place, camera, picture))
     if (!visible(a) || !visible(b)) continue
-    // What is over everything needs no order of its own, and stays one line with unbroken dashes.
+    // Lines over everything need no order, and remain single lines with unbroken dashes.
     if (layer > 0) {
       const before = strokes[strokes.length - 1]
       const joined = before && before.path.endsWith(`L${xy(a)}`)
@@ -166,7 +166,7 @@ function faces(mesh: Mesh, material: Material, matrix: Matrix4, camera: Camera, 
   const { color, map } = material as Material & { color: Color; map?: Texture | null }
   const colour = map ? picture.ground : hex(color)
   const strokes: Stroke[] = []
-  /** Normal and whether it is seen, of every face at an edge. */
+  /** Normal of every face at an edge; true if the face is visible. */
   const edges = new Map<string, { a: number; b: number; faces: { normal: Vector3; seen: boolean }[] }>()
   // A mirrored matrix turns the faces inside out.
   const mirrored = matrix.determinant() < 0
@@ -213,7 +213,7 @@ function divided(triangle: Point[], picture: Picture): Point[][] {
     const [a, b, c] = open.pop()!
     const sides = [length(a, b), length(b, c), length(c, a)]
     const longest = Math.max(...sides)
-    // What is far outside the picture is not worth cutting.
+    // Edges far outside the picture are not cut.
     if (longest < limit || done.length + open.length > 400) {
       done.push([a, b, c])
       continue

@@ -7,7 +7,7 @@ const SHADES = 64
 /** Side of the canvas that a colour is read back from, px. */
 const PIXEL = 1
 
-/** Colours from the least (blue) over nothing to the greatest (orange), for what is drawn on a canvas. */
+/** Colours from the minimum (blue) over zero to the maximum (orange), for canvases. */
 export class Scale {
   readonly #shades: string[]
 

@@ -25,7 +25,7 @@ interface Place {
   column: number
 }
 
-/** Every quantity of a group against every variable: one canvas, which draws what is in sight. */
+/** Every quantity of a group against every variable: one canvas, which draws the visible part. */
 export function heatMap(state: State): HTMLElement {
   return new HeatMap(state).element
 }
@@ -45,7 +45,7 @@ class HeatMap {
   #cells: Cells
   #scale?: Scale
   #size = { width: 0, height: 0 }
-  /** Both as the browser reported: to ask for them would make it lay out the page in the middle of a frame. */
+  /** Both as reported by the browser; reading them from the element would force a layout in the middle of a frame. */
   #scroll = { left: 0, top: 0 }
   #column: number = COLUMN.least
   /** Under the pointer, or where the arrow keys went. */
@@ -269,7 +269,7 @@ class HeatMap {
     this.#draw()
   }
 
-  /** Says what is in the cell pointed at, or else in the chosen one; the legend has its column's ends. */
+  /** Describes the cell under the pointer, or the chosen one; the legend has the ends of its column. */
   #read(): void {
     const place = this.#pointed ?? this.#chosenPlace()
     const quantity = place && this.#grid.quantities[place.column]
@@ -323,7 +323,7 @@ class HeatMap {
   }
 }
 
-/** As much of a text as there is room for. */
+/** A text, shortened to the width. */
 function fitted(pen: CanvasRenderingContext2D, text: string, room: number): string {
   if (pen.measureText(text).width <= room) return text
   let [fits, long] = [0, text.length]

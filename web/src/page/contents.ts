@@ -29,7 +29,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   const scale = largest(state, index, order)
   const own = quantity.curves[order]
   if (own.length === 0) return { ...content, message: unknown(title) }
-  const label = state.foreseen ? 'predicted to first order' : (present?.name ?? (state.compares ? 'present design' : title))
+  const label = state.isPredicted ? 'predicted to first order' : (present?.name ?? (state.compares ? 'present design' : title))
   content.lines.push({ label, color: css('--trace'), curve: quiet(state.curve(index, order), scale), width: 2.4 })
   if (state.compares) {
     const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own
@@ -37,13 +37,13 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   }
   const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
   // Over another quantity, which is itself off, they would say something else.
-  if (over !== undefined && bands.length > 0) content.caption = 'How far it may be off is known at a time: choose time to see it.'
+  if (over !== undefined && bands.length > 0) content.caption = 'Bands are known over time only: select time as the abscissa to see them.'
   for (const band of over === undefined ? bands : []) {
     const curve = quiet(band.quantities[index]![order], scale)
     content.lines.push({ label: band.name, color: css('--former'), curve, width: 1.3, dash: DOTTED })
   }
-  const foreseen = present ? report.designs.filter(({ kind }) => kind.endsWith('_order')).filter((design) => design !== former) : []
-  foreseen.forEach((design, k) => {
+  const predictions = present ? report.designs.filter(({ kind }) => kind.endsWith('_order')).filter((design) => design !== former) : []
+  predictions.forEach((design, k) => {
     const curve = design.quantities[index]?.[order]
     if (curve?.length) content.lines.push({ label: design.name, color: hue(k + 1), curve: quiet(curve, scale), width: 1.8, dash: DOTTED })
   })
@@ -129,7 +129,7 @@ interface AtAbscissa {
 
 /**
  * How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. Where
- * several drivers move, the one that moves the abscissa most keeps it, and the others stand. /
+ * several drivers move, the one that moves the abscissa most keeps it, and the others stand.
  */
 function atAbscissa({ senses: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
   if (over === undefined) return { seen: (curve) => curve, note: '' }

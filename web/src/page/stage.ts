@@ -47,7 +47,7 @@ function ghostKey(state: State): HTMLElement {
   const element = el('p', { class: 'ghost-key' }, el('span', { class: 'swatch dashed', style: '--swatch: var(--former)' }), name)
   const sync = () => {
     element.hidden = !state.compares
-    name.textContent = `${state.former?.name ?? 'original'}${state.foreseen ? '; solid: predicted to first order' : ''}`
+    name.textContent = `${state.former?.name ?? 'original'}${state.isPredicted ? '; solid: predicted to first order' : ''}`
   }
   state.onChoice(sync)
   sync()

@@ -67,8 +67,8 @@ export function variables(state: State): HTMLElement {
     for (const item of rows) item.sync()
     resetAll.hidden = !state.changed
     const variable = report.variables[choice.variable]
-    const foreseen = state.foreseen ? 'Changes are predicted to first order. ' : state.sensed ? '' : 'Sensitivities are being updated. '
-    note.replaceChildren(...prose(foreseen + (variable?.note || variable?.description || '')))
+    const preface = state.isPredicted ? 'Changes are predicted to first order. ' : state.sensed ? '' : 'Sensitivities are being updated. '
+    note.replaceChildren(...prose(preface + (variable?.note || variable?.description || '')))
     if (choice.variable === shown) return
     shown = choice.variable
     const { element } = rows[shown]

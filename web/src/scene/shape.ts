@@ -23,12 +23,12 @@ export function present(today: Mechanism, state: State): Mechanism {
   const other = known(state.former)
   const former = other ? new Mechanism(solved(report, other, size), today) : today
   if (exact) return new Mechanism(solved(report, exact, size), today, former)
-  if (state.changed) return new Mechanism(foreseen(report, state.changes, size), today, former)
+  if (state.changed) return new Mechanism(predictedReport(report, state.changes, size), today, former)
   return other ? new Mechanism(report, today, former) : today
 }
 
 /** A report as changes of its variables make it to first order. */
-export function foreseen(report: Report, changes: number[], size: number): Report {
+export function predictedReport(report: Report, changes: number[], size: number): Report {
   const changed = report.variables.filter(({ index }) => changes[index])
   const poses = report.bodies.map((body, b) => {
     const shifts = sum(changed.map((variable) => ({ curve: variable.shifts[b], by: changes[variable.index] })))

@@ -2,7 +2,7 @@ import { Vector3 } from 'three'
 import type { Curve } from '../curve'
 import type { Driver } from '../report'
 
-/** The least and largest of what is driven, and whether it ends above where it begins. */
+/** Minimum and maximum of a driven coordinate; true if it ends above its beginning. */
 export interface Travel {
   curve: Curve
   low: number
@@ -10,7 +10,7 @@ export interface Travel {
   onwards: boolean
 }
 
-/** The travel of a driver in this motion; none where nothing was solved. */
+/** The travel of a driver in this motion; undefined if nothing was solved. */
 export function travelOf(driver: Driver): Travel | undefined {
   const curve = driver.travel
   const solved = curve.filter(Number.isFinite)
@@ -18,9 +18,9 @@ export function travelOf(driver: Driver): Travel | undefined {
   return { curve, low: solved.reduce((a, b) => Math.min(a, b)), high: solved.reduce((a, b) => Math.max(a, b)), onwards: solved[solved.length - 1] >= solved[0] }
 }
 
-/** A whole turn less this is drawn as a whole turn, rad. */
+/** Rotations within this of a whole turn are drawn as a whole turn, rad. */
 const NEARLY = 0.2
-/** Angle that is drawn for a whole turn, so that there is a beginning and an end, rad. */
+/** Drawn angle of a whole turn, rad; a gap separates its beginning and its end. */
 const WHOLE = 4.9
 
 /** An arc as it is drawn: from one angle to another, with a head where it ends, or at both ends. */

@@ -29,7 +29,7 @@ const MARK_NUMBERS = 1 << 15
 
 export function hasWebGL(): boolean {
   const context = document.createElement('canvas').getContext('webgl2')
-  // Browsers keep only that many contexts.
+  // Browsers limit the number of contexts.
   context?.getExtension('WEBGL_lose_context')?.loseContext()
   return context !== null
 }
@@ -53,13 +53,17 @@ export class View {
   #paper = el('canvas', { class: 'paper' })
   #grid = el('span')
   #arrows = el('span', { 'data-testid': 'arrows' })
-  #lost = el('p', { class: 'message', hidden: true }, 'The graphics were lost; the view comes back when the browser gives them back.')
+  #lost = el(
+    'p',
+    { class: 'message', hidden: true },
+    'The graphics context was lost; the view returns when the browser restores it.',
+  )
   #palette = paletteOf()
   #matter: Assembly
   #marks: Assembly
   #floor: Floor
   #overview?: Overview
-  /** The design that is drawn, by what makes it. */
+  /** Key of the drawn design. */
   #drawn: string
   #look: Look
   /** True if the reader turned or moved the view since it was fitted. */
@@ -67,7 +71,7 @@ export class View {
   #stale = false
   #moved = true
   #pending = false
-  /** Size of the element, px, from its observer: to ask the element would force a layout in the middle of a frame. */
+  /** Size of the element, px, from its observer; reading it from the element would force a layout in a frame. */
   #extent = { width: 0, height: 0 }
   /** Parts that are no longer drawn. They are removed after the next picture, which then finds its shaders compiled. */
   #gone: Assembly[] = []
@@ -181,7 +185,7 @@ export class View {
     if (width === 0 || height === 0) return
     this.#update()
     this.#frame(width, height)
-    // What the unit is depends on how large all is seen, and the other way round.
+    // Unit and scale of the picture depend on each other.
     if (this.#rescale(height)) this.#frame(width, height)
     this.#turned = false
     this.#draw()
@@ -239,7 +243,7 @@ export class View {
     this.#draw()
   }
 
-  /** The picture as a PNG file, that many pixels for each of the page's. */
+  /** The picture as a PNG file, with this number of pixels per pixel of the page. */
   async picture(scale: number): Promise<Blob> {
     const usual = this.#renderer.getPixelRatio()
     this.#size(scale)
@@ -304,7 +308,7 @@ export class View {
     return changed
   }
 
-  /** Makes anew what the last choice changed. */
+  /** Rebuilds the parts that the last choice changed. */
   #update(): void {
     if (!this.#stale) return
     this.#stale = false

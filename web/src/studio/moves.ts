@@ -2,26 +2,27 @@ import { Quaternion, type Ray, Vector3 } from 'three'
 import type { MovableHardpoint, VariableSetting } from '../engine/protocol'
 
 /**
- * Along what a hardpoint is moved: in the plane of the picture, along an axis of the model, or in a plane of two of
- * them.
+ * Direction in which a hardpoint is moved: in the plane of the picture, along an axis of the model, or in the plane of
+ * two axes.
  */
 export type Way = 'free' | 'x' | 'y' | 'z' | 'xy' | 'yz' | 'zx'
 export const WAYS: readonly Way[] = ['free', 'x', 'y', 'z', 'xy', 'yz', 'zx']
 export const AXES = ['x', 'y', 'z'] as const
 
-/** A line of sight that is less than this far from an axis or plane, as a sine, does not say where it meets it. */
+/** Sine of the angle between a line of sight and an axis or plane below which they count as parallel. */
 const GRAZING = 0.02
 /** Two hardpoints are mirror images to this part of the size of the mechanism. */
 const MIRRORED = 1e-6
 
-/** Unit vectors of a way in the drawing; none for the plane of the picture. */
+/** Unit vectors of a direction in the design configuration; none for the plane of the picture. */
 function directions(way: Way): Vector3[] {
   return way === 'free' ? [] : [...way].map((axis) => new Vector3().setComponent(AXES.indexOf(axis as 'x'), 1))
 }
 
 /**
- * How far a place of the world goes so that it follows the line of sight on its way; `turn` takes directions of the
- * drawing into the world, `facing` is towards the eye. Nothing where the line of sight hardly says. /
+ * Displacement of a point of the world along its direction so that it follows the line of sight. `turn` maps directions
+ * of the design configuration to the world; `facing` points to the eye. Undefined if the line of sight is nearly
+ * parallel.
  */
 export function followed(ray: Ray, place: Vector3, way: Way, turn: Quaternion, facing: Vector3): Vector3 | undefined {
   const along = directions(way).map((axis) => axis.applyQuaternion(turn))
@@ -47,12 +48,12 @@ export function turnOf(frame: readonly number[], pose: Quaternion): Quaternion {
   return pose.clone().multiply(new Quaternion(x, y, z, w).invert())
 }
 
-/** A coordinate at the nearest multiple of the snap; as it is where there is none. */
+/** A coordinate rounded to a multiple of the snap; unchanged without a snap. */
 export function snapped(value: number, snap: number): number {
   return snap > 0 ? Number((Math.round(value / snap) * snap).toPrecision(12)) : value
 }
 
-/** The place of a hardpoint in the drawing of the design that has these changes. */
+/** Position of a hardpoint in the design configuration of the design with these changes. */
 export function placeOf(grip: MovableHardpoint, settings: readonly VariableSetting[]): Vector3 {
   const by = new Map(settings.map(({ name, by }) => [name, by]))
   const [x, y, z] = grip.coordinates.map(({ variable, sign }, k) => grip.place[k] + sign * (by.get(variable) ?? 0))

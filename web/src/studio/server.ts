@@ -87,8 +87,8 @@ const SILENCE = 20
 
 /** The server that the page comes from; `undefined` of a page from a file. */
 export function connect(document: Document): Server | undefined {
-  const told = document.getElementById('server')?.textContent
-  return told ? new Server(JSON.parse(told) as About) : undefined
+  const about = document.getElementById('server')?.textContent
+  return about ? new Server(JSON.parse(about) as About) : undefined
 }
 
 /** The studio's server, as `hardpoint studio` runs it. */

@@ -14,21 +14,21 @@ const CLICK = 4
 /** Step of an arrow key relative to the visible range, in round numbers: without and with Shift. */
 const STRIDE = 1 / 40
 const STEP = 1 / 200
-/** Times as much of the ordinate, round its middle, to draw beyond the curves. */
+/** Factor of the ordinate range, about its middle, for drawing beyond the curves. */
 const ROOM = 1.6
 
 /** Actions on a drawn curve. */
 export interface Drawn {
   /** The curve is as it should be: points with rising abscissas in the units that are shown; at least two. */
   done: (points: Point[]) => void
-  /** It is not wanted any more. */
+  /** The curve is discarded. */
   cancel: () => void
 }
 
 /**
  * A curve drawn over a plot, with mouse, pen, touch or keys: freehand, one value at each abscissa, in a handful of
  * points that can be moved. What is drawn over a part takes its place. It is in use from when it is made until it is
- * done, cancelled or `close`d. /
+ * done, cancelled or `close`d.
  */
 export class Sketch implements Overlay {
   /** Drawn points, in the shown units. */
@@ -41,9 +41,24 @@ export class Sketch implements Overlay {
   /** Position of the cross that the keys move. */
   #cross?: Point
   #canvas = svg('svg', { 'aria-hidden': 'true' })
-  #element = el('div', { class: 'sketch', tabindex: 0, role: 'application', 'data-testid': 'sketch', 'aria-label': 'Draw a target: arrow keys move the cross, with Shift less far; Enter sets a point, Delete takes the nearest away, Page up and down go from point to point, Escape ends' }, this.#canvas)
+  #element = el(
+    'div',
+    {
+      class: 'sketch',
+      tabindex: 0,
+      role: 'application',
+      'data-testid': 'sketch',
+      'aria-label':
+        'Draw a target: arrow keys move the cross, with Shift in smaller steps; Enter sets a point, Delete removes the nearest, Page Up and Page Down move from point to point, Escape ends',
+    },
+    this.#canvas,
+  )
   #reading = el('output', { 'data-testid': 'sketch-reading' })
-  #take = el('button', { type: 'button', class: 'first', 'data-testid': 'sketch-take', onclick: () => this.#finish() }, 'Use as target')
+  #take = el(
+    'button',
+    { type: 'button', class: 'first', 'data-testid': 'sketch-take', onclick: () => this.#finish() },
+    'Use as target',
+  )
   #bar: HTMLElement
 
   constructor(

@@ -121,14 +121,14 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     shown = 'progress'
     const text = host.text()
     const bar = el('progress', { 'aria-label': `Progress of ${name.toLowerCase()}`, 'data-testid': `${testId}-progress` })
-    const told = el('pre', { class: 'told', 'data-testid': `${testId}-lines` })
+    const log = el('pre', { class: 'log', 'data-testid': `${testId}-lines` })
     const cancel = el('button', { type: 'button', 'data-testid': `${testId}-cancel`, onclick: () => {
       cancel.disabled = true
       cancel.textContent = 'Ending …'
       running.cancel()
     } }, 'Cancel')
     const lines: string[] = []
-    show(bar, told, el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')))
+    show(bar, log, el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')))
     let running: Running<StudyResult>
     try {
       running = start(text, request)
@@ -137,7 +137,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
         else Object.assign(bar, { max: Math.max(total, 1), value: done })
         if (line === '' || line === lines.at(-1)) return
         lines.push(line)
-        told.textContent = lines.slice(-LINES).join('\n')
+        log.textContent = lines.slice(-LINES).join('\n')
       })
       showResult(made, await running.result, text)
     } catch (error) {

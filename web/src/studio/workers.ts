@@ -7,7 +7,7 @@ import type { ModelText } from '../payload'
 export class Workers implements Studies {
   constructor(
     private readonly module: WebAssembly.Module,
-    /** A text with all that is read besides it. */
+    /** A text with the other files that it reads. */
     private readonly model: (text: string) => ModelText,
   ) {}
 
@@ -36,18 +36,18 @@ export class Workers implements Studies {
     }
   }
 
-  /** An engine that is at work hears nothing: to cancel ends it, and what it reported last is the best so far. */
+  /** A busy engine receives no messages: cancelling ends it, and its last report has the best design so far. */
   #run(request: Request): Running<StudyResult> {
     const solver = new Solver(this.module)
-    const listeners: ((told: ProgressReply) => void)[] = []
+    const listeners: ((progress: ProgressReply) => void)[] = []
     let best: VariableSetting[] | null = null
     let ended: (result: StudyResult) => void
     const cancelled = new Promise<StudyResult>((done) => (ended = done))
-    const told = (news: ProgressReply) => {
+    const report = (news: ProgressReply) => {
       best = news.change ?? best
       for (const listener of listeners) listener(news)
     }
-    const whole = solver.ask<StudyReply>(request, told).then(({ json }) => json)
+    const whole = solver.ask<StudyReply>(request, report).then(({ json }) => json)
     return {
       onProgress: (listener) => listeners.push(({ done, total, line }) => listener(done, total, line)),
       cancel: () => {

@@ -45,7 +45,7 @@ function begin(text: string, request: Study['request']): Running<StudyResult> {
   let end!: Study['end']
   let fail!: (error: Error) => void
   const result = new Promise<StudyResult>((resolve, reject) => ((end = resolve), (fail = reject)))
-  const study: Study = { text, request, cancelled: false, tell: (...told) => listeners.forEach((listener) => listener(...told)), end, fail: (message) => fail(new Error(message)) }
+  const study: Study = { text, request, cancelled: false, tell: (...progress) => listeners.forEach((listener) => listener(...progress)), end, fail: (message) => fail(new Error(message)) }
   window.studies.push(study)
   return { result, cancel: () => (study.cancelled = true), onProgress: (listener) => listeners.push(listener) }
 }

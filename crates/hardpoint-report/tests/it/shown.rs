@@ -74,7 +74,7 @@ fn text(tables: &[Table], titles: &[&str]) -> String {
     out
 }
 
-fn told(list: &[Diagnostic]) -> String {
+fn text(list: &[Diagnostic]) -> String {
     let mut out = String::new();
     for d in list {
         writeln!(out, "[{}] {}", d.code, d.message).unwrap();
@@ -311,9 +311,12 @@ fn a_mechanism_next_to_a_singular_position_is_warned_of() {
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     let margin = summary.margin.as_ref().unwrap();
     assert!(margin.is_thin(), "{margin:?}");
-    let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
-    assert!(told.starts_with("[HP0407] the mechanism comes close to a singular position at t = "), "{told}");
-    assert!(told.contains("the loop consists of `B1`, `C1` and `D1`"), "{told}");
+    let shown = text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+    assert!(
+        shown.starts_with("[HP0407] the mechanism comes close to a singular position at t = "),
+        "{shown}"
+    );
+    assert!(shown.contains("the loop consists of `B1`, `C1` and `D1`"), "{shown}");
 }
 
 /// A four-bar whose coupler is a rod of a given length; in the design configuration it would be 335.4 mm.
@@ -359,7 +362,7 @@ fn an_assembly_is_shown_with_gaps_and_moves() {
 fn a_mechanism_that_does_not_assemble_reports_its_gaps() {
     let file = file(&with_a_rod_of(0.7));
     let (solution, summary) = solved(&file);
-    insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None)));
+    insta::assert_snapshot!(text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None)));
     let stop = summary.stop.as_ref().unwrap();
     assert_eq!((stop.remains[0].kind, stop.remains[0].unit), ("joint", "mm"));
     // The rod reaches from B past D by the rocker's 250 mm.
@@ -426,7 +429,7 @@ fn a_variable_without_effect_is_reported() {
     draft.design.push(VariableDraft::new("unused", changes));
     let file = file(&draft);
     let (solution, summary) = solved(&file);
-    insta::assert_snapshot!(told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None)));
+    insta::assert_snapshot!(text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None)));
 }
 
 #[test]
@@ -447,8 +450,8 @@ measures.rocker = { type = "reaction", joint = "D", part = "radial" }
 "#;
     let file = hardpoint_file::parse(text, "drawn.toml").unwrap();
     let (solution, summary) = solved(&file);
-    let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
-    insta::assert_snapshot!(told);
+    let shown = text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+    insta::assert_snapshot!(shown);
 }
 
 /// Two long bars on a short coupler; the rocker's axis is tilted by so much.
@@ -472,20 +475,20 @@ D = {{ type = "revolute", bodies = ["ground", "rocker"], at = "D", axis = [0, {t
 
 #[test]
 fn joints_that_stay_open_visibly_are_warned_of() {
-    let told_of = |tilt: f64| {
+    let residual_and_text = |tilt: f64| {
         let file = hardpoint_file::parse(&long_bars(tilt), "drawn.toml").unwrap();
         let (solution, summary) = solved(&file);
         assert!(solution.stop.is_none(), "{:?}", solution.stop);
-        let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
-        (summary.effort.worst_residual_si, told)
+        let shown = text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+        (summary.effort.worst_residual_si, shown)
     };
     // The coupler's end rises by 460 m per rad of tilt; a thousandth of its length is 0.1 mm.
     for (tilt, warns) in [(0.0, false), (1e-7, false), (1e-6, true), (1e-5, true)] {
-        let (residual, told) = told_of(tilt);
+        let (residual, shown) = residual_and_text(tilt);
         assert!((residual - 459.7 * tilt).abs() <= 1e-3 * residual + 1e-12, "{tilt}: {residual}");
-        assert_eq!(told.contains("HP0410"), warns, "{tilt}: {told}");
+        assert_eq!(shown.contains("HP0410"), warns, "{tilt}: {shown}");
     }
-    insta::assert_snapshot!(told_of(5e-6).1);
+    insta::assert_snapshot!(residual_and_text(5e-6).1);
 }
 
 #[test]
@@ -524,7 +527,7 @@ time = {{ end = 1, steps = 4 }}
         let file = hardpoint_file::parse(&frame(joints), "drawn.toml").unwrap();
         let (solution, summary) = solved(&file);
         assert_eq!(summary.model.freedom_line(), "0 (nothing can move)");
-        all += &told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+        all += &text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
         all += "\n";
     }
     insta::assert_snapshot!(all);
@@ -533,6 +536,6 @@ time = {{ end = 1, steps = 4 }}
         + "[drivers]\nm = { joint = \"A\", law = \"0\" }\n";
     let file = hardpoint_file::parse(&moves, "drawn.toml").unwrap();
     let (solution, summary) = solved(&file);
-    let told = told(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
-    assert!(!told.contains("HP0305"), "{told}");
+    let shown = text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+    assert!(!shown.contains("HP0305"), "{shown}");
 }

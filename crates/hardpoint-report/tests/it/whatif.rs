@@ -213,13 +213,13 @@ fn the_page_opens_on_the_requested_outputs_and_ranks_each_variable_once() {
     let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
     assert_eq!((page.first, page.over), (quantity("camber"), quantity("wheel_travel")));
     let titles: Vec<&str> = page.checks.iter().map(|t| t.title.as_str()).collect();
-    let told = [
+    let expected = [
         "The change",
         "What if tie_rod_inner_z by 20 mm",
         "Most influential variables of toe",
         "Most influential variables of camber",
     ];
-    assert_eq!(titles[..4], told);
+    assert_eq!(titles[..4], expected);
     assert!(
         !titles.contains(&"Most influential variables of half_track") && titles.contains(&"Design variables")
     );
@@ -301,10 +301,10 @@ fn a_changed_design_that_locks_has_gaps_and_the_page_has_the_reason() {
         assert!(design.margin.iter().all(|margin| known(margin, 1) == there));
     }
     assert!(!page.status.complete);
-    let told = format!(
+    let expected = format!(
         "The changed design was solved for {solved} of {all} steps: the mechanism cannot move beyond t = 0.720265 s, with `motor` at 259.3 deg (HP0401). Today's design: all {all} steps were solved."
     );
-    assert_eq!(page.status.message, told);
+    assert_eq!(page.status.message, expected);
 
     // The range of a part of the curve is not that of the whole; where the crank is at 90 deg, both designs were
     // solved.
@@ -335,7 +335,13 @@ fn a_changed_design_that_does_not_assemble_has_only_the_reason_on_its_page() {
 
     // The nominal design is written anyway.
     let stop = found.exact.stop.as_ref().unwrap();
-    let told = diagnose::stop_of_changed(&file, stop, 0);
-    assert!(told.message.starts_with("the changed design: the mechanism does not assemble"), "{told:?}");
-    assert!(told.notes.contains(&"0 of 401 steps of the changed design were solved".to_owned()), "{told:?}");
+    let diagnostic = diagnose::stop_of_changed(&file, stop, 0);
+    assert!(
+        diagnostic.message.starts_with("the changed design: the mechanism does not assemble"),
+        "{diagnostic:?}"
+    );
+    assert!(
+        diagnostic.notes.contains(&"0 of 401 steps of the changed design were solved".to_owned()),
+        "{diagnostic:?}"
+    );
 }

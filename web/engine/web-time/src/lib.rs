@@ -1,13 +1,13 @@
-//! A clock for the engine in a page, in place of the crate of the same name, which brings a machinery of imports from JavaScript that
-//! the page would have to serve (`Cargo.toml`, `[patch]`). Whoever asks for a limit in time finds that none has passed.
+//! Clock of the engine in a page. It replaces the crate of the same name, whose imports from JavaScript the page would
+//! have to provide (`Cargo.toml`, `[patch]`). Time does not advance, so that no time limit expires.
 
 pub use std::time::Duration;
 
-/// A moment; on machines with a clock that of the standard library.
+/// A point in time; that of the standard library on machines with a clock.
 #[cfg(not(target_family = "wasm"))]
 pub use std::time::Instant;
 
-/// A moment: they are all the same.
+/// A point in time; all are equal.
 #[cfg(target_family = "wasm")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Instant;
