@@ -7,6 +7,7 @@ use std::time::Instant;
 use hardpoint::model::{Model, VariableId};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
+use hardpoint_export::RunDocument;
 use hardpoint_file::ModelFile;
 use hardpoint_report::GENERATOR;
 use hardpoint_report::columns::Columns;
@@ -32,7 +33,6 @@ use crate::pages;
 use crate::session::{Session, json_text};
 use crate::tables::Plan;
 use crate::text;
-use crate::workbook::Contents;
 
 /// Step of the finite differences in the report, relative to the natural step: small enough for five digits, large
 /// enough to avoid round-off.
@@ -262,14 +262,14 @@ fn run_in(
         }
         if options.workbook {
             let contents =
-                Contents { file, course: &course, summary: &summary, suffix: options.format.suffix() };
+                RunDocument { file, course: &course, summary: &summary, suffix: options.format.suffix() };
             let left_out = folder.write("motion.xlsx", |out| contents.write(out));
             summary.left_out.extend(left_out.map_err(|e| session.not_written(&e))?);
             summary.files.push(folder.path_of("motion.xlsx").display().to_string());
         }
         if options.pdf {
             let contents =
-                Contents { file, course: &course, summary: &summary, suffix: options.format.suffix() };
+                RunDocument { file, course: &course, summary: &summary, suffix: options.format.suffix() };
             let left_out = folder.write("report.pdf", |out| contents.write_pdf(out));
             summary.left_out.extend(left_out.map_err(|e| session.not_written(&e))?);
             summary.files.push(folder.path_of("report.pdf").display().to_string());

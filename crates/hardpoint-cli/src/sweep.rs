@@ -18,11 +18,11 @@ use hardpoint_study::sweep::{Sweep as Designs, SweepPlanError};
 use crate::args::{Method, Sweep, TableForm};
 use crate::folder::{Folder, WriteError};
 use crate::journal::{Checksum, Fingerprint, Journal, JournalError};
-use crate::long_table::{TableFormat, TableWriter};
 use crate::outcome::Outcome;
 use crate::pages::{Page, Study, page, threads};
 use crate::session::{Session, json_text};
 use crate::text;
+use hardpoint_export::long_table::{TableFormat, TableWriter};
 
 /// Journal of an unfinished sweep in its folder.
 const JOURNAL: &str = "sweep.partial";

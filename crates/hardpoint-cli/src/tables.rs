@@ -15,8 +15,8 @@ use hardpoint_report::npy::{Npy, Sidecar, add_motion, add_sensitivities};
 
 use crate::args::{Format, Orientation, Run};
 use crate::folder::{Folder, PendingFile, WriteError};
-use crate::long_table::{TableFormat, TableWriter};
 use crate::session::json_text;
+use hardpoint_export::long_table::{TableFormat, TableWriter};
 
 /// Maximum number of bodies whose motion is written by default.
 const MOST_BODIES: usize = 100;

@@ -1,5 +1,5 @@
 //! Export of Hardpoint models to files of other programs, with a list of the features that each format does not
-//! support.
+//! support; runs as workbooks, PDF documents, animations and long tables.
 //!
 //! ```
 //! let text = r#"
@@ -21,17 +21,21 @@
 mod animation;
 mod dxf;
 mod links;
+pub mod long_table;
 mod mjcf;
 mod names;
+mod pdf;
 mod skeleton;
 mod tables;
 mod urdf;
+mod workbook;
 
 use hardpoint_file::ModelFile;
 use serde::Serialize;
 
 pub use animation::animation;
 pub use tables::hardpoints;
+pub use workbook::RunDocument;
 
 /// A model as a file of another program.
 #[derive(Clone, Debug, Default)]

@@ -33,7 +33,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("hardpoint-file", &["hardpoint"]),
     ("hardpoint-report", &["hardpoint", "hardpoint-file", "hardpoint-study"]),
     ("hardpoint-import", &["hardpoint", "hardpoint-file"]),
-    ("hardpoint-export", &["hardpoint", "hardpoint-file"]),
+    ("hardpoint-export", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
     (
         "hardpoint-cli",
         &[

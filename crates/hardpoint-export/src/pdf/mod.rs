@@ -9,7 +9,7 @@ use hardpoint_report::GENERATOR;
 use hardpoint_report::figures::{count, number, order_unit, with_unit};
 use hardpoint_report::summary::Ranking;
 
-use crate::workbook::Contents;
+use crate::workbook::RunDocument;
 use paper::{BLACK, BLUE, GREY, MARGIN, PAGE, Paper, RED, SMALL, STRONG, TEXT, TITLE};
 use plot::Plot;
 
@@ -25,7 +25,7 @@ const RANKED: [f32; 4] = [0.0, 170.0, 290.0, 410.0];
 /// Length of the longest bar of a ranking.
 const BAR: f32 = 110.0;
 
-impl Contents<'_> {
+impl RunDocument<'_> {
     /// Writes the document and returns notes on omitted data.
     ///
     /// # Errors

@@ -42,8 +42,8 @@ const LARGEST: &str = "Largest sensitivities";
 const SENSITIVITIES: &str = "Sensitivities";
 const HARDPOINTS: &str = "Hardpoints";
 
-/// Contents of a workbook.
-pub struct Contents<'a> {
+/// A run to be written as an Excel workbook or a PDF document.
+pub struct RunDocument<'a> {
     /// The model.
     pub file: &'a ModelFile,
     /// Motion.
@@ -59,7 +59,7 @@ struct Sheet {
     worksheet: Worksheet,
     name: &'static str,
     about: String,
-    /// Contents that were left out, and where they are.
+    /// RunDocument that were left out, and where they are.
     left_out: Option<String>,
 }
 
@@ -69,7 +69,7 @@ struct Series {
     cells: Vec<f64>,
 }
 
-impl Contents<'_> {
+impl RunDocument<'_> {
     /// Writes the workbook and returns notes on omitted data.
     ///
     /// # Errors
@@ -423,7 +423,7 @@ impl Contents<'_> {
         let header = ["x", "y", "z"].map(|c| format!("{c} [{unit}]"));
         page.header(&["hardpoint", &header[0], &header[1], &header[2]])?;
         page.sheet.set_freeze_panes(1, 1)?;
-        for (name, at) in hardpoint_export::hardpoints(self.file) {
+        for (name, at) in crate::hardpoints(self.file) {
             page.row(&std::iter::once(name.into()).chain(at.map(Cell::Number)).collect::<Vec<_>>())?;
         }
         page.sheet.set_column_width(0, 24)?.set_column_range_width(1, 3, 14)?;
