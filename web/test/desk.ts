@@ -14,7 +14,7 @@ export interface Paper {
   lightest: number
 }
 
-/** Contents of a picture on its paper. */
+/** Statistics of the drawn pixels of a picture. */
 export interface Seen {
   /** Share of its pixels. */
   drawn: number

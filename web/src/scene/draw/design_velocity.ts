@@ -54,7 +54,7 @@ export function shownChange(mechanism: Mechanism, { arrows }: Variable): number 
 /** A change with its unit, as short as it may be said. */
 export const changeText = (change: number, { unit }: Variable) => `${number(change, 2)} ${pretty(unit)}`.trim()
 
-/** Limit of arrow lengths, which would be too long in proportion to a long chain. */
+/** Maximum length of arrows; in proportion to a long chain they would be too long. */
 function longestArrow({ base, box, size, unit }: Mechanism): number {
   const [, height] = (base?.box ?? box).getSize(new Vector3()).toArray().sort((a, b) => b - a)
   return Math.min(LONGEST.ofSize * size, Math.max(LONGEST.ofHeight * height, LONGEST.least * unit))
