@@ -61,7 +61,7 @@ const TURNS = 1e-4
 /** Fraction of its maximum below which a rate belongs to a motion about to reverse. */
 const TURNING = 0.25
 /**
- * Fraction of its maximum below which a rate is zero at the turn of the abscissa, except for curvature.
+ * Fraction of its maximum below which a rate counts as zero at the turn of the abscissa; the rest is curvature.
  */
 const WITH_IT = 0.1
 

@@ -21,7 +21,7 @@ export function prose(text: string): (Node | string)[] {
   return text.split('`').map((part, k) => (k % 2 === 1 ? el('code', {}, part) : part))
 }
 
-/** Renders anew and gives the focus back to the button of the same name. */
+/** Renders again and returns the focus to the button of the same name. */
 export function keepFocus(container: HTMLElement, render: () => void): void {
   const focused = container.querySelector<HTMLButtonElement>('button:focus')
   render()
@@ -41,7 +41,7 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return element
 }
 
-/** A custom property of the style sheet, for what is drawn on a canvas. */
+/** A custom property of the style sheet, for drawing on a canvas. */
 export function css(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim()
 }

@@ -52,7 +52,7 @@ export interface Sensitivity {
 
 export interface Variable extends Omit<wire.Variable, 'sensitivities' | 'shifts'> {
   index: number
-  /** Per body 6 numbers per step: how far its frame goes and turns, per unit of the variable. */
+  /** Per body 6 numbers per step: translation and rotation of its frame, per unit of the variable. */
   shifts: Curve[]
   /** By the quantity's index. */
   sensitivities: Map<number, Sensitivity>
@@ -69,7 +69,7 @@ export interface Load extends Omit<wire.LoadMark, 'force'> {
   force: Curve
 }
 
-/** Another design over the same times; what is not known of it is empty or missing. */
+/** Another design over the same times; unknown data are empty or missing. */
 export interface Design extends Omit<wire.Design, 'poses' | 'loads' | 'quantities' | 'margin'> {
   poses: Curve[]
   /** The force of each of the report's loads. */

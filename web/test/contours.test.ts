@@ -28,7 +28,7 @@ test('a value between places is linear, and unknown beyond and beside gaps', () 
   const gap = { ...plane, values: plane.values.map((value, k) => (k === 5 ? NaN : value)) }
   expect(valueAt(gap, -1, 10)).toBeNaN()
   expect(valueAt(gap, -1.5, 3)).toBeNaN()
-  // A place that is known is known, whatever is beside it.
+  // A known point does not depend on its neighbours.
   expect(valueAt(gap, -2, 10)).toBeCloseTo(2, 12)
   expect(valueAt(gap, 3, 30)).toBeCloseTo(22, 12)
 })

@@ -14,7 +14,7 @@ export interface Paper {
   lightest: number
 }
 
-/** Contents of a picture besides paper. */
+/** Statistics of the drawn pixels of a picture. */
 export interface Seen {
   /** Share of its pixels. */
   drawn: number
@@ -22,7 +22,7 @@ export interface Seen {
   border: number
   /** Share of the picture's width or height, whichever is larger, that is covered. */
   reach: number
-  /** Some places well within what is drawn, in pixels. */
+  /** Some points well within the drawing, in pixels. */
   places: { x: number; y: number }[]
 }
 

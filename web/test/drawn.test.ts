@@ -18,7 +18,7 @@ const LIGHT = paletteOf((name) => schemes.light[name])
 /** Pixels of a view. */
 const [WIDTH, HEIGHT] = [860, 600]
 
-// A hatch is painted on a canvas, which Node has not; what is counted here is geometry.
+// A hatch is painted on a canvas, which Node does not have; only geometry is counted here.
 const brush = new Proxy({}, { get: () => () => undefined })
 vi.stubGlobal('document', { createElement: () => ({ getContext: () => brush }) })
 
@@ -30,7 +30,7 @@ async function drawing(address: string): Promise<{ mechanism: Mechanism; kit: Ki
   return { mechanism, kit, drawn: [...matter, ...marks].flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
 }
 
-/** Vertices of an object, as it is placed. */
+/** Vertices of an object at its pose. */
 function vertices(object: Object3D): Vector3[] {
   object.updateMatrixWorld(true)
   const found: Vector3[] = []
@@ -52,7 +52,7 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
 
   test('every body, joint, coupler, driver and wheel is drawn', () => {
     const missing = (kind: Part['kind'], list: { name: string }[]) => list.filter((_, index) => count(kind, index) === 0).map(({ name }) => `${kind} ${name}`)
-    // A slider is the block of its joint, a cam the plate of its curve: such a body is drawn by what is fixed to it.
+    // A slider is the block of its joint, a cam the plate of its curve: parts fixed to such a body represent it.
     const bodies = report.bodies.filter((_, index) => !drawn.some(({ body }) => body === index))
     // A linear relation has no look, and that of a screw is its joint's.
     const seen = report.couplers.filter(({ kind }) => kind !== 'linear' && kind !== 'screw').map(({ name }) => name)

@@ -65,7 +65,7 @@ describe('a text that is typed', () => {
     await checked()
     expect(await page.locator('.cm-lintRange-error').count()).toBe(0)
     expect(await status()).toBe('1 note')
-    // It is again what the page shows already.
+    // It is the text that the page already shows.
     expect(await valid()).toEqual([])
     await page.keyboard.press('End')
     await page.keyboard.insertText('   # mended')

@@ -31,7 +31,7 @@ function native(requests: Request[]): ArrayBuffer[] {
   return stdout.trim().split('\n').map((line) => Uint8Array.from(Buffer.from(line, 'base64')).buffer)
 }
 
-/** A model's text; files that it names stand beside it. */
+/** A model's text; files that it names are next to it. */
 function model(file: string): ModelText {
   const text = readFileSync(join(MODELS, file), 'utf8')
   const named = [...text.matchAll(/"([\w/.-]+\.csv)"/g)].map(([, name]) => name)
@@ -58,7 +58,7 @@ test.each(files)('%s is understood and solved as the command does', async (file)
   const ask = await engine()
   const open: Request = { ask: 'open', model: model(file) }
   const { grips } = answer<OpenReply>(ask(open)).json
-  // One hardpoint goes a little, if the mechanism can follow.
+  // One hardpoint moves a little, if the change is admissible.
   const size = Math.max(...grips.flatMap(({ place }) => place.map(Math.abs)))
   const change = grips.slice(0, 1).map(({ coordinates }) => ({ name: coordinates[0].variable, by: 1e-3 * size }))
   const requests: Request[] = [open, { ask: 'design', change, from: null }, { ask: 'page', model: model(file) }, { ask: 'text', change }]
@@ -97,7 +97,7 @@ test('a search indicates of its iterations and finds what the native one finds',
   const [found, wanted] = [ask(request), native([request])[0]].map((block) => answer<StudyReply>(block).json)
   expect(reports.length).toBeGreaterThan(2)
   expect(reports.at(-1)!.change!.length).toBeGreaterThan(0)
-  // Two machines walk there by other last digits: the ends agree as far as the search goes.
+  // Two machines differ in the last digits: the results agree within the tolerance of the search.
   near(found.change!.map(({ by }) => by), wanted.change!.map(({ by }) => by), 1e-4, 'design found')
   expect(found.text).toContain('[optimize')
 })

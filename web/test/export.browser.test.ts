@@ -15,7 +15,7 @@ const { models } = inject('samples')
 /** Folder for the documents' pictures, if the tests are to make them anew. */
 const IMAGES = process.env.UPDATE_DOCS && join(import.meta.dirname, '../../docs/images')
 
-/** Bytes of a PNG's head: its signature, and where its width and height stand. */
+/** Bytes of a PNG's header: its signature, and the offsets of width and height. */
 const PNG = { signature: '89504e470d0a1a0a', width: 16, height: 20 }
 /** Pixels of an exported picture per pixel of the page. */
 const SHARP = 2
@@ -33,7 +33,7 @@ describe('what a reader takes away', () => {
   })
   afterAll(() => browser?.close())
 
-  /** The file that an entry of the menu gives. */
+  /** The file that an entry of the menu exports. */
   async function taken(entry: string, from = page): Promise<Buffer> {
     await from.getByTestId('export').click()
     const [download] = await Promise.all([from.waitForEvent('download'), from.getByTestId(entry).first().click()])

@@ -98,7 +98,7 @@ describe('SVG of a plot', () => {
     const part = await plotSvg({ ...content, part: [0, 1] }, times, 's', PAPER).text()
     const numbers = (text: string) => [...text.matchAll(/>([\d.−]+)<\/text>/g)].map(([, number]) => Number(number.replace('−', '-')))
     expect(Math.max(...numbers(whole))).toBe(6)
-    // Up to 1 s and 2 deg; above is only what an axis adds.
+    // Up to 1 s and 2 deg; an axis adds its margin.
     expect(Math.max(...numbers(part))).toBeLessThan(2.2)
     expect(numbers(part)).toContain(0.5)
     expect(part).not.toMatch(/NaN|undefined/)

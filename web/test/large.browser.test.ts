@@ -9,7 +9,7 @@ const { large } = inject('samples')
 const FRAMES = 30
 /** Rows that a window of at most 480 px shows at 30 px each, with those made beyond it on either side. */
 const MOST_ROWS = 16 + 2 * 6 + 1
-/** Elements of the map, whatever it shows: it is drawn on one canvas. */
+/** Elements of the map, which is always drawn on one canvas. */
 const MAP = 40
 /** Elements of the page for every variable, most of them the parts of its row. */
 const EACH = 50
@@ -45,7 +45,7 @@ describe('a model of 81 bodies and 240 variables', () => {
     return (await count()) - before
   }
 
-  /** Scrolls by that many pixels in every frame. */
+  /** Scrolls by this number of pixels in every frame. */
   const scroll = (selector: string, by: number) =>
     page.locator(selector).evaluate(async (window, { by, frames }) => {
       for (let k = 0; k < frames; k++) {

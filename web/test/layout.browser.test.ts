@@ -139,7 +139,7 @@ describe('with the keyboard only', () => {
     await row.locator('.name').focus()
     await page.keyboard.press('Enter')
     expect(await page.locator('[data-testid^=variable-][aria-current=true] .name').innerText()).toBe(name)
-    // The focus stays where it was, so that a reader goes on from there.
+    // The focus is unchanged, so that the reader continues from there.
     expect(await page.evaluate(() => document.activeElement!.textContent)).toBe(name)
     const before = await picture(page)
     await page.locator('[data-testid^=variable-][aria-current=true] [data-testid=change]').focus()
@@ -171,7 +171,7 @@ describe('printed', () => {
     for (const name of ['title', 'values', 'plot-0', 'variables', 'summary']) expect(await page.getByTestId(name).isVisible(), name).toBe(true)
     // Buttons are of no use on paper.
     for (const name of ['export', 'help', 'play', 'scrub']) expect(await page.getByTestId(name).isVisible(), name).toBe(false)
-    // Paper is white, whatever the screen is.
+    // Paper is white, independent of the screen.
     expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor)).toMatch(/^rgb\(255, 255, 255\)$|^rgba\(0, 0, 0, 0\)$/)
     expect(complaints).toEqual([])
     await page.context().close()

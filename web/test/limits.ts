@@ -8,5 +8,5 @@
  * One wait: for an element, for a state of the page, for the browser. What hangs is named by this before its test ends.
  */
 export const WAIT = 120_000
-/** One test, or what is done before and after it. */
+/** One test, or its setup and teardown. */
 export const TEST = 300_000

@@ -148,7 +148,7 @@ describe('the model in the page', () => {
       await page.keyboard.press('Delete')
     }
     await expect.poll(() => page.getByTestId('model-messages').innerText()).not.toContain('nonsense')
-    // What is typed is solved: another title, and the curves of the present text.
+    // The typed text is solved: another title, and the curves of the present text.
     await page.keyboard.press('Control+f')
     await page.keyboard.type('strut, BMW')
     await page.keyboard.press('Enter')

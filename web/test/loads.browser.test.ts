@@ -6,7 +6,7 @@ import { launch, visit, type Visit } from './browser'
 
 const { models } = inject('samples')
 const ARROWS = 'arrows of forces'
-/** The page shows that many digits of a force, and keeps it as a number of 24 bits. */
+/** Number of shown digits of a force, which is stored with 24 bits. */
 const SHOWN = 6e-4
 
 let browser: Browser

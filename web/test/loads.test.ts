@@ -27,7 +27,7 @@ test('a force that is goes round as the body sees it, the other way', () => {
     expect(x).toBeCloseTo(expected[k][0], 4)
     expect(y).toBeCloseTo(expected[k][1], 4)
   })
-  // From ground it is, and what the crank puts on ground is opposite.
+  // It comes from ground; the force of the crank on ground is opposite.
   for (const [x, y] of pathOf(steady, crank().bodies[0].poses, plane, -1)) expect([x, y]).toEqual([-30, 0])
 })
 

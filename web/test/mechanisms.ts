@@ -45,11 +45,11 @@ export const PALETTE: Palette = {
 /** Initial choice. */
 export const CHOICE: Choice = { quantity: 0, variable: 0, order: 0, labels: false, forces: true }
 
-/** Turns about z by which the crank goes on from one step to the next. */
+/** Rotations about z of the crank from one step to the next. */
 const QUARTER = Math.PI / 2
 const STEPS = 5
 
-/** A crank that goes once round the origin in the plane xy, driven at its hinge to ground, in millimetres. */
+/** A crank that makes one turn about the origin in the plane xy, driven at its hinge to ground, in millimetres. */
 export function crank(changes: Partial<Report> = {}): Report {
   const turn = (k: number) => [0, 0, 0, Math.cos((k * QUARTER) / 2), 0, 0, Math.sin((k * QUARTER) / 2)]
   const still = () => [0, 0, 0, 1, 0, 0, 0]

@@ -159,7 +159,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     const area = page.getByTestId('plot-0').locator('.u-over')
     const { width } = (await area.boundingBox())!
     const last = Number(await page.getByTestId('scrub').getAttribute('max'))
-    // What is at its left and right end now.
+    // Values at its left and right end.
     const ends: number[] = []
     for (const x of [1, width - 1]) {
       await area.click({ position: { x, y: 20 } })

@@ -9,7 +9,7 @@ const BODIES = ['body-0', 'body-1', 'body-2', 'body-3', 'body-4', 'body-5']
 const MARKS = ['driver', 'chosen', 'trace']
 
 describe.each(Object.entries(schemes))('in the %s scheme', (_, palette) => {
-  // Distances at which two colours beside each other are distinguished without doubt.
+  // Distances at which two adjacent colours are clearly distinguished.
   test.each([
     ['bodies', BODIES, 16],
     ['marks', MARKS, 19],
@@ -22,7 +22,7 @@ describe.each(Object.entries(schemes))('in the %s scheme', (_, palette) => {
       expect(distance(palette[a], palette[b], blindness), `${a} and ${b}`).toBeGreaterThan(11)
   })
 
-  // Less than between bodies, because what is fixed is hatched as well.
+  // Less than between bodies, because ground is also hatched.
   test('bodies differ from what is fixed', () => {
     for (const name of BODIES) expect(distance(palette[name], palette.ground), name).toBeGreaterThan(7)
   })

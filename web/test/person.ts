@@ -6,14 +6,14 @@ export const VIEW = '[data-testid=view-canvas]'
 /** For pictures of the view alone, without the buttons and names over it. */
 const ONLY_THE_VIEW = `.view > :not(${VIEW}) { visibility: hidden !important }`
 
-/** Lets that many frames pass. */
+/** Waits for this number of frames. */
 export function frames(page: Page, count: number): Promise<void> {
   return page.evaluate(async (count) => {
     for (let k = 0; k < count; k++) await new Promise(requestAnimationFrame)
   }, count)
 }
 
-/** Waits until what was requested is on the screen: one frame to draw, one to be sure that it was drawn. */
+/** Waits until the requested state is on the screen: one frame to draw, one to be sure that it was drawn. */
 export const drawn = (page: Page) => frames(page, 2)
 
 /** Present picture of the view, as a PNG. */

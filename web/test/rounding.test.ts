@@ -14,6 +14,6 @@ test('a change is as good as none by the size of what changes', () => {
 test('a curve loses its rounding, and all of itself where it is rounding next to others', () => {
   expect([...quiet(Float32Array.of(4, 3e-9, -1), 5)]).toEqual([4, 0, -1])
   expect([...quiet(Float32Array.of(4e-7, 3e-8, NaN), 1000)]).toEqual([0, 0, NaN])
-  // Small as it is, it is all there is.
+  // It is small, but the only value.
   expect([...quiet(Float32Array.of(0.5, 0.25), 1)]).toEqual([0.5, 0.25])
 })

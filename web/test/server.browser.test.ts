@@ -32,7 +32,7 @@ function stop(): Promise<void> {
   return new Promise((resolve) => (child ? (child.once('exit', () => resolve()), child.kill('SIGKILL')) : resolve()))
 }
 
-/** The page behind an address, and what has gone wrong in it besides requests that nobody answered. */
+/** The page at an address, and its errors other than unanswered requests. */
 async function open(address: string): Promise<Page> {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 } })
   page.setDefaultTimeout(WAIT)

@@ -36,7 +36,7 @@ describe('every model', () => {
   })
   afterAll(() => browser?.close())
 
-  /** The view as it is, which must show something and cut nothing off. */
+  /** The present view, which must not be empty or cut off. */
   async function whole(page: Page, what: string): Promise<Buffer> {
     const png = await picture(page)
     const seen = await examine(desk, png, await paper(page))

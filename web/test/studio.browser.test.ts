@@ -111,7 +111,7 @@ describe('a study', () => {
     await end(found)
     await page.getByTestId('optimise-take').click()
     expect(await page.evaluate(() => window.taken)).toEqual([{ change: [{ name: 'rack_z', by: 2 }], studied: 'name = "strut"' }])
-    // What was chosen is still there.
+    // The selection is unchanged.
     expect(await page.getByLabel('highest of rack_z').inputValue()).toBe('20.5')
   })
 
@@ -305,7 +305,7 @@ test('a finger sets points, and draws with touch as a mouse does', async () => {
   await touch('touchStart', 0.4)
   for (let k = 1; k <= 10; k++) await touch('touchMove', 0.4 + 0.02 * k)
   await touch('touchEnd')
-  // Both ends of the new part, and beside them where the old one is left and come back to.
+  // Both ends of the new part, and the adjacent ends of the old one.
   await expect.poll(points).toBe(6)
   expect(complaints).toEqual([])
   await page.context().close()

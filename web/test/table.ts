@@ -11,7 +11,7 @@ function cells(line: string): string[] {
   return [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,]*))/g)].map(([, quoted, plain]) => quoted?.replaceAll('""', '"') ?? plain)
 }
 
-/** The motion that the command wrote beside a report: columns by their names without units. */
+/** The motion that the command wrote next to a report: columns by their names without units. */
 export function motionBeside(report: string): Map<string, number[]> {
   const columns = table(readFileSync(new URL('motion.csv', report), 'utf8'))
   return new Map([...columns].map(([heading, values]) => [heading.replace(/ \[[^\]]*\]$/, ''), values]))

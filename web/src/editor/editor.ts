@@ -17,7 +17,7 @@ import { theme } from './theme'
 const PAUSE = 250
 /** Milliseconds within which typing on is one step of undo. */
 const STEP = 500
-/** A check that fails is requested so often: what checks may have been ended for something else. */
+/** Maximum number of requests of a check that fails: its worker may have been ended for another request. */
 const TRIES = 3
 /** Messages that are listed; the status counts all. */
 const LISTED = 100
@@ -34,7 +34,7 @@ export interface Options {
 /** The model's text, checked while it is typed. */
 export interface Editor {
   readonly element: HTMLElement
-  /** As it is, valid or not. */
+  /** Present text, valid or not. */
   readonly text: string
   /**
    * Puts another text in its place, valid and shown by the page already, by the smallest change: the cursor, what is
@@ -42,7 +42,7 @@ export interface Editor {
    * (`sameStep`), as in a drag.
    */
   setText(text: string, sameStep?: boolean): void
-  /** Adds what solving the text reported to what checking it reported; until it changes. */
+  /** Adds diagnostics of the solution to those of the check, until the text changes. */
   tell(messages: Diagnostic[]): void
   /** Puts the cursor at a line and column, both from 1, the column in characters, and shows it. */
   reveal(line: number, column: number): void
@@ -51,7 +51,7 @@ export interface Editor {
   destroy(): void
 }
 
-/** Mark of a change that was not typed, and whether it continues the one before. */
+/** Mark of a change that was not typed; true if it continues the one before. */
 const outside = Annotation.define<{ sameStep: boolean }>()
 
 /** Makes the pane of the model's text; put its element into the page before it is given the focus. */
@@ -63,7 +63,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
   let checked: Diagnostic[] = []
   let solved: Diagnostic[] = []
   let waiting: ReturnType<typeof setTimeout> | undefined
-  /** Counts the changes, so that a check of what has changed since is passed over. */
+  /** Counts the changes, so that a check of a former text is ignored. */
   let version = 0
 
   const status = el('p', { class: 'model-status', role: 'status', 'data-testid': 'model-status' })

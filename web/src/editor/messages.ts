@@ -40,7 +40,7 @@ export function mark(doc: Text, message: Diagnostic): Mark {
   return { from, to, severity: message.severity === 'note' ? 'info' : message.severity, message: message.message, renderMessage: () => el('div', { class: 'message-tip' }, ...said(message)) }
 }
 
-/** All that a message says. */
+/** Complete text of a message. */
 export function said({ severity, code, message, label, notes, help }: Diagnostic): HTMLElement[] {
   return [
     el('p', {}, el('b', { class: severity }, `${WORDS[severity]} `), ...prose(message), ' ', el('span', { class: 'code' }, code)),
@@ -50,7 +50,7 @@ export function said({ severity, code, message, label, notes, help }: Diagnostic
   ]
 }
 
-/** `2 errors, 1 warning`; nothing where there is none. */
+/** `2 errors, 1 warning`; empty if there are none. */
 export function counted(messages: readonly Diagnostic[]): string {
   const some = (severity: Diagnostic['severity']) => {
     const count = messages.filter((message) => message.severity === severity).length

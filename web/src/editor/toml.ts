@@ -15,9 +15,9 @@ export const start = (): Reading => ({ quotes: '', open: '', key: true })
 
 const SPACE = /\s+/y
 const COMMENT = /#.*/y
-/** A heading with what belongs to it; one that is not closed ends with its line. */
+/** A heading with its keys; one that is not closed ends with its line. */
 const HEADING = /\[\[?(?:"(?:\\.|[^"\\])*"|'[^']*'|[^\]"'#])*\]{0,2}/y
-/** A line that can be nothing but a heading, whatever bracket was left open above. */
+/** A line that can only be a heading, even after an open bracket. */
 const SURELY_HEADING = /^\[\[?[A-Za-z_](?:"(?:\\.|[^"\\])*"|'[^']*'|[^\]"',])*\]\]?\s*(?:#.*)?$/
 const LONG = /"""|'''/y
 /** A text on one line; one that is not closed ends with the line. */
@@ -26,7 +26,7 @@ const BARE = /[A-Za-z0-9_-]+/y
 const NUMBER = /[+-]?(?:\d[\d_]*(?:\.\d[\d_]*)?(?:[eE][+-]?\d+)?|0x[\da-fA-F_]+|0o[0-7_]+|0b[01_]+)(?![\w:-])/y
 const WORD = /[^\s,\]}#"'=[{]+/y
 
-/** The piece of a line that begins at `at`, and where it ends; `reading` goes on. */
+/** The token of a line that begins at `at`, and its end; `reading` continues. */
 export function piece(line: string, at: number, reading: Reading): [kind: Kind, to: number] {
   const end = (pattern: RegExp) => ((pattern.lastIndex = at), pattern.test(line) ? pattern.lastIndex : 0)
   if (at === 0 && reading.quotes === '' && (reading.open === '' || SURELY_HEADING.test(line))) Object.assign(reading, start())
@@ -173,7 +173,7 @@ function read(source: string) {
   return { entries, reading, table, around, key, kind, last }
 }
 
-/** The names of what a text declares in one of its tables, `hardpoints` for example. */
+/** Names that a text declares in one of its tables, such as `hardpoints`. */
 export function namesIn(entries: Entry[], table: string): string[] {
   return [...new Set(entries.filter(({ path }) => path[0] === table && path.length > 1).map(({ path }) => path[1]))]
 }

@@ -7,7 +7,7 @@ export interface Axis {
   ticks: { value: number; text: string }[]
 }
 
-/** More than that many powers of ten, and every other one has a number. */
+/** Number of powers of ten above which only every other one has a label. */
 const MOST_POWERS = 6
 
 /** An axis from `low` at `from` to `high` at `to` with about `count` round numbers. */
@@ -38,7 +38,7 @@ export function roundStep(least: number): number {
   return ([1, 2, 5].find((lead) => lead * power >= least * (1 - 1e-9)) ?? 10) * power
 }
 
-/** Least and largest of the numbers; none where there is no number. */
+/** Minimum and maximum of the numbers; undefined if there are none. */
 export function extent(lists: ArrayLike<number | null>[], positive = false): [number, number] | undefined {
   let [low, high] = [Infinity, -Infinity]
   for (const list of lists) {

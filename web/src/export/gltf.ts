@@ -70,7 +70,7 @@ function copy(object: Object3D, materials: Map<Material, Material>, pairs: [Obje
   return copied
 }
 
-/** The dark edges of a mesh belong to the drawing on the screen. */
+/** The dark edges of a mesh are only for the screen. */
 function isEdges(object: Object3D): boolean {
   return object instanceof LineSegments
 }

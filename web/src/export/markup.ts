@@ -1,11 +1,11 @@
-/** Text that may stand in XML. */
+/** Text with the special characters of XML escaped. */
 export function escaped(text: string): string {
   const entities: Record<string, string> = { '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' }
   // XML has no way to write control characters.
   return text.replace(/[\u0000-\u0008\u000b\u000c\u000e-\u001f]/g, '').replace(/[&<>"]/g, (sign) => entities[sign])
 }
 
-/** An element with attributes; what is in it is markup already. */
+/** An element with attributes; its content is markup. */
 export function tag(name: string, attributes: Record<string, string | number | undefined>, ...inside: string[]): string {
   const written = Object.entries(attributes).map(([key, value]) =>
     value === undefined ? '' : ` ${key}="${typeof value === 'number' ? round(value) : escaped(value)}"`,

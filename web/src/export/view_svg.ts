@@ -25,7 +25,7 @@ const PIECE = 0.03
 const FOLD = Math.cos((40 * Math.PI) / 180)
 /** Two vertices nearer to one another than this part of the geometry's size are one. */
 const SAME = 1e-5
-/** From above, a little from the reader's left, and how dark the other side is. */
+/** Direction of light, from above and slightly from the left, and darkness of the other side. */
 const LIGHT = new Vector3(-0.35, 0.7, 0.75).normalize()
 const DARKEST = 0.62
 /** Faces nearer to the light than this cosine have their full colour: those that face the reader, too. */

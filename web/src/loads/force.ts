@@ -38,7 +38,7 @@ export function largestAt(force: Curve): number {
   return at
 }
 
-/** A plane in a body's frame: the two directions that span it, and what they are called. */
+/** A plane in a body's frame: the two directions that span it, and their names. */
 export interface Plane {
   across: [Vector3, Vector3]
   names: [string, string]
@@ -73,7 +73,7 @@ export function seenFrom(force: Vector3, turn: Quaternion, { across: [u, v] }: P
   return [inBody.dot(u), inBody.dot(v)]
 }
 
-/** The path of a force as a body sees it, N; `sign` -1 is what the joint puts on its first body. */
+/** The path of a force in body components, N; `sign` -1 for the force on body i. */
 export function pathOf(force: Curve, poses: Curve, plane: Plane, sign: 1 | -1): [number, number][] {
   return Array.from({ length: force.length / 3 }, (_, k) => {
     const pose = poseAt(poses, k)

@@ -12,12 +12,12 @@ import { forceAt, largestAt, largestForce, pathOf, planeAcross, seenFrom, type P
 /** The picture is so wide and high, and its largest circle leaves so much room, px. */
 const SIZE = 340
 const ROOM = 26
-/** About that many circles. */
+/** Approximate number of circles. */
 const RINGS = 3
 /** A place of the path is pointed at from so far, px. */
 const REACH = 30
 
-/** The paths of forces as bodies see them, in a plane of their frame, and how large each becomes. */
+/** The paths of forces in body components, in a plane of their frame, with the maximum of each. */
 export function forcePaths(state: State): HTMLElement {
   return new Polar(state).element
 }
@@ -86,7 +86,7 @@ class Polar {
     const { bodies, joints, loads } = this.state.report
     const load = loads[index]
     const joint = load.joint === null ? undefined : joints[load.joint]
-    // The bearing is seen from what it is in, the pin from itself.
+    // Bearings in components of their housing, pins in their own.
     this.#on.replaceChildren(...(joint ? [joint.body_j, joint.body_i] : [load.at.body]).map((body) => el('option', { value: body }, bodies[body].name)))
     const options = [...(joint?.axis ? [['axis', 'its axis']] : []), ['0', 'x'], ['1', 'y'], ['2', 'z']]
     this.#along.replaceChildren(...options.map(([value, text]) => el('option', { value }, text)))
@@ -194,7 +194,7 @@ class Polar {
     this.#table.replaceChildren(...rows)
   }
 
-  /** Goes to the time at which the path is nearest to where the reader points. */
+  /** Sets the time at which the path is nearest to the pointer. */
   #point(event: PointerEvent): void {
     const box = this.#picture.getBoundingClientRect()
     const [px, py] = [((event.clientX - box.left) / box.width) * SIZE, ((event.clientY - box.top) / box.height) * SIZE]

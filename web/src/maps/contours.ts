@@ -17,10 +17,10 @@ export interface Area {
   outlines: Line[]
 }
 
-/** About that many levels between the least value and the greatest. */
+/** Approximate number of levels between minimum and maximum. */
 const LEVELS = 8
 
-/** Round numbers between the least value and the greatest; none where all are the same. */
+/** Round numbers between minimum and maximum; none if all are equal. */
 export function levels(values: ArrayLike<number>): number[] {
   const [low, high] = extent([values]) ?? [0, 0]
   if (!(high > low)) return []
@@ -48,7 +48,7 @@ function along(places: readonly number[], at: number): number {
   return places[below] + (places[below + 1] - places[below]) * (k - below)
 }
 
-/** The value anywhere within the grid, linear between places; NaN beyond, and beside gaps. */
+/** Value at any point of the grid, by linear interpolation; NaN outside, and next to gaps. */
 export function valueAt({ columns, rows, values }: Grid, x: number, y: number): number {
   const [i, s] = within(columns, x)
   const [j, t] = within(rows, y)
@@ -63,7 +63,7 @@ function mixed(a: number, b: number, part: number): number {
   return part === 0 ? a : part === 1 ? b : a + (b - a) * part
 }
 
-/** Between which places a number lies, and how far along. */
+/** Interval that contains a number, and the fraction within it. */
 function within(places: readonly number[], x: number): [interval: number, part: number] {
   const last = places.length - 1
   if (!(x >= places[0] && x <= places[last])) return [-1, 0]

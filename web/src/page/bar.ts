@@ -10,7 +10,7 @@ export interface Offers {
   help: () => void
 }
 
-/** Title and file, what is compared, search, export and help. */
+/** Title and file, compared design, search, export and help. */
 export function bar(state: State, { find, exports, help }: Offers): HTMLElement {
   const { title, file } = state.report
   return el(
@@ -31,7 +31,7 @@ function isBand({ kind }: Design): boolean {
   return kind === 'band'
 }
 
-/** With which design the present one is compared, where there is a choice. */
+/** Selector of the design for comparison, if there is a choice. */
 function comparison(state: State): HTMLElement | undefined {
   const { designs } = state.report
   if (designs.every(isBand)) return undefined

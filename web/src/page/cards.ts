@@ -11,7 +11,7 @@ type Target = [low: number | null, high: number | null]
 const DIGITS = 4
 
 /**
- * The numbers that the design is judged by, each with its change and its target; a click selects what it is taken of.
+ * Metrics of the design, each with its change and its target; a click selects their quantity.
  */
 export function cards(state: State): HTMLElement {
   const shown = state.report.values.map((value, index) => card(state, value, index))

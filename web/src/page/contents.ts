@@ -11,7 +11,7 @@ import type { State } from '../state'
 export interface Subject {
   quantity: number
   order: Order
-  /** The quantity that it is drawn over; time where there is none. */
+  /** Quantity on the abscissa; time by default. */
   over?: number
 }
 
@@ -36,7 +36,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
     content.lines.push({ label: former?.name ?? 'original', color: css('--former'), curve: quiet(curve, scale), width: 1.8, dash: DASHED })
   }
   const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
-  // Over another quantity, which is itself off, they would say something else.
+  // Over another quantity, which has a tolerance itself, bands would have another meaning.
   if (over !== undefined && bands.length > 0) content.caption = 'Bands are known over time only: select time as the abscissa to see them.'
   for (const band of over === undefined ? bands : []) {
     const curve = quiet(band.quantities[index]![order], scale)
@@ -105,7 +105,7 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   return overOther(state, subject.over, { ...content, caption: caption.trimStart() })
 }
 
-/** The largest size among quantities of the same unit: what is nothing beside it is rounding. */
+/** Maximum among quantities of the same unit, the scale for rounding. */
 function largest({ report }: State, index: number, order: Order): number {
   const unit = report.quantities[index].units[order]
   return Math.max(...report.quantities.filter(({ units }) => units[order] === unit).map(({ curves }) => peak(curves[order])))

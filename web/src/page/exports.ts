@@ -41,7 +41,7 @@ function paper() {
   return { page: css('--page'), text: css('--ink'), muted: css('--muted'), rule: css('--rule') }
 }
 
-/** Time, what the curves are over, and every curve once, at the steps that some plot shows. */
+/** Time, abscissas of the curves, and every curve once, at the steps that some plot shows. */
 function columns({ report }: State, figures: Figure[]): Column[] {
   const contents = figures.map(({ plot }) => plot.content)
   const overs = new Map(contents.flatMap(({ over }) => (over ? [[over.label, over] as const] : [])))

@@ -10,15 +10,15 @@ export type Shown = 'value' | 'sensitivity'
 
 /** Options of a figure. */
 interface Wish {
-  /** Fixed quantity; the selected one where there is none. */
+  /** Fixed quantity; the selected one by default. */
   quantity?: number
   shown: Shown
   testId: string
-  /** The first figure chooses what is selected; others may follow it, and be taken away. */
+  /** The first figure controls the selection; others may follow it, and can be removed. */
   leads: boolean
 }
 
-/** A plot with what it is of, over what, and whether values or sensitivities are drawn. */
+/** A plot with selectors of its quantity, its abscissa, and values or sensitivities. */
 export class Figure {
   readonly plot: Plot
   #quantity?: number
@@ -58,12 +58,12 @@ export class Figure {
     let extra: HTMLElement | undefined
     this.show = () => {
       const subject = this.subject
-      // What the studio adds is there as soon as the studio is.
+      // The studio adds its parts when it has loaded.
       if (!extra && (extra = tool?.(this))) controls.lastElementChild!.before(extra)
       quantity.value = this.#follows && !wish.leads ? '' : String(subject.quantity)
       over.value = subject.over === undefined ? '' : String(subject.over)
       order.value = String(subject.order)
-      // The field beside it names the quantity already.
+      // The adjacent field already names the quantity.
       this.plot.element.classList.toggle('untitled', !this.#follows || wish.leads ? this.#shown === 'value' : false)
       shown.setAttribute('aria-pressed', String(this.#shown === 'sensitivity'))
       this.plot.show(this.#shown === 'value' ? valueContent(state, subject) : sensitivityContent(state, subject))

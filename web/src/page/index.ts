@@ -23,7 +23,7 @@ import { tabs, type Tab } from './tabs'
 import { transport } from './transport'
 import { variables } from './variables'
 
-/** Parts that the page shows besides the report. */
+/** Parts of the page in addition to the report. */
 export interface Tools {
   /** Element in the bar. */
   bar?: HTMLElement
@@ -79,7 +79,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
   return { view: scene.view, bar: head }
 }
 
-/** Puts tools into the bar, before what is there for the report alone. */
+/** Adds tools to the bar, before those of the report alone. */
 export function slot(head: HTMLElement, tools: HTMLElement): void {
   head.querySelector('.space')!.after(tools)
 }

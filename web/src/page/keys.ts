@@ -1,6 +1,6 @@
 import type { State } from '../state'
 
-/** Targets of the keys besides the state; missing parts are left out. */
+/** Targets of keys other than the state; missing parts are left out. */
 interface Targets {
   fit?: () => void
   /** Takes the standard view of this number, from 0. */

@@ -7,7 +7,7 @@ export interface Item {
   run: () => void | Promise<void>
 }
 
-/** A button that opens a list of things to do; what goes wrong is said in the list's place. */
+/** A button that opens a list of actions; errors are shown in place of the list. */
 export function menu(title: string, testId: string, items: () => Item[]): HTMLElement {
   const list = el('div', { class: 'menu', role: 'menu', 'aria-label': title, 'data-testid': `${testId}-menu`, hidden: true })
   const failure = el('p', { class: 'failure', role: 'alert', hidden: true })

@@ -41,7 +41,7 @@ export function stage(state: State): Stage {
   return { element: view.element, view, look }
 }
 
-/** Says which design is drawn dashed. */
+/** Names the design that is drawn dashed. */
 function ghostKey(state: State): HTMLElement {
   const name = el('span')
   const element = el('p', { class: 'ghost-key' }, el('span', { class: 'swatch dashed', style: '--swatch: var(--former)' }), name)

@@ -14,9 +14,9 @@ const STEPS = 50
 interface Row {
   variable: Variable
   element: HTMLElement
-  /** Shows the change, and whether the row is the selected one. */
+  /** Shows the change, and highlights the row if it is selected. */
   sync: () => void
-  /** Shows what the variable does to the selected quantity. */
+  /** Shows the effect of the variable on the selected quantity. */
   rank: (effect: Effect | undefined, unit: string) => void
   focus: () => void
 }
@@ -124,7 +124,7 @@ function row(state: State, variable: Variable): Row {
     able ? effect : el('span', { class: 'why', title: variable.note }, ...prose(variable.note || 'the mechanism cannot follow')),
     controls.length > 0 && reset,
   )
-  // A press anywhere in the row selects it; buttons and fields do what they do besides.
+  // A press anywhere in the row selects it, in addition to the action of a button or field.
   element.addEventListener('pointerdown', (event) => {
     if (!(event.target as HTMLElement).closest('button') && state.choice.variable !== index) state.choose({ variable: index })
   })

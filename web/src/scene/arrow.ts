@@ -18,7 +18,7 @@ export interface ArrowSize {
   shaft: { radius: number } | { pixels: number }
 }
 
-/** An arrow from one place to another, over everything; with a head at both ends where it goes to and fro. */
+/** An arrow between two points, over everything; it has two heads for motion in both directions. */
 export function straightArrow(kit: Kit, from: Vector3, to: Vector3, { head, shaft }: ArrowSize, colour: string, layer: number, both = false): Group {
   const along = to.clone().sub(from)
   const length = along.length()
@@ -56,7 +56,7 @@ export function arcHead(kit: Kit, radius: number, angle: number, sense: 1 | -1, 
   return cone(kit, onArc(radius, middle).addScaledVector(along, head / 2), along, head, colour)
 }
 
-/** Draws an object and what is in it over everything in the given layer. */
+/** Draws an object and its children over everything in the given layer. */
 export function above<T extends Object3D>(object: T, layer: number): T {
   object.traverse((one) => (one.renderOrder = layer))
   return object

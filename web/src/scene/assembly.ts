@@ -12,7 +12,7 @@ const DETAIL = 1
 
 /** Everything that some `Draw`s made of a mechanism, in groups that move with the bodies. */
 export class Assembly {
-  /** One per body, then what is in the world. */
+  /** One per body, then that of the world. */
   readonly groups: Group[]
   readonly drawn: Drawn[]
   /** Numbers of the parts in the picture of part numbers. */

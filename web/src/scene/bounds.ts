@@ -29,7 +29,7 @@ export function outermost(points: Vector3[]): Vector3[] {
   return [...found]
 }
 
-/** Points that bound what is seen of an object, in the frame that it is in; the object itself as if it were seen. */
+/** Points that bound the visible parts of an object, in its parent frame; the object itself counts as visible. */
 export function bounds(object: Object3D, within = new Matrix4()): Vector3[] {
   object.updateMatrix()
   const here = within.clone().multiply(object.matrix)

@@ -13,12 +13,12 @@ export interface Look {
 
 /** Vertical opening of the perspective, in degrees. */
 const OPENING = 22
-/** Air round the picture, and what the buttons at its top take, in pixels. */
+/** Margin of the picture, and height of the buttons at its top, in pixels. */
 const MARGIN = 1.06
 const TOP = 34
 /** The eye stays so far before the nearest point, as a part of the mechanism's size. */
 const AHEAD = 0.2
-/** Straight along `up` there is no telling left from right: a hair beside it there is. */
+/** Along `up` left and right are undefined, so views deviate from it by this. */
 const HAIR = 1e-4
 
 /** The views offered, the first of them at the start. */
@@ -35,7 +35,7 @@ export function looksOf(mechanism: Mechanism): Look[] {
     const from = (ahead: number, aside: number, above: number) =>
       forward.clone().multiplyScalar(ahead).addScaledVector(left, aside).addScaledVector(up, above)
     const wheels = report.wheels.map(({ centre }) => mechanism.worldAt(centre.body, new Vector3(...centre.at), 0).dot(left))
-    // With one wheel from inboard, so that it is behind what carries it.
+    // With one wheel from inboard, so that the wheel is behind its knuckle.
     const outboard = wheels.length === 1 ? Math.sign(wheels[0]) || 1 : 1
     const corner = wheels.length > 1 ? from(0.95, -0.62, 0.5) : from(0.85, -0.8 * outboard, 0.42)
     return [
@@ -75,7 +75,7 @@ export function fit(camera: Camera, points: Vector3[], size: number, { direction
   camera.updateMatrixWorld()
   const [right, up, back] = [0, 1, 2].map((k) => new Vector3().setFromMatrixColumn(camera.matrixWorld, k))
   const aspect = width / height
-  // How far the picture may be filled upwards: -1 to 1 is all of it.
+  // Upper limit of the picture: -1 to 1 is all of it.
   const ceiling = 1 - (2 * top) / height
   const bound = (measure: (x: number, y: number, z: number) => number) =>
     points.reduce((most, point) => Math.max(most, measure(point.dot(right), point.dot(up), point.dot(back))), -Infinity)

@@ -1,6 +1,6 @@
 import type { Vector3 } from 'three'
 
-/** Closer than this part of the largest distance, a vertex goes with the hardpoint that it is at. */
+/** Fraction of the largest distance below which a vertex is at a hardpoint and moves with it. */
 const AT = 1e-9
 
 /**

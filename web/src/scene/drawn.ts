@@ -18,7 +18,7 @@ export interface Part {
  * Its meshes of one colour are outlined as one.
  */
 export interface Drawn {
-  /** The body whose frame it is in; in the world where there is none. */
+  /** The body whose frame it is in; the world by default. */
   body?: number
   object: Object3D
   part: Part

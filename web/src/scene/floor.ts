@@ -34,7 +34,7 @@ export class Floor {
   readonly cell: number
   readonly #own: (BufferGeometry | Material)[] = []
 
-  /** `lowest` is where the lowest thing drawn is, along `up`; vehicles stand on the road. */
+  /** `lowest` is the lowest coordinate of the drawing along `up`; vehicles are on the road. */
   constructor(mechanism: Mechanism, palette: Palette, lowest: number) {
     const { plane, up, size, centre, report } = mechanism
     const reach = size + 2 * Math.max(0, ...report.wheels.map(({ radius }) => radius))
@@ -108,7 +108,7 @@ export class Floor {
   }
 }
 
-/** The lowest contact height in the design position; none where there are no wheels. */
+/** The lowest contact height in the design configuration; undefined without wheels. */
 function road(mechanism: Mechanism): number | undefined {
   const heights = mechanism.report.wheels.map(({ centre, axis, radius }) => {
     const spin = mechanism.alongAt(centre.body, new Vector3(...axis), 0)

@@ -77,13 +77,13 @@ export function hingePlaces(mechanism: Mechanism, joint: JointMark): Vector3[] {
   return [at.addScaledVector(mechanism.into(joint.body_i, mechanism.alongAt(body, axis, 0)), by)]
 }
 
-/** The middle of what else of a body is at hand, in its frame; the place itself where there is nothing else. */
+/** Centre of the other points of a body, in its frame; the point itself if there are none. */
 export function restOf(mechanism: Mechanism, body: number, at: Vector3): Vector3 {
   const others = mechanism.shapePoints(body).filter((point) => !mechanism.same(point, at))
   return others.length > 0 ? others.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(others.length) : at.clone()
 }
 
-/** Unit vector in a body's frame from a place on it to the rest of it; `otherwise` where there is no rest. */
+/** Unit vector in a body's frame from a point on it to its other points; `otherwise` if there are none. */
 export function towardsRest(mechanism: Mechanism, body: number, at: Vector3, otherwise: Vector3): Vector3 {
   const way = restOf(mechanism, body, at).sub(at)
   const shaft = shaftAxis(mechanism, body)

@@ -229,7 +229,7 @@ export class Kit {
   hatched(at: Vector3, x: Vector3, y: Vector3, sides: [number, number, number]): Mesh {
     const geometry = new BoxGeometry(...sides)
     const { uv, normal } = geometry.attributes
-    // Two strokes or so per 2.5 units on every face, whatever its size.
+    // About two strokes per 2.5 units on every face, independent of its size.
     const scale = 1 / (2.5 * this.unit)
     for (let k = 0; k < uv.count; k++) {
       const [nx, ny] = [Math.abs(normal.getX(k)), Math.abs(normal.getY(k))]
@@ -245,7 +245,7 @@ export class Kit {
     return mesh
   }
 
-  /** Frees what the graphics card holds. */
+  /** Frees graphics memory. */
   dispose(): void {
     for (const one of [...this.#materials.values(), ...this.#geometries, ...this.#shared.values()]) one.dispose()
     this.#hatch?.dispose()

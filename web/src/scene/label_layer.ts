@@ -79,7 +79,7 @@ export function hardpointLabels(mechanism: Mechanism, frame: Frame, only?: numbe
   return labels
 }
 
-/** The value of the dimension line drawn, at the middle of what it measures. */
+/** Value of the dimension line, at its middle. */
 export function distanceLabels({ report }: Mechanism, frame: Frame, index: number | undefined, value: (quantity: number) => number): Label[] {
   if (index === undefined) return []
   const { name, from, to } = report.distances[index]
@@ -89,7 +89,7 @@ export function distanceLabels({ report }: Mechanism, frame: Frame, index: numbe
   return [{ at: a.lerp(b, 0.5), text: `${name} ${number(rounded(value(quantity)), DIGITS)} ${pretty(report.quantities[quantity].units[0])}` }]
 }
 
-/** Names for what is hovered or chosen: a body with its hardpoints, a joint at its place. */
+/** Names for the hovered or selected item: a body with its hardpoints, or a joint at its location. */
 export function partLabels(mechanism: Mechanism, frame: Frame, part: Part): Label[] {
   if (part.kind === 'body') return part.index === 0 ? [] : hardpointLabels(mechanism, frame, part.index)
   if (part.kind !== 'joint') return []

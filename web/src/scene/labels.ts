@@ -1,4 +1,4 @@
-/** A text that wants to stand near a place of the picture, px. */
+/** A label with its preferred position in the picture, px. */
 export interface Spot {
   x: number
   y: number
@@ -18,7 +18,7 @@ export interface Placed {
 export interface Room {
   width: number
   height: number
-  /** The title and the buttons stand above. */
+  /** The title and the buttons are above. */
   top: number
 }
 

@@ -65,7 +65,7 @@ export class Mechanism {
   #tints: number[]
   #slides: (Slide | undefined)[]
 
-  /** `base`: the design as loaded, where this is a change of it. `former`: the design drawn dashed beside this one. */
+  /** `base`: the loaded design, if this is a change of it. `former`: the design that is drawn dashed. */
   constructor(
     readonly report: Report,
     readonly base?: Mechanism,

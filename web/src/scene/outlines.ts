@@ -59,7 +59,7 @@ export class Outlines {
     this.#sheet.frustumCulled = false
   }
 
-  /** Gives a mesh its part's number. */
+  /** Assigns the number of its part to a mesh. */
   number(mesh: Object3D, number: number): void {
     mesh.layers.enable(PARTS)
     mesh.onBeforeRender = (_renderer, _scene, _camera, _geometry, material) => {

@@ -4,11 +4,11 @@ import { fit, type Look } from './camera'
 import type { Mechanism } from './mechanism'
 import { OVER } from './outlines'
 
-/** Longer than that many times its height, a large mechanism is seen twice: the whole above, a part of it below. */
+/** Ratio of length to height above which a large mechanism has an overview above the view of a part. */
 const LONG = 6
 /** Height of the whole's strip, as a part of the view and in pixels at most. */
 const STRIP = { share: 0.22, most: 110 }
-/** The part below is that many heights long, for every one that the view is wider than high. */
+/** Length of the part below, in heights, per aspect ratio of the view. */
 const PART = 4
 
 /** The whole of a long mechanism in a strip at the top of the view; a click there moves the part seen below. */
@@ -44,7 +44,7 @@ export class Overview {
     })
   }
 
-  /** Height of the strip in a view of that many pixels. */
+  /** Height of the strip in a view of this number of pixels. */
   strip(height: number): number {
     return Math.round(Math.min(STRIP.share * height, STRIP.most))
   }

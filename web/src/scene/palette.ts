@@ -41,7 +41,7 @@ export interface Palette {
     /** Strength of the light from above, and its colour from below. */
     sky: number
     earth: string
-    /** Strength of the light that casts shadows, and how dark they are. */
+    /** Intensity of the light that casts shadows, and darkness of the shadows. */
     sun: number
     shadow: number
   }
@@ -49,7 +49,7 @@ export interface Palette {
   glass: number
 }
 
-/** The palette of a scheme, by what gives the style sheet's custom properties: on the page, those of the moment. */
+/** The palette of a scheme, from custom properties of the style sheet; on the page, from its present ones. */
 export function paletteOf(read = (name: string) => css(`--${name}`)): Palette {
   return {
     view: read('view'),

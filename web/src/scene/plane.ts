@@ -21,7 +21,7 @@ export function planeOf(report: Report, sweep: Vector3[], size: number): Vector3
   return normal.multiplyScalar(towardsReader(normal))
 }
 
-/** x and z point at the reader, y away: then z is up where the plane is xz, and x goes to the right. */
+/** x and z point to the viewer, y away: in the plane xz, z points up and x to the right. */
 function towardsReader({ x, y, z }: Vector3): number {
   const most = Math.max(Math.abs(x), Math.abs(y), Math.abs(z))
   if (Math.abs(z) === most) return Math.sign(z)

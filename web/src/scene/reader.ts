@@ -9,7 +9,7 @@ const BETTER = 0.85
 /** Joints nearer to one another in the picture than this part of the mechanism's size cover one another. */
 const COVERED = 0.04
 
-/** By how much a wheel seen from behind, its teeth away from the reader, makes a corner worse. */
+/** Penalty of a view direction for a wheel from behind, with its teeth away from the viewer. */
 const BEHIND = 0.5
 
 /**

@@ -55,12 +55,12 @@ export function predictedReport(report: Report, changes: number[], size: number)
       axis_j: axis_j ? turn(body_j, at_j, axis_j) : axis_j,
     }
   })
-  // What forces become is not predicted.
+  // Forces have no prediction.
   const loads = redrawn.loads.map((load) => ({ ...load, force: new Float32Array() }))
   return { ...redrawn, joints, loads }
 }
 
-/** Shifts of several variables together, to first order; none where there are none. */
+/** Combined shifts of several variables, to first order; undefined without shifts. */
 function sum(items: { curve: Curve | undefined; by: number }[]): Curve | undefined {
   let total: Curve | undefined
   for (const { curve, by } of items) {

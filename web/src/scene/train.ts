@@ -99,7 +99,7 @@ export class Train {
     return known.phase + Math.atan2(from.clone().cross(to).dot(wheel.shaft.axis), from.dot(to))
   }
 
-  /** Notes how a wheel is drawn: the middle of a tooth is at the angle `phase` from a direction. */
+  /** Stores the orientation of a wheel: the middle of a tooth is at the angle `phase` from a direction. */
   tooth({ body, centre }: Wheel, teeth: number, radius: number, towards: Vector3, phase: number): void {
     this.#toothed.push({ body, centre, teeth, radius, towards, phase })
   }
@@ -119,7 +119,7 @@ export class Train {
     const [a, b] = wheels
     const [ofA, ofB] = wheels.map(({ shaft }) => this.#bodiesOf(shaft))
     const carriers = ofA.filter((body) => ofB.includes(body))
-    // What both turn in carries them, and neither is fixed to it.
+    // The carrier in which both rotate is not fixed to either.
     if (carriers.length === 1) {
       const fixed = (bodies: number[]) => bodies.find((body) => body !== carriers[0])!
       a.body = fixed(ofA)
@@ -129,7 +129,7 @@ export class Train {
   }
 }
 
-/** A shaft goes through everything on it. */
+/** A shaft extends through everything on it. */
 export function reach(shaft: Shaft, along: number): void {
   shaft.low = Math.min(shaft.low, along)
   shaft.high = Math.max(shaft.high, along)

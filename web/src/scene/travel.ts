@@ -23,7 +23,7 @@ const NEARLY = 0.2
 /** Drawn angle of a whole turn, rad; a gap separates its beginning and its end. */
 const WHOLE = 4.9
 
-/** An arc as it is drawn: from one angle to another, with a head where it ends, or at both ends. */
+/** A drawn arc: from one angle to another, with a head at its end, or at both ends. */
 export interface Arc {
   radius: number
   from: number
@@ -51,7 +51,7 @@ export function atLeast(low: number, high: number, least: number): [number, numb
   return [low - grow, high + grow]
 }
 
-/** The part of `direction` that is perpendicular to an axis, of length 1; none where there is nothing left. */
+/** Unit vector of the component of `direction` perpendicular to an axis; undefined if it is zero. */
 export function offAxis(direction: Vector3, axis: Vector3, least: number): Vector3 | undefined {
   const rest = direction.clone().addScaledVector(axis, -direction.dot(axis))
   return rest.length() > least ? rest.normalize() : undefined

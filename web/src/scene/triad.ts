@@ -3,9 +3,9 @@ import { svg } from '../dom'
 import type { Mechanism } from './mechanism'
 
 const REACH = 28
-/** From the tip to the middle of a letter; of a word, beside the tip as well. */
+/** Distance from the tip to the centre of a letter; for a word, also sideways. */
 const GAP = 8
-/** A word beside the box is about so wide, px. */
+/** Approximate width of a word next to the box, px. */
 const WORD = 28
 /** An axis along a direction of the vehicle has at least this cosine with it. */
 const ALONG = 0.99

@@ -161,7 +161,7 @@ export class View {
     return ray.ray
   }
 
-  /** Lets go of all that the graphics hold, for a page that is made anew. */
+  /** Frees all graphics memory before the page is rebuilt. */
   dispose(): void {
     this.#gone.push(this.#matter, this.#marks)
     for (const one of this.#gone.splice(0)) one.dispose()

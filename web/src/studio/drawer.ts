@@ -1,15 +1,15 @@
 import './drawer.css'
 import { el } from '../dom'
 
-/** Something that can stand in the drawer. */
+/** A pane of the drawer. */
 interface Pane {
   name: string
   title: string
-  /** Content, made when it is first wanted. */
+  /** Content, made on first use. */
   open: () => Promise<HTMLElement>
 }
 
-/** A drawer beside the page that shows one pane at a time, and the buttons that open them. */
+/** A drawer at the side of the page that shows one pane at a time, and the buttons that open them. */
 export class Drawer {
   readonly element = el('aside', { class: 'drawer', hidden: true, 'data-testid': 'drawer' })
   readonly buttons: HTMLButtonElement[]

@@ -189,7 +189,7 @@ export class Grips {
     this.rest()
   }
 
-  /** A hand is no finer than this: a drag leaves no digits that nobody meant. */
+  /** Resolution of a drag, so that it leaves no meaningless digits. */
   get #fine(): number {
     return 10 ** Math.floor(Math.log10(this.#size * 1e-4))
   }
@@ -209,7 +209,7 @@ export class Grips {
     return this.view.today.plane?.clone() ?? new Vector3().setFromMatrixColumn(this.view.camera.matrixWorld, 2)
   }
 
-  /** Puts a hardpoint, and its mirror image, at a place of the drawing; coordinates that stay keep their numbers. */
+  /** Moves a hardpoint and its mirror image in the design configuration; unchanged coordinates keep their digits. */
   #put({ grip }: Shown, place: Vector3, snap: number, before: Vector3): void {
     const still = 1e-9 * this.#size
     AXES.forEach((_, k) => {

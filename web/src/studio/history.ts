@@ -85,7 +85,7 @@ export class History {
       this.#at--
       this.#hand = undefined
     }
-    // Of the first there is no step to be undone: it is what all comes back to.
+    // The first design is no step that can be undone: it is the origin.
     if (this.#steps.length > this.most) {
       this.#steps.splice(1, this.#steps.length - this.most)
       this.#at = this.#steps.length - 1
@@ -93,12 +93,12 @@ export class History {
     this.#tell()
   }
 
-  /** Ends what a hand does: it has let go. */
+  /** Ends a step: the pointer was released. */
   rest(): void {
     this.#hand = undefined
   }
 
-  /** Goes one step back; nothing where there is none. */
+  /** Goes one step back; undefined at the first. */
   undo(): Step | undefined {
     return this.#move(-1)
   }
@@ -113,7 +113,7 @@ export class History {
     return this.present
   }
 
-  /** Gives the present design a name; `design 1` and so on where none is given. */
+  /** Names the present design; by default `design 1` and so on. */
   keep(name = ''): Snapshot {
     this.#named++
     const snapshot = { id: this.#named, name: name.trim() || this.#free(), step: this.present }
@@ -122,7 +122,7 @@ export class History {
     return snapshot
   }
 
-  /** Goes to a design that was given a name, as a step that can be undone. */
+  /** Goes to a named design, as a step that can be undone. */
   take(snapshot: Snapshot): Step {
     this.go({ ...snapshot.step, label: snapshot.name })
     return this.present

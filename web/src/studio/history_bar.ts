@@ -121,7 +121,7 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
     open(false)
     button.focus()
   })
-  // Only where the focus goes elsewhere: a list that is made anew loses it to nothing.
+  // Only if the focus moves to another element: rebuilding a list moves it to none.
   element.addEventListener('focusout', ({ relatedTarget }) => {
     if (relatedTarget && !element.contains(relatedTarget as Node)) open(false)
   })

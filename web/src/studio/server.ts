@@ -61,7 +61,7 @@ export interface Study {
   reports?: { case: string | null; link: string }[]
 }
 
-/** `gone`: nobody answers. `stranger`: somebody else does, with another token. */
+/** `gone`: no answer. `stranger`: another server answers, with another token. */
 export type State = 'there' | 'gone' | 'stranger'
 
 /** Events from the server. */
@@ -70,19 +70,19 @@ interface Events {
   state: State
   /** The file has another text, or (without a revision) is there no more. */
   changed: { revision: string | null }
-  /** A study goes on; only what is new. */
+  /** Progress of a study; only new lines. */
   study: Partial<Study> & { id: number; line?: string }
-  /** Something was missed: what is known of studies has to be requested. */
+  /** Events were missed: the state of studies must be requested. */
   missed: undefined
 }
 
-/** That nobody has answered, or a stranger. */
+/** Error if no server answers, or another one. */
 export class NoAnswer extends Error {}
 
 /** Seconds between attempts to reach a server that is gone. */
 const FIRST_PAUSE = 0.5
 const LONGEST_PAUSE = 5
-/** The server gives a sign of life every two seconds. */
+/** The server sends a heartbeat every two seconds. */
 const SILENCE = 20
 
 /** The server that the page comes from; `undefined` of a page from a file. */
@@ -154,7 +154,7 @@ export class Server {
     return revision === this.revision
   }
 
-  /** Saves in place, over the text that this one was made from; with `anyway` also what is no valid model. */
+  /** Saves over the text that this one was made from; with `anyway` even if the model is invalid. */
   async save(text: string, anyway = false): Promise<Saved> {
     const response = await this.request('PUT', this.target(this.file!, anyway), { body: text, headers: { 'if-match': `"${this.revision}"` } })
     const saved = await outcome(response)
@@ -171,7 +171,7 @@ export class Server {
     return `/api/model?${new URLSearchParams({ file, client: this.client, ...(anyway ? { anyway: '1' } : {}) })}`
   }
 
-  /** Begins a study of a text; what comes of it is heard as `study`. */
+  /** Starts a study of a text; its results arrive as `study` events. */
   async begin(asked: Asked): Promise<Study> {
     const body = JSON.stringify({ file: this.file, ...asked })
     const response = await this.request('POST', '/api/study', { body, headers: { 'content-type': 'application/json' } })
@@ -185,7 +185,7 @@ export class Server {
     return response.ok ? response.json() : undefined
   }
 
-  /** Asks a study to end, with what it has found. */
+  /** Ends a study with its results so far. */
   async cancel(id: number): Promise<void> {
     await this.request('DELETE', `/api/study/${id}`)
   }
@@ -208,7 +208,7 @@ export class Server {
     for (const listener of this.listeners[name]) listener(event)
   }
 
-  /** Hears what the server indicates, and seeks it again when it is gone. */
+  /** Listens to events of the server, and reconnects when it is gone. */
   private async listen(): Promise<never> {
     const query = new URLSearchParams({ client: this.client, ...(this.file === null ? {} : { file: this.file }) })
     for (let pause = FIRST_PAUSE; ; pause = Math.min(2 * pause, LONGEST_PAUSE)) {
@@ -223,7 +223,7 @@ export class Server {
           this.hear(name, data)
         }
       } catch {
-        // The next attempt shows whether it is there.
+        // The next attempt shows the state of the server.
       }
       clearTimeout(timer)
       if (this.state === 'there') this.become('gone')

@@ -118,7 +118,7 @@ class Desk {
     await this.compare()
   }
 
-  /** The present text may be saved over what is on disk now. */
+  /** The present text may overwrite the file on disk. */
   private async keep(): Promise<void> {
     const read = await this.server.read(this.server.file!)
     if (!read) return this.changed(null)
@@ -180,7 +180,7 @@ class Desk {
     const follow = async (news: Partial<Study> & { line?: string }) => {
       if (news.line !== undefined) study.lines.push(news.line)
       study = { ...study, ...news }
-      // The end is reported without what is long.
+      // The end is reported without long data.
       if (study.state !== 'running') study = (await server.study(study.id).catch(() => undefined)) ?? study
       show()
     }
@@ -189,7 +189,7 @@ class Desk {
     await this.catchUp()
   }
 
-  /** Asks how all studies are going. */
+  /** Requests the state of all studies. */
   private async catchUp(): Promise<void> {
     for (const [id, follow] of this.running) {
       const study = await this.server.study(id).catch(() => null)
@@ -208,7 +208,7 @@ class Desk {
     }
   }
 
-  /** Asks the server; that it does not answer is said elsewhere. */
+  /** Sends a request to the server; a lost connection is reported elsewhere. */
   private async asking(what: () => Promise<void>): Promise<void> {
     try {
       await what()

@@ -6,7 +6,7 @@ const BLEND = 0.03
 /** Tremble of a hand, and tolerance of a thinned curve, px. */
 const TREMBLE = 7
 const OFF = 2
-/** Steps of the numbers across what is seen, at least. */
+/** Minimum number of steps of the numbers across the visible range. */
 const STEPS = 500
 
 /** Drawn stroke as one value at each abscissa: where it went back, the last one. */
@@ -16,7 +16,7 @@ export function upright(drawn: readonly Point[]): Point[] {
   for (const point of drawn) {
     const [from, to] = before[0] <= point[0] ? [before, point] : [point, before]
     const kept = curve.filter(([x]) => x < from[0] || x > to[0])
-    // Of a stretch that goes straight up the last one counts.
+    // The last point of a vertical stretch is used.
     const added = from[0] === to[0] ? [point] : [from, to]
     curve = [...kept.filter(([x]) => x < from[0]), ...added, ...kept.filter(([x]) => x > to[0])]
     before = point

@@ -37,7 +37,7 @@ export function optimizePane(host: StudyHost): StudyPane {
   })
 }
 
-/** Studies how exactly the design must be made. */
+/** Tolerance study. */
 export function tolerancePane(host: StudyHost): StudyPane {
   return pane(host, {
     name: 'Tolerance',
@@ -76,7 +76,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
   const show = (...parts: HTMLElement[]) => {
     const focused = element.contains(document.activeElement)
     element.replaceChildren(...parts, announced)
-    // What had the focus is gone with what was there.
+    // The focused element was removed with the former content.
     if (focused) element.querySelector<HTMLElement>('.acts button:not(:disabled)')?.focus()
   }
   const refused = (error: unknown) => el('p', { class: 'refused', role: 'alert', 'data-testid': `${testId}-refused` }, ...prose(error instanceof Error ? error.message : String(error)))
@@ -199,7 +199,7 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
   }
 }
 
-/** A row of a form: whether it is chosen, and what it says; in words, why that cannot be. */
+/** A row of a form: its selection and its value, or an error message. */
 interface Row<T> {
   row: HTMLElement
   chosen: () => boolean

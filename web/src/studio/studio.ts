@@ -32,7 +32,7 @@ const REST = 200
  */
 export class Studio {
   readonly history: History
-  /** One is free for what the hand does while the other works out sensitivities. */
+  /** One worker solves drags while the other computes sensitivities. */
   readonly #drags: Solver
   readonly #sensing: Solver
   readonly #checks: Solver
@@ -53,7 +53,7 @@ export class Studio {
   #text: string
   /** A text that is being solved. */
   #next?: string
-  /** Counts what was requested, so that an answer to what is no longer wanted is passed over. */
+  /** Counts the requests, so that an outdated answer is ignored. */
   #version = 0
 
   constructor(
@@ -107,7 +107,7 @@ export class Studio {
     await solved
   }
 
-  /** Items for export besides those of the report. */
+  /** Items for export in addition to those of the report. */
   readonly exports = (): Item[] => [
     { name: 'Model as TOML', testId: 'export-toml', run: async () => save(new Blob([await this.#settled()], { type: 'application/toml' }), this.model.file) },
   ]
@@ -133,7 +133,7 @@ export class Studio {
     this.#status.textContent = words
   }
 
-  /** Listens to the reader's changes of what is shown now. */
+  /** Listens to changes of the shown design. */
   #attach(): void {
     const { state } = this
     state.onChange(() => {
@@ -180,13 +180,13 @@ export class Studio {
     this.#cases.replaceChildren(select)
   }
 
-  /** Notes the design as a step of the history, or as part of what the hand does. */
+  /** Adds the design to the history as a step, or as part of a drag. */
   #note(): void {
     const { settings } = this.state
     this.history.go({ text: this.model.text, settings, label: settings.at(-1)?.name ?? 'reset' }, `${this.#hand}`)
   }
 
-  /** Solves what is changed; while the engine is at work, only the last change waits. */
+  /** Solves the changed design; while the engine is busy, only the last change waits. */
   #solve(): void {
     this.#wanted = this.state.settings
     if (!this.#busy) void this.#work()
@@ -241,7 +241,7 @@ export class Studio {
   async #rest(): Promise<void> {
     if (this.#busy || this.#grips?.holding) return
     const { state } = this
-    // The hand has let go: what comes next is another step. Where the design stopped, it is noted as it is.
+    // The pointer was released: the next change is another step. A design that stopped is added unchanged.
     this.#note()
     this.#hand++
     this.history.rest()
@@ -308,7 +308,7 @@ export class Studio {
     }
   }
 
-  /** Makes the page anew, with what was chosen. */
+  /** Rebuilds the page with the former selection. */
   #show(report: Report): void {
     const before = this.state
     const { view } = this.made
@@ -331,7 +331,7 @@ export class Studio {
     if (on) queueMicrotask(() => (this.#grips as Grips | undefined)?.toggle())
   }
 
-  /** Draws a design that was given a name beside the present one. */
+  /** Draws a named design together with the present one. */
   async #compare(snapshot: Snapshot | undefined): Promise<void> {
     if (!snapshot) return this.state.choose({ compared: undefined })
     const { text, settings } = snapshot.step

@@ -66,7 +66,7 @@ class Scatter {
     }).observe(this.#frame)
   }
 
-  /** The variable that the first metric depends on most, as far as indices tell; else the first. */
+  /** The variable with the largest Sobol index of the first metric; by default the first. */
   #strongest(): number {
     const first = this.sweep.axes.findIndex(({ metric }) => metric)
     const of = this.sweep.indices.filter(({ metric }) => metric === first)

@@ -5,7 +5,7 @@ import { pathToFileURL } from 'node:url'
 import { build, type Rollup } from 'vite'
 import { packed } from '../../packed'
 
-/** Builds a page of one part of the page, `NAME.ts` beside this file, and gives its address. */
+/** Builds a page of one part of the page, `NAME.ts` next to this file, and returns its address. */
 export async function harness(name: string): Promise<string> {
   const made = (await build({
     configFile: false,

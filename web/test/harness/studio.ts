@@ -30,7 +30,7 @@ declare global {
   }
 }
 
-/** A study that goes as a test wants it to. */
+/** A study that is controlled by a test. */
 interface Study {
   text: string
   request: OptimizeRequest | ToleranceRequest

@@ -74,7 +74,7 @@ fn text(tables: &[Table], titles: &[&str]) -> String {
     out
 }
 
-fn diagnostics_text(list: &[Diagnostic]) -> String {
+fn listing(list: &[Diagnostic]) -> String {
     let mut out = String::new();
     for d in list {
         writeln!(out, "[{}] {}", d.code, d.message).unwrap();
@@ -311,7 +311,7 @@ fn a_mechanism_next_to_a_singular_position_is_warned_of() {
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     let margin = summary.margin.as_ref().unwrap();
     assert!(margin.is_thin(), "{margin:?}");
-    let shown = diagnostics_text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+    let shown = listing(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
     assert!(
         shown.starts_with("[HP0407] the mechanism comes close to a singular position at t = "),
         "{shown}"
@@ -362,7 +362,7 @@ fn an_assembly_is_shown_with_gaps_and_moves() {
 fn a_mechanism_that_does_not_assemble_reports_its_gaps() {
     let file = file(&with_a_rod_of(0.7));
     let (solution, summary) = solved(&file);
-    insta::assert_snapshot!(diagnostics_text(&diagnose::all(
+    insta::assert_snapshot!(listing(&diagnose::all(
         &file,
         &summary,
         &Course::of(&file.model, &solution),
@@ -434,7 +434,7 @@ fn a_variable_without_effect_is_reported() {
     draft.design.push(VariableDraft::new("unused", changes));
     let file = file(&draft);
     let (solution, summary) = solved(&file);
-    insta::assert_snapshot!(diagnostics_text(&diagnose::all(
+    insta::assert_snapshot!(listing(&diagnose::all(
         &file,
         &summary,
         &Course::of(&file.model, &solution),
@@ -460,7 +460,7 @@ measures.rocker = { type = "reaction", joint = "D", part = "radial" }
 "#;
     let file = hardpoint_file::parse(text, "drawn.toml").unwrap();
     let (solution, summary) = solved(&file);
-    let shown = diagnostics_text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+    let shown = listing(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
     insta::assert_snapshot!(shown);
 }
 
@@ -489,8 +489,7 @@ fn joints_that_stay_open_visibly_are_warned_of() {
         let file = hardpoint_file::parse(&long_bars(tilt), "drawn.toml").unwrap();
         let (solution, summary) = solved(&file);
         assert!(solution.stop.is_none(), "{:?}", solution.stop);
-        let shown =
-            diagnostics_text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+        let shown = listing(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
         (summary.effort.worst_residual_si, shown)
     };
     // The coupler's end rises by 460 m per rad of tilt; a thousandth of its length is 0.1 mm.
@@ -538,7 +537,7 @@ time = {{ end = 1, steps = 4 }}
         let file = hardpoint_file::parse(&frame(joints), "drawn.toml").unwrap();
         let (solution, summary) = solved(&file);
         assert_eq!(summary.model.freedom_line(), "0 (nothing can move)");
-        all += &diagnostics_text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+        all += &listing(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
         all += "\n";
     }
     insta::assert_snapshot!(all);
@@ -547,6 +546,6 @@ time = {{ end = 1, steps = 4 }}
         + "[drivers]\nm = { joint = \"A\", law = \"0\" }\n";
     let file = hardpoint_file::parse(&moves, "drawn.toml").unwrap();
     let (solution, summary) = solved(&file);
-    let shown = diagnostics_text(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
+    let shown = listing(&diagnose::all(&file, &summary, &Course::of(&file.model, &solution), None));
     assert!(!shown.contains("HP0305"), "{shown}");
 }

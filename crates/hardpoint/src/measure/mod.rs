@@ -105,8 +105,7 @@ impl MeasureResults {
         std::array::from_fn(|order| finite(row.get(3 * m + order)))
     }
 
-    /// Their derivatives by variable b; those of a variable that the mechanism cannot follow are NaN and
-    /// mean nothing: ask [`Sensitivities::admissibility`] first.
+    /// Derivatives by variable b; NaN if the variable is not admissible, see [`Sensitivities::admissibility`].
     pub fn d(&self, k: usize, b: VariableId, m: usize) -> [f64; 3] {
         if self.unknown[b.0] {
             return [f64::NAN; 3];
@@ -176,8 +175,8 @@ impl MeasureResults {
         }
     }
 
-    /// Takes over what the walk has found of the measures that need more of a step than where the bodies are, at the
-    /// eight output times from k on. Their rates are not known; of a program they stand there as such.
+    /// Copies measures that need more of a step than the motion of its bodies, at the eight output times from k on.
+    /// Their rates are unknown; a program has stored them as such.
     fn take_given(&mut self, k: usize, given: &StepValues, by_program: bool) {
         let Some(block) = given.block(k) else { return };
         let outputs = self.outputs.len();
@@ -275,8 +274,8 @@ pub(crate) struct MeasuredDesign<'a> {
     pub laws: &'a [Law],
 }
 
-/// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for; by a
-/// program, if there is one, but for what it cannot tell.
+/// Evaluates all outputs over a motion, and their derivatives by the variables with sensitivities. A program computes
+/// them, if there is one, except for outputs that it does not support.
 pub(crate) fn evaluate(
     design: &MeasuredDesign<'_>,
     topology: &Topology,
@@ -293,8 +292,8 @@ pub(crate) fn evaluate(
         let times = first..usize::min(first + LANES, motion.len());
         let asked = loop {
             if let Some(run) = &mut run {
-                // Eight output times at once; what the program cannot tell is listed, and asked of the formulas one by
-                // one.
+                // Eight output times at once; outputs that the program does not support are listed, and evaluated by
+                // their formulas one by one.
                 run.at(first, motion, sensitivities, measured);
             }
             let asked = formulas.fill(times.clone(), run.as_ref(), measured);
@@ -384,8 +383,8 @@ impl<'a> FormulaEvaluator<'a> {
         }
     }
 
-    /// Evaluates what a program does not tell at these output times, which are a block of eight, and counts all angles
-    /// there; says how many outputs that are.
+    /// Evaluates the outputs that a program does not support at a block of eight output times, and counts all angles
+    /// there; returns the number of these outputs.
     fn fill(
         &mut self,
         times: Range<usize>,
@@ -430,7 +429,7 @@ impl<'a> FormulaEvaluator<'a> {
             whole_turns[m].0[0] = whole;
         });
         if self.counts {
-            // The formula of measures asks for angles with their turns, so these are found first.
+            // Formulas of measures use angles with their turns, so these are computed first.
             self.counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
             let instant = Instant { whole_turns, ..instant };
             for &(_, m) in left.iter().filter(|(_, m)| is_formula(model, *m)) {
@@ -444,7 +443,7 @@ impl<'a> FormulaEvaluator<'a> {
 pub(crate) struct Context<'a> {
     /// Values of the measures that depend on a driver.
     pub slopes: &'a StepValues,
-    /// By time and measure: the whole turns of its angle, rad; empty where no formula asks for them.
+    /// By time and measure: the whole turns of its angle, rad; empty if no formula uses them.
     pub whole_turns: &'a [f64],
 }
 
@@ -471,7 +470,7 @@ pub(crate) fn derivatives(
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
     for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
-        // d/db of what is fixed in the bodies; that of the poses is W at this time, by `with_sensitivity`.
+        // d/db of body-fixed data; the derivative of the poses is W at this time, by `with_sensitivity`.
         values[b] = Dual::variable(values[b].v);
         let fixed = design_map.fixed(&values);
         let fixed = fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
@@ -621,7 +620,7 @@ fn unwrap_angles(
         let Some(turns_of) = turns_of else { continue };
         let [now, rate, acceleration] = measured.value(k, m);
         let near = match *turns_of {
-            // About f(t), q of the tree, or what the path has counted
+            // Near f(t), q of the tree, or the angle that was counted along the path
             Turns::Driver(d) => laws[d.0].at(motion.times[k]).value(),
             Turns::Coordinate(q) => motion.coordinates.row(k).get(q.0),
             Turns::Path(PathTurns { angle: Some(at), .. }) => motion.counted[k * at.of + at.place],
@@ -641,7 +640,7 @@ fn unwrap_angles(
     }
 }
 
-/// Everything that a measure can ask for at one time, as numbers that carry whatever derivatives are wanted.
+/// Input data of measures at one time, as numbers with the requested derivatives.
 #[derive(Clone, Copy)]
 pub(crate) struct Instant<'a, T> {
     model: &'a Model,
@@ -709,8 +708,8 @@ impl<'a, T: Real> Instant<'a, T> {
             }
             MeasureKind::Angle { from, to, about } => {
                 let [a, b] = self.rays(k, [from, to]);
-                // atan2(abs(a x b), a . b); about n, of what is seen along it: atan2(n . (a x b), a . b - (n . a) (n .
-                // b))
+                // atan2(abs(a x b), a . b); about n, for the projections along it:
+                // atan2(n . (a x b), a . b - (n . a) (n . b))
                 let (across, along) = (a.cross(b), a.dot(b));
                 let within = match about {
                     None => across.norm().atan2(along),
@@ -742,8 +741,8 @@ impl<'a, T: Real> Instant<'a, T> {
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
                 let a = v.map(T::rate);
-                // n . (v x a) / abs(v)^3, or abs(v x a) / abs(v)^3; none where v^2 <= 1e-12 abs(a) size, a point that
-                // comes from rest
+                // n . (v x a) / abs(v)^3, or abs(v x a) / abs(v)^3; NaN if v^2 <= 1e-12 abs(a) size, for a point that
+                // starts from rest
                 let (turn, speed) = (v.cross(a), v.norm());
                 let turn = about.map_or_else(|| turn.norm(), |about| about.spread().dot(turn));
                 let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.fixed.size));

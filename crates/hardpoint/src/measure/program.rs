@@ -126,7 +126,7 @@ impl MeasureProgram {
             let ways: Vec<_> = asked.moved.iter().map(&mut way).collect();
             let mut whole_turns = vec![Dual::constant(Jet::constant(zero)); model.measures.len()];
             turning.iter().for_each(|&m| whole_turns[m].v.0[0] = input(0.0));
-            // Not folded: what it is added to as a factor is as it was, unless it is no number.
+            // An input, so that it is not folded: adding a multiple of it changes only NaN.
             let nothing = input(0.0);
             let number = if asked.any_design { Number::input } else { Number::constant };
             let values: Vec<Number> = nominal.iter().map(|v| number(*v)).collect();
@@ -338,13 +338,13 @@ impl Recorder<'_> {
         for &v in variables.iter().filter(|v| **v < self.asked.variables) {
             let fixed = self.geometry.moved[v].as_ref().expect("laid out for every variable of an output");
             let d = at(fixed, &poses).d.0;
-            // ... + dy/db with all bodies where they are: what is measured with moves within its body
+            // ... + dy/db at constant poses: body-fixed data change
             (0..3).for_each(|order| derivatives[v][order] += d[order]);
         }
         for numbers in derivatives.iter_mut().chain([&mut values]) {
             numbers[orders..].fill(Number::constant(f64::NAN));
         }
-        // What is folded with a number that is none may be one.
+        // Folding with NaN may result in NaN.
         let is_none =
             |numbers: &[Number; 3]| numbers[..orders].iter().any(|x| x.known().is_some_and(f64::is_nan));
         let is_number = !derivatives.iter().chain([&values]).any(is_none);

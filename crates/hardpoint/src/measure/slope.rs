@@ -48,8 +48,7 @@ struct Ways {
 }
 
 impl Ways {
-    /// Those of a model, with derivatives by the variables if they are wanted; `None` for a model without such
-    /// measures.
+    /// Directions of a model, with derivatives by the variables if requested; `None` if it has no such measures.
     fn of(model: &Model, sensitivities: bool) -> Option<Self> {
         let drivers = drivers_of(model);
         if drivers.is_empty() {
@@ -71,8 +70,8 @@ impl Ways {
 }
 
 impl<'a> Slopes<'a> {
-    /// For the design with these values, with derivatives by the variables if they are wanted; `None` for a model
-    /// without such measures.
+    /// Slopes of the design with these values, with derivatives by the variables if requested; `None` if the model has
+    /// no such measures.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,
@@ -94,8 +93,8 @@ impl<'a> Slopes<'a> {
 }
 
 impl<'a> Slopes<'a, Number> {
-    /// Records these measures with a step, with derivatives by the variables if they are wanted; `None` where they are
-    /// no arithmetic. The limits are conditions: if any of these is positive, the results are invalid.
+    /// Records these measures with a step, with derivatives by the variables if requested; `None` if they are not
+    /// arithmetic. If any of the limits is positive, the results are invalid.
     pub fn record(
         design_map: &'a DesignMap<'a>,
         step: &mut RecordedStep<'_>,
@@ -131,7 +130,7 @@ impl<'a> Slopes<'a, Number> {
                 numbers[1 + by] = x.d;
             } else {
                 numbers[0] = x.v;
-                // What is no number is left to the kernel: a recording has no sign of zero.
+                // NaN is left to the kernel: a recording has no sign of zero.
                 limits.extend(x.v.known().is_none().then(|| x.v.abs() + -f64::MAX));
             }
         });

@@ -21,7 +21,7 @@ pub(crate) enum PathAngle {
     Measure(usize),
 }
 
-/// All of them, in the order in which they are counted: those of elements, then those of measures, if these are wanted.
+/// Angles in the order in which they are counted: those of elements, then those of measures, if requested.
 pub(crate) fn path_angles(model: &Model, topology: &Topology, measures: bool) -> Vec<PathAngle> {
     let mut angles: Vec<PathAngle> = (0..model.elements.len())
         .map(ElementId)

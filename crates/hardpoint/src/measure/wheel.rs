@@ -337,7 +337,7 @@ const AT_INFINITY: f64 = 1e-2;
 
 /// A component of a turn, for division; NaN where an instant centre seen along it is at infinity.
 fn seen<T: Real>(component: T, turn: Vec3<T>) -> T {
-    // What is recorded takes the turn for granted, and this as its limit.
+    // A recording assumes a nonzero turn, and records this condition as a limit.
     if component.abs().exceeds(turn.norm() * T::constant(AT_INFINITY)) {
         component
     } else {

@@ -92,11 +92,10 @@ impl Model {
         self.drivers[driver.0].law.as_drawn().map_or(0.0, |(_, value)| value)
     }
 
-    /// The mechanism with one of its cases and no other: of its metrics, and of what it is to be optimised for, what is
-    /// of that case or of all.
+    /// The mechanism with a single case. Of its metrics, goals and limits it has those of this case or of all cases.
     ///
     /// # Panics
-    /// If there is no such case.
+    /// Panics if there is no such case.
     #[must_use]
     pub fn with_case_only(&self, case: CaseId) -> Self {
         let cases = vec![self.cases[case.0].clone()];

@@ -25,9 +25,9 @@ impl End {
     }
 }
 
-/// The kinds of changes: their fields, as written and as they mean in a model; what a variable measures that has it,
-/// and how to say what it does. With its effect (`design/change.rs`) and its check (`draft/check/design.rs`) a kind is
-/// complete. The model takes its half of each line, the draft (`draft/change.rs`) the other, and the design its list.
+/// The kinds of changes: their fields in a draft and in a model, the quantity of their variable, and their description.
+/// A kind also has an effect (`design/change.rs`) and a check (`draft/check/design.rs`). The model uses its half of
+/// each line, the draft (`draft/change.rs`) the other, and the design the list.
 macro_rules! changes {
     ($declare:ident) => { $declare! {
     /// A hardpoint moves; markers, axes and points on it follow.

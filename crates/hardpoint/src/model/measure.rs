@@ -362,7 +362,7 @@ macro_rules! in_models {
 
 measures!(in_models);
 
-/// The bodies that a field of a measure names, or that carry what it names.
+/// Bodies that a field of a measure names, or on which the named items are.
 trait OnBodies {
     fn bodies(&self, _model: &Model) -> Vec<BodyId> {
         Vec::new()
@@ -796,7 +796,7 @@ impl Dimension {
     /// A moment, or an energy.
     pub const MOMENT: Self = Self { force: 1, ..Self::LENGTH };
 
-    /// The power of the user's unit of length: moments, energies and powers are in N m, J and W whatever that is.
+    /// Exponent of the user's unit of length: moments, energies and powers are in N m, J and W for any unit of length.
     pub const fn length_in_units(self) -> i8 {
         if self.force > 0 && self.length > 0 { 0 } else { self.length }
     }
@@ -855,7 +855,7 @@ impl Model {
         }
     }
 
-    /// True if a measure says what happens while one driver alone moves, rather than in the course of time.
+    /// True if a measure is a derivative along the motion of a single driver instead of time.
     pub fn depends_on_driver(&self, measure: usize) -> bool {
         match self.measures[measure].kind {
             MeasureKind::Slope { .. } => true,

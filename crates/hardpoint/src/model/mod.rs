@@ -241,7 +241,7 @@ pub struct DesignVariable {
     pub bounds: Option<[f64; 2]>,
     /// Typical size of a change of b, in its unit; positive.
     pub typical: Option<f64>,
-    /// By how much b may be off when it is made, either way, in its unit; positive.
+    /// Symmetric manufacturing tolerance of b, in its unit; positive.
     pub tolerance: Option<f64>,
 }
 

@@ -108,9 +108,9 @@ impl Solid {
     }
 }
 
-/// Moments and products of inertia about the centre, of such about a point that it is this way from:
-/// `I - m (d^2 1 - d d^T)`. Where one of the moments is left out, as in a plane, what is left out is zero about the
-/// centre; else a product that is left out is zero about the point.
+/// Moments and products of inertia about the centre, from those about a point, with the displacement d from the point
+/// to the centre: `I - m (d^2 1 - d d^T)`. If a moment is left out, as in a planar model, all entries that are left out
+/// are zero about the centre; otherwise products that are left out are zero about the point.
 pub(crate) fn about_centre<T: Real>(
     mass: T,
     way: Vec3<T>,

@@ -13,10 +13,10 @@ pub struct SpringTable {
 }
 
 impl SpringTable {
-    /// Through these points, two at least, all finite, with deflections that increase; or what is wrong with them.
+    /// Table through these points: at least two, all finite, with increasing deflections.
     ///
     /// # Errors
-    /// A sentence's end, like "has 1 point".
+    /// The end of a sentence, such as "has 1 point".
     pub(crate) fn new(points: &[[f64; 2]]) -> Result<Self, String> {
         if points.len() < 2 {
             return Err(format!("has {} of at least 2 points", points.len()));

@@ -2,7 +2,7 @@
 
 use super::{Change, Model, VariableId};
 
-/// Many designs at once, and what is kept of each.
+/// Sweep of many designs, with the stored results of each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepSettings {
     /// Method that chooses designs within the ranges.
@@ -31,8 +31,8 @@ pub enum SweepMethod {
     LatinHypercube,
     /// Points that fill the ranges uniformly for any number of designs: a scrambled Sobol sequence.
     Sobol,
-    /// Pairs of such points, and for every variable the first of a pair with that variable of the second, for estimating
-    /// Sobol indices.
+    /// Pairs of such points, and for every variable the first of a pair with that variable of the second, for
+    /// estimating Sobol indices.
     Indices,
     /// The listed designs.
     Listed,
@@ -52,10 +52,10 @@ pub struct SweepRange {
 }
 
 impl SweepMethod {
-    /// The names of those that a file can ask for by name, in the order of the variants.
+    /// Names of the methods that a file can select by name, in the order of the variants.
     pub const NAMES: [&str; 4] = ["factorial", "latin_hypercube", "sobol", "sobol_indices"];
 
-    /// Those of these names.
+    /// Methods with these names.
     pub const NAMED: [Self; 4] = [Self::Factorial, Self::LatinHypercube, Self::Sobol, Self::Indices];
 
     /// As model files and summaries write it.

@@ -24,7 +24,7 @@ pub struct ToleranceSettings {
     pub allocation: Option<AllocationSettings>,
 }
 
-/// By how much some design variables may be off together.
+/// Tolerance of one or several design variables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
     /// Name: that of the variable, or of the design entry whose coordinates they are.

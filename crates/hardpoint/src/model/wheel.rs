@@ -168,7 +168,7 @@ impl WheelRequirement {
         }
     }
 
-    /// True if the measure says what happens while one driver alone moves.
+    /// True if the measure is a derivative along the motion of a single driver.
     pub fn depends_on_driver(self) -> bool {
         !matches!(self, Self::Nothing | Self::Kingpin | Self::Planes)
     }

@@ -16,7 +16,7 @@ const THIN = 0.95
 const SLOT = { block: 1.5, pin: 1.05 }
 /** A hull of less area than this part of its length squared is a bar. */
 const NARROW = 0.04
-/** A window, as far inside the points, if it has at least this area; how opaque and thick its pane is. */
+/** A window: distance inside the points, minimum area; opacity and thickness of its pane. */
 const WINDOW = { inside: 1.25, area: 10, opacity: 0.34, thickness: 0.5 }
 /** Radii of the struts that inner points hang on. */
 const STRUT = [1.5, 0.9]

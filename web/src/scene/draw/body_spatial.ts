@@ -19,14 +19,14 @@ const ROD = { thick: 1.15, thin: 0.98, slender: 0.12 }
 const BAR = { width: 1.45, twisted: 2.3, thickness: 0.62, waist: 0.28, eye: 1.75, height: 1.9, end: 1.3, sections: 16 }
 /** Cosine of the least angle between hinges that are across one another. */
 const TWISTED = 0.98
-/** A plate that folds: its thickness, its eyes' radius, and how far from the pins it ends. */
+/** A folded plate: thickness, radius of its eyes, and distance of its edge from the pins. */
 const FOLDED = { thickness: 0.9, eye: 1.5, clear: 2 }
 /**
  * Tubes of a plate: at free corners, at the hinge, along the hinge; how opaque its web is with three corners and with
  * more.
  */
 const PLATE = { corner: 0.85, hinge: 1.15, along: 0.75, web: 0.38, platform: 0.6 }
-/** Edges and corners of a hull, and how opaque it is. */
+/** Edges and corners of a hull, and its opacity. */
 const HULL = { edge: 0.55, corner: 0.95, opacity: 0.45 }
 
 /** A body of a spatial mechanism by its points: disc, rod or bar, plate, hull. */
@@ -128,7 +128,7 @@ function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: V
   const to = (last ?? first!).clone()
   // A bar turns by less than a quarter either way: an axis has no sense.
   if (from.dot(to) < 0) to.negate()
-  // Between two links the eyes lie beside one another on the pin, and the bars with them.
+  // Between two links the eyes are next to each other on the pin, like the bars.
   const [low, high] = [a, b].map((at) => (first && last ? eyeOf(mechanism, body, at, s) : at))
   const width = first && last && from.dot(to) < TWISTED ? BAR.twisted : BAR.width
   const section = (t: number) => {

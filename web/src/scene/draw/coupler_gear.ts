@@ -4,7 +4,7 @@ import type { Kit } from '../kit'
 import { drawnTeeth, gearOutline, toothHeight } from '../shapes/toothing'
 import type { DrawCoupler } from './coupler'
 
-/** Holes: how many, at which part of the radius, how large, and above which radius in units. */
+/** Holes: number, relative radius of their circle, size, and minimum wheel radius in units. */
 const HOLES = { count: 5, at: 0.56, radius: 0.17, above: 14 }
 /** Width of an internal gear's rim as a part of its radius. */
 const RING = 0.18
@@ -29,7 +29,7 @@ export const gears: DrawCoupler = ({ mechanism, kit, train, coupler, index }) =>
   // From a's centre to where they touch, and from b's.
   const touchA = between.clone().multiplyScalar(internal && sizes[0] < sizes[1] ? -1 : 1)
   const touchB = between.clone().multiplyScalar(internal && sizes[0] < sizes[1] ? -1 : internal ? 1 : -1)
-  // A wheel that another coupler has drawn stays as it is, and its mate's teeth go into its gaps.
+  // A wheel of another coupler is not changed; the teeth of its mate go into its gaps.
   const [atA, atB] = [train.toothing(a, n, radii[0], touchA), train.toothing(b, m, radii[1], touchB)]
   const turned = (internal ? 1 : -1) * Math.sign(a.shaft.axis.dot(b.shaft.axis))
   const phaseA = atA ?? (atB === undefined ? 0 : (turned * m * (atB - Math.PI / m)) / n)

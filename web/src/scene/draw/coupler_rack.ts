@@ -5,11 +5,11 @@ import { reach } from '../train'
 import type { DrawCoupler } from './coupler'
 import { pitchCircles } from './coupler_gear'
 
-/** Teeth of the pinion, fewest of the rack, and how many of it are beyond the travel at either end. */
+/** Teeth of the pinion, minimum of the rack, and teeth of the rack beyond the travel at either end. */
 const TEETH = { pinion: 16, rack: 14, beyond: 3 }
 /** From the pitch line to the rack's back. */
 const DEPTH = 2.6
-/** The bar that slides: radius, and how far it reaches beyond travel and tube. */
+/** The sliding bar: radius, and overhang beyond travel and tube. */
 const BAR = { radius: 1.3, beyond: 7 }
 /** Sides of the arm between rack and bar. */
 const ARM = [5, 2]

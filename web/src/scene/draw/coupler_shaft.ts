@@ -6,7 +6,7 @@ import type { Mechanism } from '../mechanism'
 import { bodyPart, jointPart } from '../part'
 import type { Shaft, Train } from '../train'
 
-/** Radius of a shaft, and how far it reaches beyond what is on it. */
+/** Radius of a shaft, and its overhang beyond the parts on it. */
 const SHAFT = { radius: 1.1, beyond: 3.2 }
 /** Bearing: radii of ring and section; its foot: where it starts and ends, its radius, the plate's side. */
 const BEARING = { ring: 2.1, section: 0.85 }

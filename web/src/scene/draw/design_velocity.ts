@@ -45,7 +45,7 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
   return [...straight, ...rings]
 }
 
-/** The change of a variable for which its arrows are as long as the moves; none where it moves no hardpoint. */
+/** Change of a variable at which its arrows have the length of the displacements; undefined if no hardpoint moves. */
 export function shownChange(mechanism: Mechanism, { arrows }: Variable): number | undefined {
   const most = longest(arrows.map(({ v }) => v))
   return most > STILL * mechanism.size * longest(arrows.map(({ turn }) => turn)) ? longestArrow(mechanism) / most : undefined
@@ -54,7 +54,7 @@ export function shownChange(mechanism: Mechanism, { arrows }: Variable): number 
 /** A change with its unit, as short as it may be said. */
 export const changeText = (change: number, { unit }: Variable) => `${number(change, 2)} ${pretty(unit)}`.trim()
 
-/** Beside a long chain an arrow in proportion to its length would be a tower. */
+/** Maximum length of arrows; in proportion to a long chain they would be too long. */
 function longestArrow({ base, box, size, unit }: Mechanism): number {
   const [, height] = (base?.box ?? box).getSize(new Vector3()).toArray().sort((a, b) => b - a)
   return Math.min(LONGEST.ofSize * size, Math.max(LONGEST.ofHeight * height, LONGEST.least * unit))

@@ -12,7 +12,7 @@ const OVER = 1
 /** Width of the line, px. */
 const LINE = 1.6
 
-/** The measured distance that is pointed at, as a dashed dimension line beside its two places. */
+/** The highlighted measured distance, as a dashed dimension line next to its two points. */
 export const dimension: Draw = (mechanism, kit, { distance: index }) => {
   if (index === undefined) return []
   const { name, from, to } = mechanism.report.distances[index]
@@ -23,7 +23,7 @@ export const dimension: Draw = (mechanism, kit, { distance: index }) => {
   const longest = Math.max(...mechanism.moments.map((step) => span(ends(mechanism.frame(step)))).filter(Number.isFinite), s)
   const y = new Vector3(0, 1, 0)
   const line = above(kit.line([y.clone().multiplyScalar(-longest / 2), y.clone().multiplyScalar(longest / 2)], colour, LINE, { dashed: true, over: true }), ABOVE.dimension)
-  // Its heads are at both ends, whatever its length.
+  // Its heads are at both ends, at any length.
   const heads = [0, 1].map(() => straightArrow(kit, new Vector3(0, -2 * HEAD * s, 0), new Vector3(), { head: HEAD * s, shaft: { pixels: LINE } }, colour, ABOVE.dimension))
   const feet = [0, 1].map(() => above(kit.line([new Vector3(), y.clone().multiplyScalar((BESIDE + OVER) * s)], colour, 1, { over: true }), ABOVE.dimension))
   const object = new Group().add(line, ...heads.map((head) => new Group().add(head)), ...feet)

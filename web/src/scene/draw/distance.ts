@@ -4,7 +4,7 @@ import type { Mechanism } from '../mechanism'
 import { member } from './joint_rod'
 import { formOf } from './strut'
 
-/** Measured distances that are springs or dampers: as the model says, else from ground beside wheels. */
+/** Measured distances that are springs or dampers: as given in the model, otherwise those from ground near wheels. */
 export function distances(mechanism: Mechanism, kit: Kit): Drawn[] {
   const { distances, wheels } = mechanism.report
   return distances.flatMap(({ name, from, to, draw }, index): Drawn[] => {

@@ -80,7 +80,7 @@ function before(mechanism: Mechanism, body: number, axis: Vector3): Vector3 {
   return axis.clone().multiplyScalar(towards * BESIDE.hinge * mechanism.unit)
 }
 
-/** A double arrow beside the rail, in its frame. */
+/** A double arrow along the rail, in its frame. */
 function slideArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, index: number): Arrow | undefined {
   const slide = mechanism.slideOf(index)!
   if (slide.low > slide.high) return undefined
@@ -95,7 +95,7 @@ function sideways(mechanism: Mechanism, body: number, axis: Vector3): Vector3 {
   return mechanism.plane ? mechanism.into(body, mechanism.plane).cross(axis) : square(mechanism.into(body, mechanism.up), axis)
 }
 
-/** A double arrow beside a leg, that goes with it. */
+/** A double arrow along a leg, which moves with it. */
 function legArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, { low, high }: Travel): Arrow {
   const [least, most] = atLeast(low, high, LEAST * kit.unit)
   const half = (most - least) / 2
@@ -116,7 +116,7 @@ function legArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, { low, high 
   return { object, follow }
 }
 
-/** A double arrow beside a driven point, in the world; outboard where the body carries a wheel. */
+/** A double arrow next to a driven point, in the world; outboard if the body carries a wheel. */
 function pointArrow(mechanism: Mechanism, kit: Kit, driver: Driver, { curve, low, high }: Travel): Arrow | undefined {
   const { body, at } = driver.point!
   if (!driver.along) return undefined
@@ -130,7 +130,7 @@ function pointArrow(mechanism: Mechanism, kit: Kit, driver: Driver, { curve, low
     const aside = wheel
       ? frame.along(body, new Vector3(...wheel.axis)).multiplyScalar(OUTBOARD * wheel.radius)
       : sideways(mechanism, 0, along).multiplyScalar(BESIDE.point * kit.unit)
-    // The arrow stays along its line; the point goes on it.
+    // The arrow is fixed on its line; the point moves along it.
     object.position.copy(frame.at(body, point)).addScaledVector(along, -valueAt(curve, frame.step)).add(aside)
   }
   return { object, follow }

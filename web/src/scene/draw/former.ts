@@ -8,7 +8,7 @@ import type { Mechanism } from '../mechanism'
 
 /** Nearer than this part of the size, a body is where it was. */
 const SAME = 2e-4
-/** Width of the dashes, and of the casing that lifts them from what is behind, px. */
+/** Width of the dashes, and of the casing that separates them from the background, px. */
 const DASHES = 2
 const CASING = { width: 5, opacity: 0.75 }
 

@@ -28,7 +28,7 @@ export interface Foot {
   front: boolean
 }
 
-/** Kinds that stand on a foot; rails and shafts bring their own. */
+/** Joints that are mounted on a foot; rails and shafts have their own. */
 const HINGES = ['revolute', 'inline', 'cylindrical']
 const BALLS = ['spherical', 'universal', 'constant_velocity', 'distance', 'leg', 'point_coincident']
 
@@ -52,7 +52,7 @@ function feet(mechanism: Mechanism): Foot[] {
     if ((body_i !== 0 && body_j !== 0) || turning.has(index)) return []
     const hinge = HINGES.includes(kind)
     if (!hinge && !BALLS.includes(kind)) return []
-    // What slides is at the ends of its way.
+    // The slider is at the ends of its travel.
     if ((kind === 'cylindrical' || kind === 'inline') && !(mechanism.plane && square(mechanism, joint))) return []
     const [body, place, own] = body_i === 0 ? [body_j, joint.at_i, joint.at_j] : [body_i, joint.at_j, joint.at_i]
     const at = mechanism.worldAt(0, new Vector3(...place), 0)
@@ -80,14 +80,14 @@ function feet(mechanism: Mechanism): Foot[] {
 const mean = (points: Vector3[], none: Vector3) =>
   points.length > 0 ? points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(points.length) : none.clone()
 
-/** True if an axis is perpendicular to the plane: what slides along it is a pin there. */
+/** True if an axis is perpendicular to the plane: a slide along it is a pin there. */
 const square = (mechanism: Mechanism, { axis, body_i }: JointMark) =>
   axis !== null && Math.abs(mechanism.alongAt(body_i, new Vector3(...axis), 0).dot(mechanism.plane!)) > 0.9
 
 /** Preference of the downward direction. */
 const DOWNWARDS = 0.25
 
-/** The axis of the world that points away from what is held, downwards preferred, never along the hinge. */
+/** World axis that points away from the mounted body, preferably downwards, never along the hinge. */
 export function downwards(mechanism: Mechanism, { at, axis, towards }: Foot): Vector3 {
   const away = at.clone().sub(towards)
   if (away.length() < 1e-6 * mechanism.size) away.copy(mechanism.up).negate()
@@ -99,7 +99,7 @@ export function downwards(mechanism: Mechanism, { at, axis, towards }: Foot): Ve
   return axis ? best.addScaledVector(axis, -best.dot(axis)).normalize() : best
 }
 
-/** Vertices of a mesh that are looked at, at most, and every how many moments. */
+/** Maximum number of sampled vertices of a mesh, and stride of the sampled steps. */
 const VERTICES = 3000
 const EVERY = 8
 

@@ -8,7 +8,7 @@ import { bodyPart } from '../part'
 
 /** Tolerance of points from a plane, relative to the size, for a plate through them. */
 const FLAT = 0.01
-/** The plate: how far round the places, how thick, how opaque. */
+/** The plate: margin around the points, thickness, opacity. */
 const PLATE = { round: 2.5, thickness: 0.6, opacity: 0.28 }
 
 /** The fixed link of a spatial mechanism that is no vehicle: a dashed line between two places, a plate through more. */

@@ -22,7 +22,7 @@ const HIGHEST = 6
 /** A foot is a little larger than the pin that it holds. */
 const ROOM = 1.15
 
-/** Two cheeks and a hatched plate, away from what the hinge carries. */
+/** Two cheeks and a hatched plate, away from the body on the hinge. */
 export function hingeFoot(mechanism: Mechanism, kit: Kit, foot: Foot): Object3D[] {
   const r = ROOM * foot.radius
   const lug = foot.form === 'lug' ? LUG : 1

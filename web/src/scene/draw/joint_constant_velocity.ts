@@ -5,10 +5,10 @@ import { place } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { type DrawJoint, piece } from './joint'
 
-/** Radius of the bell, and how much of a sphere it is, as a part of π from its pole. */
+/** Radius of the bell, and its extent on the sphere from its pole, as a fraction of π. */
 const BELL = 3
 const OPENING = 0.52
-/** Rings of the boot: how many, the first's radius, by how much each is smaller, their thickness and distance. */
+/** Rings of the boot: number, radius of the first, reduction per ring, thickness and distance. */
 const BOOT = { rings: 4, radius: 2.75, less: 0.45, thickness: 0.75, apart: 1.15, from: 0.9 }
 /**
  * Radius of a drive shaft's bell, relative to the wheel's, and at most this fraction of the distance to the next joint.
@@ -33,7 +33,7 @@ export const constantVelocity: DrawJoint = (mechanism, kit, joint) => {
   return [piece(joint.body_i, place(bell, p, back)), piece(joint.body_j, ...rings)]
 }
 
-/** As large as beside a wheel of the model, as far as other joints leave room. */
+/** Size relative to a wheel of the model, limited by the distance of other joints. */
 function glyph(mechanism: Mechanism, joint: JointMark): number {
   const least = mechanism.radiusOf(joint)
   const wheel = Math.min(...mechanism.report.wheels.map(({ radius }) => radius))

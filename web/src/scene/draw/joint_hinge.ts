@@ -9,13 +9,13 @@ import { type DrawJoint, piece } from './joint'
 /** A pin's radius and length, and a bush's, in radii of the glyph. */
 const PIN = [1, 5.2]
 const BUSH = [1.65, 2]
-/** The dashed line of a hinge's axis: how far to either side in radii, and its width in px. */
+/** The dashed line of a hinge's axis: overhang on either side in radii, and width in px. */
 const AXIS = { reach: 7, line: 1.3 }
 /** Radius of a shaft to a bearing that is drawn aside of another joint. */
 const SHAFT = 1.1
 /** A pin through links that fold, in units. */
 const WIDE = 2 * FOLD.half + 0.8
-/** From above: the ring's radius, the dot's, and by how many layers the pin is longer than its links are thick. */
+/** From above: radii of ring and dot, and length of the pin beyond the thickness of its links, in layers. */
 const FLAT = { ring: 0.85, dot: 0.28, longer: 1.2 }
 /** A pin in a large model, in units. */
 const SMALL = 0.6
@@ -53,7 +53,7 @@ export const hinge: DrawJoint = (mechanism, kit, joint, index) => {
   return [piece(body, ...pins, ...axisLine(mechanism, kit, joint, places, axis, r), ...bushes, ...places.filter((place) => !joint.hinge && !mechanism.same(place, at)).map((place) => shaft(kit, at, place, r, kit.body(body))))]
 }
 
-/** The axis itself, where hinges lie across one another and the eye must find how. */
+/** The axis itself, for hinges with different axes. */
 function axisLine({ vehicle, report }: Mechanism, kit: Kit, { hinge }: JointMark, places: Vector3[], axis: Vector3, r: number) {
   if (hinge || vehicle || report.wheels.length > 0) return []
   const end = (place: Vector3, side: number) => place.clone().addScaledVector(axis, side * AXIS.reach * r)

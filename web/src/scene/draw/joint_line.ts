@@ -4,7 +4,7 @@ import { hinge } from './joint_hinge'
 import { slottedPin } from './joint_slot'
 import { wayEnds } from './way_ends'
 
-/** Radius of the bar, how far it reaches beyond the travel, and radius of the bead on it. */
+/** Radius of the bar, its overhang beyond the travel, and radius of the bead on it. */
 const BAR = { radius: 0.6, room: 4 }
 const BEAD = 1.5
 

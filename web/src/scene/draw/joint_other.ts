@@ -5,7 +5,7 @@ import { type DrawJoint, piece } from './joint'
 /** Radius of the mark: its faces are outside a rod that it is on. */
 const MARK = 2.1
 
-/** A neutral mark for what has no look of its own: angles, headings, orientations held. */
+/** A neutral mark for constraints without a symbol: angles, headings, orientations. */
 export const otherJoint: DrawJoint = (mechanism, kit, joint) => {
   const { body, at } = carried(mechanism, joint)
   const mark = kit.mesh(new OctahedronGeometry(MARK * mechanism.radiusOf(joint)), kit.palette.steel, { edges: 20 })

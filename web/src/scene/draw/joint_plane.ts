@@ -6,7 +6,7 @@ import type { Mechanism } from '../mechanism'
 import { type DrawJoint, piece } from './joint'
 import { slottedPin } from './joint_slot'
 
-/** Least side of the plate, its thickness, how far it reaches round what moves on it, and how opaque it is. */
+/** Minimum side of the plate, thickness, margin around the moving points, and opacity. */
 const PLATE = { side: 10, thickness: 0.25, room: 3, opacity: 0.5 }
 const BALL = 1.2
 /** Radius and height of a foot that lies flat on the plate. */

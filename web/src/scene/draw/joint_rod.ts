@@ -16,7 +16,7 @@ const BARREL = { ofMean: 0.62, ofLeast: 0.9 }
 /** Height of a rod of a planar mechanism above the links that it connects, in layers. */
 const ABOVE = 0.95
 
-/** A rod, a cylinder or what the model says, between places of two bodies. */
+/** A rod, a cylinder, or the appearance in the model, between points of two bodies. */
 export const massless: DrawJoint = (mechanism, kit, joint) => {
   const form = formOf(joint.draw) ?? (joint.kind === 'leg' ? 'cylinder' : 'rod')
   const hinge = joint.kind === 'revolute_spherical' && joint.axis ? new Vector3(...joint.axis) : undefined

@@ -35,7 +35,7 @@ export const spherical: DrawJoint = (mechanism, kit, joint) => {
   const on = grounded ? 0 : joint.body_j
   const own = new Vector3(...(on === joint.body_j ? joint.at_j : joint.at_i))
   const up = mechanism.into(on, mechanism.up)
-  // Ground's cup is on the other side of the ball than what it holds.
+  // The cup of ground is on the side of the ball opposite to the other body.
   const way = grounded
     ? mechanism.into(on, mechanism.alongAt(body, towardsRest(mechanism, body, at, mechanism.into(body, mechanism.up)), 0)).negate()
     : towardsRest(mechanism, on, own, up)

@@ -14,7 +14,7 @@ import { type Form, formOf, strut } from './strut'
 const BLOCK = { length: 5.2, across: 3.2, height: 3, width: 3.8 }
 const SLOTTED = { length: 4.6, across: 2.9 }
 const CARRIAGE = 9.5
-/** From the middle of a slide to its hatched lines, and how far these reach beyond the travel. */
+/** Distance from the middle of a slide to its hatched lines, and their overhang beyond the travel. */
 const LINE = { aside: 1.75, room: 3.9 }
 /** A tube round a bar: outer and inner radius, length on ground and on a body. */
 const TUBE = { outer: 1.9, inner: 1.35, onGround: 9, onBody: 7 }

@@ -9,7 +9,7 @@ const EDGES = 35
 /** A mesh of more triangles has no edges: finding them would take longer than a reader waits. */
 const MANY = 60_000
 
-/** Bodies with a shape of their own, which goes with the hardpoints when the design changes. */
+/** Bodies with a mesh, which deforms with the hardpoints when the design changes. */
 export const meshes: Draw = (mechanism, kit) =>
   mechanism.report.bodies.flatMap(({ mesh }, body): Drawn[] => {
     if (!mesh) return []

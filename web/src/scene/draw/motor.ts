@@ -21,7 +21,7 @@ export function motors(mechanism: Mechanism, kit: Kit): Drawn[] {
     if (mark.kind !== 'revolute' || (mark.body_i !== 0 && mark.body_j !== 0)) return []
     const { body, at, axis } = carried(mechanism, mark)
     const out = mechanism.alongAt(body, axis, 0)
-    // Away from what the hinge carries, else from the reader.
+    // Away from the body on the hinge, otherwise from the viewer.
     const beyond = at.clone().sub(restOf(mechanism, body, at)).dot(axis)
     const side = Math.abs(beyond) > kit.unit ? Math.sign(beyond) : -Math.sign(out.dot(mechanism.reader)) || 1
     out.multiplyScalar(side)

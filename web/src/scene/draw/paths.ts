@@ -5,7 +5,7 @@ import { pieces } from './trace'
 
 /** More measured points than this on moving bodies, and their paths would hide the mechanism. */
 const MOST = 3
-/** Width of the line, px, and how opaque it is. */
+/** Width of the line, px, and its opacity. */
 const LINE = { width: 1.4, opacity: 0.7 }
 /** A path that stays within this part of the size is a point. */
 const STILL = 0.01

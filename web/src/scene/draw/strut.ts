@@ -85,7 +85,7 @@ function cylinder(kit: Kit, slim: number, length: number): Strut {
 function spring(kit: Kit, length: number, damped: boolean): Strut {
   const s = kit.unit
   const { rod: grey, steel } = kit.palette
-  // Made as long as it is at first, so that stretching it hardly changes its wire.
+  // Made with its initial length, so that stretching hardly changes its wire.
   const height = Math.max((COIL.to - COIL.from) * length, s)
   const helix = new Helix(COIL.radius * s, height, COIL.turns)
   const coil = kit.mesh(new TubeGeometry(helix, 240, COIL.wire * s, 8).translate(0, -height / 2, 0), grey)

@@ -11,7 +11,7 @@ const FORMER = 1.5
 /** Radius of the dots, and of the present point, in units. */
 const DOT = 0.6
 const PRESENT = 1.05
-/** At least that many equal times are marked. */
+/** Minimum number of marked times, uniformly spaced. */
 const DOTS = 12
 
 /**

@@ -6,13 +6,13 @@ import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { HALF_WIDTH, RIM, tyreSection } from '../shapes/wheel'
 
-/** Circles on both sides: radius and width as parts of the wheel's radius and half width, line in px, how opaque. */
+/** Circles on both sides: radius and width relative to the wheel's radius and half width, line in px, opacity. */
 const CIRCLES = [
   { radius: 1, side: 0.62, line: 1.1, opacity: 0.55 },
   { radius: RIM, side: 1, line: 1.3, opacity: 0.7 },
   { radius: 0.9, side: 1.04, line: 0.8, opacity: 0.35 },
 ]
-/** Spokes: how many, from where to the rim, how far outboard in half widths, line in px, how opaque. */
+/** Spokes: number, inner radius, offset outboard in half widths, line in px, opacity. */
 const SPOKES = { count: 5, from: 0.2, side: 0.25, line: 2.2, opacity: 0.28 }
 
 /** Road wheels: a tyre that casts a shadow and hides nothing. */

@@ -17,7 +17,7 @@ export interface BevelPair {
 export interface Bevel {
   /** Unit vector from the tip towards the wide end. */
   axis: Vector3
-  /** Pitch radius at the wide end, and how far that is from the tip. */
+  /** Pitch radius at the wide end, and its distance from the tip. */
   radius: number
   distance: number
 }
@@ -35,7 +35,7 @@ const RIM = 0.92
 /** Sine of the least angle between shafts that still cross. */
 const CROSSING = 0.1
 
-/** The pair that turns as the relation says; nothing for shafts that are parallel. */
+/** The pair of gears with this relation; undefined for parallel shafts. */
 export function bevelPair(a: Shaft, b: Shaft): BevelPair | undefined {
   const [u, v] = [a.axis.clone().normalize(), b.axis.clone().normalize()]
   const cosine = u.dot(v)

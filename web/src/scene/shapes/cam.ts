@@ -47,7 +47,7 @@ export function grooveOutline(points: Flat[], half: number): Flat[] {
   return [...right, ...cap(points[last], right[last], half), ...left.reverse(), ...cap(points[0], left[last], half)]
 }
 
-/** A half circle about `centre` from the place beside it, counter-clockwise, without its ends. */
+/** A half circle about `centre` from a point next to it, counter-clockwise, without its ends. */
 function cap(centre: Flat, beside: Flat, radius: number): Flat[] {
   const start = Math.atan2(beside[1] - centre[1], beside[0] - centre[0])
   return Array.from({ length: 11 }, (_, k): Flat => {
