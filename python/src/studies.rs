@@ -132,7 +132,7 @@ impl Model {
         let Some(mut asked) = asked else {
             return Err(Failure::of_study(
                 "the design variables of the model have no tolerances; add `tolerance = 0.1` to those in `[design]` or \
-                 `[parameters]` that may",
+                 `[parameters]`",
             )
             .into());
         };

@@ -143,7 +143,7 @@ impl Sweep {
             Failure::Misunderstood(match why {
                 SweepPlanError::NoRanges => "the model has no ranges of design variables; give `ranges`".into(),
                 SweepPlanError::NoDesigns => "there are no designs; give at least one sample".into(),
-                SweepPlanError::TooMany => format!("more than {} designs; give fewer levels or variables", SweepSettings::MOST),
+                SweepPlanError::TooMany => format!("the sweep has more than {} designs; give fewer levels or variables", SweepSettings::MOST),
                 SweepPlanError::TooManyDimensions(most) => format!(
                     "Sobol's sequence is known for {most} variables, and for indices for {}; sweep over fewer, or by latin_hypercube",
                     most / 2

@@ -195,7 +195,7 @@ fn no_plan(why: SweepPlanError, file: &ModelFile) -> String {
         ),
         SweepPlanError::NoDesigns => "there are no designs; give at least one with `--samples`".into(),
         SweepPlanError::TooMany => format!(
-            "more than {} designs; give fewer levels, fewer variables, or use `--method sobol --samples N`",
+            "the sweep has more than {} designs; give fewer levels, fewer variables, or use `--method sobol --samples N`",
             SweepSettings::MOST
         ),
         SweepPlanError::TooManyDimensions(most) => format!(

@@ -81,8 +81,8 @@ pub fn asked(
     let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
     let Some(mut asked) = asked else {
         let why = format!(
-            "the design variables of `{}` have no tolerances; add `tolerance = 0.1` to those in `[design]` or \
-             `[parameters]` that may (docs/tolerance.md)",
+            "the design variables of `{}` have no tolerances; add `tolerance = 0.1` to some in `[design]` or \
+             `[parameters]` (docs/tolerance.md)",
             file.file_name()
         );
         return Err(session.misunderstood(&why));

@@ -1,4 +1,4 @@
-//! CSV tables whose cells spreadsheets never take for formulas: one writer for every file, and its inverse for every
+//! CSV tables whose cells spreadsheets never read as formulas: one writer for every file, and its inverse for every
 //! reader.
 
 use std::borrow::Cow;
@@ -34,7 +34,7 @@ impl<W: Write> CsvWriter<W> {
     /// Writes a row of texts and numbers, each cell [`neutral`].
     ///
     /// # Errors
-    /// Fails where it cannot be written.
+    /// Fails if it cannot be written.
     pub fn row<C: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = C>) -> csv::Result<()> {
         for cell in cells {
             self.text(cell.as_ref())?;
@@ -45,7 +45,7 @@ impl<W: Write> CsvWriter<W> {
     /// Writes a text as the next cell of the row, [`neutral`].
     ///
     /// # Errors
-    /// Fails where it cannot be written.
+    /// Fails if it cannot be written.
     pub fn text(&mut self, text: &str) -> csv::Result<()> {
         self.0.write_field(neutral(text).as_bytes())
     }
@@ -54,7 +54,7 @@ impl<W: Write> CsvWriter<W> {
     /// empty where there is no number, as for the curvature of a path at rest.
     ///
     /// # Errors
-    /// Fails where they cannot be written.
+    /// Fails if they cannot be written.
     pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) -> csv::Result<()> {
         let mut digits = zmij::Buffer::new();
         for x in numbers {
@@ -66,23 +66,23 @@ impl<W: Write> CsvWriter<W> {
     /// Ends the row.
     ///
     /// # Errors
-    /// Fails where it cannot be written.
+    /// Fails if it cannot be written.
     pub fn end_row(&mut self) -> csv::Result<()> {
         self.0.write_record(None::<&[u8]>)
     }
 
-    /// Writes a row as another table has it.
+    /// Writes a row of another table unchanged.
     ///
     /// # Errors
-    /// Fails where it cannot be written.
+    /// Fails if it cannot be written.
     pub fn copy(&mut self, row: &csv::ByteRecord) -> csv::Result<()> {
         self.0.write_byte_record(row)
     }
 
-    /// Hands back what was written to.
+    /// Returns the writer.
     ///
     /// # Errors
-    /// Fails where the rest cannot be written.
+    /// Fails if the rest cannot be written.
     pub fn end(self) -> io::Result<W> {
         self.0.into_inner().map_err(|e| e.into_error())
     }

@@ -1,4 +1,4 @@
-//! Diagnostics: what is wrong, where in the text, and what to do, in the look of `rustc`.
+//! Diagnostics with message, position in the text and suggested fix, in the style of `rustc`.
 
 use std::fmt;
 use std::ops::Range;
@@ -18,17 +18,17 @@ const SHOWN_NAME: usize = 60;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// Nothing can be computed before it is put right.
+    /// The model cannot be solved before it is corrected.
     Error,
-    /// The result may not be what the user means.
+    /// The result may not be what the user intends.
     Warning,
-    /// Worth knowing; nothing is wrong.
+    /// Information without a problem.
     Note,
 }
 
-/// One finding about a model file.
+/// A diagnostic of a model file.
 ///
-/// Its JSON form is the same for the command (`--json`), the page and Python: `{severity, code, message, file, line,
+/// The JSON form is the same for the command (`--json`), the page and Python: `{severity, code, message, file, line,
 /// column, length, element, label, notes, help}`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnostic {
@@ -36,45 +36,45 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// Stable code; `docs/diagnostics.md` lists them.
     pub code: &'static str,
-    /// The headline, enough alone.
+    /// Message, understandable by itself.
     pub message: String,
-    /// The file's name as it was given.
+    /// File name as given.
     pub file: String,
-    /// Line of the file, from 1; none where the file as a whole is meant.
+    /// Line of the file, from 1; `None` for the file as a whole.
     pub line: Option<usize>,
     /// Column of the line in characters, from 1.
     pub column: Option<usize>,
     /// Number of underlined characters.
     pub length: Option<usize>,
-    /// Name of the entry that is underlined: the last part of a key, or a name in quotes.
+    /// Name of the underlined entry: the last part of a key, or a name in quotes.
     pub element: Option<String>,
-    /// Range of bytes of the text that is underlined.
+    /// Underlined range of the text, in bytes.
     #[serde(skip)]
     pub span: Option<Range<usize>>,
-    /// Text at the underlined place.
+    /// Text at the underlined position.
     pub label: Option<String>,
-    /// Facts, with units.
+    /// Notes: facts with units.
     pub notes: Vec<String>,
-    /// Instruction that corrects the problem.
+    /// Suggested fix.
     pub help: Option<String>,
 }
 
 impl Diagnostic {
-    /// With one more fact.
+    /// Adds a note.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(printable(note.into()));
         self
     }
 
-    /// With a remedy.
+    /// Sets the suggested fix.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(printable(help.into()));
         self
     }
 
-    /// With words at the underlined place.
+    /// Sets the text at the underlined position.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = Some(printable(label.into()));
@@ -82,14 +82,14 @@ impl Diagnostic {
     }
 }
 
-/// Everything that is wrong with a file, in the order of the text.
+/// All diagnostics of a file, in the order of the text.
 #[derive(Clone, Debug)]
 pub struct Diagnostics {
     source: Source,
     list: Vec<Diagnostic>,
 }
 
-/// Diagnostics in the order of the text, each once; what concerns the file as a whole comes first.
+/// Sorts diagnostics in the order of the text and removes duplicates; those of the file as a whole come first.
 pub(crate) fn in_order(mut list: Vec<Diagnostic>) -> Vec<Diagnostic> {
     list.sort_by_key(|d| d.span.as_ref().map(|s| (s.start, s.end)));
     for d in &mut list {
@@ -106,12 +106,12 @@ impl Diagnostics {
         Self { source, list: in_order(list) }
     }
 
-    /// The diagnostics, never none.
+    /// Diagnostics, at least one.
     pub fn list(&self) -> &[Diagnostic] {
         &self.list
     }
 
-    /// All of it for a terminal; with `color`, ANSI escapes.
+    /// Renders all diagnostics for a terminal; with `color`, with ANSI escapes.
     pub fn render(&self, color: bool) -> String {
         let mut text = String::new();
         for d in self.list.iter().take(SHOWN) {
@@ -143,17 +143,17 @@ impl Serialize for Diagnostics {
     }
 }
 
-/// A file's name and text, with its lines counted; behind it the files that it includes, so that a place in the text
-/// says in which file it is. It knows where in it a diagnostic is.
+/// Name and text of a file with its line starts, followed by the included files, so that a position in the text
+/// identifies the file.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// The name as it was given.
+    /// Name as given.
     pub file: Arc<str>,
-    /// The text.
+    /// Text.
     pub text: Arc<str>,
     /// Start of each line.
     lines: Arc<[usize]>,
-    /// The names of all files, and where each begins and ends.
+    /// Names of all files, with their ranges.
     files: Arc<[(String, Range<usize>)]>,
 }
 
@@ -163,7 +163,7 @@ impl Source {
         Self::of_files(file, text, std::iter::empty())
     }
 
-    /// A file with those that it includes, by name and text.
+    /// Source of a file with its included files, by name and text.
     pub fn of_files<'t>(file: &str, text: &str, others: impl Iterator<Item = (String, &'t str)>) -> Self {
         let file = printable(file.to_owned());
         let (mut all, mut files) = (text.to_owned(), vec![(file.clone(), 0..text.len())]);
@@ -181,7 +181,7 @@ impl Source {
         self.files[file].1.clone()
     }
 
-    /// The name of the file that a byte is in, and where that begins.
+    /// Name and start of the file that contains a byte.
     fn file_at(&self, at: usize) -> (&str, usize) {
         let k = self.files.partition_point(|(_, range)| range.start <= at).saturating_sub(1);
         (&self.files[k].0, self.files[k].1.start)
@@ -195,7 +195,7 @@ impl Source {
         (line - first + 1, self.text[self.lines[line]..at].chars().count() + 1)
     }
 
-    /// A diagnostic at a range of the text, or about the file as a whole.
+    /// Creates a diagnostic at a range of the text, or for the file as a whole.
     pub fn diagnostic(
         &self,
         severity: Severity,
@@ -227,8 +227,8 @@ impl Source {
         }
     }
 
-    /// The look of one diagnostic. Only the lines around it are handed to the renderer, so that a report
-    /// on a large file costs no more than one on a small file.
+    /// Renders one diagnostic. Only the lines around it are passed to the renderer, so that the cost does not depend on
+    /// the size of the file.
     pub fn render(&self, d: &Diagnostic, color: bool) -> String {
         let level = match d.severity {
             Severity::Error => Level::ERROR,
@@ -260,7 +260,7 @@ impl Source {
         renderer.render(&[group])
     }
 
-    /// The whole lines that a span touches; of a long span, the first line only.
+    /// Complete lines of a span; for a long span, the first line only.
     fn window(&self, span: &Range<usize>) -> Range<usize> {
         let first = self.lines.partition_point(|&start| start <= span.start) - 1;
         let last = self.lines.partition_point(|&start| start < span.end.max(span.start + 1)) - 1;
@@ -289,10 +289,10 @@ fn remedy(code: &str) -> Option<&'static str> {
         "HP0107" => "remove one of the two keys",
         "HP0108" => "correct the underlined part; `docs/file-format.md` lists the functions",
         "HP0109" => "correct the number",
-        "HP0110" => "correct the underlined part; `docs/file-format.md` says what each kind of law needs",
+        "HP0110" => "correct the underlined part; `docs/file-format.md` describes each kind of law",
         "HP0111" => "put the file into the folder of the model file, and name it from there",
         "HP0112" => "correct that line of the file, or choose other `columns`",
-        "HP0113" => "correct the underlined part; `docs/file-format.md` says what expressions may name",
+        "HP0113" => "correct the underlined part; `docs/file-format.md` lists the names in expressions",
         "HP0115" => "export the body again as STL, OBJ or GLB, as triangles",
         "HP0116" => "correct `mirror`; `docs/file-format.md` describes it",
         "HP0117" => "include each file where it is needed, and none in itself",
@@ -322,13 +322,13 @@ fn remedy(code: &str) -> Option<&'static str> {
         "HP0225" => "give the rod a `length`, or move one of its hardpoints",
         "HP0226" => "give three points or more (four, if closed) in one plane perpendicular to `axis`",
         _ if code.starts_with("HP02") => {
-            "correct the underlined part; `docs/diagnostics.md` says more about this code"
+            "correct the underlined part; `docs/diagnostics.md` describes this code"
         }
         _ => return None,
     })
 }
 
-/// A text of the file for use in a message: cut where it is long.
+/// Shortens a text of the file for a message.
 pub(crate) fn shown(name: &str) -> String {
     match name.char_indices().nth(SHOWN_NAME) {
         Some((end, _)) => format!("{}...", &name[..end]),
@@ -347,7 +347,7 @@ fn printable(text: String) -> String {
     }
 }
 
-/// The candidate that the user most likely meant; none for texts too long to be a name.
+/// Most similar candidate; `None` for texts that are too long for a name.
 pub(crate) fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if name.len() > 2 * SHOWN_NAME { None } else { hardpoint::draft::did_you_mean(name, candidates) }
 }

@@ -1,4 +1,4 @@
-//! Appearance of the mechanism in drawings, which the model does not need.
+//! Appearance of the mechanism in drawings, without influence on the model.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,18 @@ use hardpoint::space::Vec3;
 /// Appearance of a mechanism, by indices in the lists of the [`Model`](hardpoint::model::Model).
 #[derive(Clone, Debug, Default)]
 pub struct Appearance {
-    /// The shapes of bodies.
+    /// Shapes of bodies.
     pub bodies: BTreeMap<usize, Mesh>,
-    /// The forms of joints.
+    /// Forms of joints.
     pub joints: BTreeMap<usize, Form>,
-    /// The forms of distances that are measured.
+    /// Forms of measured distances.
     pub measures: BTreeMap<usize, Form>,
 }
 
-/// The shape of a body as triangles, each place once.
+/// Shape of a body as triangles with shared vertices.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    /// The file that it was read from, as the model names it.
+    /// File name, as in the model.
     pub file: String,
     /// Frame of the vertices.
     pub frame: MeshFrame,
@@ -31,9 +31,9 @@ pub struct Mesh {
 /// Frame of a mesh's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshFrame {
-    /// The origin and axes of the hardpoints, in the design configuration.
+    /// Origin and axes of the hardpoints, in the design configuration.
     World,
-    /// The frame of its body.
+    /// Frame of its body.
     Body,
 }
 
@@ -44,14 +44,14 @@ impl MeshFrame {
 
 /// Names in model files, with descriptions.
 pub(crate) const MESH_FRAMES: &[(&str, &str)] = &[
-    ("world", "The origin and axes of the hardpoints, in the design configuration."),
-    ("body", "The frame of its body."),
+    ("world", "Origin and axes of the hardpoints, in the design configuration."),
+    ("body", "Frame of its body."),
 ];
 
-/// Shape that a joint with a length is drawn as.
+/// Shape of a joint with a length in drawings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// A damper with a spring round it.
+    /// A damper with a coaxial spring.
     Coilover,
     /// A coil spring.
     Spring,
@@ -67,7 +67,7 @@ impl Form {
     /// All of them, in the order of `FORMS`.
     pub const ALL: [Self; 5] = [Self::Coilover, Self::Spring, Self::Damper, Self::Cylinder, Self::Rod];
 
-    /// As model files write it.
+    /// Name in model files.
     pub fn name(self) -> &'static str {
         FORMS[self as usize].0
     }
@@ -75,7 +75,7 @@ impl Form {
 
 /// Names in model files, with descriptions.
 pub(crate) const FORMS: &[(&str, &str)] = &[
-    ("coilover", "A damper with a spring round it."),
+    ("coilover", "A damper with a coaxial spring."),
     ("spring", "A coil spring."),
     ("damper", "A damper."),
     ("cylinder", "A hydraulic or pneumatic cylinder."),

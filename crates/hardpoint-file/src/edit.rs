@@ -1,4 +1,4 @@
-//! A model file with a changed design: the same text, with other numbers where the change is.
+//! Edits of a model file for a changed design: the same text with new numbers.
 
 use hardpoint::joint::Quantity;
 use hardpoint::law::ParameterKind;
@@ -11,24 +11,24 @@ use crate::read::planar::Plane;
 use crate::units::Units;
 use crate::{Folder, ModelFile, parsed};
 
-/// A number is written with as few digits as bring it back to this many units of round-off: what the sums, products and
-/// roots between a file's number and a changed design's leave. 5.200000000000001 is written 5.2.
+/// Tolerance of written numbers in units of round-off, which covers the sums, products and roots between a number of
+/// the file and of the changed design: 5.200000000000001 is written as 5.2.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
-/// The saved file's directions and lengths agree with the changed design to this, rad or part of the mechanism's size:
-/// some hundred times the round-off of their roots, far below what anything is made to.
+/// Tolerance of directions and lengths of the saved file, in rad or relative to the mechanism's size: some hundred
+/// times the round-off of their roots, far below manufacturing tolerances.
 const SAME: f64 = 1e-12;
-/// Part of the bounds of a change with which saving is tried: so small that expressions keep their values.
+/// Fraction of the bounds for a trial of saving: small enough that expressions keep their values.
 const TRIAL: f64 = 1e-4;
 
 impl ModelFile {
-    /// The text of this file with the design changed: variable k of [`model`](Self::model) at `design[k]` (missing
+    /// Text of this file with the design changed: variable k of [`model`](Self::model) at `design[k]` (missing
     /// entries are 0) becomes 0, the new nominal design. Comments, order, layout and untouched numbers stay as they
-    /// are; what expressions give follows them; bounds stay where they were.
+    /// are; expressions keep their dependence on them; bounds stay at the same values.
     ///
-    /// The new text has been read back and describes the changed design to round-off.
+    /// The new text is read back and verified to describe the changed design to round-off.
     ///
     /// # Errors
-    /// What of the change the text has no number for, variable by variable.
+    /// Lists the parts of the change that the text has no number for, variable by variable.
     ///
     /// ```
     /// let text = r#"
@@ -53,7 +53,7 @@ impl ModelFile {
         if values.iter().all(|v| *v == 0.0) {
             return Ok(self.text().to_owned());
         }
-        // What the reader has read, the editor can.
+        // The reader has parsed the text, so the editor can.
         let document = self.text().parse().expect("the text has been read as TOML");
         let mut edit = Edit { file: self, values, document, faults: Vec::new() };
         edit.hardpoints();
@@ -82,7 +82,7 @@ impl ModelFile {
         for (k, v) in variables.iter().enumerate() {
             let [low, high] = self.model.variables[v.0].bounds.unwrap_or([-1.0, 1.0]);
             let room = if high > -low { high } else { low };
-            // Each moves by another part of its room.
+            // Each variable changes by a different part of its range.
             design[v.0] = TRIAL * room * (1.0 + k as f64 / variables.len() as f64);
         }
         match self.edit(&design) {
@@ -91,12 +91,12 @@ impl ModelFile {
         }
     }
 
-    /// Returns whether a mirror makes the hardpoint, joint or parameter of this name from another one.
+    /// Returns whether the hardpoint, joint or parameter of this name is a mirror image.
     pub fn is_image(&self, name: &str) -> bool {
         self.origins.names.contains_key(name)
     }
 
-    /// True if the new text says the changed design.
+    /// Returns whether the new text describes the changed design.
     fn read_back(&self, text: &str, values: &[f64]) -> Result<(), Diagnostics> {
         let saved = parsed(Folder::Given(&self.texts), text, self.file_name())?;
         let Some((what, name)) = difference(&self.model, values, &saved.model) else { return Ok(()) };
@@ -114,7 +114,7 @@ impl ModelFile {
     }
 }
 
-/// The hardpoints of a model's text whose coordinates are plain numbers, in their order.
+/// Hardpoints of a model's text whose coordinates are plain numbers, in their order.
 pub fn hardpoints_in(text: &str) -> Vec<String> {
     let document: DocumentMut = text.parse().unwrap_or_default();
     let entries = document.get("hardpoints").and_then(Item::as_table_like);
@@ -124,8 +124,8 @@ pub fn hardpoints_in(text: &str) -> Vec<String> {
     entries.filter(|(_, item)| is_plain(item)).map(|(name, _)| name.to_owned()).collect()
 }
 
-/// A model's text under another name and with hardpoints in other places, in the text's unit of length. Comments and
-/// layout stay; of points with two coordinates those in the plane are written.
+/// Text of a model with another name and other hardpoints, in the text's unit of length. Comments and layout are
+/// preserved; for points with two coordinates, those in the plane are written.
 ///
 /// ```
 /// let text = "name = \"x\"\nplanar = \"zx\"\n[hardpoints]\nA = [0, 0] # here\n";
@@ -156,14 +156,14 @@ pub fn placed(text: &str, name: &str, places: &[(String, [f64; 3])]) -> String {
     document.to_string()
 }
 
-/// The value at a path of keys, as it is written.
+/// Value at a path of keys, as written.
 pub fn at_keys(text: &str, keys: &[&str]) -> Option<String> {
     let mut document: DocumentMut = text.parse().ok()?;
     let keys: Vec<Step<'_>> = keys.iter().map(|key| Key(key)).collect();
     value_at(&mut document, &keys).map(|value| value.clone().decorated("", "").to_string())
 }
 
-/// The text with another value at a path of keys; unchanged if there is none, or the value is not TOML.
+/// Text with another value at a path of keys; unchanged if there is no such path, or the value is not TOML.
 pub fn with_keys(text: &str, keys: &[&str], value: &str) -> String {
     let (Ok(mut document), Ok(_)) = (text.parse::<DocumentMut>(), value.parse::<Value>()) else {
         return text.to_owned();
@@ -176,7 +176,7 @@ pub fn with_keys(text: &str, keys: &[&str], value: &str) -> String {
     document.to_string()
 }
 
-/// The coordinates of a hardpoint that are plain numbers of a model's text, in its unit of length.
+/// Coordinates of a hardpoint as plain numbers of a model's text, in its unit of length.
 pub fn hardpoint_in(text: &str, name: &str) -> Option<[f64; 3]> {
     let list: Value = at_keys(text, &["hardpoints", name])?.parse().ok()?;
     let numbers: Option<Vec<f64>> = (list.as_array()?.iter())
@@ -195,7 +195,7 @@ struct Edit<'f> {
     faults: Vec<Diagnostic>,
 }
 
-/// A step on the way to a value: a table's key, or a place in a list.
+/// A step of a path to a value: a key of a table, or an index of a list.
 #[derive(Clone, Copy)]
 enum Step<'s> {
     Key(&'s str),
@@ -216,8 +216,8 @@ impl Edit<'_> {
         changed.flat_map(|(k, (v, value))| v.changes.iter().map(move |change| (k, change, *value)))
     }
 
-    /// True if a mirror makes this from something else: its numbers are written there, and are right if both change
-    /// alike.
+    /// Returns whether this is a mirror image: its numbers are those of the original, and are valid if both change in
+    /// the same way.
     fn is_image(&self, name: &str) -> bool {
         self.file.origins.names.contains_key(name)
     }
@@ -234,7 +234,7 @@ impl Edit<'_> {
         true
     }
 
-    /// The variables that do such a thing, for complaints.
+    /// Names of the variables with such a change, for messages.
     fn of(&self, does: impl Fn(&Change) -> bool) -> String {
         let mut names: Vec<&str> = Vec::new();
         for (k, _, _) in self.changes().filter(|(_, change, _)| does(change)) {
@@ -320,8 +320,8 @@ impl Edit<'_> {
         }
     }
 
-    /// Lengths that rods are given grow; those that are measured between hardpoints are written where these move and
-    /// the rod keeps its own.
+    /// Changes given lengths of rods; a length that follows from hardpoints is written if these move and the rod keeps
+    /// its length.
     fn lengths(&mut self) {
         let model = &self.file.model;
         let kept = model.geometry(&self.values).kept;
@@ -379,7 +379,7 @@ impl Edit<'_> {
         }
     }
 
-    /// Parameters of laws.
+    /// Changes parameters of laws.
     fn laws(&mut self) {
         let model = &self.file.model;
         let laws = model.laws(&self.values);
@@ -417,7 +417,7 @@ impl Edit<'_> {
         }
     }
 
-    /// Directions of joints that turn by themselves.
+    /// Changes directions of joints.
     fn joints(&mut self) {
         let model = &self.file.model;
         let [before, after] = [&[][..], &self.values].map(|design| model.geometry(design));
@@ -483,8 +483,8 @@ impl Edit<'_> {
         }
     }
 
-    /// Bounds stay where they were: [a, b] of a variable that goes to 0 from x is [a - x, b - x]. Those of parameters
-    /// are not counted from it.
+    /// Bounds stay at the same values: [a, b] becomes [a - x, b - x] for a variable whose value x becomes 0. Bounds of
+    /// parameters are absolute.
     fn bounds(&mut self) {
         let model = &self.file.model;
         let mut done: Vec<(String, f64)> = Vec::new();
@@ -517,7 +517,7 @@ impl Edit<'_> {
                 continue;
             }
             for (k, bound) in [low, high].into_iter().enumerate() {
-                // A design at its bound is at it, not beyond by round-off.
+                // A design at its bound must not exceed it by round-off.
                 let near = (bound - value).abs() <= ROUND_OFF * bound.abs().max(value.abs());
                 let new = if near { 0.0 } else { bound - value };
                 if near || (new < 0.0) == (k == 0) {
@@ -540,7 +540,7 @@ impl Edit<'_> {
         }
     }
 
-    /// Writes a number in place of another one; false where there is none.
+    /// Replaces a number; returns false if there is none.
     fn write(&mut self, way: &[Step<'_>], quantity: Quantity, old: f64, new: f64) -> bool {
         let units = self.units();
         let way = self.written_way(way);
@@ -555,7 +555,7 @@ impl Edit<'_> {
         true
     }
 
-    /// The way to a number of a hardpoint that has two coordinates only.
+    /// Path to a coordinate of a hardpoint with two coordinates.
     fn written_way<'w>(&self, way: &[Step<'w>]) -> Vec<Step<'w>> {
         let mut way = way.to_vec();
         if let ([Key("hardpoints"), Key(name), At(axis)], Some(plane)) = (&mut way[..], self.file.plane) {
@@ -567,7 +567,7 @@ impl Edit<'_> {
         way
     }
 
-    /// Writes a direction in place of another one, with the length that this is written with.
+    /// Replaces a direction and keeps the length of the written vector.
     fn direction(&mut self, way: &[Step<'_>], unit: Vec3) -> bool {
         let Some(value) = value_at(&mut self.document, way) else { return false };
         let numbers = |value: &Value| -> Option<Vec<f64>> {
@@ -578,7 +578,7 @@ impl Edit<'_> {
             None if value.is_str() => 1.0,
             None => return false,
         };
-        // The components of a unit vector have the round-off of its length.
+        // Components of a unit vector have the round-off of its length.
         let texts =
             [0, 1, 2].map(|n| shortest(unit[n] * length, ROUND_OFF * length, |x| x, unit[n] * length));
         match value.as_array_mut().filter(|list| list.len() == 3) {
@@ -589,7 +589,7 @@ impl Edit<'_> {
     }
 }
 
-/// The markers whose direction an axis of a joint is.
+/// Markers that an axis of a joint defines.
 fn ends_of(joint: &hardpoint::model::Joint, which: usize) -> &'static [usize] {
     match (joint.kind.axis2, which) {
         (hardpoint::joint::Need::OnBodyJ, 0) => &[0],
@@ -607,7 +607,7 @@ fn value_at<'d>(document: &'d mut DocumentMut, way: &[Step<'_>]) -> Option<&'d m
     for (k, step) in way.iter().enumerate() {
         match step {
             Key(key) => item = item.as_table_like_mut()?.get_mut(key)?,
-            // Tables of a list have more behind them; a list of values has values only.
+            // Tables of a list continue below their header; a list of values has values only.
             At(n) if item.is_array_of_tables() => {
                 let table = item.as_array_of_tables_mut()?.get_mut(*n)?;
                 let Some(Key(key)) = way.get(k + 1) else { return None };
@@ -629,7 +629,7 @@ fn value_at<'d>(document: &'d mut DocumentMut, way: &[Step<'_>]) -> Option<&'d m
     item.as_value_mut()
 }
 
-/// True if a number is written with a point; none for what is no number.
+/// Returns whether a number is written with a decimal point; `None` for other values.
 fn number_style(value: &Value) -> Option<bool> {
     match value {
         Value::Integer(_) => Some(false),
@@ -640,14 +640,14 @@ fn number_style(value: &Value) -> Option<bool> {
     }
 }
 
-/// Puts a value in the place of another one, with the space and comments around that.
+/// Replaces a value and preserves the space and comments around it.
 fn replace(value: &mut Value, text: &str) {
     let decor = value.decor().clone();
     *value = text.parse().expect("a number or a list of numbers is TOML");
     *value.decor_mut() = decor;
 }
 
-/// Adds the length to a rod's table.
+/// Adds the length to the table of a rod.
 fn joint_table(document: &mut DocumentMut, joint: &str, length: &str) -> bool {
     let table = document.get_mut("joints").and_then(|j| j.as_table_like_mut()?.get_mut(joint));
     let Some(table) = table.and_then(Item::as_table_like_mut) else { return false };
@@ -656,8 +656,8 @@ fn joint_table(document: &mut DocumentMut, joint: &str, length: &str) -> bool {
     true
 }
 
-/// The number with the fewest digits that is read as `target`, or as near to it as `near`; `exact` is the same in the
-/// unit of the text.
+/// Number with the fewest digits that is read as `target`, or within `near` of it; `exact` is the same in the unit of
+/// the text.
 fn shortest(target: f64, near: f64, to_si: impl Fn(f64) -> f64, exact: f64) -> String {
     let tried = (0..17).map(|digits| format!("{exact:.digits$e}"));
     let found = tried

@@ -1,8 +1,7 @@
-//! The format as data: which tables a model file has, which keys these have, and what is there.
+//! The format as data: tables of a model file, their keys, and the form of their values.
 //!
-//! Every table is declared once, beside the code that reads it. From the declarations come the keys that the reader
-//! knows, its defaults and examples, the JSON Schema (`schema.rs`), and the tables of `docs/file-format.md`
-//! (`format/docs.rs`).
+//! Every table is declared once, next to the code that reads it. The declarations define the keys of the reader, its
+//! defaults and examples, the JSON Schema (`schema.rs`), and the tables of `docs/file-format.md` (`format/docs.rs`).
 
 #[cfg(test)]
 mod docs;
@@ -17,13 +16,13 @@ pub(crate) struct Key {
     pub key: &'static str,
     pub shape: Shape,
     pub need: Need,
-    /// A value to show where it is missing or wrong.
+    /// Example for messages about a missing or invalid value.
     pub example: &'static str,
     /// Meaning of the key.
     pub doc: &'static str,
 }
 
-/// True if a key must be there.
+/// Presence of a key.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Need {
     Required,
@@ -32,8 +31,7 @@ pub(crate) enum Need {
     Else(&'static str),
 }
 
-/// Keys as they are declared: what each means, whether it must be there, its name, what may stand there, and an
-/// example.
+/// Declares keys: meaning, presence, name, form of the value, and an example.
 macro_rules! keys {
     (@ must) => { $crate::format::Need::Required };
     (@ may) => { $crate::format::Need::Optional };
@@ -49,7 +47,7 @@ macro_rules! keys {
     };
 }
 
-/// A table as it is declared: what it is, its name, and its keys.
+/// Declares a table: description, name and keys.
 macro_rules! table {
     ($(#[doc = $doc:literal])+ $name:literal, $keys:ident) => {
         $crate::format::Table::new($name, concat!($($doc),+).trim_ascii(), $keys)
@@ -67,9 +65,9 @@ pub(crate) struct Table {
     pub name: &'static str,
     pub doc: &'static str,
     pub keys: &'static [Key],
-    /// More keys, which it shares with others.
+    /// Keys shared with other tables.
     pub shared: &'static [Key],
-    /// Keys that may stand instead of its own.
+    /// Alternative keys.
     pub instead: &'static [Key],
 }
 
@@ -82,7 +80,7 @@ impl Table {
         self.keys.iter().chain(self.shared)
     }
 
-    /// With the `type` that says that it is this table.
+    /// Sets the `type` that selects this table.
     pub fn typed_keys(&'static self) -> impl Iterator<Item = &'static Key> {
         TYPE.iter().chain(self.instead).chain(self.keys())
     }
@@ -93,12 +91,12 @@ pub(crate) struct Kinds {
     pub name: &'static str,
     /// Meaning of the table; `{keys}` represents the first keys of its kinds.
     pub doc: &'static str,
-    /// True if a key `type` says which kind it is; else the first key of a kind leads it.
+    /// True if a key `type` selects the kind; otherwise the first key of a kind selects it.
     pub typed: bool,
     pub tables: fn() -> Vec<&'static Table>,
 }
 
-/// The key that says which kind a table is.
+/// Key that selects the kind of a table.
 const TYPE: &[Key] = keys! {
     /// Kind of the table.
     must "type": Shape::Text, "...";
@@ -112,7 +110,7 @@ impl Kinds {
         self.doc.replace("{keys}", &leads.join(", "))
     }
 
-    /// The keys of all kinds, each once.
+    /// Keys of all kinds, each once.
     pub fn keys(&self) -> Vec<&'static Key> {
         let tables = (self.tables)();
         let mut keys: Vec<&'static Key> = tables.iter().flat_map(|t| t.keys).collect();
@@ -127,32 +125,32 @@ impl Kinds {
 #[derive(Clone, Copy)]
 pub(crate) enum Shape {
     Text,
-    /// The name of a file in the model's folder or below it.
+    /// Name of a file in the model's folder or below it.
     File,
-    /// A text that is an expression or a law, with names of parameters, coordinates or measures in it.
+    /// An expression or a law as text, with names of parameters, coordinates or measures.
     Expression,
-    /// The name of something, as in "a joint".
+    /// Name of an entry, such as "a joint".
     Name(&'static str),
-    /// A number, or an expression over parameters; in the file's unit of what it measures.
+    /// A number, or an expression over parameters; in the file's unit of the quantity.
     Number(Quantity),
-    /// A number by itself, in the file's unit of what it measures.
+    /// A plain number, in the file's unit of the quantity.
     Plain(Quantity),
     /// A whole number from 1 to this.
     Count(u32),
     Flag,
-    /// One of some words, with what they mean, as far as that needs to be said.
+    /// One of several words, with their meanings if necessary.
     Words(&'static [(&'static str, &'static str)]),
-    /// One of words that the core knows, as messages call it, and what they mean.
+    /// One of the words defined by the core, with their name in messages and their meanings.
     Known(&'static str, fn() -> Vec<(&'static str, String)>),
-    /// One of some whole numbers.
+    /// One of several whole numbers.
     OneOf(&'static [u32]),
-    /// A list of at least and at most that many.
+    /// A list with a minimum and a maximum length.
     List(&'static Shape, [usize; 2]),
-    /// A table with one entry for each name of such a thing, like "a joint".
+    /// A table with one entry per name of such an element, like "a joint".
     Entries(&'static str, &'static Shape),
     Table(&'static Table),
     Kinds(&'static Kinds),
-    /// Any of these; with a name in the schema and what it is.
+    /// Any of these forms, with a name and a description in the schema.
     Any(&'static str, &'static str, &'static [Shape]),
 }
 
@@ -184,7 +182,7 @@ impl Shape {
         }
     }
 
-    /// The words that it may be.
+    /// Possible words.
     pub fn words(self) -> Vec<&'static str> {
         match self {
             Self::Words(words) => words.iter().map(|w| w.0).collect(),
@@ -205,7 +203,7 @@ fn noun(one: &str) -> &str {
     one.split_once(' ').map_or(one, |(_, noun)| noun)
 }
 
-/// More than one of them: `a body`, `bodies`.
+/// Plural: `a body`, `bodies`.
 fn several(one: &str) -> String {
     let noun = noun(one);
     noun.strip_suffix('y').map_or_else(|| format!("{noun}s"), |stem| format!("{stem}ies"))

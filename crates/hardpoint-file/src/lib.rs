@@ -19,12 +19,11 @@
 //! Properties of the reader:
 //!
 //! - The format is TOML, described in `docs/file-format.md`; [`schema`] returns its JSON Schema for editors.
-//! - Units are named once per file. [`Units`] converts at the edges; inside all numbers are SI.
-//! - This crate knows keys, types and units. [`Model::from_draft`] checks the mechanism; its errors are reported at the
-//!   place in the text that they are about.
-//! - All problems are reported at once, as [`Diagnostics`]. Only a file that is not TOML is not read further.
-//! - No text makes this crate panic or keeps it busy for long: names, tables and lists have limits far above any
-//!   mechanism.
+//! - Units are declared once per file. [`Units`] converts input and output; internal numbers are SI.
+//! - This crate knows keys, types and units. [`Model::from_draft`] checks the mechanism; its errors are reported with
+//!   their position in the text.
+//! - All problems are reported at once, as [`Diagnostics`]. Only a file with invalid TOML is not read further.
+//! - No text causes a panic or a long run time: names, tables and lists have limits far above any mechanism.
 //! - A model may include other files of its folder and mirror one side to the other. Both are resolved on the values of
 //!   the texts (`read/include.rs`, `read/mirror.rs`) before these are read.
 //! - Tables of laws may be CSV files, and shapes of bodies files of triangles, in the model's folder. No other files
@@ -65,23 +64,23 @@ pub use units::{AngleUnit, LengthUnit, Units};
 use diagnostic::{closest, shown};
 use places::Places;
 use read::include::{self, Files, IncludeError, shifted};
-use read::mirror::{Origins, opposites, told_once, with_origin};
+use read::mirror::{Origins, deduplicated, opposites, with_origin};
 pub use tree::Texts;
 use tree::{Folder, Reader};
 
-/// Files larger than this are not read, bytes.
+/// Maximum size of a file in bytes.
 pub const LARGEST_FILE: u64 = 64 << 20;
-/// Number of syntax errors that are shown: after a few, they follow from the ones before.
+/// Maximum number of syntax errors that are shown: later ones usually follow from the first.
 const SYNTAX_ERRORS: usize = 5;
-/// Number of files of a folder that are named where the one requested is not there.
+/// Maximum number of files of a folder that are listed if the requested one does not exist.
 const LISTED_FILES: usize = 12;
 
-/// A model, and the text that it was read from.
+/// A model with its text.
 #[derive(Clone, Debug)]
 pub struct ModelFile {
-    /// The checked model, in SI units.
+    /// Checked model, in SI units.
     pub model: Model,
-    /// The file's units, for everything that is shown.
+    /// Units of the file, for output.
     pub units: Units,
     /// Description in the file.
     pub description: Option<String>,
@@ -89,39 +88,39 @@ pub struct ModelFile {
     pub drawing: Appearance,
     /// Warnings and notes of the reader, in the order of the text.
     pub remarks: Vec<Diagnostic>,
-    /// The texts that the model names files of: tables of laws, curves that are wanted, lists of designs.
+    /// Texts of the files that the model names: tables of laws, target curves, lists of designs.
     pub texts: Texts,
-    /// The plane of a planar model.
+    /// Plane of a planar model.
     pub plane: Option<Plane>,
-    /// Entries that a mirror made, with their originals, by name.
+    /// Mirror images with their originals, by name.
     origins: Origins,
-    /// The case that the model was made of, where the file has cases and only one of them is meant.
+    /// Selected case, if the file has cases.
     pub case: Option<String>,
     source: Source,
     places: Places,
 }
 
 impl ModelFile {
-    /// The file with the motion of one of its cases alone.
+    /// Returns the file with a single case as its motion.
     pub fn in_case(&self, case: CaseId) -> Self {
         let mut model = self.model.in_case(case);
         model.grids.clear();
         Self { model, case: Some(self.model.cases[case.0].name.clone()), ..self.clone() }
     }
 
-    /// The name of the file as it was given.
+    /// Name of the file as given.
     pub fn file_name(&self) -> &str {
         &self.source.file
     }
 
-    /// The text of the file.
+    /// Text of the file.
     pub fn text(&self) -> &str {
         &self.source.text[self.source.range(0)]
     }
 
     /// Line and column, from 1, of the name of an entry: `index` counts as in the lists of [`Model`].
     ///
-    /// None for what has no entry of its own: ground, coordinates written in place of a hardpoint's name.
+    /// `None` for elements without an entry: ground, coordinates in place of a hardpoint's name.
     pub fn place(&self, section: Section, index: usize) -> Option<(usize, usize)> {
         self.span(section, index).map(|s| self.source.line_column(s.start))
     }
@@ -133,12 +132,12 @@ impl ModelFile {
         self.places.find(&at)
     }
 
-    /// The designs that a CSV file lists, wherever it lies: its first line names design variables, each line below has
-    /// their values, in the file's units; of a parameter its value, of all others a change. What comes out is changes
-    /// in SI, as in [`SweepSettings`](hardpoint::model::SweepSettings).
+    /// Reads designs from a CSV file in any folder: its first line names design variables, each line below has their
+    /// values in the file's units (values of parameters, changes for all others). The result has changes in SI, as in
+    /// [`SweepSettings`](hardpoint::model::SweepSettings).
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Returns the errors of the file.
     pub fn designs(&self, path: &Path) -> Result<(Vec<SweepRange>, Vec<Vec<f64>>), Diagnostics> {
         let name = path.display().to_string();
         let source = Source::new(&name, "");
@@ -176,7 +175,7 @@ impl ModelFile {
         Ok((SweepSettings::spanned(&variables, &rows), rows))
     }
 
-    /// A diagnostic about an entry of the model, or about all of it, for [`render`](Self::render).
+    /// Creates a diagnostic of an entry of the model, or of the whole model, for [`render`](Self::render).
     ///
     /// ```
     /// # let text = r#"
@@ -207,13 +206,13 @@ impl ModelFile {
         with_origin(self.source.diagnostic(severity, code, message, span), &self.origins)
     }
 
-    /// A diagnostic about this file as text for a terminal; with `color`, ANSI escapes.
+    /// Renders a diagnostic of this file for a terminal; with `color`, with ANSI escapes.
     pub fn render(&self, diagnostic: &Diagnostic, color: bool) -> String {
         self.source.render(diagnostic, color)
     }
 }
 
-/// Reason why there is no model.
+/// Error of reading a model.
 #[derive(Debug)]
 pub enum ReadError {
     /// The file could not be opened or is not a text.
@@ -242,7 +241,7 @@ impl std::error::Error for ReadError {}
 /// Reads and checks a model file.
 ///
 /// # Errors
-/// What is wrong with the file or with the model in it.
+/// Returns the errors of the file or of its model.
 pub fn read(path: &Path) -> Result<ModelFile, ReadError> {
     let name = path.display().to_string();
     let bytes = bytes_of(path).map_err(|(message, note, help)| {
@@ -268,7 +267,7 @@ pub fn read(path: &Path) -> Result<ModelFile, ReadError> {
     }
 }
 
-/// The file's bytes, or message, note and help.
+/// Bytes of the file, or message, note and help.
 fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<String>)> {
     use std::io::Read;
     let shown = path.display();
@@ -295,7 +294,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<Stri
     if meta.len() > LARGEST_FILE {
         return Err(too_large(format!("{} MiB", meta.len() >> 20)));
     }
-    // A pipe or device indicates no length beforehand.
+    // A pipe or device has no known length.
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(io)?;
     file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(io)?;
@@ -305,7 +304,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, (String, Option<String>, Option<Stri
     Ok(bytes)
 }
 
-/// The files of that kind beside a missing one, and the one that was probably meant.
+/// Files of the same kind in the folder of a missing file, and the most similar one.
 fn neighbours(path: &Path, extension: &str) -> (Option<String>, Option<String>) {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let ending = format!(".{extension}");
@@ -334,7 +333,7 @@ fn neighbours(path: &Path, extension: &str) -> (Option<String>, Option<String>) 
 /// the laws and bodies in it may not name files; [`read`] reads those too.
 ///
 /// # Errors
-/// Everything that is wrong with it, in the order of the text.
+/// Returns all its errors, in the order of the text.
 ///
 /// ```
 /// let diagnostics = hardpoint_file::parse("nmae = \"x\"", "x.toml").unwrap_err();
@@ -345,7 +344,7 @@ pub fn parse(text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     parsed(Folder::None, text, file_name)
 }
 
-/// As [`parse`], of a text with the files that it names ([`ModelFile::texts`]); bodies stay without their meshes.
+/// Parses a text with the files that it names ([`ModelFile::texts`]); bodies have no meshes.
 ///
 /// # Errors
 /// As [`parse`].
@@ -353,10 +352,10 @@ pub fn parse_with(text: &str, file_name: &str, files: &Texts) -> Result<ModelFil
     parsed(Folder::Given(files), text, file_name)
 }
 
-/// As [`parse`], of a model whose file lies in `folder`, so that it may name files there.
+/// Parses a text whose file is in `folder`, so that it may name files there.
 ///
 /// # Errors
-/// As there.
+/// As [`parse`].
 pub fn parse_in(folder: Option<&Path>, text: &str, file_name: &str) -> Result<ModelFile, Diagnostics> {
     parsed(folder.map_or(Folder::None, Folder::On), text, file_name)
 }
@@ -406,7 +405,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
     reader.texts = include::texts(&parts);
     let whole = reader.whole(files);
     if !reader.found.is_empty() {
-        // What it would have made is missing everywhere.
+        // References to its missing entries are not reported.
         let found = std::mem::take(&mut reader.found);
         let note = "correct this first; then the rest of the model is checked";
         let list = found.into_iter().map(|d| d.note(note)).collect();
@@ -415,7 +414,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
     let plane = Plane::of(&whole.table);
     let raw = reader.model(&whole.table, &whole.twins);
     let (units, texts, origins) = (reader.units, reader.texts, reader.origins);
-    let remarks = told_once(reader.remarks, &origins);
+    let remarks = deduplicated(reader.remarks, &origins);
     let mut found = reader.found;
     let model = match Model::from_draft(&raw.draft) {
         Ok(model) => Some(model),
@@ -424,7 +423,7 @@ fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<ModelFile, 
             None
         }
     };
-    let found = told_once(found, &origins);
+    let found = deduplicated(found, &origins);
     match model {
         Some(model) if found.is_empty() => {
             let (description, drawing, places) = (raw.description, raw.drawing, raw.places);
@@ -456,7 +455,7 @@ fn syntax_errors(source: &Source, errors: &[toml::de::Error], file: &Range<usize
     for error in errors {
         let span = error.span().map_or(file.end..file.end, |s| s.start + file.start..s.end + file.start);
         let line = source.line_column(span.start).0;
-        // The same complaint on this or the next lines follows from the first.
+        // The same error on this or the next lines follows from the first.
         let follows =
             list.iter().any(|d| d.line == Some(line)) || last.1 == error.message() && line <= last.0 + 2;
         last = (line, error.message());
@@ -488,7 +487,7 @@ fn syntax_errors(source: &Source, errors: &[toml::de::Error], file: &Range<usize
             Some(span),
         );
         list.push(help.into_iter().fold(d, Diagnostic::help));
-        // Inside a list that is not closed, all the rest of the file looks wrong.
+        // After an unclosed list, the rest of the file is invalid.
         if list.len() == SYNTAX_ERRORS || error.message().contains("array") {
             break;
         }

@@ -1,4 +1,4 @@
-//! Measurements of a model: the names of a table found among drivers and outputs, values in SI.
+//! Measurements of a model: columns of a table assigned to drivers and outputs, values in SI.
 
 use std::path::Path;
 
@@ -15,9 +15,9 @@ use crate::read::measured::{Readings, readings_at};
 pub struct MeasuredData {
     /// Postures and readings, in SI.
     pub measurements: Measurements,
-    /// The line of the file that each posture is on.
+    /// Line of each posture in the file.
     pub lines: Vec<u64>,
-    /// Drivers that the file does not name: they stand in the design configuration.
+    /// Drivers that the file does not name: they are in the design configuration.
     pub as_drawn: Vec<DriverId>,
 }
 
@@ -57,18 +57,19 @@ impl ModelFile {
     /// `sigmas` are those of outputs without a cell for it, in their units. Empty cells were not measured.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Returns the errors of the file.
     pub fn measured(&self, path: &Path, sigmas: &[(String, f64)]) -> Result<MeasuredData, Diagnostics> {
         let name = path.display().to_string();
         let source = Source::new(&name, "");
-        let told = |r: Refusal| {
+        let rejected = |r: Refusal| {
             let d = source.diagnostic(Severity::Error, r.code, r.message, None);
             let d = r.notes.into_iter().fold(d, Diagnostic::note);
             Diagnostics::new(source.clone(), vec![r.help.into_iter().fold(d, Diagnostic::help)])
         };
-        let table = readings_at(path)
-            .map_err(|e| told(Refusal { code: e.code, message: e.message, notes: e.notes, help: e.help }))?;
-        self.measurements(&table, &shown(&name), sigmas).map_err(told)
+        let table = readings_at(path).map_err(|e| {
+            rejected(Refusal { code: e.code, message: e.message, notes: e.notes, help: e.help })
+        })?;
+        self.measurements(&table, &shown(&name), sigmas).map_err(rejected)
     }
 
     fn measurements(
@@ -90,12 +91,12 @@ impl ModelFile {
             let here = |column: usize| {
                 format!("`{file}`, line {line}, column {} (`{}`)", column + 1, shown(&table.names[column].0))
             };
-            let mut stands = drawn.clone();
+            let mut positions = drawn.clone();
             let posture = found.lines.len();
             for (column, (holds, cell)) in holds.iter().zip(cells).enumerate() {
                 match (holds, cell) {
                     (Some(Holds::Driver(d)), Some(x)) => {
-                        stands[*d] = self.units.to_si(self.model.driven(&drivers[*d]).quantity, *x);
+                        positions[*d] = self.units.to_si(self.model.driven(&drivers[*d]).quantity, *x);
                     }
                     (Some(Holds::Driver(_)), None) => {
                         let help = "give the value of every driver of the first line";
@@ -116,7 +117,7 @@ impl ModelFile {
                     _ => {}
                 }
             }
-            found.measurements.postures.push(stands);
+            found.measurements.postures.push(positions);
             found.lines.push(*line);
         }
         self.can_be_compared(&found, file)?;
@@ -174,7 +175,7 @@ impl ModelFile {
         if let Some(m) = name.strip_prefix("sigma ").and_then(|name| of(name.trim())) {
             return Ok(Holds::Sigma(m));
         }
-        // A name that both have is the driver's: the reading is what the driver prescribes.
+        // A name that both have is that of the driver: the reading is the value that it prescribes.
         if let Some(d) = self.model.drivers.iter().position(|d| d.name == name) {
             return Ok(Holds::Driver(d));
         }
@@ -188,7 +189,7 @@ impl ModelFile {
         })
     }
 
-    /// The unit of a length or an angle.
+    /// Unit of a length or an angle.
     fn unit_of(&self, holds: Holds) -> Option<&'static str> {
         let dimension = match holds {
             Holds::Driver(d) => self.model.driven(&self.model.drivers[d]).quantity.into(),
@@ -201,7 +202,7 @@ impl ModelFile {
         }
     }
 
-    /// Per output, the standard deviation that the command line gives, in its unit.
+    /// Standard deviation from the command line for each output, in its unit.
     fn sigmas_given(&self, sigmas: &[(String, f64)]) -> Result<Vec<Option<f64>>, Refusal> {
         let outputs = outputs(&self.model);
         let mut given = vec![None; outputs.len()];
@@ -233,7 +234,7 @@ impl ModelFile {
             let message =
                 format!("`{}` cannot be compared: it has no value for a mechanism at rest", output.name);
             return Err(Refusal::new("HP0248", message, "remove its column, or begin its title with `#`")
-                .note("every line is a posture, in which all drivers stand"));
+                .note("every line is a posture with the positions of all drivers"));
         }
         let Some(without) = readings.iter().find(|r| r.sigma.is_none()) else { return Ok(()) };
         let (name, line) = (&outputs[without.output].name, found.lines[without.posture]);
@@ -248,8 +249,9 @@ impl ModelFile {
                 "`{name}` and `{}` cannot be weighed against each other without standard deviations",
                 other.name
             );
-            return Err(Refusal::new("HP0249", message, like)
-                .note("they have different units; what is all of one unit may go without"));
+            return Err(Refusal::new("HP0249", message, like).note(
+                "they have different units; only readings with a single unit may have no standard deviations",
+            ));
         }
         Ok(())
     }

@@ -26,7 +26,7 @@ impl EntryPlace {
         Self { name, keys: Vec::new() }
     }
 
-    /// The place of a table's name and of all its values and their elements.
+    /// Locations of a table's name and of all its values and their elements.
     pub fn of(fields: &Fields<'_>) -> Self {
         let mut place = Self::at(fields.at.clone());
         for f in fields.iter() {
@@ -41,7 +41,7 @@ impl EntryPlace {
         self.keys.push(KeyPlace { key, value: value.span(), items });
     }
 
-    /// The places of a field's elements where they are not simply those of the list.
+    /// Locations of a field's elements if they differ from those of the list.
     pub fn items(&mut self, key: &'static str, items: Vec<Range<usize>>) {
         match self.keys.iter_mut().find(|k| k.key == key) {
             Some(k) => k.items = items,
@@ -49,7 +49,7 @@ impl EntryPlace {
         }
     }
 
-    /// The places of a design variable's changes: those of a value, or of its elements.
+    /// Locations of a design variable's changes: those of a value, or of its elements.
     pub fn changes(&mut self, fields: &Fields<'_>, key: &str) {
         if let Some(f) = fields.get(key) {
             let list = f.value.get_ref().as_array();
@@ -99,7 +99,7 @@ const SECTIONS: [Section; 28] = [
     Section::SweepRanges,
 ];
 
-/// The places of all entries, by section and place in the draft's list.
+/// Locations of all entries, by section and index in the draft's list.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Places([Vec<EntryPlace>; SECTIONS.len()]);
 
@@ -114,7 +114,7 @@ impl Places {
         self.0[k].push(place);
     }
 
-    /// The range of the text that a locus of the draft means; none for what the file does not have.
+    /// Range of the text for a location of the draft; `None` if the file has no such entry.
     pub fn find(&self, at: &DraftLocation) -> Option<Range<usize>> {
         Some(self.list(at.section).get(at.index)?.find(at.key, at.item))
     }

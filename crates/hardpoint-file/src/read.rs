@@ -1,4 +1,4 @@
-//! The tables of a model file, one function each, into a draft.
+//! Reads the tables of a model file into a draft, one function per table.
 
 mod cases;
 mod couplers;
@@ -49,19 +49,19 @@ const ALONG_AXIS: usize = 2;
 pub(crate) const MODEL: Table = table! {
     /// A mechanism for Hardpoint.
     "Hardpoint model":
-    /// The mechanism's name, for headings.
+    /// Name of the mechanism, for headings.
     must "name": Shape::Text, "\"four-bar\"";
     /// Description of the mechanism, and the source of its numbers.
     may "description": Shape::Text, "\"...\"";
     /// The units of all numbers in this file. Time is always in seconds.
     must "units": Shape::Table(&UNITS), "{ length = \"mm\", angle = \"deg\" }";
-    /// Named numbers, which expressions in quotes may use wherever a number is. Each is a design variable, unless it
-    /// says otherwise or is itself given by an expression.
+    /// Named numbers for expressions in quotes, which are possible in place of numbers. Each is a design variable,
+    /// unless it has `design = false` or is itself given by an expression.
     may "parameters": Shape::Entries("a parameter", &parameters::PARAMETER), "{ hub = { value = 60, unit = \"length\" } }";
     /// Named points of the design configuration: `name = [x, y, z]`, global, in the length unit. Expressions may use
     /// coordinates of others, like `"-left.y"`.
     may "hardpoints": Shape::Entries("a hardpoint", &Shape::exactly(3, &LENGTH)), "{ A = [0, 0, 0] }";
-    /// Rigid bodies. `ground` is always there and is not declared.
+    /// Rigid bodies. `ground` always exists and is not declared.
     must "bodies": Shape::Entries("a body", &BODY_SHAPE), "{ crank = {} }";
     /// Joints between two bodies.
     may "joints": Shape::Entries("a joint", &Shape::Table(&JOINT)), "{}";
@@ -69,15 +69,15 @@ pub(crate) const MODEL: Table = table! {
     may "couplers": Shape::Entries("a coupler", &Shape::Kinds(&couplers::COUPLER)), "{}";
     /// Prescribed motions: of joint coordinates, points, distances and orientations.
     may "drivers": Shape::Entries("a driver", &Shape::Kinds(&drivers::DRIVER)), "{}";
-    /// Design variables: what may change in the design, and how everything else follows.
+    /// Design variables: changes of the design, and their effects on other elements.
     may "design": Shape::Entries("a design variable", &Shape::Kinds(&design::VARIABLE)), "{}";
-    /// Points of bodies to follow.
+    /// Points of bodies whose motion is computed.
     may "points": Shape::Entries("a point", &Shape::Table(&results::POINT)), "{}";
     /// Vehicle data, for anti-dive and Ackermann.
     may "vehicle": Shape::Table(&wheels::VEHICLE), "{ wheelbase = 2600 }";
-    /// Road wheels, for what is measured at them.
+    /// Road wheels, for their measures.
     may "wheels": Shape::Entries("a wheel", &Shape::Table(&wheels::WHEEL)), "{}";
-    /// Pairs of wheels, for what is measured at both.
+    /// Pairs of wheels, for their measures.
     may "axles": Shape::Entries("an axle", &Shape::Table(&wheels::AXLE)), "{}";
     /// Direction and acceleration of gravity.
     may "gravity": Shape::Table(&elements::GRAVITY), "{ along = \"-z\" }";
@@ -89,21 +89,22 @@ pub(crate) const MODEL: Table = table! {
     may "forces": Shape::Entries("a force", &Shape::Kinds(&elements::FORCE)), "{}";
     /// Numbers to compute from the motion, with their sensitivities.
     may "measures": Shape::Entries("a measure", &results::MEASURE), "{}";
-    /// Numbers that sum measures up over the motion, with their sensitivities.
+    /// Numbers of a measure's curve over the motion, with their sensitivities.
     may "metrics": Shape::Entries("a metric", &Shape::Table(&results::METRIC)), "{}";
-    /// The output times. Where every case has its own, they may be left out.
+    /// The output times. They may be left out if every case has its own.
     may "time": Shape::Kinds(&results::TIME), "{ end = 1.0, steps = 100 }";
-    /// Behaviour at a change point, where two motions of the mechanism meet, as where a parallelogram lies in line.
+    /// Behaviour at a change point, where two motions of the mechanism meet, such as a parallelogram with its bars in
+    /// line.
     or("\"stop\"") "at_change_points": CHANGE_POINTS, "\"continue\"";
-    /// Several motions of the mechanism, in place of the one that the drivers' own laws make.
+    /// Several motions of the mechanism, in place of the one by the drivers' own laws.
     may "cases": Shape::Entries("a case", &Shape::Table(&cases::CASE)), "{}";
-    /// The plane that all of it lies in: points may have two coordinates, and pins need no axis.
+    /// Plane of the mechanism: points may have two coordinates, and pins need no axis.
     may "planar": planar::PLANAR, "\"xy\"";
-    /// Other files, of which all is taken that this one does not say itself.
+    /// Other files; their entries apply unless this file has them itself.
     may "include": include::INCLUDE, "[\"corner.toml\"]";
     /// Applies the entries of one side to the other side as well.
     may "mirror": Shape::Table(&mirror::MIRROR), "{ across = \"y\", names = { left = \"right\" } }";
-    /// Goals and limits of the optimisation of the design.
+    /// Goals and limits of the optimisation.
     may "optimize": Shape::Table(&optimize::OPTIMIZE), "{ goals = { toe = { metric = \"toe_error\" } } }";
     /// Tolerances of the design, and the limits that it must keep.
     may "tolerance": Shape::Table(&tolerance::TOLERANCE), "{ variables = { B_x = 0.1 } }";
@@ -123,7 +124,7 @@ const CHANGE_POINTS: Shape = Shape::Words(&[
     ("stop", "The motion ends there."),
     (
         "continue",
-        "It goes on smoothly; where it cannot, it ends. At the change point itself sensitivities and loads have no number.",
+        "The motion continues smoothly if it can, and stops otherwise. At the change point, sensitivities and loads are undefined.",
     ),
 ]);
 const UNITS: Table = table! {
@@ -160,8 +161,8 @@ const BODY: Table = table! {
     /// Reference frame in the design configuration. Default: origin at the mean of the body's joint places, axes
     /// parallel to the global ones. Only results expressed in the frame depend on it.
     may "frame": Shape::Kinds(&FRAME), "{ position = [0, 0, 0] }";
-    /// Shape, for the drawing, and for masses of `type = "mesh"`: a file of triangles in the model's folder or below
-    /// it, STL, OBJ or glTF.
+    /// Shape for drawings, and for masses of `type = "mesh"`: a file of triangles in the model's folder or below it
+    /// (STL, OBJ or glTF).
     may "mesh": mesh::MESH, "\"knuckle.stl\"";
 };
 const FRAME: Kinds = Kinds {
@@ -185,7 +186,7 @@ const FRAME_BY_POSITION: Table = table! {
     /// Quaternion `[w, x, y, z]` instead, of any length.
     may "quaternion": Shape::exactly(4, &NUMBER), "[1, 0, 0, 0]";
 };
-/// Keys of orientations as angles, what they mean, and what is expected there.
+/// Keys of orientations as angles, with their meanings and expected values.
 const ANGLES: [(&str, Angles, &str); 3] = [
     ("euler", Angles::Euler, "three Euler angles (3-1-3)"),
     ("cardan", Angles::Cardan, "three Cardan angles (about x, y and z)"),
@@ -208,39 +209,37 @@ const JOINT: Table = table! {
     must "type": JOINT_TYPE, "\"revolute\"";
     /// Names of bodies i and j. Coordinates are those of j relative to i.
     must "bodies": Shape::exactly(2, &format::BODY), "[\"ground\", \"crank\"]";
-    /// Location: a hardpoint's name or coordinates; or a list of two, one on each body: for rods and legs, and for
-    /// other joints that are open in the design configuration and have to be assembled. May be left out if the axis
-    /// goes through hardpoints (then it is the first of them), and if only directions matter.
+    /// Location: a hardpoint's name or coordinates; or two of them, one on each body, for rods, legs and open joints.
+    /// Default: the first hardpoint of the axis, if it has any.
     may "at": Shape::Any("Places", "", &[PLACE, Shape::exactly(2, &PLACE)]), "\"A\"";
-    /// The axis, in the design configuration; where the joint type has one it must be given.
+    /// The axis, in the design configuration; required if the joint type has one.
     may "axis": LINE, "\"z\"";
-    /// The second axis: perpendicular to the first, or the axis on body j, as the joint type has it.
+    /// The second axis: perpendicular to the first, or the axis on body j, depending on the joint type.
     may "axis2": LINE, "\"x\"";
-    /// The global axis across which the joint is the mirror image of another one, as [`[mirror]`](#mirror) writes it:
-    /// where `axis2` is left out, its default is the image of that joint's default.
+    /// For a mirror image of another joint: the global axis perpendicular to the mirror. The default of `axis2` is then
+    /// the image of that joint's default.
     may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
-    /// Length of a rod or leg, or distance of a point from its curve, in the length unit. Default: the value in the
-    /// design configuration. Where it differs from that, the mechanism is assembled to it.
+    /// Length of a rod or leg, or distance of a point from its curve; the mechanism is assembled to it. Default: the
+    /// value in the design configuration.
     may "length": LENGTH, "250";
-    /// Advance of a screw per turn, in the length unit; negative for a left-hand thread. A `screw` needs it, others
-    /// have none.
+    /// Advance of a screw per turn, in the length unit; negative for a left-hand thread. Required for a `screw`.
     may "lead": LENGTH, "5";
     /// The curve on body i that a point of body j follows, for the joint type `point_on_curve`.
     may "curve": Shape::Table(&CURVE), "{ points = [\"A\", \"B\", \"C\"] }";
-    /// True if loops should be cut at this joint rather than elsewhere. It changes the effort, not the results.
+    /// True if loops should preferably be cut at this joint. It affects the effort, not the results.
     or("false") "cut": Shape::Flag, "true";
-    /// Shape in drawings, for a rod, a leg, or a joint that slides along its axis. It changes no result. Default: a leg
-    /// is a cylinder.
+    /// Shape in drawings, for a rod, a leg, or a joint that slides along its axis. It does not affect results. Default:
+    /// a leg is a cylinder.
     may "draw": DRAW, "\"coilover\"";
 };
-/// Shape that a joint with a length is drawn as.
+/// Shape of a joint with a length in drawings.
 pub(crate) const DRAW: Shape = Shape::Any("Draw", "", &[Shape::Words(FORMS)]);
 const CURVE: Table = table! {
     /// A smooth curve through points in the design configuration, in the plane perpendicular to the joint's axis.
     "Curve":
     /// Points in order: hardpoints' names or coordinates.
     must "points": Shape::list(&PLACE), "[\"A\", \"B\", \"C\"]";
-    /// True if it returns to its first point, as the curve of a cam does; that point is not repeated.
+    /// True for a closed curve, such as that of a cam; the first point is not repeated.
     or("false") "closed": Shape::Flag, "true";
 };
 const JOINT_TYPE: Shape =
@@ -249,7 +248,7 @@ const JOINT_TYPE: Shape =
 const COORDINATE: Shape =
     Shape::Any("Coordinate", "", &[Shape::Known("the name of a coordinate", coordinates)]);
 
-/// The joint types with their other names, and what they are.
+/// Joint types with their aliases and descriptions.
 fn joint_types() -> Vec<(&'static str, String)> {
     let mut names = Vec::new();
     for t in joint::ALL {
@@ -268,7 +267,7 @@ fn joint_types() -> Vec<(&'static str, String)> {
     names
 }
 
-/// The names of all joint coordinates.
+/// Names of all joint coordinates.
 fn coordinates() -> Vec<(&'static str, String)> {
     let mut names: Vec<(&str, String)> = Vec::new();
     for c in joint::ALL.iter().flat_map(|t| t.coordinates) {
@@ -279,7 +278,7 @@ fn coordinates() -> Vec<(&'static str, String)> {
     names
 }
 
-/// The tables that `docs/file-format.md` shows, by their names there.
+/// Tables of `docs/file-format.md`, by their names there.
 #[cfg(test)]
 pub(crate) fn tables() -> [(&'static str, Shape); 39] {
     [
@@ -337,12 +336,12 @@ pub(crate) struct Raw {
     joint_numbers: HashMap<String, usize>,
     /// Quantity that each driver of the draft prescribes.
     driven: Vec<Quantity>,
-    /// The drivers that leave their laws to the cases, by their places in the draft.
+    /// Drivers without a law of their own, whose laws are in the cases, by their indices in the draft.
     without_law: Vec<usize>,
 }
 
 impl Raw {
-    /// The law of a driver, and what it prescribes.
+    /// Law of a driver, and the prescribed quantity.
     fn driver(&self, name: &str) -> Option<(&Law, Quantity)> {
         let k = self.draft.drivers.iter().position(|d| d.name == name)?;
         Some((&self.draft.drivers[k].law, self.driven[k]))
@@ -404,7 +403,7 @@ impl Reader<'_> {
 
     fn units(&mut self, model: &Fields<'_>) {
         let Some(f) = model.get("units") else {
-            let message = "the model does not say in which units its numbers are";
+            let message = "the model has no `units`";
             self.report("HP0104", model.at.clone(), message).help = Some(
                 "add near the top `units = { length = \"mm\", angle = \"deg\" }`; lengths may be in mm, cm, m or in, \
                  angles in deg or rad"
@@ -434,7 +433,7 @@ impl Reader<'_> {
         self.units.angle = angle.map_or(AngleUnit::Radian, |k| AngleUnit::ALL[k]);
     }
 
-    /// The named entries of one of the model's tables.
+    /// Named entries of one of the model's tables.
     fn entries<'a>(
         &mut self,
         model: &Fields<'a>,
@@ -444,7 +443,7 @@ impl Reader<'_> {
         self.entries_below(model, "", key, one)
     }
 
-    /// The same of a table `below` another, like `optimize.`.
+    /// Named entries of a table `below` another, like `optimize.`.
     fn entries_below<'a>(
         &mut self,
         table: &Fields<'a>,
@@ -471,7 +470,7 @@ impl Reader<'_> {
         entries
     }
 
-    /// The fields of a named entry, which must be a table.
+    /// Fields of a named entry, which must be a table.
     fn entry<'a>(
         &mut self,
         one: &str,
@@ -511,7 +510,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The kind that the `type` of a table says.
+    /// Kind of a table by its `type`.
     fn kind_of<T>(
         &mut self,
         table: &DeTable<'_>,
@@ -540,13 +539,13 @@ impl Reader<'_> {
         known
     }
 
-    /// Kind of a table, from its keys: the kind led by the first of the keys, or else one that has some of them. Keys
-    /// of other kinds are reported.
+    /// Kind of a table by its keys: the kind that the first key selects, or else one that has some of them. Keys of
+    /// other kinds are reported.
     fn led_by<T>(
         &mut self,
         fields: &Fields<'_>,
         kinds: &'static [(Table, T)],
-        [says, given]: [&str; 2],
+        [missing, given]: [&str; 2],
     ) -> Option<&'static (Table, T)> {
         let has = |key: &Key| fields.get(key.key).is_some();
         let led = kinds.iter().find(|k| has(&k.0.keys[0]));
@@ -554,7 +553,7 @@ impl Reader<'_> {
             if fields.lost {
                 return None;
             }
-            let message = format!("{} does not say {says}", fields.what);
+            let message = format!("{} has no {missing}", fields.what);
             let ways: Vec<String> = kinds.iter().map(|k| way(&k.0)).collect();
             self.report("HP0104", fields.at.clone(), message).help =
                 Some(format!("give one of {}", ways.join(", ")));
@@ -578,7 +577,7 @@ impl Reader<'_> {
         Some(kind)
     }
 
-    /// The fields of each inline table in a list.
+    /// Fields of each inline table in a list.
     fn tables<'a>(
         &mut self,
         fields: &Fields<'a>,
@@ -721,7 +720,7 @@ impl Reader<'_> {
         Some(FrameDraft::Pose(Pose { r: r?, rot: rot? }))
     }
 
-    /// A frame's position is wanted at once, so its hardpoint is looked up here.
+    /// Reads the position of a frame, which is needed at once, so that its hardpoint is looked up here.
     fn hardpoint_position(&mut self, name: &str, f: Field<'_>, raw: &Raw) -> Option<Vec3> {
         let hardpoints = &raw.draft.hardpoints;
         let found = raw.hardpoint_numbers.get(name).map(|k| &hardpoints[*k]);
@@ -785,7 +784,7 @@ impl Reader<'_> {
         self.form_of(fields)
     }
 
-    /// The length of a rod: a number, or an expression that the core evaluates.
+    /// Length of a rod: a number, or an expression that the core evaluates.
     fn rod_length_of(
         &mut self,
         fields: &Fields<'_>,
@@ -802,8 +801,8 @@ impl Reader<'_> {
         Some(0.0)
     }
 
-    /// One place, or a list of places: three numbers, or three texts that are not all names of hardpoints, are the
-    /// coordinates of one.
+    /// One location, or a list of locations: three numbers, or three texts that are not all names of hardpoints, are
+    /// the coordinates of one.
     fn joint_places(
         &mut self,
         fields: &Fields<'_>,
@@ -831,7 +830,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A curve; its points become the items of the key.
+    /// Reads a curve; its points become the items of the key.
     fn curve(&mut self, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryPlace) -> Option<CurveDraft> {
         let table = self.table(f.value, &fields.subject("curve"), "a table with the points of the curve")?;
         let curve = self.fields(format!("the curve of {}", fields.what), f.value.span(), table, CURVE.keys());
@@ -846,7 +845,7 @@ impl Reader<'_> {
         Some(CurveDraft { points: points?, closed: closed? })
     }
 
-    /// A direction; the names in `through` become the items of the key.
+    /// Reads a direction; the names in `through` become the items of the key.
     fn line_of(&mut self, fields: &Fields<'_>, key: &str, place: &mut EntryPlace) -> Option<DirectionDraft> {
         self.given(fields, key, |r, f| {
             let (line, items) = r.line(f.value, &fields.subject(f.key))?;
@@ -855,12 +854,12 @@ impl Reader<'_> {
         })
     }
 
-    /// A place; coordinates have no items of their own.
+    /// Reads a location; coordinates have no items of their own.
     fn place_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<LocationDraft> {
         self.given(fields, key, |r, f| r.place(f.value, &fields.subject(f.key)))
     }
 
-    /// The next entry of a list of the draft is read: where it is, and what of it could not be read.
+    /// Records the location of the next entry of a list of the draft, and its unread keys.
     fn push(&mut self, raw: &mut Raw, section: Section, place: EntryPlace) {
         let index = raw.places.list(section).len();
         self.unread.drain(..).for_each(|key| raw.draft.unread.note(section, index, key));
@@ -878,7 +877,7 @@ fn way(table: &Table) -> String {
 
 static EMPTY: std::sync::OnceLock<DeTable<'static>> = std::sync::OnceLock::new();
 
-/// The type of a joint, as far as it is known; the core reports the rest.
+/// Type of a joint if it is known; otherwise the core reports it.
 fn type_of(raw: &Raw, joint: &str) -> Option<&'static JointType> {
     joint::named(&raw.draft.joints[*raw.joint_numbers.get(joint)?].kind)
 }

@@ -1,4 +1,4 @@
-//! The published JSON Schema of model files, written from the declarations of the format.
+//! JSON Schema of model files, written from the declarations of the format.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::format::{Key, Kinds, Need, Shape, Table};
 use crate::read::MODEL;
 use crate::read::mirror::SECTIONS;
 
-/// The JSON Schema of model files, as `models/hardpoint.schema.json` has it.
+/// JSON Schema of model files, the contents of `models/hardpoint.schema.json`.
 ///
 /// ```
 /// assert!(hardpoint_file::schema().contains("\"hardpoints\""));
@@ -28,10 +28,10 @@ pub fn schema() -> String {
     text
 }
 
-/// In a file with a mirror or included files an entry may say only what is different of an image, or of what is
-/// included.
+/// In a file with a mirror or included files, an entry may have only the keys that differ from an image or from an
+/// included entry.
 fn images(root: &mut Value, definitions: &mut Definitions) {
-    let different = json!({ "type": "object", "description": "What is different of the image that the mirror makes, or of what is included." });
+    let different = json!({ "type": "object", "description": "Differences from the mirror image, or from the included entry." });
     definitions.0.insert("Different".to_owned(), different);
     let mut whole = BTreeMap::new();
     for section in SECTIONS.into_iter().filter(|s| !["parameters", "hardpoints"].contains(s)) {
@@ -83,7 +83,7 @@ impl Definitions {
             Shape::Number(_) => self.named("Number", |_| {
                 json!({
                     "type": ["number", "string"],
-                    // No mere number in quotes, nor one with its unit.
+                    // Neither a plain number in quotes, nor one with its unit.
                     "pattern": r"^(?!\s*[-+]?[0-9.,]+([eE][-+]?[0-9]+)?\s*([A-DF-Za-df-z].*)?$)",
                     "description": "A number, or an expression over parameters, in quotes."
                 })
@@ -160,7 +160,7 @@ fn one_of(words: impl Iterator<Item = (&'static str, String)>) -> Value {
     json!({ "oneOf": words.into_iter().map(one).collect::<Vec<_>>() })
 }
 
-/// JSON with what a person looks for first in front.
+/// JSON with the most important keys first.
 struct Ordered<'a> {
     value: &'a Value,
     /// True if its keys are names that the schema gives, rather than words of JSON Schema.

@@ -1,9 +1,9 @@
 //! Names of the parts of two sides: one rule for `[mirror]` and for importers that write it.
 
-/// The words of the left and the right side.
+/// Words of the left and the right side.
 pub const WORDS: [&str; 2] = ["left", "right"];
 
-/// The pieces of a name: words, and what is between them.
+/// Pieces of a name: words and separators.
 pub fn pieces(name: &str) -> impl Iterator<Item = &str> {
     let mut rest = name;
     std::iter::from_fn(move || {
@@ -18,8 +18,8 @@ pub fn pieces(name: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// A name with every word of a side exchanged for its counterpart, if it has any. Done twice it gives the name back, so
-/// that two names never become the same one, unless two words have one counterpart.
+/// Exchanges every word of a side in a name for its counterpart, if there is any. The exchange is its own inverse, so
+/// that different names stay different, unless two words have the same counterpart.
 pub fn exchanged<W: AsRef<str>>(name: &str, words: &[(W, W)]) -> Option<String> {
     let counterpart = |piece: &str| {
         let there = words.iter().find(|(one, _)| one.as_ref() == piece).map(|w| w.1.as_ref());
@@ -29,8 +29,7 @@ pub fn exchanged<W: AsRef<str>>(name: &str, words: &[(W, W)]) -> Option<String> 
     is_sided.then(|| pieces(name).map(|piece| counterpart(piece).unwrap_or(piece)).collect())
 }
 
-/// Returns whether a name belongs to the side that is written: the first word of a side in it decides. None if it has
-/// no such word.
+/// Returns whether a name belongs to the written side, by the first word of a side in it; `None` without such a word.
 pub fn is_original<W: AsRef<str>>(name: &str, words: &[(W, W)]) -> Option<bool> {
     pieces(name).find_map(|piece| {
         let is_one = words.iter().any(|(one, _)| one.as_ref() == piece);

@@ -1,6 +1,6 @@
-//! Reading typed values out of a parsed TOML tree, with a diagnostic for each that does not fit.
+//! Reads typed values from a parsed TOML tree, with a diagnostic for each invalid one.
 //!
-//! Nothing here stops at the first problem: a value that cannot be read is reported and left out.
+//! Reading does not stop at the first problem: an invalid value is reported and left out.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -21,12 +21,12 @@ use crate::units::Units;
 
 pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 
-/// Names longer than this are surely not meant as names.
+/// Maximum length of a name.
 const LONGEST_NAME: usize = 100;
 /// Maximum number of problems with a suggestion, and of names that it is chosen from.
 const GUESSED_PROBLEMS: usize = 50;
 const GUESSED_NAMES: usize = 5000;
-/// The most entries that a table or list may have. It bounds the time that any text can take.
+/// Maximum number of entries of a table or list, which bounds the run time of any text.
 pub(crate) const MOST_ENTRIES: usize = 200_000;
 
 /// One `key = value` of a table.
@@ -38,7 +38,7 @@ pub(crate) struct Field<'a> {
     pub value: &'a Value<'a>,
 }
 
-/// The known keys of one table of the file.
+/// Known keys of one table of the file.
 pub(crate) struct Fields<'a> {
     /// Name of the table in messages: "joint `J1`".
     pub what: String,
@@ -46,7 +46,7 @@ pub(crate) struct Fields<'a> {
     pub at: Range<usize>,
     keys: Vec<&'static Key>,
     list: Vec<Field<'a>>,
-    /// True if there is something else in place of the table, so that nothing more is to be said of its keys.
+    /// True if there is another value in place of the table, so that its keys are not reported as missing.
     pub lost: bool,
 }
 
@@ -79,7 +79,7 @@ impl<'a> Fields<'a> {
 
 /// From one hardpoint to another.
 const THROUGH: Table = table! {
-    /// From the first hardpoint to the second. It follows them when the design moves them.
+    /// From the first hardpoint to the second; it follows them when the design changes.
     "Through":
     /// Names of two hardpoints.
     must "through": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
@@ -112,48 +112,48 @@ pub(crate) struct Subject {
 }
 
 impl Subject {
-    /// An element of its list.
+    /// Element of a list.
     pub fn item(&self, k: usize) -> Self {
         Self { name: format!("value {} of {}", k + 1, self.name), example: self.example.clone() }
     }
 }
 
-/// Texts of files, by the names that a model has for them.
+/// Texts of files, by their names in the model.
 pub type Texts = BTreeMap<String, String>;
 
 /// Source of the files that a model names.
 #[derive(Clone, Copy)]
 pub(crate) enum Folder<'f> {
-    /// Nowhere: the model is a mere text.
+    /// No files: the model is a text only.
     None,
     /// In this folder or below it.
     On(&'f Path),
-    /// They came with the text: of meshes what they bound.
+    /// Files given with the text; for meshes their mass properties.
     Given(&'f Texts),
 }
 
-/// The text being read and what was found wrong with it.
+/// The text being read, and its diagnostics.
 pub(crate) struct Reader<'s> {
     pub source: &'s Source,
     /// Source of the files that it names.
     pub folder: Folder<'s>,
-    /// The texts among these that were read, by the names that the model has for them.
+    /// Texts of these files that were read, by their names in the model.
     pub texts: Texts,
     pub units: Units,
     /// Values of the file's parameters, once they are read.
     pub nominal: Nominal,
     /// Entries of the bodies' shapes, by name.
     pub meshes: BTreeMap<String, BodyMesh>,
-    /// Number of bytes of included files it has been made of.
+    /// Size of all included files in bytes.
     pub included: u64,
-    /// Entries that were made from others, by name.
+    /// Mirror images, by name.
     pub origins: Origins,
-    /// The parameters of the law that is being read which expressions give, and those expressions.
+    /// Parameters of the current law that are given by expressions, with these expressions.
     pub law_formulas: Vec<(String, Expression)>,
     pub found: Vec<Diagnostic>,
-    /// The keys of the entry that is being read that are missing or cannot be read.
+    /// Missing or invalid keys of the current entry.
     pub unread: Vec<&'static str>,
-    /// Notes on a model that can be read.
+    /// Warnings and notes on a valid model.
     pub remarks: Vec<Diagnostic>,
 }
 
@@ -185,13 +185,13 @@ impl Reader<'_> {
         at: Range<usize>,
         message: impl Into<String>,
     ) -> &mut Diagnostic {
-        // The model as a whole has no place of its own.
+        // The model as a whole has no location of its own.
         let at = Some(at).filter(|at| *at != (0..0));
         self.found.push(self.source.diagnostic(Severity::Error, code, message, at));
         self.found.last_mut().expect("just pushed")
     }
 
-    /// Something to tell of a model that can be read all the same.
+    /// Adds a warning or note on a valid model.
     pub fn remark(
         &mut self,
         severity: Severity,
@@ -211,7 +211,7 @@ impl Reader<'_> {
         d.help = Some(subject.example.clone());
     }
 
-    /// HP0106: a word that is none of the known ones.
+    /// HP0106: an unknown word.
     pub fn unknown_word(&mut self, at: Range<usize>, subject: &Subject, word: &str, known: &[&str]) {
         let message = format!("{} cannot be `{}`", subject.name, shown(word));
         let close = closest(word, known.iter().copied());
@@ -220,13 +220,13 @@ impl Reader<'_> {
         d.help = close.map(|c| format!("did you mean `{c}`?"));
     }
 
-    /// HP0109: a value of the right type that makes no sense.
+    /// HP0109: an invalid value of the right type.
     pub fn senseless(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.report("HP0109", at, message)
     }
 
-    /// The fields of a table; keys that it should not have are reported. A misspelt key is then read as
-    /// the one that was meant, so that it is reported once and not again as missing.
+    /// Fields of a table; unknown keys are reported. A misspelt key is read as the intended one, so that it is reported
+    /// once and not again as missing.
     pub fn fields<'a>(
         &mut self,
         what: impl Into<String>,
@@ -275,7 +275,7 @@ impl Reader<'_> {
         fields
     }
 
-    /// HP0104 where it is missing.
+    /// Reports a missing key (HP0104).
     pub fn need<'a>(&mut self, fields: &Fields<'a>, key: &str) -> Option<Field<'a>> {
         let field = fields.get(key);
         if field.is_none() && !fields.lost {
@@ -286,7 +286,7 @@ impl Reader<'_> {
         field
     }
 
-    /// HP0107 for a key that does not go with the others.
+    /// Reports a key that contradicts the others (HP0107).
     pub fn out_of_place(&mut self, fields: &Fields<'_>, key: &str, why: impl Into<String>) {
         if let Some(field) = fields.get(key) {
             let message = format!("`{key}` has no meaning in {}", fields.what);
@@ -294,8 +294,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The name that was probably meant. Past the problems that anybody reads, and among more names than that, a guess
-    /// would only cost time.
+    /// Most similar name. After many problems, and among too many names, there is no suggestion, to save time.
     pub fn guess<'n>(&self, name: &str, names: impl Iterator<Item = &'n str> + Clone) -> Option<&'n str> {
         let worth = self.found.len() < GUESSED_PROBLEMS
             && names.clone().take(GUESSED_NAMES + 1).count() <= GUESSED_NAMES;
@@ -338,7 +337,7 @@ impl Reader<'_> {
         Some(list.iter().collect())
     }
 
-    /// The value of a key, if there is one. What is missing or cannot be read is noted as unread.
+    /// Value of a key, if there is one. A missing or invalid value is recorded as unread.
     pub fn given<'a, T>(
         &mut self,
         fields: &Fields<'a>,
@@ -357,7 +356,7 @@ impl Reader<'_> {
         value
     }
 
-    /// The same, or what is declared for where the key is left out.
+    /// Value of a key, or its declared default.
     fn declared<'a, T>(
         &mut self,
         fields: &Fields<'a>,
@@ -372,7 +371,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A number in SI, as far as it is declared to be a length or an angle.
+    /// A number, converted to SI if it is declared as a length or an angle.
     pub fn number_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<f64> {
         self.declared(
             fields,
@@ -387,7 +386,7 @@ impl Reader<'_> {
         found.iter().all(Option::is_some).then(|| found.map(Option::unwrap_or_default))
     }
 
-    /// A number in SI, as far as its shape is that of a length or an angle: an expression gives radians.
+    /// A number, converted to SI if its form is a length or an angle; an expression returns radians.
     fn quantity(&mut self, value: &Value<'_>, subject: &Subject, shape: Shape) -> Option<f64> {
         let x = self.number(value, subject)?;
         Some(match shape {
@@ -407,7 +406,7 @@ impl Reader<'_> {
         )
     }
 
-    /// A name of something.
+    /// A name.
     pub fn name_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<String> {
         self.declared(
             fields,
@@ -417,13 +416,13 @@ impl Reader<'_> {
         )
     }
 
-    /// A name that may be left out: none then. `None` where it cannot be read.
+    /// An optional name. `None` if it is invalid.
     pub fn name_if(&mut self, fields: &Fields<'_>, key: &str) -> Option<Option<String>> {
         let name = self.name_of(fields, key);
         (name.is_some() || fields.get(key).is_none()).then_some(name)
     }
 
-    /// The names in a list of that many.
+    /// Names in a list of fixed length.
     pub fn names_of<const N: usize>(&mut self, fields: &Fields<'_>, key: &str) -> Option<[String; N]> {
         let (subject, expected) = (fields.subject(key), fields.key(key).shape.noun());
         self.given(fields, key, |r, f| match f.value.get_ref().as_array() {
@@ -438,7 +437,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Exactly that many numbers, in SI as far as they are declared to be lengths or angles.
+    /// A fixed number of numbers, converted to SI if they are declared as lengths or angles.
     pub fn list_of<const N: usize>(
         &mut self,
         fields: &Fields<'_>,
@@ -449,7 +448,7 @@ impl Reader<'_> {
         self.given(fields, key, |r, f| r.quantities(f.value, &fields.subject(key), expected, *of))
     }
 
-    /// One of the words that the key may be: which.
+    /// Index of one of the possible words.
     pub fn word_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<usize> {
         let words = fields.key(key).shape.words();
         let place = |word: &str| words.iter().position(|w| *w == word);
@@ -477,7 +476,7 @@ impl Reader<'_> {
         b
     }
 
-    /// A text that is a name of something.
+    /// A text that is a name.
     pub fn name(&mut self, value: &Value<'_>, subject: &Subject, expected: &str) -> Option<String> {
         match value.get_ref().as_str() {
             Some(s) => self.short(s, value.span(), &subject.name),
@@ -525,7 +524,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The value of an expression where no change of the design is felt.
+    /// Value of an expression that must not depend on the design.
     fn constant(&mut self, value: &Value<'_>, subject: &Subject) -> Option<f64> {
         let expression = self.expression(value, subject)?;
         if !expression.names().is_empty() && self.nominal.names().next().is_none() {
@@ -565,7 +564,7 @@ impl Reader<'_> {
             ConstantError::NotFinite => {
                 self.senseless(at, format!("{} is not a finite number", subject.name));
             }
-            // What is wrong with it is reported where it is.
+            // Its own errors are reported at its location.
             ConstantError::Faulty => {}
         }
     }
@@ -584,7 +583,7 @@ impl Reader<'_> {
         whole
     }
 
-    /// A finite number as it is written, or an expression over parameters that no change of the design moves.
+    /// A finite number as written, or an expression over parameters that do not depend on the design.
     pub fn number(&mut self, value: &Value<'_>, subject: &Subject) -> Option<f64> {
         let x = match value.get_ref() {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
@@ -605,7 +604,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Exactly `N` numbers, as they are written; `expected` says what they are.
+    /// Exactly `N` numbers, as written; `expected` describes them.
     pub fn numbers<const N: usize>(
         &mut self,
         value: &Value<'_>,
@@ -615,7 +614,7 @@ impl Reader<'_> {
         self.quantities(value, subject, expected, NUMBER)
     }
 
-    /// The same in SI, as far as their shape is that of a length or an angle.
+    /// Exactly `N` numbers, converted to SI if their form is a length or an angle.
     fn quantities<const N: usize>(
         &mut self,
         value: &Value<'_>,
@@ -648,7 +647,7 @@ impl Reader<'_> {
         self.quantities(value, subject, expected, LENGTH).map(Vec3::from)
     }
 
-    /// The name of a hardpoint, or coordinates.
+    /// Name of a hardpoint, or coordinates.
     pub fn place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<LocationDraft> {
         let expected = "a hardpoint's name or three coordinates";
         match value.get_ref() {
@@ -659,7 +658,7 @@ impl Reader<'_> {
         }
     }
 
-    /// As [`place`](Self::place), where no change of the design is felt.
+    /// Same as [`place`](Self::place), but independent of the design.
     pub fn fixed_place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<LocationDraft> {
         match value.get_ref() {
             DeValue::String(_) => self.place(value, subject),
@@ -710,12 +709,12 @@ impl Reader<'_> {
         }
     }
 
-    /// The same of a key.
+    /// Direction under a key.
     pub fn vector_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<Vec3> {
         self.given(fields, key, |r, f| r.vector(f.value, &fields.subject(f.key)))
     }
 
-    /// A direction, or `{ through = [...] }`; with the places of the two hardpoints' names.
+    /// A direction, or `{ through = [...] }`, with the locations of the two hardpoints' names.
     pub fn line(
         &mut self,
         value: &Value<'_>,
@@ -731,7 +730,7 @@ impl Reader<'_> {
     }
 }
 
-/// True if a text is a mere number, or one with a unit, as in `100 mm`: a slip, and of an angle not in radians.
+/// True if a text is a plain number, or one with a unit, as in `100 mm`: probably a mistake.
 fn is_number_with_unit(text: &str) -> bool {
     let text = text.trim();
     if text.parse::<f64>().is_ok() {
@@ -755,7 +754,7 @@ pub(crate) fn axis_named(word: &str) -> Option<Vec3> {
     Some(Vec3::AXES[k] * sign)
 }
 
-/// The remedy for a key of the model that is below a `[table]` and so became a part of that.
+/// Suggested fix for a key of the model that is below a `[table]` and so became a part of it.
 pub(crate) fn above_tables(name: &str) -> Option<String> {
     ["name", "description", "units"]
         .contains(&name)

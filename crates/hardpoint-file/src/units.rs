@@ -1,7 +1,7 @@
-//! The user's units: converted here and nowhere else.
+//! Units of the user, converted here and nowhere else.
 //!
-//! Inside, everything is in metres, radians and seconds. A file says once which units its numbers are in;
-//! results go back to the user in the same ones. Time is always in seconds.
+//! All internal numbers are in metres, radians and seconds. A file declares its units once; results are shown in the
+//! same units. Time is always in seconds.
 
 use hardpoint::joint::Quantity;
 use hardpoint::model::{Dimension, ElementUnit};
@@ -29,7 +29,7 @@ impl LengthUnit {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Millimetre, Self::Centimetre, Self::Metre, Self::Inch];
 
-    /// As the format declares them.
+    /// Words of the format.
     pub(crate) fn words() -> Vec<(&'static str, String)> {
         Self::ALL.map(|unit| (unit.symbol(), String::new())).into()
     }
@@ -54,7 +54,7 @@ impl LengthUnit {
         }
     }
 
-    /// A length of that many units, in m.
+    /// Converts a length to m.
     pub fn metres(self, length: f64) -> f64 {
         // Multiplying by 1e-3 would round twice: 345.44 mm must be the double nearest to 0.34544 m.
         match self {
@@ -80,7 +80,7 @@ impl AngleUnit {
     /// Both of them.
     pub const ALL: [Self; 2] = [Self::Degree, Self::Radian];
 
-    /// As the format declares them.
+    /// Words of the format.
     pub(crate) fn words() -> Vec<(&'static str, String)> {
         Self::ALL.map(|unit| (unit.symbol(), String::new())).into()
     }
@@ -101,7 +101,7 @@ impl AngleUnit {
         }
     }
 
-    /// An angle of that many units, in rad.
+    /// Converts an angle to rad.
     pub fn radians(self, angle: f64) -> f64 {
         match self {
             Self::Degree => angle.to_radians(),
@@ -110,7 +110,7 @@ impl AngleUnit {
     }
 }
 
-/// The units of a file; metres and radians unless it says otherwise.
+/// Units of a file; metres and radians by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Units {
     /// Unit of every length.
@@ -120,7 +120,7 @@ pub struct Units {
 }
 
 impl Units {
-    /// The unit's symbol, and how many of it make one SI unit.
+    /// Symbol of the unit, and the number of units per SI unit.
     ///
     /// ```
     /// use hardpoint::joint::Quantity;
@@ -138,7 +138,7 @@ impl Units {
         }
     }
 
-    /// A value in the user's unit, in SI.
+    /// Converts a value in the user's unit to SI.
     pub fn to_si(self, quantity: Quantity, value: f64) -> f64 {
         match quantity {
             Quantity::Length => self.length.metres(value),
@@ -147,15 +147,15 @@ impl Units {
         }
     }
 
-    /// Number of the user's units make one SI unit.
+    /// Number of the user's units per SI unit.
     pub fn per_si(self, of: impl Into<Dimension>) -> f64 {
         let of = of.into();
         // Moments, energies and powers are in N m, J and W.
         power(self.length.per_metre(), of.length_in_units()) * power(self.angle.per_radian(), of.angle)
     }
 
-    /// Number of the user's units of such a number of a mass or force make one SI unit: what loads are made of is in
-    /// kg, N and N m, and per the user's unit of length or angle.
+    /// Number of the user's units per SI unit, for numbers of masses and forces: kg, N and N m, per the user's unit of
+    /// length or angle.
     pub fn per_si_of(self, unit: ElementUnit) -> f64 {
         let (length, angle) = (self.length.per_metre(), self.angle.per_radian());
         match unit {
@@ -173,7 +173,7 @@ impl Units {
         }
     }
 
-    /// Such a number in the user's unit, in SI.
+    /// Converts a number of a mass or force to SI.
     pub fn to_si_of(self, unit: ElementUnit, value: f64) -> f64 {
         match unit {
             ElementUnit::Length => self.length.metres(value),
@@ -182,12 +182,12 @@ impl Units {
         }
     }
 
-    /// A value in SI, in the user's unit.
+    /// Converts a value in SI to the user's unit.
     pub fn from_si(self, of: impl Into<Dimension>, value: f64) -> f64 {
         value * self.per_si(of)
     }
 
-    /// A derivative "`of` per `by`" in SI, in the user's units.
+    /// Converts a derivative "`of` per `by`" from SI to the user's units.
     ///
     /// ```
     /// use hardpoint::joint::Quantity;
@@ -203,8 +203,7 @@ impl Units {
     }
 }
 
-/// `x` to a whole power; those of nearly all quantities need no call of a library, as there is one for every number
-/// that is written.
+/// Integer power of `x`. It is called for every number that is written, so common powers avoid the library function.
 fn power(x: f64, exponent: i8) -> f64 {
     match exponent {
         0 => 1.0,

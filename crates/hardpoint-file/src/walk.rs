@@ -1,5 +1,4 @@
-//! A walk over a value as it is declared: the names, expressions and vectors in it, for those who say it in another
-//! way.
+//! Traversal of a value by its declaration: its names, expressions and vectors, for rewriting.
 
 use std::borrow::Cow;
 
@@ -12,17 +11,17 @@ use crate::tree::Value;
 
 /// Contents of a value at a place.
 pub(crate) enum Leaf<'v, 'a> {
-    /// The name of such a thing, like "a joint".
+    /// Name of an entry, like "a joint".
     Name(&'static str, &'v mut Cow<'a, str>),
-    /// The name of a file.
+    /// Name of a file.
     File(&'v mut Cow<'a, str>),
     /// An expression in a text.
     Expression(&'v mut Cow<'a, str>),
     /// A global axis by its name, like `-x`.
     Axis(&'v mut Cow<'a, str>),
-    /// Three numbers that are no angles: a place or a direction.
+    /// Three numbers other than angles: a location or a direction.
     Vector(&'v mut DeArray<'a>),
-    /// Two of the numbers of a vector, where three are wanted.
+    /// Two components of a vector with three.
     Pair(&'v mut DeArray<'a>),
     /// Three angles.
     Angles(&'v mut DeArray<'a>),
@@ -30,10 +29,10 @@ pub(crate) enum Leaf<'v, 'a> {
     Quaternion(&'v mut DeArray<'a>),
 }
 
-/// Who is informed of all leaves, each with the key that it is under.
+/// Receiver of all leaves, each with its key.
 pub(crate) type Visit<'f, 'a> = dyn FnMut(&str, Leaf<'_, 'a>) + 'f;
 
-/// Visits all leaves of a value that has this shape, as far as it has.
+/// Visits all leaves of a value that match this form.
 pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &mut Visit<'_, 'a>) {
     let all = alternatives(shape);
     match value.get_mut() {
@@ -62,7 +61,7 @@ pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &m
             if list.len() == 2 && all.iter().any(is_vector) && (!pairs || list.iter().any(is_number)) {
                 visit(key, Leaf::Pair(list));
             }
-            // Of what may be a list, one that has the right length is meant before one of any length.
+            // A list form with the right length takes precedence over one of any length.
             let fits = |shape: &&Shape| match shape {
                 Shape::List(_, [least, most]) => (*least..=*most).contains(&list.len()),
                 _ => false,
@@ -70,7 +69,7 @@ pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &m
             let exact = |shape: &&Shape| matches!(shape, Shape::List(_, [least, most]) if least == most);
             let of = all.iter().filter(fits).find(exact).or_else(|| all.iter().find(fits));
             let Some(Shape::List(of, [least, most])) = of else { return };
-            // What is in them is visited before they are as a whole.
+            // Contents are visited before the whole value.
             list.iter_mut().for_each(|value| walk(key, **of, value, visit));
             match (of, least == most, list.len()) {
                 (Shape::Number(Quantity::Angle), true, 3) => visit(key, Leaf::Angles(list)),
@@ -95,17 +94,17 @@ pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &m
     }
 }
 
-/// The table that a value is.
+/// The value as a table.
 pub(crate) fn table_of<'v, 'a>(value: &'v mut Value<'a>) -> Option<&'v mut DeTable<'a>> {
     if let DeValue::Table(table) = value.get_mut() { Some(table) } else { None }
 }
 
-/// The list that a value is.
+/// The value as a list.
 pub(crate) fn list_of<'v, 'a>(value: &'v mut Value<'a>) -> Option<&'v mut DeArray<'a>> {
     if let DeValue::Array(list) = value.get_mut() { Some(list) } else { None }
 }
 
-/// The entries of a table whose keys are names.
+/// Entries of a table whose keys are names.
 fn entries<'a>(kind: &'static str, of: Shape, table: &mut DeTable<'a>, visit: &mut Visit<'_, 'a>) {
     let before = std::mem::take(table);
     for (name, mut value) in before {
@@ -117,7 +116,7 @@ fn entries<'a>(kind: &'static str, of: Shape, table: &mut DeTable<'a>, visit: &m
     }
 }
 
-/// All that a shape may be.
+/// Alternatives of a form.
 fn alternatives(shape: Shape) -> Vec<Shape> {
     match shape {
         Shape::Any(_, _, shapes) => shapes.iter().flat_map(|s| alternatives(*s)).collect(),
@@ -125,7 +124,7 @@ fn alternatives(shape: Shape) -> Vec<Shape> {
     }
 }
 
-/// The keys that a table of one of these shapes may have: those of its `type`, if it has one.
+/// Keys of a table with one of these forms: those of its `type`, if it has one.
 fn keys_of(all: &[Shape], table: &DeTable<'_>) -> Vec<&'static Key> {
     let kind = table.get("type").and_then(|v| v.get_ref().as_str());
     let keys = |shape: &Shape| match shape {
@@ -140,13 +139,12 @@ fn keys_of(all: &[Shape], table: &DeTable<'_>) -> Vec<&'static Key> {
     all.iter().flat_map(keys).collect()
 }
 
-/// Says the names in an expression in another way: all that represents a number, with its coordinate behind a point,
-/// like `A.x`.
+/// Rewrites the names in an expression: all names of numbers, with a coordinate after a point, like `A.x`.
 pub(crate) fn in_expression<'a>(text: &mut Cow<'a, str>, say: impl Fn(&str) -> Option<String>) {
     let (mut out, mut changed, mut rest) = (String::with_capacity(text.len()), false, &**text);
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
     while let Some(first) = rest.chars().next() {
-        // A number with all that belongs to it is no name.
+        // A number with its exponent is not a name.
         let is_name = first.is_alphabetic() || first == '_';
         let length = match is_part(first) {
             true => rest.find(|c| !is_part(c)).unwrap_or(rest.len()),

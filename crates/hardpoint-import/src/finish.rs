@@ -147,7 +147,7 @@ fn close_as_nominal(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     if assembles(&closed) {
         *m = closed;
         let why = format!(
-            "they cannot be closed with the other motions fixed: they are closed as drawn in the design configuration: {}",
+            "they cannot be closed with the other motions fixed: their frames remain in the design configuration: {}",
             names.join(", ")
         );
         notes.approximated("joints", "", None, why);

@@ -158,7 +158,7 @@ pub fn join(
             "its markers are apart in the design configuration: the mechanism is assembled before it moves";
         notes.approximated(source.kind, source.name, source.at, why);
     } else if open {
-        let why = "its markers do not coincide in the design configuration: the joint is closed as drawn";
+        let why = "its markers do not coincide: the joint is defined by their positions in the design configuration";
         notes.approximated(source.kind, source.name, source.at, why);
     } else if turn.is_some() {
         let why =
@@ -174,7 +174,7 @@ pub fn join(
 }
 
 /// Returns the rotation of body j that aligns the axes of a joint and preserves the angle about them; `None` if there
-/// is none, or if it is within the missing digits.
+/// is zero, or within the missing digits.
 fn turn_between(kind: &str, [i, j]: [&Marker; 2]) -> Option<Mat3> {
     let turn = if ["universal", "dot1"].contains(&kind) {
         let (a, b) = (i.z(), j.z());

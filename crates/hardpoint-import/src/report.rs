@@ -10,7 +10,7 @@ use serde::Serialize;
 const LISTED: usize = 40;
 /// Maximum number of errors that are rendered; further ones are counted.
 const SHOWN: usize = 50;
-/// Maximum number of errors that are recorded; further ones are counted, since nobody corrects more at a time.
+/// Maximum number of errors that are recorded; further ones are counted only.
 const MOST_PROBLEMS: usize = 200;
 /// Distance of the marks in a text, bytes. Each mark stores the number of characters before it.
 const MARK: usize = 1024;

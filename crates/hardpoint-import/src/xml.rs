@@ -10,7 +10,7 @@ use crate::report::{ImportLog, SourceSpan};
 const MOST_NODES: u32 = 2_000_000;
 /// Maximum depth of nested elements.
 pub const DEEPEST: usize = 200;
-/// Magnitude from which a limit is none: the default of SDFormat is 1e16.
+/// Magnitude from which a limit counts as infinite: the default of SDFormat is 1e16.
 const UNLIMITED: f64 = 1e15;
 
 /// Maximum number of attributes of an element: parsers compare each with all others.

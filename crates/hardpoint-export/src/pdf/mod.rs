@@ -88,7 +88,7 @@ impl RunDocument<'_> {
         }
         if !summary.model.variables.is_empty() {
             paper.heading("Design variables", 2.0 * TEXT.line());
-            paper.row(STRONG, &VARIABLES, &["variable", "unit", "quantity", "over the motion"]);
+            paper.row(STRONG, &VARIABLES, &["variable", "unit", "change", "over the motion"]);
             for variable in &summary.model.variables {
                 let unit = if variable.unit == "1" { "-" } else { &variable.unit };
                 let cells = [&variable.name, unit, &variable.change, variable.admissibility_text()];

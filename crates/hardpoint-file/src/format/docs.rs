@@ -1,4 +1,4 @@
-//! The tables of `docs/file-format.md` are those that are declared.
+//! Tables of `docs/file-format.md`, written from the declarations.
 
 use hardpoint::joint::Quantity;
 
@@ -6,7 +6,7 @@ use crate::read::tables;
 
 use super::{Key, Kinds, Need, Shape, noun, several};
 
-/// A key, what may stand there, what holds where it is left out, and what it means.
+/// Row of a key: name, form of the value, default, and meaning.
 fn row(key: &Key) -> String {
     let default = match key.need {
         Need::Required => "required".to_owned(),
@@ -62,7 +62,7 @@ fn keys<'k>(keys: impl IntoIterator<Item = &'k Key>) -> String {
     format!("| key | type | default | meaning |\n|---|---|---|---|\n{}", rows.collect::<String>())
 }
 
-/// The kinds of a table that the first of their keys lead, and what they share.
+/// Kinds of a table that are selected by their first key, with shared keys.
 fn led(kinds: &Kinds) -> String {
     let mut text = "| given by | key | type | default | meaning |\n|---|---|---|---|---|\n".to_owned();
     let tables = (kinds.tables)();
@@ -76,15 +76,15 @@ fn led(kinds: &Kinds) -> String {
     text
 }
 
-/// The kinds of a table that a `type` distinguishes: what they are, then the keys of each.
+/// Kinds of a table that are selected by `type`: descriptions, then the keys of each.
 fn typed(kinds: &Kinds) -> String {
-    let mut text = "| `type` | what it is |\n|---|---|\n".to_owned();
+    let mut text = "| `type` | description |\n|---|---|\n".to_owned();
     let tables = (kinds.tables)();
     text.extend(tables.iter().map(|t| format!("| `\"{}\"` | {} |\n", t.name, t.doc)));
     text += "\n| of | key | type | default | meaning |\n|---|---|---|---|---|\n";
     let mut before: Vec<&[Key]> = Vec::new();
     for t in tables {
-        // Other names of the same have the same keys.
+        // Aliases have the same keys.
         if before.iter().any(|keys| std::ptr::eq(*keys, t.keys)) {
             continue;
         }

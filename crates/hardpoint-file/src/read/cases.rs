@@ -14,26 +14,26 @@ use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject, Value};
 use super::results::{MOST_TIMES, TIME};
 use super::{LOAD_MODES, LOADS, Raw, law};
 
-/// More cases than this are surely a slip.
+/// Maximum number of cases.
 const MOST_CASES: usize = 1000;
 pub(crate) const CASE: Table = table! {
     /// A motion of the mechanism, with laws and output times of its own.
     "Case":
-    /// The laws of the drivers that it moves, by the drivers' names; each as the `law` of a driver.
+    /// Laws of drivers in this case, by name of the driver; each like the `law` of a driver.
     or("{}") "laws": Shape::Entries("a driver", &law::LAW), "{ bump = \"40*sin(2*pi*t)\" }";
     /// Motion of all other drivers.
     or("\"fixed\"") "other_drivers": REST, "\"as_in_model\"";
     /// Loads with or without inertia, as `loads` of the file. Default: that of the file.
     may "loads": LOADS, "\"static\"";
-    /// Output times, as `[time]` has them. Default: those of `[time]`.
+    /// Output times, like `[time]`. Default: those of `[time]`.
     may "time": Shape::Kinds(&TIME), "{ end = 1.0, steps = 100 }";
-    /// In place of all these, two drivers by name and where each of them is: every position of the one with every
-    /// position of the other. All others are fixed in the design configuration.
+    /// Instead of these keys: a map over all combinations of the positions of two drivers. All other drivers are fixed
+    /// in the design configuration.
     may "grid": Shape::Entries("a driver", &Shape::Kinds(&SWEEP)), "{ bump = { from = -80, to = 80, steps = 8 }, steering = { from = -15, to = 15, steps = 6 } }";
 };
 pub(crate) const SWEEP: Kinds = Kinds {
     name: "Sweep",
-    doc: "Where a driver is in the rows or columns of a grid, in its unit, counted from the drawing.",
+    doc: "Positions of a driver in a grid, in its unit, counted from the design configuration.",
     typed: false,
     tables: || vec![&RANGE, &PLACES],
 };
@@ -53,7 +53,7 @@ const PLACES: Table = table! {
     /// The positions, increasing.
     must "at": Shape::some(&NUMBER), "[-80, 0, 80]";
 };
-/// More positions of one driver than this are surely a slip.
+/// Maximum number of positions of one driver.
 const MOST_POSITIONS: u32 = 10_000;
 const REST: Shape = Shape::Words(&[
     ("fixed", "They are fixed in the design configuration: their law is 0."),
@@ -114,7 +114,7 @@ impl Reader<'_> {
         self.only_grids(raw);
     }
 
-    /// HP0104: drivers that leave their laws to cases where no case gives laws.
+    /// HP0104: drivers without a law in any case.
     fn only_grids(&mut self, raw: &Raw) {
         if !raw.draft.cases.is_empty() || raw.draft.grids.is_empty() {
             return;
@@ -129,7 +129,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Two drivers and where they stand, in SI.
+    /// Two drivers and their positions, in SI.
     fn sweeps(
         &mut self,
         fields: &Fields<'_>,
@@ -144,7 +144,7 @@ impl Reader<'_> {
             return None;
         }
         let mut entries: Vec<_> = table.iter().collect();
-        // In the order of the text: the first one goes along the rows.
+        // In the order of the text: the first one varies along the rows.
         entries.sort_by_key(|(name, _)| name.span().start);
         let (mut sweeps, mut items, mut complete) = (Vec::new(), Vec::new(), true);
         for (name, value) in entries {
@@ -218,12 +218,12 @@ impl Reader<'_> {
             self.senseless(end.value.span(), message).help = Some("give a `to` above `from`".into());
             return None;
         }
-        // Symmetric ranges meet the drawing exactly, and whole numbers stay whole: of each place, both ends in
-        // proportion.
+        // Each position interpolates both ends, so that symmetric ranges include zero exactly, and whole numbers stay
+        // whole.
         Some((0..=steps as usize).map(|k| (from * (steps - k as f64) + to * k as f64) / steps).collect())
     }
 
-    /// HP0104: drivers that have no laws to follow in this case.
+    /// HP0104: drivers without a law in this case.
     fn laws_of_their_own(&mut self, fields: &Fields<'_>, laws: &[(String, Law)], raw: &Raw) {
         let named: HashSet<&str> = laws.iter().map(|law| law.0.as_str()).collect();
         let without = raw.without_law.iter().map(|k| &raw.draft.drivers[*k].name);
@@ -239,7 +239,7 @@ impl Reader<'_> {
         ));
     }
 
-    /// The laws of a case, in SI.
+    /// Laws of a case, in SI.
     fn case_laws(
         &mut self,
         case: &str,

@@ -61,8 +61,8 @@ static TYPES: [(Table, Read); 6] = [
             "linear":
             /// Two terms or more.
             must "terms": Shape::list(&Shape::Table(&TERM)), "[{ joint = \"J1\", coefficient = 2 }, { joint = \"J2\", coefficient = -1 }]";
-            /// Value of the sum, in the file's units of coefficient x coordinate. Where it is not zero, the mechanism
-            /// is assembled to it.
+            /// Value of the sum, in the file's units of coefficient x coordinate. If it is not zero, the
+            /// mechanism is assembled to it.
             or("0.0") "constant": NUMBER, "2.5";
         },
         |r, fields, raw, _| r.linear(fields, raw),
@@ -73,7 +73,7 @@ const GEARS: &[Key] = keys! {
     must "joints": TWO_JOINTS, "[\"J1\", \"J2\"]";
     /// Numbers of teeth, or any two numbers in their ratio.
     must "teeth": TWO_NUMBERS, "[20, 40]";
-    /// True if one of them is an internal gear, so that both turn the same way.
+    /// True if one of them is an internal gear, so that both rotate in the same direction.
     or("false") "internal": Shape::Flag, "true";
 };
 const RACK: &[Key] = keys! {
@@ -81,7 +81,7 @@ const RACK: &[Key] = keys! {
     must "rack": JOINT, "\"slide\"";
     /// Name of the joint on which the pinion turns; it has an `angle`.
     must "pinion": JOINT, "\"hinge\"";
-    /// Pitch radius, in the length unit; negative where the rack passes the pinion's other side.
+    /// Pitch radius, in the length unit; negative if the rack is on the other side of the pinion.
     must "radius": LENGTH, "12.5";
 };
 const BELT: &[Key] = keys! {

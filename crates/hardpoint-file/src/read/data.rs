@@ -1,4 +1,4 @@
-//! Files beside the model file, and two columns of a CSV file: times and values, or another abscissa and values.
+//! Files next to the model file, and two columns of a CSV file: times and values, or another abscissa and values.
 
 use std::path::{Component, Path};
 
@@ -6,20 +6,20 @@ use crate::diagnostic::{closest, shown};
 use crate::tree::{Folder, Reader};
 use crate::{LARGEST_FILE, neighbours};
 
-/// More rows than this are surely a slip.
+/// Maximum number of rows.
 const MOST_ROWS: usize = 1_000_000;
-/// A message lists at most this many columns.
+/// Maximum number of columns that a message lists.
 const LISTED_COLUMNS: usize = 24;
 
 /// A column of a file.
 pub(super) enum Column {
-    /// The name in the file's first line.
+    /// Name in the first line of the file.
     Named(String),
-    /// Counted from 1.
+    /// Index, from 1.
     Number(usize),
 }
 
-/// The columns where none are named.
+/// Default columns.
 pub(super) const FIRST_TWO: [Column; 2] = [Column::Number(1), Column::Number(2)];
 
 /// Error in a data file.
@@ -28,7 +28,7 @@ pub(crate) struct DataError {
     pub message: String,
     pub notes: Vec<String>,
     pub help: Option<String>,
-    /// True if it is the choice of columns that does not fit.
+    /// True if the selection of columns is invalid.
     pub of_columns: bool,
 }
 
@@ -44,7 +44,7 @@ impl DataError {
         }
     }
 
-    /// HP0112: what the file holds is no curve.
+    /// HP0112: the file has no curve.
     pub(super) fn content(message: impl Into<String>, help: &str) -> Self {
         Self {
             code: "HP0112",
@@ -66,7 +66,7 @@ impl DataError {
 }
 
 impl Reader<'_> {
-    /// The points of a file that lies in the model's folder or below it.
+    /// Points of a file in the model's folder or below it.
     pub(super) fn points_of_text(
         &mut self,
         name: &str,
@@ -77,7 +77,7 @@ impl Reader<'_> {
         parse(text.strip_prefix('\u{feff}').unwrap_or(text), &shown(name), columns, of)
     }
 
-    /// Text of a file in the model's folder or below it; the model keeps it.
+    /// Text of a file in the model's folder or below it; it is stored with the model.
     pub(super) fn text_of_file(&mut self, name: &str, wanted: &Wanted<'_>) -> Result<&str, DataError> {
         let text = text_from(bytes_of(self.folder, name, wanted)?, name)?;
         Ok(self.texts.entry(name.to_owned()).insert_entry(text).into_mut())
@@ -92,7 +92,7 @@ pub(super) struct Wanted<'a> {
     pub kind: &'a str,
     /// Ending of its name, to suggest other files in the folder.
     pub ending: &'a str,
-    /// A name as it might be.
+    /// Example of a name.
     pub example: &'a str,
     /// Instruction if the model has no folder.
     pub without_folder: &'a str,
@@ -106,13 +106,13 @@ pub(super) struct Curve {
     /// Abscissa of the curve, and its plural.
     pub abscissa: &'static str,
     abscissas: &'static str,
-    /// The unit of that, after a number.
+    /// Unit of the abscissa, after a number.
     unit: &'static str,
     /// Instruction if the file is empty.
     write: &'static str,
 }
 
-/// The table of a law.
+/// Table of a law.
 pub(super) const TABLE: Curve = Curve {
     wanted: Wanted {
         purpose: "table",
@@ -128,7 +128,7 @@ pub(super) const TABLE: Curve = Curve {
     write: "write a time in s and a value on each line, like `0.5, 12.5`",
 };
 
-/// The target of a metric.
+/// Target of a metric.
 pub(super) const TARGET: Curve = Curve {
     wanted: Wanted {
         purpose: "target",
@@ -142,7 +142,7 @@ pub(super) const TARGET: Curve = Curve {
     write: "write an abscissa and a value on each line, in the units of the model file, like `-20, 0.15`",
 };
 
-/// The force of a spring.
+/// Force of a spring.
 pub(super) const FORCE: Curve = Curve {
     wanted: Wanted {
         purpose: "table",
@@ -186,12 +186,12 @@ pub(super) fn bytes_of(folder: Folder<'_>, name: &str, wanted: &Wanted<'_>) -> R
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let failed = |e: std::io::Error| match e.kind() {
         std::io::ErrorKind::NotFound => {
-            let message = format!("there is no file `{name}` beside the model file");
+            let message = format!("there is no file `{name}` next to the model file");
             let mut error =
                 DataError::unreadable(message, "the path counts from the folder of the model file");
             let (note, close) = neighbours(&folder.join(path), wanted.ending);
             error.notes.extend(note);
-            // The model names it without the folder that the reader was given.
+            // The name in the model does not contain the reader's folder.
             let prefix = folder.join("").display().to_string();
             error.help = close.map(|c| c.replacen(&prefix, "", 1)).or(error.help);
             error
@@ -216,7 +216,7 @@ pub(super) fn bytes_of(folder: Folder<'_>, name: &str, wanted: &Wanted<'_>) -> R
     std::fs::read(&full).map_err(failed)
 }
 
-/// The path, if it says a place in the model's folder, alike on all systems.
+/// Path of a file in the model's folder, valid on all systems; `None` for other paths.
 fn inside<'n>(name: &'n str, wanted: &Wanted<'_>) -> Result<&'n Path, DataError> {
     let path = Path::new(name);
     if name.trim().is_empty() {
@@ -370,7 +370,7 @@ fn found(
     Ok(places)
 }
 
-/// A field without quotes that a blank before them has made a part of it.
+/// Removes the quotes of a field that begins with a blank.
 pub(super) fn unquoted(field: &str) -> &str {
     field.strip_prefix('"').and_then(|f| f.strip_suffix('"')).map_or(field, str::trim)
 }

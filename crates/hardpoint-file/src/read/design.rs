@@ -23,12 +23,12 @@ pub(crate) const VARIABLE: Kinds = Kinds {
     typed: false,
     tables: || KINDS.iter().map(|k| &k.0).collect(),
 };
-/// Reads what a variable changes; the text is its name.
+/// Reads the changes of a variable with this name.
 type Read = fn(&mut Reader<'_>, &Fields<'_>, &str, &Raw, &mut EntryPlace) -> Option<Changes>;
-/// The changes of a variable, or of several, by name.
+/// Changes of one or several variables, by name.
 type Changes = Vec<(String, Vec<ChangeDraft>)>;
 
-/// A kind of design variable: with what every kind has.
+/// Declares a kind of design variable, with the shared keys.
 macro_rules! variable {
     ($($table:tt)*) => { Table { shared: RANGE, ..table! { $($table)* } } };
 }
@@ -52,11 +52,11 @@ static KINDS: &[(Table, Read)] = &[
     ),
     (
         variable! {
-            /// Both markers of a joint turn about a direction through their place. An angle.
+            /// Both markers of a joint rotate about a direction through their location. An angle.
             "Tilt":
             /// The joint's name.
             must "tilt": JOINT, "\"J1\"";
-            /// The direction to turn about.
+            /// The rotation axis.
             must "about": LINE, "\"x\"";
         },
         |r, fields, name, _, place| {
@@ -80,7 +80,7 @@ static KINDS: &[(Table, Read)] = &[
     ),
     (
         variable! {
-            /// Markers of joints move and turn by themselves; hardpoints stay.
+            /// Markers of joints move and rotate; hardpoints stay.
             "Markers":
             /// The markers.
             must "markers": Shape::list(&Shape::Table(&MARKER)), "[{ joint = \"J1\", on = \"j\", move = [0, 0, 1] }]";
@@ -104,10 +104,10 @@ static KINDS: &[(Table, Read)] = &[
             let bodies = r.several(fields, "shape", &mut Vec::new());
             let field = r.given(fields, "field", |r, f| {
                 let table =
-                    r.table(f.value, &fields.subject("field"), "a table that says how points move")?;
+                    r.table(f.value, &fields.subject("field"), "a table with the motion of the points")?;
                 let what = format!("`field` of {}", fields.what);
                 let field = r.fields(what, f.value.span(), table, SHAPE_FIELD.keys());
-                let (_, read) = r.led_by(&field, FIELDS, ["how points move", "this field is given"])?;
+                let (_, read) = r.led_by(&field, FIELDS, ["motion of its points", "this field is given"])?;
                 read(r, &field, place)
             });
             one(name, ChangeDraft::Shape { bodies: bodies?, field: field? })
@@ -142,14 +142,14 @@ static KINDS: &[(Table, Read)] = &[
 ];
 
 const RANGE: &[Key] = keys! {
-    /// True if rods and legs keep their lengths while it moves their ends, so that the mechanism is assembled anew;
-    /// else they are made anew to fit the design configuration.
+    /// True if rods and legs keep their lengths when their ends move, so that the mechanism is re-assembled; else the
+    /// lengths follow the design configuration.
     or("false") "fixed_length": Shape::Flag, "true";
-    /// The lowest and the highest value that it may have, in the variable's unit; it is 0 in the file.
+    /// Lower and upper bound, in the variable's unit; the nominal value is 0.
     may "bounds": TWO_NUMBERS, "[-5, 5]";
     /// Typical size of a change, in the variable's unit, used to compare variables.
     may "typical": NUMBER, "2";
-    /// By how much it may be off when it is made, either way, in the variable's unit; `whatif` ranks by it too.
+    /// Manufacturing tolerance, plus or minus, in the variable's unit; `whatif` also ranks by it.
     may "tolerance": NUMBER, "0.1";
 };
 const HARDPOINTS: Shape = Shape::Any("Names", "", &[HARDPOINT, Shape::list(&HARDPOINT)]);
@@ -160,7 +160,7 @@ pub(super) const FIELD: Table = table! {
     "Field":
     /// The joint's name.
     must "joint": JOINT, "\"J1\"";
-    /// The body whose marker it is.
+    /// The body of the marker.
     must "body": BODY, "\"crank\"";
     /// Location velocity, length unit per unit of the parameter. Default: zero.
     may "V": Shape::exactly(3, &LENGTH), "[1, 0, 0]";
@@ -182,7 +182,7 @@ pub(super) const MARKER: Table = table! {
 
 pub(super) const SHAPE_FIELD: Kinds = Kinds {
     name: "ShapeField",
-    doc: "How the points of a body move.",
+    doc: "The motion of the points of a body.",
     typed: false,
     tables: || FIELDS.iter().map(|f| &f.0).collect(),
 };
@@ -191,7 +191,7 @@ type ReadField = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<Sha
 static FIELDS: &[(Table, ReadField)] = &[
     (
         table! {
-            /// All the same way. A length.
+            /// A translation. A length.
             "Translate":
             /// The direction, of any length.
             must "translate": DIRECTION, "\"z\"";
@@ -200,7 +200,7 @@ static FIELDS: &[(Table, ReadField)] = &[
     ),
     (
         table! {
-            /// About a line. An angle.
+            /// A rotation about a line. An angle.
             "Rotate":
             /// The line's direction.
             must "rotate": LINE, "\"z\"";
@@ -215,11 +215,11 @@ static FIELDS: &[(Table, ReadField)] = &[
     ),
     (
         table! {
-            /// Away from a point. A plain number, 1 being twice the size.
+            /// A scaling from a point. A plain number; 1 doubles the size.
             "Scale":
-            /// The hardpoint that stays.
+            /// The fixed hardpoint.
             must "scale": HARDPOINT, "\"A\"";
-            /// The only direction that grows. Default: all do.
+            /// The only direction of scaling. Default: all directions.
             may "along": LINE, "\"x\"";
         },
         |r, fields, place| {
@@ -231,11 +231,11 @@ static FIELDS: &[(Table, ReadField)] = &[
     ),
     (
         table! {
-            /// Like a beam. The length by which its free end goes aside.
+            /// A bending like a beam. The deflection of its free end, a length.
             "Bend":
-            /// The hardpoint where it is held, and the one where it is pushed.
+            /// The hardpoints of the clamped and of the free end.
             must "bend": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
-            /// In which direction, of any length; only what is perpendicular to the beam counts.
+            /// The direction, of any length; only its part perpendicular to the beam is used.
             must "towards": DIRECTION, "\"z\"";
         },
         |r, fields, _| {
@@ -247,7 +247,7 @@ static FIELDS: &[(Table, ReadField)] = &[
     ),
     (
         table! {
-            /// As some hardpoints move, and smoothly between them. A length.
+            /// A smooth interpolation of displacements of some hardpoints. A length.
             "ThroughPoints":
             /// The hardpoints.
             must "through": Shape::list(&Shape::Table(&THROUGH)), "[{ at = \"A\", move = [0, 0, 1] }]";
@@ -275,19 +275,19 @@ const THROUGH: Table = table! {
     may "move": Shape::exactly(3, &Shape::Plain(Quantity::Number)), "[0, 0, 1]";
 };
 
-/// The one change of a variable.
+/// The single change of a variable.
 fn one(name: &str, change: ChangeDraft) -> Option<Changes> {
     Some(vec![(name.to_owned(), vec![change])])
 }
 
 impl Reader<'_> {
-    /// `twins` is what variables also change, by their names.
+    /// `twins` are further changes of variables, by name.
     pub(super) fn design(&mut self, model: &Fields<'_>, raw: &mut Raw, twins: &HashMap<String, Value<'_>>) {
         for entry in self.entries(model, "design", "design variable") {
             let fields = self.entry("design variable", &entry, VARIABLE.keys());
             let mut place = EntryPlace::of(&fields);
             let fixed_length = self.flag_of(&fields, "fixed_length");
-            let kind = self.led_by(&fields, KINDS, ["what it changes", "this variable is given"]);
+            let kind = self.led_by(&fields, KINDS, ["change", "this variable is given"]);
             let mut variables = kind.and_then(|(_, read)| read(self, &fields, &entry.0, raw, &mut place));
             if let (Some((_, read)), Some(all), Some(twin)) = (kind, &mut variables, twins.get(&entry.0)) {
                 let twin = (entry.0.clone(), entry.1.clone(), twin);
@@ -364,7 +364,7 @@ impl Reader<'_> {
         Some(along.into_iter().map(|(name, v)| (name, changes(v))).collect())
     }
 
-    /// One name or several; where each is goes to `places`.
+    /// Reads one name or several; their locations are added to `places`.
     fn several(
         &mut self,
         fields: &Fields<'_>,
@@ -385,7 +385,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The normal of the mirror and the hardpoints behind it, if there is one; their places follow the others.
+    /// Normal of the mirror and the mirrored hardpoints, if any; their locations follow the others.
     fn mirrored(
         &mut self,
         fields: &Fields<'_>,
@@ -461,7 +461,7 @@ impl Reader<'_> {
         Some(changes)
     }
 
-    /// Three numbers, as far as declared in SI; zeros where they are left out.
+    /// Three numbers, converted to SI as declared; zeros if left out.
     fn optional_vector(&mut self, fields: &Fields<'_>, key: &str) -> Option<Vec3> {
         let numbers = self.list_of::<3>(fields, key, "three numbers");
         if fields.get(key).is_none() { Some(Vec3::ZERO) } else { numbers.map(Vec3::from) }

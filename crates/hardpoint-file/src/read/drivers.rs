@@ -1,4 +1,4 @@
-//! Drivers: what they prescribe, and by which law.
+//! Drivers: prescribed quantities and their laws.
 
 use hardpoint::draft::{DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, Section};
 use hardpoint::joint::Quantity;
@@ -13,7 +13,7 @@ use super::{COORDINATE, Raw, law, type_of};
 
 pub(crate) const DRIVER: Kinds = Kinds {
     name: "Driver",
-    doc: "A driver: what it prescribes, and its law over the time.",
+    doc: "A driver: the prescribed quantity, and its law over time.",
     typed: false,
     tables: || FORMS.iter().map(|f| &f.0).collect(),
 };
@@ -26,7 +26,7 @@ macro_rules! driven {
             shared: keys! {
                 #[doc = $over_time]
                 #[doc = $counted]
-                #[doc = " It may be left out where every case gives the driver a law or holds it."]
+                #[doc = " Optional if every case gives the driver a law or fixes it."]
                 may "law": law::LAW, "\"30*sin(2*pi*t)\"";
                 /// Origin of the values of this driver's laws.
                 or("\"drawing\"") "counted_from": COUNTED, "\"zero\"";
@@ -37,7 +37,7 @@ macro_rules! driven {
 }
 
 const COUNTED: Shape = Shape::Words(&[
-    ("drawing", "From what it is in the design configuration."),
+    ("drawing", "From the value in the design configuration."),
     ("zero", "From zero: laws give a whole distance, a position, the length of a rod."),
 ]);
 
@@ -61,7 +61,7 @@ static FORMS: &[(Table, Read)] = &[
     (
         driven! {
             "The way over time, in the length unit", ", counted from the design configuration.";
-            /// The way of a point along a global direction, like wheel travel.
+            /// The displacement of a point along a global direction, like wheel travel.
             "DrivenPosition":
             /// The point.
             must "point": POINT_REF, "\"P\"";
@@ -92,7 +92,7 @@ static FORMS: &[(Table, Read)] = &[
     (
         driven! {
             "The angle over time, in the angle unit", ", counted from the design configuration.";
-            /// The angle by which a body has turned, seen along a direction.
+            /// The rotation angle of a body about a direction.
             "DrivenOrientation":
             /// The body's name.
             must "body": BODY, "\"crank\"";
@@ -111,9 +111,8 @@ static FORMS: &[(Table, Read)] = &[
     (
         driven! {
             "The measure's value over time, in its unit", ".";
-            /// The value of a measure, like wheel travel or a steer angle: a `coordinate`, `position`, `distance`,
-            /// `toe` or `angle` seen along `about`; of a wheel its `toe`, `steer_angle`, `wheel_travel` or
-            /// `wheel_recession`.
+            /// The value of a measure: `coordinate`, `position`, `distance`, `toe`, `angle` with `about`; of a wheel
+            /// `toe`, `steer_angle`, `wheel_travel` or `wheel_recession`.
             "DrivenMeasure":
             /// The measure's name.
             must "measure": OUTPUT, "\"travel\"";
@@ -130,8 +129,8 @@ impl Reader<'_> {
         for entry in self.entries(model, "drivers", "driver") {
             let fields = self.entry("driver", &entry, DRIVER.keys());
             let mut place = EntryPlace::of(&fields);
-            let says = ["what it prescribes", "what this driver prescribes is given"];
-            let form = self.led_by(&fields, FORMS, says);
+            let words = ["prescribed quantity", "the prescribed quantity is given"];
+            let form = self.led_by(&fields, FORMS, words);
             let drives = form.and_then(|(_, read)| read(self, &fields, &mut place));
             let from_zero = self.word_of(&fields, "counted_from") == Some(1);
             let law = self.given(&fields, "law", |r, f| r.law(&fields, f));
@@ -144,7 +143,7 @@ impl Reader<'_> {
                 }
             }
             let drives = drives.unwrap_or(DrivenDraft::Unread);
-            // The core says what is wrong with a joint or coordinate that is not known.
+            // The core reports an unknown joint or coordinate.
             let quantity = drives.quantity(&raw.draft.measures, |joint| type_of(raw, joint));
             let quantity = quantity.unwrap_or(Quantity::Number);
             let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(self.units.to_si(quantity, 1.0));

@@ -15,7 +15,7 @@ use crate::tree::{DIRECTION, Field, Fields, Reader};
 use super::Raw;
 use super::results::key;
 
-/// The acceleration of gravity where nothing else is said, m/s^2 (CGPM 1901).
+/// Default acceleration of gravity, m/s^2 (CGPM 1901).
 const STANDARD_GRAVITY: f64 = 9.80665;
 
 pub(crate) const GRAVITY: Table = table! {
@@ -34,7 +34,7 @@ pub(crate) const MASS: Kinds = Kinds {
 };
 pub(crate) const FORCE: Kinds = Kinds {
     name: "Force",
-    doc: "What pushes bodies.",
+    doc: "A force on bodies.",
     typed: true,
     tables: || TYPES.iter().filter(|t| t.1.table == "forces").map(|t| &t.0).collect(),
 };
@@ -46,7 +46,7 @@ const ALIASES: [(&str, &str, &str); 3] = [
     ("box", "block", "Another name of `block`."),
 ];
 
-/// The types of masses and forces, as the core declares them, with their other names.
+/// Types of masses and forces, as declared in the core, with their aliases.
 static TYPES: LazyLock<Vec<(Table, &'static ElementType)>> = LazyLock::new(|| {
     let tables = |own: &'static ElementType| {
         let keys: &'static [Key] = own.fields.iter().map(key).collect::<Vec<_>>().leak();
@@ -63,7 +63,7 @@ fn of_table(name: &str) -> Vec<(Table, &'static ElementType)> {
     TYPES.iter().filter(|t| t.1.table == name).copied().collect()
 }
 
-/// HP0253: what to tell of a model with loads whose bodies have no mass, or whose gravity has nothing to act on.
+/// HP0253: notes on a model with loads whose bodies have no mass, or whose gravity has no effect.
 pub(crate) fn weightless(file: &ModelFile) -> Option<Diagnostic> {
     let model = &file.model;
     let heavy: Vec<BodyId> = model.elements.iter().filter_map(|e| e.kind.mass_on(model)).collect();
@@ -98,7 +98,7 @@ impl Reader<'_> {
     pub(super) fn gravity(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         let Some(f) = model.get("gravity") else { return };
         let subject = model.subject("gravity");
-        let read = self.table(f.value, &subject, "a table that says which way is down").and_then(|table| {
+        let read = self.table(f.value, &subject, "a table with the direction of gravity").and_then(|table| {
             let fields = self.fields("`gravity`", f.value.span(), table, GRAVITY.keys());
             let along = self.vector_of(&fields, "along");
             let size = self.number_of(&fields, "acceleration").unwrap_or(STANDARD_GRAVITY);

@@ -1,7 +1,6 @@
-//! Files in files: a corner in an axle, an axle in a vehicle.
+//! Included files: a corner in an axle, an axle in a vehicle.
 //!
-//! All files of a model are one [`Source`], whose values are put together before they are read; each keeps its place
-//! there.
+//! All files of a model are one [`Source`]; their values are merged before they are read and keep their locations.
 
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -24,21 +23,20 @@ use super::mirror::{Both, Opposites, SECTIONS};
 pub(crate) const INCLUDE: Shape =
     Shape::list(&Shape::Any("Include", "", &[Shape::File, Shape::Table(&INCLUDE_TABLE)]));
 pub(super) const INCLUDE_TABLE: Table = table! {
-    /// Another file, with its names and parameters as they are wanted here.
+    /// Another file, with a prefix for its names and values of its parameters.
     "IncludeTable":
     /// A model file in this one's folder or below it.
     must "file": Shape::File, "\"corner.toml\"";
     /// Prefix of all names that the file declares.
     or("\"\"") "prefix": Shape::Text, "\"left_\"";
-    /// Names that get no prefix: what this file has as well, or several files share.
+    /// Names without the prefix: those that this file also has, or that several files share.
     may "shared": Shape::list(&Shape::Name("a thing")), "[\"rack\"]";
-    /// Values of its parameters in place of those that it has.
+    /// Values that replace those of its parameters.
     may "parameters": Shape::Entries("a parameter", &NUMBER), "{ track = 1500 }";
 };
-/// More files than this are surely a slip.
+/// Maximum number of files.
 const MOST_FILES: usize = 100;
-/// Each inclusion counts as that many bytes at least of what all files of a model may have together, so that files that
-/// include others over and over end somewhere.
+/// Minimum size in bytes by which each inclusion counts towards the total limit, so that repeated inclusions end.
 const LEAST_BYTES: u64 = 64 << 10;
 const WANTED: Wanted<'static> = Wanted {
     purpose: "model",
@@ -46,12 +44,12 @@ const WANTED: Wanted<'static> = Wanted {
     ending: "toml",
     example: "corners/front.toml",
     without_folder: "put its tables into this file, or read the model from a file",
-    too_large: "leave out of it what is not needed",
+    too_large: "remove unused entries from it",
 };
 
-/// A file of a model, beside the one that was requested.
+/// An included file of a model.
 pub(crate) struct Part {
-    /// As the first file would name it.
+    /// Name relative to the first file.
     pub name: String,
     pub text: String,
 }
@@ -63,7 +61,7 @@ pub(crate) struct IncludeError {
     pub error: DataError,
 }
 
-/// All files that a text includes, and those include, each once.
+/// All files that a text includes directly or indirectly, each once.
 pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<IncludeError>) {
     let (mut parts, mut hindrances): (Vec<Part>, Vec<IncludeError>) = Default::default();
     let (mut file, mut bytes) = (0, text.len() as u64);
@@ -73,7 +71,7 @@ pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<IncludeEr
             Some(k) => (parts[k].name.as_str(), parts[k].text.as_str()),
         };
         let mut found = Vec::new();
-        // What is no TOML is reported when it is read.
+        // Invalid TOML is reported when the file is read.
         if text.contains("include") {
             let document = DeTable::parse_recoverable(text).0;
             for (asked, at) in files_of(document.get_ref()) {
@@ -109,7 +107,7 @@ pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<IncludeEr
     (parts, hindrances)
 }
 
-/// The files that a table includes, and where it says so.
+/// Files that a table includes, with their locations.
 fn files_of<'t>(table: &'t DeTable<'_>) -> Vec<(&'t str, Range<usize>)> {
     let list = table.get("include").and_then(|v| v.get_ref().as_array()).into_iter().flatten();
     let name = |value: &'t Value<'_>| {
@@ -130,7 +128,7 @@ fn beside(file: &str, asked: &str) -> String {
     }
 }
 
-/// A table whose places count from elsewhere.
+/// Shifts the locations of a table.
 pub(crate) fn shifted(table: &mut DeTable<'_>, by: usize) {
     for (key, mut value) in std::mem::take(table) {
         shift(&mut value, by);
@@ -150,18 +148,18 @@ fn shift(value: &mut Value<'_>, by: usize) {
     *value = Spanned::new(at.start + by..at.end + by, inner);
 }
 
-/// The files of a model, as they are written.
+/// Files of a model, as written.
 pub(crate) struct Files<'a> {
-    /// Their tables, each with the name that it has; the first has none.
+    /// Tables with the names of their files; the first has none.
     pub tables: Vec<(String, DeTable<'a>)>,
     pub numbers: &'a Opposites,
-    /// Number of bytes each has.
+    /// Sizes in bytes.
     pub sizes: Vec<u64>,
 }
 
 impl Reader<'_> {
-    /// All of a model in one table: what the file includes, what it says itself, and what its mirror makes of both.
-    /// Where that cannot be made, it is reported.
+    /// Merges a model into one table: included files, the file itself, and the mirror images of both. Errors are
+    /// reported.
     pub fn whole<'a>(&mut self, mut files: Files<'a>) -> Both<'a> {
         let first = &mut files.tables[0].1;
         if !["include", "mirror", "planar"].iter().any(|key| first.contains_key(*key)) {
@@ -184,7 +182,7 @@ impl Reader<'_> {
                 both.twins.extend(part.twins);
             }
         }
-        // What is in this file counts more; it comes behind what it includes.
+        // Entries of this file take precedence; they come after those of the included files.
         let included = std::mem::take(&mut both.table);
         both.table = own;
         under(&mut both.table, included);
@@ -198,7 +196,7 @@ impl Reader<'_> {
         both
     }
 
-    /// The entries of `include`.
+    /// Entries of `include`.
     fn includes<'t, 'a>(&mut self, table: &'t DeTable<'a>) -> Vec<&'t Value<'a>> {
         let Some(value) = table.get("include") else { return Vec::new() };
         match value.get_ref().as_array() {
@@ -211,7 +209,7 @@ impl Reader<'_> {
         }
     }
 
-    /// One included file, with the names and parameters that are wanted.
+    /// One included file, with prefixed names and new parameter values.
     fn included<'a>(
         &mut self,
         files: &Files<'a>,
@@ -247,7 +245,7 @@ impl Reader<'_> {
             }
         };
         let name = beside(from, &asked);
-        // A file that could not be read has been reported of.
+        // A file that could not be read has been reported.
         let k = files.tables.iter().skip(1).position(|file| file.0 == name)? + 1;
         if above.contains(&k) {
             let message = format!("the file `{}` includes itself", shown(&name));
@@ -260,7 +258,7 @@ impl Reader<'_> {
         if self.included > LARGEST_FILE {
             let message = "includes are nested too deeply".to_owned();
             self.report("HP0117", at, message).help =
-                Some("include each of them where it is needed only".into());
+                Some("include each of them only where it is needed".into());
             return None;
         }
         above.push(k);
@@ -308,9 +306,9 @@ impl Reader<'_> {
         Some(part)
     }
 
-    /// The units of all files are the same, and so is gravity; a file that says none has those of what it includes.
+    /// Checks that units and gravity of all files are the same; a file without them has those of its included files.
     fn units_of<'a>(&mut self, own: &mut DeTable<'a>, part: &DeTable<'a>, value: &Value<'_>) {
-        // What falls in a part falls in the whole.
+        // Gravity of a part is that of the whole.
         if let (Some((key, gravity)), false) = (part.get_key_value("gravity"), own.contains_key("gravity")) {
             own.insert(key.clone(), gravity.clone());
         }
@@ -345,18 +343,18 @@ fn name_of(files: &Files<'_>, k: usize) -> String {
     files.tables[k].0.clone()
 }
 
-/// The names that a model's tables declare.
+/// Names that the tables of a model declare.
 fn declared<'t>(table: &'t DeTable<'_>) -> Vec<&'t str> {
     let sections = SECTIONS.iter().filter_map(|s| table.get(*s)?.get_ref().as_table());
     sections.flat_map(DeTable::keys).map(|key| &**key.get_ref()).collect()
 }
 
-/// The shape of a section's entries.
+/// Form of a section's entries.
 fn entries_of(section: &str) -> Shape {
     MODEL.keys().find(|k| k.key == section).map_or(Shape::Text, |k| k.shape)
 }
 
-/// Files that are named in another folder, as they are named from the first file's.
+/// Makes file names relative to the folder of the first file.
 fn files_from_there(table: &mut DeTable<'_>, from: &str) {
     for (section, value) in table.iter_mut() {
         walk("", entries_of(section.get_ref()), value, &mut |_, leaf| {
@@ -369,7 +367,7 @@ fn files_from_there(table: &mut DeTable<'_>, from: &str) {
     }
 }
 
-/// Puts a prefix before these names wherever they stand.
+/// Adds a prefix to all occurrences of these names.
 fn renamed(part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) {
     let say = |name: &str| {
         let base = name.split('.').next().unwrap_or(name);
@@ -377,7 +375,7 @@ fn renamed(part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) {
     };
     let rename = |shape: Shape, value: &mut Value<'_>| {
         walk("", shape, value, &mut |_, leaf| match leaf {
-            // Cases are those of the whole, whatever else of the file has such a name.
+            // Cases belong to the whole model, even if another entry of the file has such a name.
             Leaf::Name("a column" | "a parameter of the law" | "a case", _) => {}
             Leaf::Name(_, name) => *name = say(name).map_or(Cow::Owned(name.to_string()), Cow::Owned),
             Leaf::Expression(text) => in_expression(text, say),
@@ -399,7 +397,7 @@ fn renamed(part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) {
         .collect();
 }
 
-/// Adds what a file declares to what others do; what is there counts more.
+/// Adds the declarations of a file to those of others; existing ones take precedence.
 fn merge<'a>(all: &mut DeTable<'a>, part: DeTable<'a>) {
     for (section, value) in part {
         if !SECTIONS.contains(&&**section.get_ref()) {
@@ -421,7 +419,7 @@ fn merge<'a>(all: &mut DeTable<'a>, part: DeTable<'a>) {
     }
 }
 
-/// Puts what is included before what a file says itself.
+/// Puts included entries before those of the file itself.
 fn under<'a>(own: &mut DeTable<'a>, included: DeTable<'a>) {
     for (section, value) in included {
         let DeValue::Table(mut entries) = value.get_ref().clone() else { continue };
@@ -432,7 +430,7 @@ fn under<'a>(own: &mut DeTable<'a>, included: DeTable<'a>) {
         let shape = entries_of(section.get_ref());
         let Some(table) = table_of(written) else { continue };
         for (name, hand) in std::mem::take(table) {
-            // In the place of what is included, but as it is written here.
+            // At the position of the included entry, with the contents written here.
             match entries.get_mut(&**name.get_ref()) {
                 Some(there) => {
                     let mut one = DeTable::new();
@@ -452,7 +450,7 @@ fn under<'a>(own: &mut DeTable<'a>, included: DeTable<'a>) {
     }
 }
 
-/// Adds an entry under what is written by hand, which counts more key by key.
+/// Adds the keys of an entry to one written by hand, whose keys take precedence.
 pub(super) fn lay_under<'a>(
     shape: Shape,
     entries: &mut DeTable<'a>,
@@ -464,18 +462,18 @@ pub(super) fn lay_under<'a>(
         entries.insert(name, made);
         return true;
     };
-    if table_of(hand).is_none_or(|hand| stands_alone(of, hand)) {
+    if table_of(hand).is_none_or(|hand| is_complete(of, hand)) {
         return false;
     }
     if matches!(of, Shape::Kinds(_) | Shape::Table(_)) && !made.get_ref().is_table() {
-        // A value that must be a table and is none has nothing to merge: the error is reported elsewhere.
+        // A value that is not the required table has nothing to merge: the error is reported elsewhere.
         *hand = made;
         return true;
     }
     table_of(hand).is_some_and(|hand| fill(hand, made))
 }
 
-/// Adds the keys that are not there.
+/// Adds missing keys.
 pub(super) fn fill<'a>(hand: &mut DeTable<'a>, made: Value<'a>) -> bool {
     let DeValue::Table(made) = made.into_inner() else { return false };
     for (key, value) in made {
@@ -486,8 +484,8 @@ pub(super) fn fill<'a>(hand: &mut DeTable<'a>, made: Value<'a>) -> bool {
     true
 }
 
-/// True if what is written by hand says all of an entry: its `type`, or what leads one of its kinds.
-fn stands_alone(shape: Shape, hand: &DeTable<'_>) -> bool {
+/// Returns whether an entry written by hand is complete: it has its `type`, or the first key of one of its kinds.
+fn is_complete(shape: Shape, hand: &DeTable<'_>) -> bool {
     let leads = match shape {
         Shape::Kinds(kinds) if !kinds.typed => (kinds.tables)().iter().map(|t| t.keys[0].key).collect(),
         _ => vec!["type"],
@@ -495,7 +493,7 @@ fn stands_alone(shape: Shape, hand: &DeTable<'_>) -> bool {
     leads.iter().any(|key| hand.contains_key(*key))
 }
 
-/// The texts of included files, which stay with the model.
+/// Texts of included files, stored with the model.
 pub(crate) fn texts(parts: &[Part]) -> Texts {
     parts.iter().map(|part| (part.name.clone(), part.text.clone())).collect()
 }

@@ -1,4 +1,4 @@
-//! Laws of motion: an expression, a number, or a table that says which kind of law it is.
+//! Laws of motion: an expression, a number, or a table that selects the kind of law.
 
 use std::ops::Range;
 
@@ -15,10 +15,10 @@ use crate::read::data;
 use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject, Value};
 use crate::units::AngleUnit;
 
-/// More pieces than this are a table; a sequence takes time that grows with their square.
+/// Maximum number of pieces of a sequence, whose cost grows with their square.
 const MOST_PIECES: usize = 500;
 
-/// A law of motion, wherever one may stand.
+/// A law of motion.
 pub(crate) const LAW: Shape = Shape::Any(
     "Law",
     "A law of motion: an expression in `t` (seconds) such as `30*sin(2*pi*t)`, a number, or a table with a `type`; in the file's \
@@ -27,7 +27,7 @@ pub(crate) const LAW: Shape = Shape::Any(
 );
 pub(crate) const LAW_TABLE: Kinds =
     Kinds { name: "LawTable", doc: "", typed: true, tables: || TYPES.iter().map(|t| &t.0).collect() };
-/// Reads a law from its fields; the text is what it belongs to.
+/// Reads a law from its fields; the text names its owner.
 type Read = fn(&mut Reader<'_>, &str, &Fields<'_>) -> Option<Law>;
 
 static TYPES: &[(Table, Read)] = &[
@@ -76,15 +76,15 @@ static TYPES: &[(Table, Read)] = &[
     ),
     (
         table! {
-            /// From one value smoothly to another, and at rest before and after.
+            /// A smooth step from one value to another; at rest before and after.
             "smooth_step":
             /// The value before, in the driver's unit.
             or("0.0") "from": NUMBER, "0";
             /// The value after, in the driver's unit.
             must "to": NUMBER, "40";
-            /// When it begins, in s.
+            /// Start time, in s.
             must "start": NUMBER, "0.5";
-            /// When it ends, in s.
+            /// End time, in s.
             must "end": NUMBER, "1.5";
             /// 3 (the acceleration jumps at both ends), 5 (the jerk does) or 7 (neither).
             or("5") "degree": Shape::OneOf(&[3, 5, 7]), "5";
@@ -100,9 +100,9 @@ static TYPES: &[(Table, Read)] = &[
             or("0.0") "from": NUMBER, "0";
             /// The value after, in the driver's unit.
             must "to": NUMBER, "40";
-            /// When it begins, in s.
+            /// Start time, in s.
             must "start": NUMBER, "0.5";
-            /// When it ends, in s.
+            /// End time, in s.
             must "end": NUMBER, "1.5";
             /// Duration of acceleration and of deceleration, in s; at most half of that time.
             must "ramp": NUMBER, "0.2";
@@ -128,9 +128,9 @@ static TYPES: &[(Table, Read)] = &[
             or("\"cubic\"") "spline": Shape::Words(&[("cubic", "The acceleration is continuous."), ("quintic", "The jerk is continuous too.")]), "\"cubic\"";
             /// Boundary conditions at the first and last point.
             or("\"clamped\"") "ends": ENDS, "\"clamped\"";
-            /// Speed at the first point, where the ends are clamped, in the driver's unit per s.
+            /// Speed at the first point, for clamped ends, in the driver's unit per s.
             or("0.0") "start_speed": NUMBER, "0";
-            /// Speed at the last point, where the ends are clamped, in the driver's unit per s.
+            /// Speed at the last point, for clamped ends, in the driver's unit per s.
             or("0.0") "end_speed": NUMBER, "0";
             /// Acceleration at the first point, of a quintic with clamped ends, in the driver's unit per s^2.
             or("0.0") "start_acceleration": NUMBER, "0";
@@ -163,7 +163,7 @@ static TYPES: &[(Table, Read)] = &[
 const ENDS: Shape = Shape::Words(&[
     (
         "clamped",
-        "With the speeds (and, of a quintic, accelerations) that are given; zero where they are not: from rest to rest.",
+        "With the given speeds (and accelerations of a quintic); by default zero: from rest to rest.",
     ),
     ("natural", "The curve ends as a thin beam does."),
     ("periodic", "The last point is the first again, and the curve repeats for ever."),
@@ -171,11 +171,11 @@ const ENDS: Shape = Shape::Words(&[
 pub(super) const PIECE: Table = table! {
     /// A piece of a sequence.
     "Piece":
-    /// Duration, in s. The last piece may leave it out, and then has no end.
+    /// Duration, in s. The last piece may omit it, and then has no end.
     may "duration": NUMBER, "1";
     /// Law; `t` counts from the start of the piece.
     must "law": LAW, "\"10*t\"";
-    /// True if its values count from where the piece before ended.
+    /// True if its values are relative to the end of the previous piece.
     or("true") "continued": Shape::Flag, "true";
 };
 pub(super) const COLUMN: Shape = Shape::Any(
@@ -191,7 +191,7 @@ impl Reader<'_> {
         self.law_in(&fields.what, &fields.subject(f.key), f.value)
     }
 
-    /// A law; `of` is what it belongs to.
+    /// Reads a law; `of` names its owner.
     pub(super) fn law_in(&mut self, of: &str, subject: &Subject, value: &Value<'_>) -> Option<Law> {
         match value.get_ref() {
             DeValue::String(_) => self.law_text(of, value, &[]),
@@ -232,7 +232,7 @@ impl Reader<'_> {
         }
     }
 
-    /// HP0114: what a trigonometric function is given looks like degrees, but it takes rad.
+    /// HP0114: the argument of a trigonometric function looks like degrees, but it is in rad.
     fn degrees_in_functions(&mut self, of: &str, value: &Value<'_>, text: &str, parameters: &[(&str, f64)]) {
         if self.units.angle != AngleUnit::Degree {
             return;
@@ -248,8 +248,8 @@ impl Reader<'_> {
             let message = format!("`{call}` in the law of {of} is not in degrees: functions take radians");
             let right = in_radians(function, [offset, rate]);
             let d = self.remark(Severity::Warning, "HP0114", at, message);
-            d.notes.push("the file's unit for angles, deg, holds for values alone".into());
-            d.help = Some(format!("write `{right}` if degrees are meant"));
+            d.notes.push("the file's unit for angles, deg, applies to values only".into());
+            d.help = Some(format!("write `{right}` for degrees"));
         }
     }
 
@@ -268,7 +268,7 @@ impl Reader<'_> {
             return None;
         }
         let expression = Expression::parse(name).ok()?.with_unit(self.units.length.per_metre());
-        // Of a faulty parameter nothing more is said.
+        // Further errors of an invalid parameter are not reported.
         let number = number.map_or(1.0, |x| self.units.from_si(quantity, x));
         self.law_formulas.push((name.to_owned(), expression));
         Some(Some(number))
@@ -287,7 +287,7 @@ impl Reader<'_> {
         read(self, of, &fields)
     }
 
-    /// HP0110: numbers that together make no law.
+    /// HP0110: parameters that do not define a law.
     fn made(&mut self, fields: &Fields<'_>, at: Range<usize>, law: Result<Law, LawError>) -> Option<Law> {
         match law {
             Ok(law) => Some(law),
@@ -452,7 +452,7 @@ impl Reader<'_> {
             (None, None) => {
                 let message = format!("{} has no `points`", fields.what);
                 self.report("HP0104", fields.at.clone(), message).help = Some(
-                    "give `points = [[0, 0], [1, 5], [2, 0]]`, or `file = \"travel.csv\"` beside the model file"
+                    "give `points = [[0, 0], [1, 5], [2, 0]]`, or `file = \"travel.csv\"` next to the model file"
                         .into(),
                 );
                 None
@@ -483,7 +483,7 @@ impl Reader<'_> {
         let start = SplineEndRates { speed: start, acceleration: start_rate };
         let end = SplineEndRates { speed: end, acceleration: end_rate };
         match degree {
-            // Said above.
+            // Reported above.
             Some(SplineDegree::Cubic) if start.acceleration != 0.0 || end.acceleration != 0.0 => None,
             _ => Some(SplineEnds::Clamped { start, end }),
         }
@@ -612,13 +612,13 @@ fn linear(text: &str, parameters: &[(&str, f64)]) -> Option<[f64; 2]> {
     is_linear.then_some([offset, rate])
 }
 
-/// A whole multiple of 30, which angles in degrees often are, and angles in rad that are written with `pi` never.
+/// Returns whether a number is a multiple of 30, which is typical of degrees and never of rad written with `pi`.
 fn looks_like_degrees(x: f64) -> bool {
     const USUAL: f64 = 30.0;
     x.abs() >= USUAL && x % USUAL == 0.0
 }
 
-/// The same with the degrees in its argument as parts of pi.
+/// Rewrites the degrees in the argument as fractions of pi.
 fn in_radians(function: &str, [offset, rate]: [f64; 2]) -> String {
     let part = |x: f64, of: &str| match x.abs() / 180.0 {
         1.0 => format!("pi{of}"),

@@ -7,18 +7,17 @@ use super::sweep::bare;
 use crate::csv_table::original;
 use crate::diagnostic::shown;
 
-/// More rows than these are surely a slip: each is a posture that is solved by itself.
+/// Maximum number of rows: each is a posture that is solved separately.
 const MOST_ROWS: usize = 100_000;
 
-/// The first line's names without units, each with its unit where one is written, and the numbers below; empty cells
-/// are none.
+/// Column names and their units from the first line, and the numbers below; empty cells are `None`.
 pub(crate) struct Readings {
     pub names: Vec<(String, Option<String>)>,
     /// With the line of each.
     pub rows: Vec<(u64, Vec<Option<f64>>)>,
 }
 
-/// Reads the table of a file wherever it lies.
+/// Reads the table of a file in any folder.
 pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|e| {
@@ -67,7 +66,7 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
                 format!("`{name}`, line {line} has {} cells for {} columns", record.len(), names.len());
             return Err(DataError::content(message, "give one cell for each name of the first line"));
         }
-        // Units may stand in a line of their own, below the names.
+        // Units may be on a line of their own, below the names.
         if std::mem::take(&mut is_first) && is_units(&record) {
             for (cell, (title, unit)) in record.iter().zip(&mut names) {
                 let below = unquoted(cell).trim_matches(['[', ']', '(', ')', ' ']);
@@ -104,8 +103,7 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     Ok(Readings { names, rows })
 }
 
-/// The line above the first row that begins with `#` and has as many cells: it names the columns, and is a comment by
-/// its `#`.
+/// Comment line (`#`) above the first row with the same number of cells: it is a header.
 fn headed(text: &str, columns: usize) -> Option<usize> {
     let delimiter = char::from(delimiter(text));
     let above = text.lines().enumerate().take_while(|(_, l)| l.trim().is_empty() || l.starts_with('#'));
@@ -113,14 +111,14 @@ fn headed(text: &str, columns: usize) -> Option<usize> {
     above.filter(|(_, l)| heads(l)).last().map(|(k, _)| k + 1)
 }
 
-/// Returns whether a line has no number, and a word at least.
+/// Returns whether a line has at least one word and no number.
 fn is_units(record: &csv::StringRecord) -> bool {
     let mut cells = record.iter().map(unquoted);
     cells.clone().any(|cell| cell.chars().any(char::is_alphabetic))
         && cells.all(|cell| cell.parse::<f64>().is_err() && !cell.starts_with(|c: char| c.is_ascii_digit()))
 }
 
-/// A name and the unit behind it, as results are headed: `toe [deg]`.
+/// Splits a column title into name and unit: `toe [deg]`.
 fn named(title: &str) -> (String, Option<String>) {
     let name = bare(title);
     let unit = title[name.len()..].trim().strip_prefix('[').and_then(|u| u.strip_suffix(']'));

@@ -1,5 +1,5 @@
-//! Shapes of bodies: files of triangles beside the model file, to be drawn, and for what they weigh. What they look
-//! like otherwise (materials, colours, normals) is not read.
+//! Shapes of bodies: files of triangles next to the model file, for drawings and masses. Materials, colours and normals
+//! are not read.
 
 mod gltf;
 mod obj;
@@ -19,28 +19,28 @@ use crate::tree::{Field, Fields, Folder, Reader};
 
 use super::data::{DataError, Wanted, bytes_of};
 
-/// More triangles than this make a page slow to open and to turn, and show no more.
+/// Maximum number of triangles: more make a page slow without a visible difference.
 const MOST_TRIANGLES: usize = 200_000;
 
 pub(super) const MESH: Shape = Shape::Any("Mesh", "", &[Shape::File, Shape::Table(&MESH_TABLE)]);
 pub(super) const MESH_TABLE: Table = table! {
-    /// The shape of a body.
+    /// Shape of a body.
     "MeshFile":
-    /// A file of triangles in the model's folder or below it: `.stl`, `.obj`, `.glb` or `.gltf`. Of a glTF file the
-    /// transforms of its nodes are applied, its axes are taken as they are, and its data has to be in the file itself.
+    /// A file of triangles in the model's folder or below it: `.stl`, `.obj`, `.glb` or `.gltf` (with transforms of
+    /// nodes, unchanged axes and embedded data).
     must "file": Shape::File, "\"knuckle.stl\"";
     /// Frame of its coordinates.
     or("\"world\"") "frame": Shape::Words(MESH_FRAMES), "\"body\"";
-    /// The unit of its coordinates, in the model's length unit: 0.001 for a file in mm beside a model in m.
+    /// The unit of its coordinates, in the model's length unit: 0.001 for a file in mm and a model in m.
     or("1.0") "scale": NUMBER, "0.001";
-    /// The axis of these coordinates across which the shape is mirrored. Default: it is shown as it is.
+    /// The axis of these coordinates across which the shape is mirrored. Default: not mirrored.
     may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
 };
 
 /// Reads the triangles of a file.
 type Load = fn(&[u8], &mut Triangles) -> Result<(), String>;
 
-/// The kinds of files, by the endings of their names.
+/// Kinds of files, by the endings of their names.
 const KINDS: [(&str, &str, Load); 4] = [
     ("stl", "an STL file", stl::load),
     ("obj", "an OBJ file", obj::load),
@@ -48,7 +48,7 @@ const KINDS: [(&str, &str, Load); 4] = [
     ("gltf", "a glTF file", gltf::load),
 ];
 
-/// Triangles as they are read; equal places become one vertex.
+/// Collected triangles; equal points become one vertex.
 #[derive(Default)]
 struct Triangles {
     places: HashMap<[u64; 3], u32>,
@@ -59,7 +59,7 @@ struct Triangles {
 }
 
 impl Triangles {
-    /// The next triangle. Beyond the most that are drawn it is only counted; without extent it is left out.
+    /// Adds a triangle. Beyond the maximum number it is only counted; a degenerate one is left out.
     fn push(&mut self, corners: [[f64; 3]; 3]) -> Result<(), String> {
         self.count += 1;
         if let Some(corner) = corners.iter().find(|c| c.iter().any(|x| !x.is_finite())) {
@@ -69,7 +69,7 @@ impl Triangles {
             return Ok(());
         }
         let triangle = corners.map(|at| {
-            // Zeros are the same place whatever their signs.
+            // Zeros of both signs are equal.
             let at = at.map(|x| x + 0.0);
             let next = self.vertices.len() as u32;
             let vertex = *self.places.entry(at.map(f64::to_bits)).or_insert(next);
@@ -86,12 +86,12 @@ impl Triangles {
     }
 }
 
-/// HP0115: what the file holds is no shape to draw.
+/// HP0115: the file has no usable shape.
 fn unfit(message: String, help: &str) -> DataError {
     DataError { code: "HP0115", ..DataError::unreadable(message, help) }
 }
 
-/// The triangles of a file that lies in the model's folder or below it.
+/// Triangles of a file in the model's folder or below it.
 fn triangles_of(folder: Folder<'_>, name: &str) -> Result<Triangles, DataError> {
     let ending = Path::new(name).extension().and_then(|e| e.to_str()).unwrap_or_default();
     let kind = KINDS.iter().find(|kind| kind.0.eq_ignore_ascii_case(ending));
@@ -126,15 +126,15 @@ fn triangles_of(folder: Folder<'_>, name: &str) -> Result<Triangles, DataError> 
     Ok(triangles)
 }
 
-/// The triangles in the bytes of a mesh file, whose kind the ending of its name indicates: three corners each, as they
-/// are written.
+/// Triangles in the bytes of a mesh file, whose kind follows from the ending of its name: three corners each, as
+/// written.
 ///
 /// # Errors
-/// Why there are none.
+/// Returns the reason as a sentence.
 pub fn triangles(name: &str, bytes: &[u8]) -> Result<Vec<[[f64; 3]; 3]>, String> {
     let ending = Path::new(name).extension().and_then(|e| e.to_str()).unwrap_or_default();
     let Some((_, kind, load)) = KINDS.iter().find(|kind| kind.0.eq_ignore_ascii_case(ending)) else {
-        return Err("it is none of `.stl`, `.obj`, `.glb` and `.gltf`".into());
+        return Err("it must be `.stl`, `.obj`, `.glb` or `.gltf`".into());
     };
     let mut read = Triangles::default();
     load(bytes, &mut read).map_err(|why| format!("it cannot be read as {kind}: {why}"))?;
@@ -148,28 +148,28 @@ pub fn triangles(name: &str, bytes: &[u8]) -> Result<Vec<[[f64; 3]; 3]>, String>
 /// Entry of a mesh in a model.
 #[derive(Clone)]
 pub(crate) struct MeshDraft {
-    /// The name of its file, and where that is said.
+    /// Name of its file, with the position in the text.
     file: (String, Range<usize>),
     frame: MeshFrame,
-    /// The unit of its coordinates, in the model's length unit.
+    /// Unit of its coordinates, in the model's length unit.
     scale: f64,
-    /// The axis across which it is mirrored.
+    /// Axis across which it is mirrored.
     mirror: Option<usize>,
 }
 
 /// Shape of a body, as far as it is known.
 #[derive(Clone)]
 pub(crate) enum BodyMesh {
-    /// It has none.
+    /// The body has no shape.
     None,
     /// Entry of the mesh, not read yet.
     Said(MeshDraft),
-    /// It could not be read.
+    /// The entry could not be read.
     Faulty,
 }
 
 impl Reader<'_> {
-    /// The shape of a body: a file's name, or a table with it.
+    /// Reads the shape of a body: a file name, or a table with it.
     pub(super) fn mesh(&mut self, body: &Fields<'_>, f: Field<'_>) -> Option<MeshDraft> {
         if f.value.get_ref().is_str() {
             let file = (self.text(body, f)?, f.value.span());
@@ -193,10 +193,9 @@ impl Reader<'_> {
         Some(MeshDraft { file: (name?, file?.value.span()), frame: frame?, scale: scale?, mirror })
     }
 
-    /// A mesh as it is drawn.
+    /// Reads a mesh for drawings.
     pub(super) fn drawn(&mut self, said: &MeshDraft) -> Option<Mesh> {
-        // Drawing it changes no result, and whoever gives the text has drawn it already: the engine of a page does without the readers
-        // of meshes.
+        // Drawings do not affect results, and the page has the shapes already: its engine needs no readers of meshes.
         if cfg!(target_family = "wasm") || matches!(self.folder, Folder::Given(_)) {
             return None;
         }
@@ -214,7 +213,7 @@ impl Reader<'_> {
             said.mirror.map_or(at, |axis| at.mirrored(Vec3::AXES[axis]))
         };
         let vertices = found.vertices.iter().map(vertex).collect();
-        // Seen in a mirror, corners go round the other way.
+        // A mirror reverses the orientation of the corners.
         let corners = |[a, b, c]: [u32; 3]| if said.mirror.is_some() { [a, c, b] } else { [a, b, c] };
         let triangles = found.triangles.into_iter().map(corners).collect();
         Some(Mesh { file: name.clone(), frame: said.frame, vertices, triangles })
@@ -225,7 +224,7 @@ impl Reader<'_> {
         let said = match mass.get(key) {
             Some(f) => self.mesh(mass, f)?,
             None => {
-                // What is wrong with the body is reported where it is.
+                // Errors of the body are reported at its own entry.
                 let f = mass.get("body")?;
                 let body = f.value.get_ref().as_str()?;
                 match self.meshes.get(body).cloned() {
@@ -271,13 +270,13 @@ impl Reader<'_> {
     /// Solid enclosed by the surface in a file, in the file's own unit and axes.
     fn solid_in_file(&mut self, said: &MeshDraft) -> Result<Solid, DataError> {
         let (name, _) = &said.file;
-        // Meshes do not go with a model's text, what they weigh does.
+        // The text of a model is passed with the mass properties of its meshes, not with the meshes.
         let known = format!("{name} as a solid");
         let texts = match self.folder {
             Folder::Given(texts) => Some(texts),
             _ => None,
         };
-        // The engine of a page does without the readers of meshes.
+        // The engine of the page has no readers of meshes.
         if texts.is_some() || cfg!(target_family = "wasm") {
             let found = texts.and_then(|texts| texts.get(&known)).and_then(|text| {
                 self.texts.insert(known.clone(), text.clone());
@@ -295,14 +294,14 @@ impl Reader<'_> {
         let solid = Solid::of(&vertices, &triangles).map_err(|open| bounds_nothing(name, open))?;
         let Solid { volume, centre, second, .. } = solid;
         let numbers = [volume].into_iter().chain(centre.to_array()).chain(second);
-        // The shortest text that is the number again
+        // The shortest text that is read back as the same number
         let numbers: Vec<String> = numbers.map(|x| format!("{x:e}")).collect();
         self.texts.insert(known, numbers.join(" "));
         Ok(solid)
     }
 }
 
-/// HP0118: a surface of which there is no inside.
+/// HP0118: a surface that encloses no volume.
 fn bounds_nothing(name: &str, open: OpenSurface) -> DataError {
     let (message, note) = match open {
         OpenSurface::Edges(count, [a, b]) => {

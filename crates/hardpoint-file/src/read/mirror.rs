@@ -1,9 +1,8 @@
-//! The other side of a symmetric mechanism, made from the one that is written.
+//! The other side of a symmetric mechanism, created from the written one.
 //!
-//! It is made of the text's values before they are read: what is made so has names of its own, and the places in the
-//! text of what it was made of. Whatever moves as a mirror image then has the same joint coordinates and measures as
-//! its original: directions to go along are mirrored as arrows are, and directions to turn about the other way round,
-//! as turns are.
+//! Images are created from the values of the text before they are read: they have names of their own, and the locations
+//! of their originals. A mirror image has the same joint coordinates and measures as its original: directions of
+//! translation are mirrored as vectors, and axes of rotation as pseudovectors.
 
 mod origins;
 mod side;
@@ -20,7 +19,7 @@ use crate::side_names::{WORDS, exchanged, is_original};
 use crate::tree::{Reader, Value, axis_named};
 use crate::walk::{Leaf, in_expression, table_of, walk};
 
-pub(crate) use origins::{Origins, told_once, with_origin};
+pub(crate) use origins::{Origins, deduplicated, with_origin};
 use side::Side;
 
 pub(crate) const MIRROR: Table = table! {
@@ -28,21 +27,21 @@ pub(crate) const MIRROR: Table = table! {
     "Mirror":
     /// The global axis perpendicular to the mirror, a plane through the origin: `"y"` between left and right.
     or("\"y\"") "across": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
-    /// Words in names, and the words that stand for them on the other side. A word ends where the name does, or at `_`,
-    /// `-` or a blank.
+    /// Words in names, and their counterparts on the other side. A word ends at the end of the name, or at `_`, `-` or
+    /// a blank.
     or("{ \"left\": \"right\" }") "names": Shape::Entries("a word", &Shape::Text), "{ left = \"right\" }";
     /// Design variables of mirrored entries.
     or("\"symmetric\"") "variables": VARIABLES, "\"independent\"";
-    /// Names of things that are on one side only.
+    /// Names of entries that are on one side only.
     may "except": Shape::list(&Shape::Name("a thing")), "[\"left_damper\"]";
-    /// Names of drivers that move oppositely on the other side, as those of steering do.
+    /// Names of drivers that move oppositely on the other side, such as steering.
     may "antisymmetric": Shape::list(&crate::format::DRIVER), "[\"left_steer\"]";
 };
 const VARIABLES: Shape = Shape::Words(&[
     ("symmetric", "Each changes both sides alike."),
     ("independent", "Those with such a word in their names have one of their own on the other side."),
 ]);
-/// Sections whose entries are mirrored; of parameters and design variables, where each side has its own.
+/// Sections whose entries are mirrored; parameters and design variables only if each side has its own.
 pub(crate) const SECTIONS: [&str; 14] = [
     "parameters",
     "hardpoints",
@@ -59,34 +58,34 @@ pub(crate) const SECTIONS: [&str; 14] = [
     "measures",
     "metrics",
 ];
-/// More words than these say no sides.
+/// Maximum number of words.
 const MOST_WORDS: usize = 20;
 
-/// A model's table with all that it has on both sides.
+/// Table of a model with both sides.
 pub(crate) struct Both<'a> {
     pub table: DeTable<'a>,
     /// Further changes of design variables, by their names.
     pub twins: HashMap<String, Value<'a>>,
 }
 
-/// The mirror's rule: axis, names, exceptions.
+/// Rule of the mirror: axis, names, exceptions.
 struct Rule<'n> {
     numbers: &'n Opposites,
     across: usize,
     words: Vec<(String, String)>,
     /// Names that are the same on both sides.
     kept: HashSet<String>,
-    /// The same of parameters.
+    /// Parameters that are the same on both sides.
     shared: HashSet<String>,
 }
 
 impl<'n> Rule<'n> {
-    /// The name with its words exchanged, if it has any of them.
+    /// Name with its words exchanged, if it has any of them.
     fn exchanged(&self, name: &str) -> Option<String> {
         exchanged(name, &self.words)
     }
 
-    /// The name of what is made of something with this name.
+    /// Name of the image of an entry with this name.
     fn twin(&self, name: &str) -> Option<String> {
         if self.kept.contains(name) { None } else { image(name, &self.words) }
     }
@@ -97,8 +96,8 @@ impl<'n> Rule<'n> {
         if self.kept.contains(base) || self.kept.contains(name) { None } else { self.exchanged(name) }
     }
 
-    /// The names and vectors of a value on the other side; `turns` says under which keys a vector is a turn. Says
-    /// whether there was any name.
+    /// Mirrors the names and vectors of a value; `turns` lists the keys whose vector is a rotation. Returns whether
+    /// there was any name.
     fn mirror(&self, shape: Shape, value: &mut Value<'n>, turns: &dyn Fn(&str) -> bool) -> bool {
         let mut named = false;
         let axes = ["x", "y", "z"];
@@ -150,7 +149,7 @@ fn turned_about(key: &str, k: usize) -> usize {
     }
 }
 
-/// The name of the image of something on the side that is written.
+/// Name of the image of an entry on the written side.
 fn image(name: &str, words: &[(String, String)]) -> Option<String> {
     if is_original(name, words)? { exchanged(name, words) } else { None }
 }
@@ -180,10 +179,10 @@ fn each<'a>(list: &mut DeArray<'a>, numbers: &'a Opposites, turned: impl Fn(usiz
     list.iter_mut().enumerate().filter(|(k, _)| turned(*k)).for_each(|(_, value)| turn_sign(value, numbers));
 }
 
-/// Numbers as they are written, and the same with the other sign.
+/// Numbers as written, and with the opposite sign.
 pub(crate) type Opposites = HashMap<String, String>;
 
-/// The numbers of files of which one has a mirror, with the other sign.
+/// Numbers of files of which one has a mirror, with the opposite sign.
 pub(crate) fn opposites<'t>(files: impl Iterator<Item = &'t DeTable<'t>> + Clone) -> Opposites {
     let mut all = Opposites::new();
     if files.clone().any(|table| table.contains_key("mirror")) {
@@ -209,7 +208,7 @@ fn opposites_in(value: &Value<'_>, all: &mut Opposites) {
     all.insert(text.to_owned(), turned);
 }
 
-/// A number or an expression with the other sign.
+/// A number or an expression with the opposite sign.
 fn turn_sign<'a>(value: &mut Value<'a>, numbers: &'a Opposites) {
     let turned = match value.get_ref() {
         DeValue::String(text) => DeValue::String(Cow::Owned(format!("-({text})"))),
@@ -227,8 +226,7 @@ fn turn_sign<'a>(value: &mut Value<'a>, numbers: &'a Opposites) {
 }
 
 impl Reader<'_> {
-    /// The table of the model with what its `mirror` makes of it; none where there is no mirror, or where that cannot
-    /// be read, which is reported.
+    /// Table of the model with its mirror images; `None` without a mirror, or if it cannot be read, which is reported.
     pub fn both_sides<'a>(&mut self, model: &DeTable<'a>, numbers: &'a Opposites) -> Option<Both<'a>> {
         let value = model.get("mirror")?;
         let Some(said) = value.get_ref().as_table() else {
@@ -301,7 +299,7 @@ impl Reader<'_> {
             let message =
                 format!("the mirror has no effect: no name contains the word {}", words.join(" or "));
             self.report("HP0116", value.span(), message).help = Some(
-                "give the word that identifies the side under `names`, like `names = { l = \"r\" }`; words stand between `_`, `-` or blanks, as in `l_ball`"
+                "give the word that identifies the side under `names`, like `names = { l = \"r\" }`; words are separated by `_`, `-` or blanks, as in `l_ball`"
                     .into(),
             );
         }
@@ -310,7 +308,7 @@ impl Reader<'_> {
         Some(Both { table, twins })
     }
 
-    /// The words that are exchanged.
+    /// Words that are exchanged.
     fn words_of(&mut self, value: &Value<'_>) -> Vec<(String, String)> {
         let Some(table) = value.get_ref().as_table() else {
             self.report("HP0105", value.span(), "`names` of `mirror` must be a table of words").help =
@@ -330,7 +328,8 @@ impl Reader<'_> {
             let Some(other) = other.filter(|to| *to != &**from.get_ref()) else {
                 let message = format!("`{}` of `names` is not one word for another", shown(from.get_ref()));
                 self.report("HP0116", at, message).help = Some(
-                    "write words of letters and digits without what is between them, like `l = \"r\"` for `arm_l`".into(),
+                    "write words of letters and digits without separators, like `l = \"r\"` for `arm_l`"
+                        .into(),
                 );
                 continue;
             };

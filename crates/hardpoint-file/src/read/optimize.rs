@@ -10,10 +10,10 @@ use crate::tree::{Field, Fields, MOST_ENTRIES, Reader};
 
 use super::Raw;
 
-/// More starts, and more iterations, than these are surely a slip.
+/// Maximum numbers of starts and iterations.
 const MOST_STARTS: u32 = 100_000;
 const MOST_ITERATIONS: u32 = 100_000;
-/// More variables by name than these are surely a slip.
+/// Maximum number of listed variables.
 const MOST_VARIABLES: usize = 10_000;
 pub(crate) const OPTIMIZE: Table = table! {
     /// Goals and limits of an optimisation.
@@ -24,15 +24,15 @@ pub(crate) const OPTIMIZE: Table = table! {
     must "goals": Shape::Entries("a metric", &Shape::Table(&GOAL)), "{ toe = { metric = \"toe_error\" } }";
     /// Conditions that the design must satisfy.
     may "limits": Shape::Entries("a metric", &Shape::Kinds(&LIMIT)), "{ rod = { length = \"tie_rod\", max = 300 } }";
-    /// No motion may come nearer to a singular position than this margin, above 0 and below 1. Default: it may.
+    /// Minimum margin of all motions from singular positions, between 0 and 1. Default: none.
     may "min_margin": NUMBER, "0.02";
-    /// From how many designs the search starts: that of the file, and others spread within the bounds.
+    /// Number of starts of the search: the design of the file, and others spread within the bounds.
     or("1") "starts": Shape::Count(MOST_STARTS), "8";
     /// Maximum number of iterations of a search.
     or("100") "max_iterations": Shape::Count(MOST_ITERATIONS), "100";
 };
 pub(super) const GOAL: Table = table! {
-    /// A metric that is made small, or brought to a target.
+    /// A metric to minimise, or to bring to a target.
     "Goal":
     /// The metric's name. Default: the goal's own name.
     may "metric": METRIC, "\"toe_error\"";
@@ -43,18 +43,18 @@ pub(super) const GOAL: Table = table! {
 };
 pub(super) const LIMIT: Kinds = Kinds {
     name: "Limit",
-    doc: "Something that must stay between two values, given by exactly one of {keys}.",
+    doc: "A condition on a quantity, given by exactly one of {keys}.",
     typed: false,
     tables: || LIMITS.iter().map(|l| &l.0).collect(),
 };
-/// Reads what is limited; of a box there are several.
+/// Reads the limited quantities; a box has several.
 type Read = fn(&mut Reader<'_>, &Fields<'_>) -> Option<Vec<One>>;
-/// The axis of a box or nothing, what is limited, and to what.
+/// Axis of a box (or none), limited quantity, and its limits.
 type One = (&'static str, LimitTargetDraft, Bounds);
-/// The least and the most.
+/// Minimum and maximum.
 type Bounds = [Option<f64>; 2];
 
-/// Something that is limited: with what every limit has.
+/// Declares a kind of limit, with the shared keys.
 macro_rules! limit {
     ($($table:tt)*) => { Table { shared: BOUNDS, ..table! { $($table)* } } };
 }
@@ -75,15 +75,15 @@ static LIMITS: &[(Table, Read)] = &[
     ),
     (
         limit! {
-            /// The place of a hardpoint, in the design configuration: a box, each side in the length unit.
+            /// The position of a hardpoint in the design configuration: a box, each side in the length unit.
             "LimitOfHardpoint":
             /// The hardpoint's name.
             must "hardpoint": HARDPOINT, "\"A\"";
-            /// Between which values its x may be: two numbers, or `{ min = 10 }`, `{ max = 20 }`.
+            /// Range of its x: two numbers, or `{ min = 10 }`, `{ max = 20 }`.
             may "x": SIDE, "[10, 20]";
-            /// The same of its y.
+            /// Range of its y.
             may "y": SIDE, "[-5, 5]";
-            /// The same of its z.
+            /// Range of its z.
             may "z": SIDE, "{ min = 0 }";
         },
         |r, fields| r.boxed(fields),
@@ -116,15 +116,15 @@ static LIMITS: &[(Table, Read)] = &[
     ),
 ];
 const BOUNDS: &[Key] = keys! {
-    /// It must not be less than this; not of a hardpoint, of which each axis has its own.
+    /// Minimum; not for a hardpoint, which has a range for each axis.
     may "min": NUMBER, "50";
-    /// It must not be more than this.
+    /// Maximum.
     may "max": NUMBER, "200";
-    /// It must be this, instead of both.
+    /// Required value, instead of both.
     may "equal": NUMBER, "100";
 };
 const SIDE: Shape = Shape::Any("Side", "", &[TWO_NUMBERS, Shape::Table(&SIDE_TABLE)]);
-const SIDE_TABLE: Table = Table::new("SideTable", "One side of a box, or where it is open.", BOUNDS);
+const SIDE_TABLE: Table = Table::new("SideTable", "One side of a box, which may be open.", BOUNDS);
 
 impl Reader<'_> {
     pub(super) fn optimize(&mut self, model: &Fields<'_>, raw: &mut Raw) {
@@ -188,8 +188,8 @@ impl Reader<'_> {
             let fields = self.entry("limit", &entry, LIMIT.keys());
             let place = EntryPlace::of(&fields);
             let before = self.found.len();
-            let kind = self.led_by(&fields, LIMITS, ["what it is put on", "what it is put on is given"]);
-            // With keys of several, what else is wrong depends on which is meant.
+            let kind = self.led_by(&fields, LIMITS, ["limited quantity", "the limited quantity is given"]);
+            // With keys of several kinds, further errors depend on the intended one.
             let is_clear = self.found.len() == before;
             let read = kind.filter(|_| is_clear).and_then(|(_, read)| read(self, &fields));
             let read = read.unwrap_or_else(|| {
@@ -207,7 +207,7 @@ impl Reader<'_> {
         limits
     }
 
-    /// The sides of a box.
+    /// Sides of a box.
     fn boxed(&mut self, fields: &Fields<'_>) -> Option<Vec<One>> {
         let before = self.found.len();
         for key in ["min", "max", "equal"] {

@@ -1,4 +1,4 @@
-//! Parameters: named numbers for expressions, which are design variables unless they say otherwise.
+//! Parameters: named numbers for expressions, which are design variables by default.
 
 use std::ops::Range;
 
@@ -21,15 +21,15 @@ pub(crate) const PARAMETER: Shape = Shape::Any(
 pub(super) const PARAMETER_TABLE: Table = table! {
     /// A named number.
     "ParameterTable":
-    /// Value; an expression makes it follow others.
+    /// Value; with an expression it depends on other parameters.
     must "value": NUMBER, "60";
-    /// Quantity of the value, and so its unit.
+    /// Quantity of the value, which defines its unit.
     or("\"number\"") "unit": UNIT, "\"length\"";
-    /// The lowest and the highest value that it may have in other designs.
+    /// Lower and upper bound.
     may "bounds": TWO_NUMBERS, "[50, 70]";
     /// Typical size of a change, used to compare variables.
     may "typical": NUMBER, "2";
-    /// By how much it may be off when it is made, either way.
+    /// Manufacturing tolerance, plus or minus.
     may "tolerance": NUMBER, "0.1";
     /// True if it is a design variable.
     or("true") "design": Shape::Flag, "false";
@@ -100,10 +100,8 @@ impl Reader<'_> {
         let number = number.unwrap_or(1.0);
         if let (Some(fields), true) = (fields, formula || !p.is_design) {
             let why = match formula {
-                true => {
-                    "a parameter that an expression gives follows others, and is no design variable of its own"
-                }
-                false => "with `design = false` it is no design variable",
+                true => "a parameter with an expression depends on others, and is not a design variable",
+                false => "with `design = false` it is not a design variable",
             };
             let keys = ["bounds", "typical", "tolerance", "design"];
             let keys = if formula { &keys[..] } else { &keys[..3] };
@@ -129,7 +127,7 @@ impl Reader<'_> {
         raw.draft.parameters.push(ParameterDraft { name, value: number, quantity: p.quantity });
     }
 
-    /// The bounds, the typical size and the tolerance of a design variable that measures this, in SI.
+    /// Bounds, typical size and tolerance of a design variable of this quantity, in SI.
     pub(super) fn range(
         &mut self,
         fields: &Fields<'_>,

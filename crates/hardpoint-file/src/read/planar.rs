@@ -1,6 +1,6 @@
-//! Mechanisms in a plane: points of two coordinates, pins without an axis, bodies that are said by their points.
+//! Planar mechanisms: points with two coordinates, pins without an axis, bodies given by their points.
 //!
-//! All of it is made of the text's values before they are read; what is made is where the text is that says it.
+//! The shorthand is expanded on the values of the text before they are read; expanded values have its location.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -25,7 +25,7 @@ pub(crate) const PLANAR: Shape = Shape::Words(&[
     ("zx", "In the plane of z and x; angles count about y."),
     (
         "xz",
-        "In the plane of x and z; angles count about -y: counter-clockwise where x goes to the right and z up.",
+        "In the plane of x and z; angles are about -y: counter-clockwise if x points to the right and z up.",
     ),
 ]);
 
@@ -73,7 +73,7 @@ fn key<'a>(name: impl Into<Cow<'a, str>>, at: Range<usize>) -> Spanned<Cow<'a, s
 }
 
 impl Reader<'_> {
-    /// Says all that a planar model leaves out because it lies in a plane.
+    /// Expands everything that a planar model leaves out.
     pub(super) fn planar(&mut self, model: &mut DeTable<'_>) {
         let Some(value) = model.get("planar") else { return };
         let Some(plane) = Plane::of(model) else {
@@ -149,8 +149,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Bodies that are lists of hardpoints: where two have the same there is a pin; what one alone has is a point of it
-    /// to follow.
+    /// Expands bodies that are lists of hardpoints: a shared hardpoint is a pin; others are points of the body.
     fn bodies_by_points<'a>(&mut self, model: &mut DeTable<'a>) {
         let Some(bodies) = model.get_mut("bodies").and_then(table_of) else { return };
         /// A hardpoint, where it is listed, and the bodies on it.
@@ -187,7 +186,7 @@ impl Reader<'_> {
                 ground = Some(name.clone());
             }
         }
-        // It is always there, and is listed for its points only.
+        // Ground always exists, and is listed for its points only.
         if ground.is_some() {
             let without =
                 std::mem::take(bodies).into_iter().filter(|(name, _)| **name.get_ref() != *"ground");
@@ -197,7 +196,7 @@ impl Reader<'_> {
         let image = mirror::images(model);
         let shape = |section: &str| MODEL.keys().find(|k| k.key == section).map_or(Shape::Text, |k| k.shape);
         for (point, at, on) in pins {
-            // What is written on both sides is as it is written.
+            // Entries that are written on both sides are not changed.
             let image = |name: &str| image(name).filter(|there| !names.contains(there));
             let hinges = hinges(&point, &on, image);
             if let ([body], []) = (on.as_slice(), hinges.as_slice())
@@ -218,7 +217,7 @@ impl Reader<'_> {
                 joint.insert(key("at", at.clone()), text(point.clone(), at.clone()));
                 let joint = Spanned::new(at.clone(), DeValue::Table(joint));
                 let joints = section(model, "joints", &at);
-                // Whatever type it is, between these bodies it is.
+                // A joint of any type connects these bodies already.
                 match joints.get_mut(&*name).and_then(table_of).filter(|hand| !hand.contains_key("bodies")) {
                     Some(hand) => fill(hand, joint),
                     None => lay_under(shape("joints"), joints, key(name, at.clone()), joint),
@@ -228,19 +227,18 @@ impl Reader<'_> {
     }
 }
 
-/// A body that is said by its points, and where.
+/// A body given by its points, with their locations.
 #[derive(Clone)]
 struct Listed {
     name: String,
     at: Range<usize>,
 }
 
-/// The hinges at a point, with their names, between the bodies that have it: one has the point's name, all others that
-/// of a body besides.
+/// Hinges at a point between the bodies that share it: one has the name of the point, the others also that of a body.
 ///
-/// `image` is what a mirror calls the image of something, if it makes one. Where the point is its own image, a body of
-/// one side has its hinge under its own name, so that its image has one as well; where bodies of one side alone meet,
-/// one of them meets its own image.
+/// `image` returns the name of a mirror image, if there is one. If the point is its own image, a body of one side has
+/// its hinge under its own name, so that its image has one as well; if only bodies of one side meet, one of them meets
+/// its own image.
 fn hinges(point: &str, on: &[Listed], image: impl Fn(&str) -> Option<String>) -> Vec<(String, [Listed; 2])> {
     let is_shared = image(point).is_none();
     let other_side = |body: &Listed| image(&body.name).filter(|_| is_shared);
@@ -258,7 +256,7 @@ fn hinges(point: &str, on: &[Listed], image: impl Fn(&str) -> Option<String>) ->
     all
 }
 
-/// A table of the model, which is there from now on.
+/// A table of the model, created if necessary.
 fn section<'m, 'a>(model: &'m mut DeTable<'a>, name: &'static str, at: &Range<usize>) -> &'m mut DeTable<'a> {
     let entry = model.entry(key(name, at.clone()));
     let value = entry.or_insert_with(|| Spanned::new(at.clone(), DeValue::Table(DeTable::new())));
@@ -271,7 +269,7 @@ fn section<'m, 'a>(model: &'m mut DeTable<'a>, name: &'static str, at: &Range<us
     }
 }
 
-/// Two coordinates in the plane, with the third.
+/// Adds the third coordinate to two coordinates in the plane.
 fn three(list: &mut DeArray<'_>, plane: Plane) {
     let Some(last) = list.iter().last().map(Value::span) else { return };
     let mut two: Vec<_> = std::mem::replace(list, DeArray::new()).into_iter().collect();
@@ -280,7 +278,7 @@ fn three(list: &mut DeArray<'_>, plane: Plane) {
     *list = (0..3).filter_map(|axis| two.get(plane.coordinate(axis).unwrap_or(2)).cloned()).collect();
 }
 
-/// Design variables along both axes of the plane, `along = "xy"`, become one along each.
+/// Splits design variables along both axes of the plane, `along = "xy"`, into one for each.
 fn variables(model: &mut DeTable<'_>, plane: Plane) {
     let Some(design) = model.get_mut("design").and_then(table_of) else { return };
     for (name, value) in std::mem::take(design) {

@@ -24,7 +24,7 @@ use super::law::{COLUMN, LAW};
 use super::mesh::MESH;
 use super::{COORDINATE, DRAW, Raw, data};
 
-/// More output times than this are surely a slip.
+/// Maximum number of output times.
 pub(super) const MOST_TIMES: u32 = 1_000_000;
 pub(crate) const POINT: Table = table! {
     /// A point of a body.
@@ -75,7 +75,7 @@ const FIXED_RAY: Table = table! {
     must "axis": LINE, "\"x\"";
 };
 pub(crate) const METRIC: Table = table! {
-    /// One number for a whole curve.
+    /// One number of a curve.
     "Metric":
     /// The name of the measure, or `POINT.x`.
     must "of": OUTPUT, "\"toe\"";
@@ -83,13 +83,13 @@ pub(crate) const METRIC: Table = table! {
     must "take": TAKE, "\"max\"";
     /// The abscissa: the name of a measure, or `POINT.x`. Default: time.
     may "over": OUTPUT, "\"wheel_travel\"";
-    /// For a value or slope: where, in the unit of the abscissa.
+    /// For a value or slope: the position, in the unit of the abscissa.
     may "at": NUMBER, "0";
-    /// The part of the curve that counts, from where to where its abscissa goes. Default: all of it.
+    /// Window: the range of the abscissa that is used. Default: the whole curve.
     may "window": TWO_NUMBERS, "[-20, 20]";
     /// Points `[abscissa, value]`, or the name of a CSV file of them; for `rms` a polyline. Default: zero.
     may "target": TARGET, "[[-50, 0.1], [50, -0.1]]";
-    /// The case whose motion it sums up. Default: each, one number for every case.
+    /// Case of the motion. Default: all cases, with one number for each.
     may "case": CASE, "\"bump\"";
 };
 const TARGET: Shape =
@@ -108,11 +108,11 @@ const FORCE_TABLE: Shape = Shape::Any(
     &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&FORCE_FILE)],
 );
 pub(super) const FORCE_FILE: Table = table! {
-    /// A force over a way in a CSV file.
+    /// A force over deflection in a CSV file.
     "ForceFile":
-    /// A CSV file in the model's folder or below it: ways in the length unit, and forces in N.
+    /// A CSV file in the model's folder or below it: deflections in the length unit, and forces in N.
     must "file": Shape::File, "\"bump_stop.csv\"";
-    /// The file's columns of way and force, by name or by number from 1. Default: the first two.
+    /// The file's columns of deflection and force, by name or by number from 1. Default: the first two.
     may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
 };
 const TAKE: Shape = Shape::Any(
@@ -127,10 +127,10 @@ const TAKE: Shape = Shape::Any(
             "integral",
             "The integral over the abscissa: of a power over time the work in J, and of a force or a moment over its way or angle.",
         ),
-        ("rms", "The root of the mean, as for `mean`, of the square of what is left beyond the target."),
+        ("rms", "The root of the mean, as for `mean`, of the squared deviation from the target."),
         (
             "rms_at_points",
-            "The root of the mean square of what is left beyond the target at its points, where the abscissa first is that of each.",
+            "The root mean square of the deviation from the target's points, each where the abscissa first has its value.",
         ),
         ("value", "The value where the abscissa first is `at`."),
         ("slope", "The change per change of the abscissa where that first is `at`."),
@@ -173,10 +173,10 @@ const AXLE: &[Key] = keys! {
     /// The axle's name.
     must "axle": Shape::Name("an axle"), "\"front\"";
 };
-/// The measure that may be drawn.
+/// Measures with a shape in drawings.
 const DISTANCE: &str = "distance";
 const DRAWN: &[Key] = keys! {
-    /// Shape in drawings: springs and dampers are often declared so. It changes no result.
+    /// Shape in drawings, for springs and dampers as measured distances. It does not affect results.
     may "draw": DRAW, "\"coilover\"";
 };
 pub(super) const WHEEL_MEASURE: Shape = Shape::Any(
@@ -204,7 +204,7 @@ const REACTION_PART: Shape = Shape::Any(
 const AXES: Shape = Shape::Any("Axes", "Along which axes something is given.", &[Shape::Words(Axes::WORDS)]);
 const ORIENTATION_ANGLE: Shape = Shape::Any(
     "OrientationAngle",
-    "One of three angles that say how a body is turned.",
+    "One of three angles of a body's orientation.",
     &[Shape::Words(OrientationAngle::WORDS)],
 );
 pub(super) const AXLE_MEASURE: Shape = Shape::Any(
@@ -215,7 +215,7 @@ pub(super) const AXLE_MEASURE: Shape = Shape::Any(
     })],
 );
 
-/// Meaning of the `type` of a measure: `toe` is of a wheel, or of a body with a spin axis.
+/// Meaning of the `type` of a measure: `toe` applies to a wheel, or to a body with a spin axis.
 #[derive(Clone, Copy)]
 enum MeasureOf {
     Own(&'static MeasureType),
@@ -352,7 +352,7 @@ impl Reader<'_> {
     ) -> Option<MeasureKindDraft> {
         match of {
             MeasureOf::Either(own, _) if own.fields.iter().any(|f| fields.get(f.key).is_some()) => {
-                self.out_of_place(fields, "wheel", "`body` and `spin_axis` say of which wheel already");
+                self.out_of_place(fields, "wheel", "`body` and `spin_axis` define the wheel already");
                 self.own_measure(own, fields, place)
             }
             MeasureOf::Own(own) => self.own_measure(own, fields, place),
@@ -461,7 +461,7 @@ impl Reader<'_> {
             let take = self.take(&fields);
             let window = self.list_of::<2>(&fields, "window", "the lower and the upper end");
             let case = self.name_of(&fields, "case");
-            // What could not be read of it would leave another metric.
+            // An incomplete metric would have another meaning.
             if of.is_none() || take.is_none() || !self.unread.is_empty() {
                 self.unread.push("");
             }
@@ -512,12 +512,12 @@ impl Reader<'_> {
         })
     }
 
-    /// The curve that an `rms` compares with, given here or in a file.
+    /// Target curve of an `rms`, given here or in a file.
     fn target(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
         self.points_given(fields, f, &TARGET_FILE, &data::TARGET)
     }
 
-    /// A force over a way, given here or in a file.
+    /// Force over deflection, given here or in a file.
     fn force_table(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
         let points = self.points_given(fields, f, &FORCE_FILE, &data::FORCE)?;
         Some(points.into_iter().map(|[way, force]| [self.units.length.metres(way), force]).collect())
@@ -586,7 +586,7 @@ impl Reader<'_> {
         self.push(raw, Section::Time, place);
     }
 
-    /// Output times; `what` says whose they are.
+    /// Reads output times; `what` names their owner.
     pub(super) fn times(&mut self, what: &str, subject: &Subject, f: Field<'_>) -> Option<Vec<f64>> {
         let table = self.table(f.value, subject, "a table with `end` and `steps`")?;
         let fields = self.fields(what, f.value.span(), table, TIME.keys());

@@ -15,16 +15,15 @@ use crate::tree::{Fields, MOST_ENTRIES, Reader, Subject};
 use super::Raw;
 use super::data::{DataError, Wanted, delimiter, number, text_from, unquoted};
 
-/// More designs than these are surely a slip.
+/// Maximum number of designs.
 const MOST_SAMPLES: u32 = 1_000_000_000;
-/// More values of one variable than these are surely a slip.
+/// Maximum number of values of one variable.
 const MOST_LEVELS: u32 = 1_000_000;
 pub(crate) const SWEEP: Table = table! {
     /// Designs of a sweep, and the results that are stored.
     "SweepStudy":
-    /// Ranges of design variables, by their names, in their units: values of parameters, changes from the nominal
-    /// design for all others, like `bounds`. Variables that are not listed are constant. Default: all variables with
-    /// `bounds`, within these.
+    /// Ranges of design variables by name, in their units, like `bounds`; other variables are constant. Default: all
+    /// variables with `bounds`, within these.
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ lca_front_z = [-5, 5], radius = { from = 90, to = 110, levels = 5 } }";
     /// Method that chooses the designs.
     or("\"sobol\"") "method": METHOD, "\"factorial\"";
@@ -34,11 +33,12 @@ pub(crate) const SWEEP: Table = table! {
     or("1") "seed": Shape::Count(u32::MAX), "7";
     /// With `method = "factorial"`: default number of values of a variable.
     or("3") "levels": Shape::Count(MOST_LEVELS), "5";
-    /// The designs, in place of all of these: a CSV file in the model's folder whose first line names design variables.
+    /// Instead of these keys: a CSV file in the model's folder with the designs, whose first line names design
+    /// variables.
     may "designs": Shape::Text, "\"designs.csv\"";
-    /// Names of the metrics that are kept. Default: all.
+    /// Names of the stored metrics. Default: all.
     may "metrics": Shape::list(&METRIC), "[\"toe_range\"]";
-    /// Names of the measures whose whole curves are kept. Default: none.
+    /// Names of the measures whose curves are stored. Default: none.
     may "curves": Shape::list(&OUTPUT), "[\"toe\"]";
 };
 const METHOD: Shape = Shape::Words(&[
@@ -52,11 +52,11 @@ const METHOD: Shape = Shape::Words(&[
 ]);
 const ENTRY: Shape = Shape::Any(
     "SweepVariable",
-    "From where to where it goes, or a table with that and more.",
+    "The range, or a table with the range and more.",
     &[TWO_NUMBERS, Shape::Table(&RANGE)],
 );
 pub(super) const RANGE: Table = table! {
-    /// From where to where a design variable goes.
+    /// Range of a design variable.
     "SweepRange":
     /// Lower end, in its unit. Default: its lower bound.
     may "from": NUMBER, "-5";
@@ -150,7 +150,7 @@ impl Reader<'_> {
                     };
                     let mut place = EntryPlace::at(at.clone());
                     place.key("from", value);
-                    let ends = self.numbers::<2>(value, &subject, "where it begins and where it ends");
+                    let ends = self.numbers::<2>(value, &subject, "the lower and the upper end");
                     if ends.is_none() {
                         self.unread.push("from");
                     }
@@ -168,10 +168,10 @@ impl Reader<'_> {
     }
 }
 
-/// The names of the columns, and the rows.
+/// Column names and rows.
 pub(crate) type List = (Vec<String>, Vec<Vec<f64>>);
 
-/// The list of designs in a file wherever it lies.
+/// List of designs in a file in any folder.
 pub(crate) fn list_at(path: &Path) -> Result<List, DataError> {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|e| {
@@ -228,7 +228,7 @@ fn list_in(text: &str, name: &str) -> Result<List, DataError> {
     Ok((names, rows))
 }
 
-/// A name without the unit behind it, as results are headed: `B_x [mm]`.
+/// Removes the unit from a column title: `B_x [mm]`.
 pub(super) fn bare(title: &str) -> &str {
     match title.split_once(" [") {
         Some((name, unit)) if unit.ends_with(']') => name,

@@ -14,17 +14,16 @@ use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject};
 
 use super::Raw;
 
-/// More designs than these are surely a slip: their metrics would not fit into memory.
+/// Maximum number of designs: metrics of more would not fit into memory.
 const MOST_SAMPLES: u32 = 10_000_000;
-/// More names in a list than these are surely a slip.
+/// Maximum number of names in a list.
 const MOST_NAMES: usize = 10_000;
 pub(crate) const TOLERANCE: Table = table! {
     /// Tolerances of the design, and the limits that it must keep. All design variables with a `tolerance` are
     /// included.
     "Tolerance":
-    /// Tolerances by name of the design variable, in its unit, over those that the variables have themselves. The name
-    /// of an entry of `[design]` that makes several coordinates means the point: it lies within a sphere of that radius
-    /// (or a disc, of two).
+    /// Tolerances by name of the design variable, in its unit; they override those of the variables. For a point in
+    /// `[design]`: the radius of a sphere, or of a disc.
     may "variables": Shape::Entries("a design variable", &ENTRY), "{ B = 0.1, C_x = { tolerance = 0.2, distribution = \"uniform\" } }";
     /// Default distribution of deviations.
     or("\"normal\"") "distribution": DISTRIBUTION, "\"uniform\"";
@@ -32,28 +31,28 @@ pub(crate) const TOLERANCE: Table = table! {
     or("3.0") "sigmas": NUMBER, "2";
     /// Correlations of normal variables.
     may "correlations": Shape::Entries("a correlation", &Shape::Table(&CORRELATION)), "{ jig = { between = [\"left_z\", \"right_z\"], coefficient = 0.9 } }";
-    /// Names of the metrics that are looked at. Default: all.
+    /// Names of the analysed metrics. Default: all.
     may "metrics": Shape::list(&METRIC), "[\"toe_range\"]";
-    /// Names of the measures whose whole curves are looked at. Default: all.
+    /// Names of the measures whose curves are analysed. Default: all.
     may "curves": Shape::list(&OUTPUT), "[\"toe\"]";
     /// Limits of metrics.
     may "limits": Shape::Entries("a metric", &Shape::Table(&LIMIT)), "{ toe = { metric = \"toe_range\", max = 0.5 } }";
-    /// Number of designs that are drawn and solved exactly.
+    /// Number of Monte Carlo designs, solved exactly.
     or("10000") "samples": Shape::Count(MOST_SAMPLES), "100000";
     /// Seed of the random numbers: the same seed gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
-    /// The loosest tolerances are sought that keep the limits, of variables that have a `cost`.
+    /// Allocates the loosest tolerances that keep the limits, for variables with a `cost`.
     may "allocate": Shape::Words(&ALLOCATE), "\"rss\"";
     /// With `allocate = "rss"`: number of standard deviations between the nominal value of a metric and its limit.
     or("3.0") "required_sigmas": NUMBER, "4.5";
 };
 const DISTRIBUTION: Shape = Shape::Words(&[
     ("uniform", "Evenly within the tolerance, and never beyond."),
-    ("normal", "Normal; the tolerance is `sigmas` standard deviations, and some go beyond it."),
-    ("truncated", "The same normal without what is beyond the tolerance."),
+    ("normal", "Normal; the tolerance is `sigmas` standard deviations, and a part exceeds it."),
+    ("truncated", "The same normal, truncated at the tolerance."),
 ]);
 const ALLOCATE: [(&str, &str); 2] = [
-    ("rss", "`required_sigmas` standard deviations keep the limits, added by their squares."),
+    ("rss", "`required_sigmas` standard deviations (root sum of squares) keep the limits."),
     ("worst_case", "All deviations at once keep the limits, each at its worst."),
 ];
 const ENTRY: Shape = Shape::Any(
@@ -62,9 +61,9 @@ const ENTRY: Shape = Shape::Any(
     &[NUMBER, Shape::Table(&ENTRY_TABLE)],
 );
 pub(super) const ENTRY_TABLE: Table = table! {
-    /// By how much a design variable may be off, and how.
+    /// Tolerance and distribution of a design variable.
     "VariableToleranceTable":
-    /// By how much, either way, in the variable's unit. Default: the `tolerance` of the variable itself.
+    /// The tolerance, plus or minus, in the variable's unit. Default: the `tolerance` of the variable itself.
     may "tolerance": NUMBER, "0.1";
     /// Distribution of the deviation. Default: that of `[tolerance]`.
     may "distribution": DISTRIBUTION, "\"uniform\"";
@@ -115,7 +114,7 @@ impl Reader<'_> {
             self.out_of_place(
                 &fields,
                 "required_sigmas",
-                "only `allocate = \"rss\"` counts standard deviations",
+                "only `allocate = \"rss\"` uses standard deviations",
             );
         }
         for key in ["variables", "correlations", "limits"] {

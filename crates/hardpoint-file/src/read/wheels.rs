@@ -20,42 +20,41 @@ use super::results::{AXLE_MEASURE, POINT_REF, WHEEL_MEASURE};
 pub(crate) const WHEEL: Table = table! {
     /// A road wheel. Axes are x forward, y left, z up.
     "Wheel":
-    /// The body that it turns on: the knuckle.
+    /// The body that carries it: the knuckle.
     must "body": BODY, "\"knuckle\"";
-    /// Centre in the design configuration: a hardpoint's name (and it follows the hardpoint when the design moves
-    /// that), or coordinates.
+    /// Centre in the design configuration: a hardpoint's name (it then follows the hardpoint), or coordinates.
     must "centre": PLACE, "\"wheel_centre\"";
-    /// Spin axis in the design configuration, pointing outboard. Or give `toe` and `camber`.
+    /// Spin axis in the design configuration, pointing outboard; or `toe` and `camber`.
     may "spin_axis": LINE, "[0, 1, 0]";
     /// Toe in the design configuration, instead of a spin axis; positive for toe-in, in the angle unit.
     may "toe": ANGLE, "0.1";
     /// Camber in the design configuration, instead of a spin axis; positive where the wheel's top leans outboard, in
     /// the angle unit.
     may "camber": ANGLE, "-1";
-    /// From the centre to the ground in the wheel's plane: the loaded or rolling radius, in the length unit.
+    /// Loaded or rolling radius, from the centre to the ground in the wheel's plane, in the length unit.
     must "radius": LENGTH, "310";
-    /// On which side of the vehicle it is. Default: left where the y of its centre is positive, else right.
+    /// Side of the vehicle. Default: left if the y of its centre is positive, else right.
     may "side": Shape::Words(&[("left", ""), ("right", "")]), "\"left\"";
-    /// A lower and an upper point of the axis that it steers about; they may be on different bodies.
+    /// A lower and an upper point of the steering axis; they may be on different bodies.
     may "kingpin": Shape::exactly(2, &POINT_REF), "[\"lower_ball\", { body = \"ground\", at = \"strut_top\" }]";
     /// The driver that moves it up and down, for roll centres, bump steer and the like. Default: the only driver.
     may "bump": DRIVER, "\"jounce\"";
     /// The driver that steers it, for the virtual steering axis.
     may "steer": DRIVER, "\"rack\"";
-    /// The lower and the upper plane of its arms, for the instant centres of textbooks: of an arm two pivots and its
-    /// ball joint, of a strut its top mount and another point of its axis.
+    /// Planes of the lower and upper arm, for graphical instant centres: two pivots and the ball joint of an arm, or
+    /// top mount and axis point of a strut.
     may "arm_planes": Shape::exactly(2, &ARM_PLANE_SHAPE),
         "[{ body = \"lca\", at = [\"lca_front\", \"lca_rear\", \"lower_ball\"] }, { body = \"strut\", at = [\"strut_top\", \"strut_lower\"] }]";
-    /// The ends of its spring, for the motion ratio.
+    /// Ends of its spring, for the motion ratio.
     may "spring": Shape::exactly(2, &POINT_REF), "[{ body = \"ground\", at = \"spring_top\" }, { body = \"lca\", at = \"spring_bottom\" }]";
-    /// At which end of the vehicle it is, for anti-dive and the like.
+    /// End of the vehicle, for anti-dive and similar measures.
     may "end": Shape::Words(&[("front", ""), ("rear", "")]), "\"front\"";
-    /// Place where its drive torque is reacted, for anti-squat and anti-rise. Default: `"outboard"` where its body
-    /// carries wheels of both sides (a live axle), else `"inboard"`.
+    /// Reaction of its drive torque, for anti-squat and anti-rise. Default: `"outboard"` for a live axle (its body
+    /// carries wheels of both sides), else `"inboard"`.
     may "drive": REACTION, "\"inboard\"";
-    /// Place where its brake torque is reacted, for anti-dive and anti-lift. Default: `"outboard"`.
+    /// Reaction of its brake torque, for anti-dive and anti-lift. Default: `"outboard"`.
     may "brakes": REACTION, "\"outboard\"";
-    /// Measures of the wheel, as NAME.toe and so on: `"all"` that are possible, or a list.
+    /// Measures of the wheel, named NAME.toe and so on: a list, or `"all"` possible ones.
     may "measures": Shape::Any("WheelMeasures", "", &[ALL, Shape::list(&WHEEL_MEASURE)]), "[\"toe\", \"camber\"]";
 };
 const REACTION: Shape = Shape::Words(&[
@@ -75,23 +74,23 @@ const ALL: Shape = Shape::Any("AllMeasures", "", &[Shape::Words(&[("all", "")])]
 pub(crate) const VEHICLE: Table = table! {
     /// Vehicle data besides the suspension.
     "Vehicle":
-    /// Distance of the axles, in the length unit.
+    /// Wheelbase, in the length unit.
     may "wheelbase": LENGTH, "2600";
     /// Height of the centre of gravity above the ground, in the length unit.
     may "cg_height": LENGTH, "550";
-    /// Part of the braking force that the front wheels take, 0 to 1.
+    /// Fraction of the braking force at the front wheels, 0 to 1.
     may "front_brake_share": NUMBER, "0.65";
-    /// Part of the driving force that the front wheels give, 0 to 1.
+    /// Fraction of the driving force at the front wheels, 0 to 1.
     may "front_drive_share": NUMBER, "0";
 };
 pub(crate) const AXLE: Table = table! {
-    /// Two wheels side by side.
+    /// Two wheels of an axle.
     "Axle":
     /// The name of the left wheel.
     must "left": Shape::Name("a wheel"), "\"front_left\"";
     /// The name of the right wheel.
     must "right": Shape::Name("a wheel"), "\"front_right\"";
-    /// Measures of the axle, as NAME.track and so on: `"all"` that are possible, or a list.
+    /// Measures of the axle, named NAME.track and so on: a list, or `"all"` possible ones.
     may "measures": Shape::Any("AxleMeasures", "", &[ALL, Shape::list(&AXLE_MEASURE)]), "[\"track\", \"ackermann\"]";
 };
 const SIDES: [Side; 2] = [Side::Left, Side::Right];
@@ -113,7 +112,7 @@ impl Reader<'_> {
         raw.draft.vehicle = Vehicle { wheelbase, cg_height, front_brake_share, front_drive_share };
     }
 
-    /// Axles, and their measures behind those of the wheels.
+    /// Reads axles; their measures follow those of the wheels.
     pub(super) fn axles(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "axles", "axle") {
             let fields = self.entry("axle", &entry, AXLE.keys());
@@ -147,7 +146,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Wheels, and their measures behind those of the model.
+    /// Reads wheels; their measures follow those of the model.
     pub(super) fn wheels(&mut self, model: &Fields<'_>, raw: &mut Raw) {
         for entry in self.entries(model, "wheels", "wheel") {
             let fields = self.entry("wheel", &entry, WHEEL.keys());
@@ -266,7 +265,7 @@ impl Reader<'_> {
         // A wheel that names no driver takes the only one.
         let moves = has("bump") || raw.draft.drivers.len() == 1;
         let has_kingpin = |need: WheelRequirement| need != WheelRequirement::Kingpin || has("kingpin");
-        // Whoever names no driver that steers, no planes and no spring does not ask for what follows from them.
+        // Measures that need a steering driver, planes or a spring are left out silently if these are not given.
         let is_asked = |need: WheelRequirement| match need {
             WheelRequirement::Steer => has("steer"),
             WheelRequirement::Planes => has("arm_planes"),
@@ -289,7 +288,7 @@ impl Reader<'_> {
             0 => "no driver can be its `bump`".to_owned(),
             n => format!("`bump` is missing: {n} drivers could move the wheel up and down"),
         };
-        // Whoever says nothing of the vehicle or of its ends does not ask what they do to the pitching.
+        // Pitch measures are left out silently without data of the vehicle or of its ends.
         let lacking = |m: &WheelMeasure| match m.needs() {
             need if !has_kingpin(need) => Some("the wheel has no `kingpin`"),
             need if !is_asked(need) => None,
@@ -312,7 +311,7 @@ impl Reader<'_> {
         }
     }
 
-    /// HP0503: names what `measures = "all"` leaves out, and why.
+    /// HP0503: names the measures that `measures = "all"` leaves out, with the reason.
     fn left_out<'w, T: Copy>(
         &mut self,
         fields: &Fields<'_>,
@@ -343,7 +342,7 @@ impl Reader<'_> {
         d.help = Some("add the missing entries, or list the requested measures by name".into());
     }
 
-    /// The measures listed under `measures`, and where: those named, or all that are possible.
+    /// Measures under `measures` with their locations: those listed, or all possible ones.
     fn listed<T: Copy>(
         &mut self,
         fields: &Fields<'_>,

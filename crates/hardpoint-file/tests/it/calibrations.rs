@@ -1,5 +1,5 @@
-//! Calibration: compared with the normal equations, with hidden designs over many seeds, and with fits with the
-//! readings that were proposed.
+//! Calibration: compared with the normal equations, with known designs over many seeds, and with fits that include the
+//! proposed readings.
 
 use std::path::Path;
 
@@ -170,7 +170,7 @@ fn nothing_depends_on_the_order_of_postures_and_readings() {
 }
 
 #[test]
-fn what_cannot_be_told_apart_is_named_and_stays() {
+fn undetermined_changes_are_listed_and_stay_nominal() {
     // In one posture nothing but one sum of the three is reported; of a rod between two points that both move along it,
     // their difference.
     let model = crank();
@@ -197,7 +197,7 @@ fn what_cannot_be_told_apart_is_named_and_stays() {
 }
 
 #[test]
-fn a_robust_loss_resists_what_is_far_off() {
+fn a_robust_loss_resists_outliers() {
     let model = crank();
     let postures: Vec<Vec<f64>> = (0..30).map(|k| vec![f64::from(k) * 0.2]).collect();
     let hidden = [1e-3, -5e-4, 3e-4];
@@ -220,7 +220,7 @@ fn a_robust_loss_resists_what_is_far_off() {
 }
 
 #[test]
-fn a_reading_that_is_proposed_does_what_it_says() {
+fn a_proposed_reading_has_the_predicted_effect() {
     let model = crank();
     let postures: Vec<Vec<f64>> = (0..6).map(|k| vec![f64::from(k) * 0.1]).collect();
     let hidden = [1e-3, -5e-4, 3e-4];
@@ -265,7 +265,7 @@ fn without_standard_deviations_they_come_from_the_residuals() {
 }
 
 #[test]
-fn a_posture_out_of_reach_is_left_out_and_told() {
+fn a_posture_out_of_reach_is_left_out_and_reported() {
     let model = crank();
     let text = CRANK
         .replace("value = 300, unit", "value = 70, unit")
@@ -287,7 +287,7 @@ fn a_posture_out_of_reach_is_left_out_and_told() {
     assert!(fitted_by(&model, &measured, &[], Loss::Squares).is_err());
 }
 
-/// Over that many seeds.
+/// Number of seeds.
 const SEEDS: u64 = 100;
 
 /// A hidden design, drawn anew for every seed: fits over all seeds, as errors in standard deviations and as chi squares
@@ -427,16 +427,16 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
 ];
 
 #[test]
-fn tables_that_cannot_be_used_are_told_with_line_and_column() {
+fn invalid_tables_are_reported_with_line_and_column() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/five_link.toml");
     let file = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
     let folder = tempfile::tempdir().unwrap();
     for (name, text, code, words) in BROKEN {
         let path = folder.path().join("measured.csv");
         std::fs::write(&path, text).unwrap();
-        let told = file.measured(&path, &[]).expect_err(name);
-        let shown = told.render(false);
-        assert_eq!(told.list()[0].code, *code, "{name}: {shown}");
+        let error = file.measured(&path, &[]).expect_err(name);
+        let shown = error.render(false);
+        assert_eq!(error.list()[0].code, *code, "{name}: {shown}");
         assert!(words.iter().all(|w| shown.contains(w)), "{name}: {shown}");
     }
     let path = folder.path().join("good.csv");

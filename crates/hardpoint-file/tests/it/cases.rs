@@ -1,4 +1,4 @@
-//! Cases are the motions that they would be as files of their own.
+//! Cases have the same motions as separate files.
 
 use hardpoint::model::{CaseId, Model};
 use hardpoint::run::metrics;

@@ -1,4 +1,4 @@
-//! Couplers whose sum is a constant: the mechanism is assembled to it, and stays there.
+//! Couplers with a constant: the mechanism is assembled to it, and the sum stays constant.
 
 use std::ops::ControlFlow;
 
@@ -127,7 +127,7 @@ fn a_mirrored_one_has_the_same_constant() {
 }
 
 #[test]
-fn a_constant_that_is_no_number_is_told() {
+fn a_constant_that_is_not_a_number_is_reported() {
     for (wrong, words) in [("nan", "HP"), ("inf", "HP"), ("\"much\"", "much"), ("[1]", "constant")] {
         let error = parse(&GEARED.replace("constant = 50", &format!("constant = {wrong}")), "geared.toml")
             .unwrap_err();

@@ -71,7 +71,7 @@ pub(crate) fn snapshot(name: &str, text: &str) {
     diagnosed(name, &error, error.to_string());
 }
 
-/// Takes a snapshot of what is shown; every diagnostic has to say what to do.
+/// Takes a snapshot of the rendered text; every diagnostic must have a suggested fix.
 pub(crate) fn diagnosed(name: &str, error: &Diagnostics, shown: String) {
     assert!(!error.list().is_empty(), "{name}");
     for d in error.list() {
@@ -344,7 +344,7 @@ fn consequences_at_wheels_are_not_reported() {
     }
 }
 
-/// Points that are faulty themselves are not looked at by what names them.
+/// Errors of a point are not reported again by entries that refer to it.
 #[test]
 fn measures_of_faulty_points_do_not_matter() {
     let text = r#"
@@ -588,7 +588,7 @@ fn remarks(old: &str, new: &str) -> Vec<(String, String)> {
 }
 
 #[test]
-fn degrees_in_functions_are_told_and_what_is_meant_in_radians_is_not() {
+fn degrees_in_functions_are_reported_and_radians_are_not() {
     for (law, right) in [
         ("sin(360*t)", "sin(2*pi*t)"),
         ("20 + 10*cos( 90 * t )", "cos(pi/2*t)"),
@@ -656,7 +656,7 @@ fn measures_that_all_leaves_out_are_named_with_the_reason() {
     assert_eq!((note.code, note.severity), ("HP0503", hardpoint_file::Severity::Note));
     assert!(note.notes[0].starts_with("the wheel has no `kingpin`, so there is no `caster`, "), "{note:?}");
     assert!(file.render(note, false).starts_with("note[HP0503]"));
-    // Whoever lists measures by name has chosen.
+    // Measures that are listed by name are chosen on purpose.
     let listed = VALID.replacen("[time]", &wheel.replace("\"all\"", "[\"toe\"]"), 1);
     assert_eq!(parse(&listed, "four-bar.toml").unwrap().remarks, []);
     // Of two drivers it takes neither, and says so.

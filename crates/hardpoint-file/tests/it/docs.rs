@@ -1,4 +1,4 @@
-//! The documents say what the code does: every example is read, every code is listed.
+//! The documents agree with the code: every example is read, every code is listed.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -112,7 +112,7 @@ fn every_documented_code_is_in_the_source() {
     }
 }
 
-/// All codes of the crates that speak to users.
+/// All codes of the crates with diagnostics.
 fn codes_in_the_source() -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let crates = [

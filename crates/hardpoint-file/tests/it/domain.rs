@@ -1,4 +1,4 @@
-//! Measures and loads at the edges of their domains: a number that is right, or none.
+//! Measures and loads at the edges of their domains: a correct value, or none.
 
 use std::ops::ControlFlow;
 
@@ -166,7 +166,7 @@ at = [0.25, 0.499999, 0.5, 0.500001, 0.75]
 }
 
 #[test]
-fn drive_and_brakes_are_reacted_where_the_wheel_says() {
+fn reactions_of_drive_and_brakes_follow_the_wheel() {
     let text = include_str!("../models/live_axle.toml");
     let with = |keys: &str| text.replace("end = \"rear\"", &format!("end = \"rear\"\n{keys}"));
     let [given, outboard, inboard] =
@@ -185,7 +185,7 @@ fn drive_and_brakes_are_reacted_where_the_wheel_says() {
         for name in ["anti_squat", "anti_lift"] {
             assert!((of(&inboard, name)[0] - expected).abs() < 1e-9, "{name} {expected}");
         }
-        // Brakes are at the wheel unless something else is said.
+        // Brakes are at the wheel by default.
         assert_eq!(of(&given, "anti_lift"), of(&outboard, "anti_squat"));
     }
 }
@@ -199,7 +199,7 @@ fn the_instant_axis_keeps_its_direction_within_a_motion() {
     for axis in ["x", "y", "z"] {
         let name = format!("wheel.instant_axis_{axis}");
         let list = values(&solution, &name);
-        // It turns by a few degrees from one output time to the next at the most.
+        // It rotates by at most a few degrees between two output times.
         assert!(list.windows(2).all(|w| (w[1] - w[0]).abs() < 0.05), "{name}: {list:?}");
         let m = solution.measured.index(&name).unwrap();
         for variable in 0..model.variables.len() {
@@ -215,7 +215,7 @@ fn the_instant_axis_keeps_its_direction_within_a_motion() {
 
 /// A force that passes near zero, where its magnitude has a kink, is no error; derivatives of another design are.
 #[test]
-fn kinks_are_no_errors_and_wrong_derivatives_of_outputs_are() {
+fn verify_accepts_kinks_and_rejects_wrong_derivatives() {
     let file = file(include_str!("../models/five_link_small_force.toml"));
     let analysis = Analysis::new(&file.model).unwrap();
     let right = analysis.run();

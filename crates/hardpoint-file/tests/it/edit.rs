@@ -9,7 +9,7 @@ use hardpoint_file::{ModelFile, parse, read};
 /// largest of them (or of the mechanism's size, or 1): round-off of the closure, times how near to singular the models
 /// come.
 const SAME_MOTION: f64 = 1e-8;
-/// Such a part of its natural step each variable is changed by.
+/// Change of each variable relative to its natural step.
 const PART: f64 = 0.01;
 
 fn models() -> Vec<PathBuf> {
@@ -63,7 +63,7 @@ fn refused(file: &ModelFile, design: &[f64]) -> Option<String> {
 
 #[test]
 fn a_saved_design_moves_as_the_changed_one_and_changes_no_other_line() {
-    let (mut saved, mut told) = (0, Vec::new());
+    let (mut saved, mut messages) = (0, Vec::new());
     for path in models() {
         let file = read(&path).unwrap();
         let name = path.file_stem().unwrap().to_str().unwrap();
@@ -75,14 +75,14 @@ fn a_saved_design_moves_as_the_changed_one_and_changes_no_other_line() {
             let text = match file.edit(&design) {
                 Ok(text) => text,
                 Err(why) => {
-                    told.push(format!("{what}: {}", why.list()[0].message));
+                    messages.push(format!("{what}: {}", why.list()[0].message));
                     continue;
                 }
             };
             saved += 1;
             let again = read_again(&path, &text).unwrap_or_else(|e| panic!("{what}: {e}"));
             let before = solved(&file, &design);
-            // What the changed design cannot move, the saved one need not.
+            // If the changed design does not move, the saved one need not.
             if before.stop.is_some() {
                 continue;
             }
@@ -104,11 +104,11 @@ fn a_saved_design_moves_as_the_changed_one_and_changes_no_other_line() {
                 let words = |l: &str| l.split('=').next().unwrap().to_owned();
                 assert_eq!(words(old), words(new), "{what}");
             }
-            // What is saved is saved.
+            // A saved design has nothing left to save.
             assert_eq!(again.edit(&[]).unwrap(), text, "{what}");
         }
     }
-    insta::assert_snapshot!(format!("{saved} saved\n{}", told.join("\n")));
+    insta::assert_snapshot!(format!("{saved} saved\n{}", messages.join("\n")));
 }
 
 const ROD: &str = "\
@@ -188,10 +188,11 @@ fn a_rod_that_is_not_made_anew_is_given_its_length() {
 }
 
 #[test]
-fn what_a_file_has_no_number_for_is_told_before_anything_is_written() {
+fn changes_without_a_number_in_the_file_are_reported_before_writing() {
     let file = parse(ROD, "rod.toml").unwrap();
-    let told: Vec<String> = ["C_x", "off"].map(|v| refused(&file, &of(&file, &[(v, 0.001)])).unwrap()).into();
-    insta::assert_snapshot!(told.join("\n"));
+    let messages: Vec<String> =
+        ["C_x", "off"].map(|v| refused(&file, &of(&file, &[(v, 0.001)])).unwrap()).into();
+    insta::assert_snapshot!(messages.join("\n"));
     let beyond = refused(&file, &of(&file, &[("B_y", 0.006)])).unwrap();
     assert_eq!(beyond, "the change of `B_y` cannot be saved: the changed design is beyond its bounds");
 }

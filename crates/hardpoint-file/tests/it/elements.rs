@@ -1,5 +1,4 @@
-//! Masses and forces in model files, type by type: tables, meshes, wheels, what a mirror, a part and a plane make of
-//! them.
+//! Masses and forces in model files by type: tables, meshes, wheels, and their mirrored, included and planar forms.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -9,7 +8,7 @@ use hardpoint_file::{ModelFile, Severity, parse, parse_with, read};
 
 use crate::loads::{solved, values};
 
-/// The same said in two ways: round-off only.
+/// Tolerance of two equivalent forms: round-off only.
 const SAME: f64 = 1e-11;
 
 fn same(a: &[f64], b: &[f64], what: &str) {
@@ -18,7 +17,7 @@ fn same(a: &[f64], b: &[f64], what: &str) {
     a.iter().zip(b).for_each(|(a, b)| assert!((a - b).abs() < SAME * scale, "{what}: {a} {b}"));
 }
 
-/// A lever on a hinge; what has mass and what pushes follows.
+/// A lever on a hinge; masses and forces are appended.
 const LEVER: &str = r#"
 name = "lever"
 units = { length = "mm", angle = "deg" }
@@ -94,7 +93,7 @@ fn in_folder(files: &[(&str, &str)], model: &str) -> (tempfile::TempDir, Result<
 }
 
 #[test]
-fn a_mesh_weighs_what_its_block_does_however_it_is_said() {
+fn a_mesh_has_the_mass_of_its_block_in_every_notation() {
     let (centre, size) = ([35.0, 420.0, 60.0], [60.0, 90.0, 40.0]);
     let body = "[bodies]\nleft_arm = {}\n";
     let block = format!(
@@ -139,7 +138,7 @@ fn a_mesh_weighs_what_its_block_does_however_it_is_said() {
 }
 
 #[test]
-fn a_ball_of_triangles_comes_to_weigh_what_a_ball_does() {
+fn the_mass_of_a_triangulated_ball_converges_to_that_of_a_ball() {
     let radius = 80.0;
     let motion = |parted: usize| {
         let text = format!(
@@ -158,7 +157,7 @@ fn a_ball_of_triangles_comes_to_weigh_what_a_ball_does() {
 }
 
 #[test]
-fn surfaces_without_an_inside_are_told() {
+fn surfaces_without_a_volume_are_reported() {
     let mut open = brick([0.0; 3], [1.0; 3]);
     open.pop();
     let flat = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vec3::from);
@@ -230,7 +229,7 @@ fn a_table_is_the_same_in_the_text_and_in_a_file_and_in_any_unit() {
 }
 
 #[test]
-fn the_road_pushes_a_wheel_as_its_law_says() {
+fn wheel_forces_follow_their_law() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/macpherson.toml");
     let text = std::fs::read_to_string(root).unwrap();
     let file = parse(&text, "macpherson.toml").unwrap_or_else(|e| panic!("{e}"));
@@ -251,7 +250,7 @@ fn the_road_pushes_a_wheel_as_its_law_says() {
 }
 
 #[test]
-fn a_slide_in_a_plane_rubs_in_the_plane() {
+fn a_planar_slide_has_friction_from_forces_in_the_plane() {
     let text = r#"
 name = "slider-crank"
 planar = "xy"

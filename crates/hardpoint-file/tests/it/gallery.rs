@@ -89,7 +89,7 @@ fn hooke_joint_follows_its_formula() {
 }
 
 #[test]
-fn only_the_variables_that_say_so_cannot_be_followed() {
+fn only_the_marked_variables_are_inadmissible() {
     for (name, refused) in [
         ("macpherson.toml", vec![]),
         ("slider_crank.toml", vec!["J4_ry"]),

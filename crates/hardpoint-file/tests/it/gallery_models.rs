@@ -1,5 +1,5 @@
-//! Every model of `models/`, one by one: its freedoms, its redundant constraints, and one fact about its motion
-//! that a formula of its own or a published number gives. A model without an entry in [`GALLERY`] fails.
+//! Every model of `models/`: its freedoms, its redundant constraints, and one result of its motion compared with an
+//! independent formula or a published number. A model without an entry in [`GALLERY`] fails.
 //!
 //! Formulas are in SI units and radians, and start from the dimensions of the file's comments, not from the solver.
 
@@ -23,7 +23,7 @@ struct Entry {
     mobility: usize,
     /// Constraint rows that the others imply.
     redundant: usize,
-    /// Variables that are there to show that the mechanism cannot follow them.
+    /// Variables that are inadmissible on purpose.
     refused: &'static [&'static str],
     fact: fn(&Solved),
 }
@@ -145,7 +145,7 @@ fn both_formulations_give_the_same_motion() {
 }
 
 #[test]
-fn every_variable_is_followed_or_refused_as_its_file_says_and_verify_passes() {
+fn admissibility_of_every_variable_is_that_of_its_file_and_verify_passes() {
     for e in GALLERY {
         let file = model(e.file);
         let analysis = Analysis::new(&file.model).unwrap();
@@ -170,7 +170,7 @@ fn model(name: &str) -> ModelFile {
     read(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A model's motion, and how it compared so far.
+/// Motion of a model, and the results of comparisons so far.
 struct Solved {
     file: ModelFile,
     solution: Solution,
@@ -463,8 +463,8 @@ fn double_wishbone_4x4_has_the_published_static_values(m: &Solved) {
     ] {
         m.close(name, of(0, name) * 1e3, mm, PRINTED);
     }
-    // The published height of the roll centre above the ground is 293.64 mm, by finite steps; 293.583 is the derivative: half
-    // the track times how far the contact point goes outboard as it rises.
+    // The published height of the roll centre above the ground is 293.64 mm, by finite steps; 293.583 is the
+    // derivative: half the track times the lateral displacement of the contact point per rise.
     let rate = |name: &str| m.measure(0, &format!("front_left.{name}"))[1];
     let roll_centre = of(0, "half_track") * rate("contact_y") / rate("contact_z");
     m.close("roll centre", roll_centre * 1e3, 293.583, 5e-4);

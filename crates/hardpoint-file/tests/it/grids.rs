@@ -25,8 +25,8 @@ fn solved(model: &Model, design: &[f64]) -> GridMap {
 fn alone(model: &Model, map: &GridMap, [i, j]: [usize; 2]) -> Solution {
     let mut laws = vec![Some(Law::constant(0.0)); model.drivers.len()];
     for (k, place) in [i, j].into_iter().enumerate() {
-        let stands = map.grid.values[k][place];
-        laws[map.grid.drivers[k].0] = Some(Law::parse(&format!("({stands:?})*t")).unwrap());
+        let position = map.grid.values[k][place];
+        laws[map.grid.drivers[k].0] = Some(Law::parse(&format!("({position:?})*t")).unwrap());
     }
     let case = Case {
         name: "alone".into(),
@@ -102,7 +102,7 @@ fn sensitivities_of_a_map_are_those_of_resolved_maps() {
 }
 
 #[test]
-fn what_cannot_be_reached_is_a_gap_with_its_reason_and_nothing_else_is() {
+fn only_unreachable_positions_are_gaps_and_have_a_reason() {
     let model = front_axle(
         "grid = { left_bump = { from = -60, to = 600, steps = 11 }, steering = { from = -15, to = 15, steps = 2 } }",
     );
@@ -134,7 +134,7 @@ fn what_cannot_be_reached_is_a_gap_with_its_reason_and_nothing_else_is() {
 }
 
 #[test]
-fn a_map_that_is_given_up_says_which_positions_were_not_tried() {
+fn an_interrupted_map_lists_the_positions_that_were_not_tried() {
     let model = front_axle("grid = { left_bump = { at = [-10, 10] }, steering = { at = [-1, 1] } }");
     let asked = std::sync::atomic::AtomicUsize::new(0);
     let more = || asked.fetch_add(1, std::sync::atomic::Ordering::SeqCst) < 8;
@@ -143,7 +143,7 @@ fn a_map_that_is_given_up_says_which_positions_were_not_tried() {
 }
 
 #[test]
-fn a_map_beside_cases_is_none_of_the_motions() {
+fn a_map_among_cases_is_not_a_motion() {
     let model = front_axle(
         "grid = { left_bump = { at = [-10, 10] }, steering = { at = [-1, 1] } }\n[cases.steer]\nlaws = { steering = \"t\" }",
     );

@@ -1,4 +1,4 @@
-//! Files in files: what is taken, under which names, and what is informed of mistakes in them.
+//! Included files: their entries and names, and diagnostics of their errors.
 
 use std::path::Path;
 

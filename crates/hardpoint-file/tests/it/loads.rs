@@ -1,4 +1,4 @@
-//! Masses and forces in model files: units, parameters, mirrors, parts, planes, and what cannot be.
+//! Masses and forces in model files: units, parameters, mirrors, included files, planes, and invalid entries.
 
 use std::path::Path;
 
@@ -108,7 +108,7 @@ fn loads_are_the_same_in_any_unit() {
         x.iter().zip(&y).for_each(|(x, y)| assert!((x - y).abs() < SAME * scale, "{name}: {x} {y}"));
         let m = metres.model.measure(name).unwrap().0;
         let dimension = a.measured.outputs[m].dimension;
-        // Moments, energies and powers are said in N m, J and W whatever the unit of length.
+        // Moments, energies and powers are in N m, J and W for all units of length.
         let said = [&metres, &millimetres].map(|f| f.units.per_si(dimension));
         assert_eq!(said[0] == said[1], name != "gives", "{name}");
     }
@@ -262,7 +262,7 @@ pull = {{ type = "spring", from = {{ body = "ground", at = "E" }}, to = {{ body 
 }
 
 #[test]
-fn what_is_known_of_a_force_does_not_go_by_the_axes_it_is_written_in() {
+fn determined_components_do_not_depend_on_the_axes() {
     let turn = Mat3::from_rotation_vector(Vec3::new(0.7, -0.6, 1.1));
     let [flat, turned] = [Mat3::IDENTITY, turn].map(|by| {
         let file = four_bar(&by);
@@ -273,7 +273,7 @@ fn what_is_known_of_a_force_does_not_go_by_the_axes_it_is_written_in() {
     for k in 0..flat.times.len() {
         let scale = flat.joints_at(k).iter().map(|load| load.known_force.norm()).fold(1.0, f64::max);
         for (flat, turned) in flat.joints_at(k).iter().zip(turned.joints_at(k)) {
-            // The force across the pin is known, that along its axis is not.
+            // The force across the pin is determined, that along its axis is not.
             assert_eq!([flat.known_directions, turned.known_directions], [2, 2]);
             assert_eq!((flat.known[0], turned.known[0]), ([true, true, false], [false; 3]));
             let drawn = Vec3::new(flat.force.x, flat.force.y, 0.0);
@@ -306,7 +306,7 @@ fn masses_and_forces_that_cannot_be() {
 }
 
 #[test]
-fn the_press_gives_over_a_turn_what_its_work_and_its_grease_take() {
+fn the_work_of_the_press_over_a_turn_is_that_of_tool_and_friction() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let press = hardpoint_file::read(&root.join("../../models/press.toml")).unwrap_or_else(|e| panic!("{e}"));
     let mut model = press.model;
@@ -352,7 +352,7 @@ fn the_press_gives_over_a_turn_what_its_work_and_its_grease_take() {
 fn make_heavy(path: &Path) -> ModelFile {
     let mut document: DocumentMut = std::fs::read_to_string(path).unwrap().parse().unwrap();
     if document.contains_key("masses") {
-        // What it carries of its own is another test's.
+        // Its own masses and forces are the subject of another test.
         for key in ["masses", "forces", "gravity", "measures", "metrics", "optimize"] {
             document.remove(key);
         }

@@ -1,5 +1,4 @@
-//! Model files as their authors meet them: what is read, what is refused and how that is said, and the models of the
-//! gallery solved and held against what is known of them.
+//! Model files: reading, diagnostics, and the models of the gallery compared with known results.
 
 mod calibrations;
 mod cases;

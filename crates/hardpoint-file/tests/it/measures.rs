@@ -114,7 +114,7 @@ fn every_kind_agrees_with_designs_that_are_solved_anew() {
 }
 
 #[test]
-fn values_and_rates_are_those_of_what_they_are_made_of() {
+fn expressions_have_the_values_and_rates_of_their_operands() {
     const H: f64 = 1e-4;
     for model in &MODELS {
         let mut file = with_measures(model);
@@ -179,7 +179,7 @@ fn a_crank_pin_runs_on_a_circle() {
         let d = solution.measured.d(k, VariableId(0), solution.measured.index("k").unwrap())[0];
         assert!((d + 12.5 * 12.5).abs() < 1e-6, "{d}");
     }
-    // Where it turns back it rests: its path has no curvature there, and none is made up, on any path.
+    // Where it turns back it is at rest: the curvature of its path is undefined there, in every execution mode.
     assert!(value("k", 2).is_nan() && value("left", 2).is_nan());
     on_every_path("crank", &parse(text, "crank.toml").unwrap().model, 1e-9);
 }
@@ -206,8 +206,8 @@ fn assert_same(name: &str, a: &Solution, b: &Solution, limit: f64) {
     }
 }
 
-/// The same on every path; gives how many outputs at how many times the formulas were requested one by one where code
-/// ran, and how many there are.
+/// Compares all execution modes; returns the number of outputs and times at which formulas were evaluated singly by
+/// code, and the total number.
 fn on_every_path(name: &str, model: &Model, limit: f64) -> [usize; 2] {
     let solve = |execution| Analysis::new(model).unwrap().executed(execution).run();
     let right = solve(Execution::Kernel);
@@ -320,7 +320,7 @@ fn a_program_of_measures_is_bounded() {
 const PARTS_OF_A_RATE: f64 = 1e-9;
 
 #[test]
-fn what_drivers_do_alone_adds_up_to_the_rates() {
+fn slopes_by_single_drivers_add_up_to_the_rates() {
     for name in ["macpherson", "front_axle", "double_wishbone", "delta", "excavator", "gear_train"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
         let file = parse(&std::fs::read_to_string(&path).unwrap(), name).unwrap();

@@ -1,4 +1,4 @@
-//! Shapes of bodies: every kind of file gives the same, and what is wrong with one is said.
+//! Shapes of bodies: all kinds of files have the same result, and errors are reported.
 
 use std::path::Path;
 
@@ -148,7 +148,7 @@ fn every_kind_of_file_gives_the_same_triangles() {
 }
 
 #[test]
-fn what_is_no_shape_is_refused() {
+fn files_without_a_shape_are_rejected() {
     let stl = |faces: &[[[f32; 3]; 3]]| binary_stl(b"", faces);
     let cases: [(&str, Vec<u8>, &str, &str); 17] = [
         ("else.stl", stl(&faces()), "HP0111", "there is no file `arm.stl`"),

@@ -21,7 +21,7 @@ const SAME_LOADS: f64 = 1e-7;
 /// Numbers of steps, the first of which is the one that others are held to; the last one for some models only.
 const COUNTS: [usize; 6] = [20, 1, 2, 4, 10, 5_000];
 
-/// All that is known of a run, by name: measures, and places and orientations of bodies as seen from one of them.
+/// All results of a run, by name: measures, and positions and orientations of bodies relative to one of them.
 struct Answer {
     times: Vec<f64>,
     measures: HashMap<String, Vec<f64>>,

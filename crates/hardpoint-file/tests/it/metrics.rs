@@ -174,10 +174,9 @@ fn metrics_of_coarse_curves_are_those_of_the_curve() {
             let off = (m.value.unwrap() - exact).abs();
             // Curves that the output times show well enough are interpolated to 1e-7 of their range.
             assert!(off <= 1e-7 * 2.0 * a, "{steps} steps, {name}: off by {off:e}");
-            // Where the motion was solved at the metric's own time there is no error to speak of, else about what it
-            // is.
-            if let Some(told) = m.error {
-                assert!(off <= 3.0 * told + 1e-14, "{steps} steps, {name}: {off:e} {told:e}");
+            // If the motion was solved at the metric's own time there is no error, else approximately the actual one.
+            if let Some(stated) = m.error {
+                assert!(off <= 3.0 * stated + 1e-14, "{steps} steps, {name}: {off:e} {stated:e}");
             }
         }
         // The window is left at 60 deg and entered again at 300 deg: y = sqrt(a^2 - x^2) there, and its opposite.
@@ -412,7 +411,7 @@ fn ackermann_extremes_and_means_do_not_depend_on_output_times() {
 
 /// The end of a crank goes with its radius in proportion; that of a rod between a crank and a slide does not.
 #[test]
-fn what_is_exactly_linear_is_not_given_a_limit_by_its_round_off() {
+fn round_off_does_not_limit_the_range_of_linear_measures() {
     let reach = |text: &str, output: &str, variable: &str| {
         let file = parsed(text);
         let analysis = Analysis::new(&file.model).unwrap();

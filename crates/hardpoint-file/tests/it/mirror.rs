@@ -1,4 +1,4 @@
-//! The other side of a model: what a mirror makes is what one would write by hand, and moves as a mirror image.
+//! Mirrored models: the images are those that one would write by hand, and move as mirror images.
 
 use std::path::Path;
 
@@ -8,8 +8,7 @@ use hardpoint_file::{ModelFile, parse};
 
 use crate::diagnostics::snapshot;
 
-/// Agreement of two ways to say one thing: the same numbers up to signs, and so round-off only, relative to the
-/// greatest value.
+/// Tolerance of two equivalent models: the same numbers up to signs, so round-off only, relative to the maximum value.
 const SAME: f64 = 1e-11;
 /// The same of sensitivities, which have the gain of the mechanism once more.
 const SAME_RATES: f64 = 1e-9;
@@ -171,7 +170,7 @@ fn in_a_motion_that_is_its_own_mirror_image_both_sides_measure_the_same() {
 }
 
 #[test]
-fn each_side_may_have_variables_of_its_own_that_do_to_it_what_the_others_do_to_the_other() {
+fn each_side_may_have_its_own_variables_with_mirrored_effects() {
     let named = ALL.replace("front = {", "left_front = {").replace("tilted =", "left_tilted =");
     let text = named.replace("mirror = {}", "mirror = { variables = \"independent\" }");
     let model = file(&text).model;
@@ -191,7 +190,7 @@ fn each_side_may_have_variables_of_its_own_that_do_to_it_what_the_others_do_to_t
 }
 
 #[test]
-fn what_is_written_of_the_other_side_counts_more_key_by_key() {
+fn keys_written_for_the_other_side_take_precedence() {
     let text =
         ALL.replace("mirror = {}", "mirror = { except = [\"left_spin\"], antisymmetric = [\"left_yaw\"] }");
     let text = text
@@ -240,7 +239,7 @@ laws = { left_lift = "20*t", steer = "5*t" }
 }
 
 #[test]
-fn a_changed_design_is_written_where_the_original_stands_or_refused() {
+fn a_changed_design_is_written_at_the_original_or_rejected() {
     let text = ALL.replace("front = {", "left_front = {");
     let both = file(&text);
     let mut design = vec![0.0; both.model.variables.len()];
@@ -276,7 +275,7 @@ fn broken_mirrors() {
         ("mirror_with_misspelt_key", with("mirror = {}", "mirror = { acros = \"y\" }")),
         ("mirror_except_what_is_not_there", with("mirror = {}", "mirror = { except = [\"left_ngle\"] }")),
         ("mirror_opposite_to_no_driver", with("mirror = {}", "mirror = { antisymmetric = [\"left_yow\"] }")),
-        // What is wrong on the left is informed of the left, once.
+        // An error on the left is reported for the left, once.
         ("mirrored_joint_with_misspelt_key", with("lead = 25", "leed = 25")),
         ("mirrored_joint_of_no_body", with("\"left_nut\"], at", "\"left_nat\"], at")),
         (

@@ -254,7 +254,7 @@ fn a_data_file_means_the_same_however_it_is_written() {
 }
 
 #[test]
-fn laws_are_in_the_units_of_what_they_drive() {
+fn laws_are_in_the_units_of_the_driven_quantity() {
     let m = valid(&[]);
     let value = |k: usize, t: f64| m.drivers[k].law.at(t).value();
     let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
@@ -271,7 +271,7 @@ fn laws_are_in_the_units_of_what_they_drive() {
 }
 
 #[test]
-fn couplers_hold_what_the_documents_say() {
+fn couplers_satisfy_the_documented_relations() {
     let m = valid(&[("teeth = [20, 40]", "teeth = [20, 40]\ninternal = true")]);
     let ratio = |k: usize| {
         let terms = &m.couplers[k].terms;
@@ -295,7 +295,7 @@ fn couplers_hold_what_the_documents_say() {
 }
 
 #[test]
-fn variables_are_in_the_units_of_what_they_change() {
+fn variables_are_in_the_units_of_the_changed_quantity() {
     for (driver, parameter, quantity, rate) in [
         ("turn", "amplitude", Quantity::Angle, 1.0),
         ("turn", "offset", Quantity::Angle, 1.0),

@@ -1,4 +1,4 @@
-//! The answer does not depend on how the output times are spaced: the path is followed, not sampled.
+//! Results do not depend on the spacing of the output times: the path is followed, not sampled.
 
 use std::path::Path;
 
@@ -291,7 +291,7 @@ fn four_bars_with_gaps_stop_at_the_same_place() {
 }
 
 #[test]
-fn grashof_cranks_turn_whatever_their_speed() {
+fn grashof_cranks_rotate_at_any_speed() {
     for speed in [10.0, 1e4, 1e6] {
         let law = format!("{}*t", f64::to_radians(speed));
         let four_bar = four_bar([0.3, 1.1, 0.9, 1.2], 60.0, &law, 3.3 * 360.0 / speed);

@@ -1,4 +1,4 @@
-//! Mechanisms in a plane, with all left out that the plane says.
+//! Planar mechanisms in their shorthand form.
 
 use hardpoint::Analysis;
 use hardpoint::draft::{ElementType, MeasureType};
@@ -10,7 +10,7 @@ use hardpoint_file::{ModelFile, parse, read};
 use crate::diagnostics::snapshot;
 use crate::sides::{CoordinateEntries, Leg, declared};
 
-/// Two ways to say the same mechanism solve the same equations in other orders.
+/// Tolerance of two equivalent models, which solve the same equations in another order.
 const SAME: f64 = 1e-12;
 
 fn file(text: &str) -> ModelFile {
@@ -72,7 +72,7 @@ fn every_plane_has_the_same_motion() {
 }
 
 #[test]
-fn variables_along_the_plane_are_saved_where_two_coordinates_stand() {
+fn variables_along_the_plane_are_saved_in_two_coordinates() {
     for (plane, first, second) in [("xy", "x", "y"), ("yz", "y", "z"), ("zx", "z", "x"), ("xz", "x", "z")] {
         let text = six_lines().replace("\"xy\"", &format!("\"{plane}\""));
         let text = format!("{text}design.B = {{ move = \"B\", along = \"{plane}\" }}\n");
@@ -87,7 +87,7 @@ fn variables_along_the_plane_are_saved_where_two_coordinates_stand() {
 }
 
 #[test]
-fn what_is_written_of_a_pin_counts_more_and_three_bodies_may_meet_there() {
+fn keys_written_for_a_pin_take_precedence_and_three_bodies_may_share_it() {
     let text = r#"
 name = "crank and two sliders"
 units = { length = "mm", angle = "deg" }
@@ -291,7 +291,7 @@ fn legs(count: usize) -> String {
 }
 
 #[test]
-fn every_joint_type_in_a_plane_is_what_its_shorthand_stands_for() {
+fn the_planar_shorthand_of_every_joint_type_equals_its_long_form() {
     for kind in joint::ALL {
         let mut keys = format!("type = \"{}\", bodies = [\"a\", \"b\"]", kind.name);
         keys += match kind.places {
@@ -347,7 +347,7 @@ fn swinging(drivers: &str, measures: &str, forces: &str) -> String {
 const TURN: &str = "turn = { joint = \"pin\", law = \"20*t + 4*t^2\" }";
 
 #[test]
-fn every_measure_in_a_plane_is_what_its_shorthand_stands_for() {
+fn the_planar_shorthand_of_every_measure_equals_its_long_form() {
     for kind in MeasureType::ALL {
         let cases: &[&str] = match kind.name {
             "coordinate" => &["joint = \"pin\""],
@@ -384,7 +384,7 @@ fn every_measure_in_a_plane_is_what_its_shorthand_stands_for() {
 }
 
 #[test]
-fn every_driver_in_a_plane_is_what_its_shorthand_stands_for() {
+fn the_planar_shorthand_of_every_driver_equals_its_long_form() {
     for form in declared("Driver") {
         let cases: &[(&str, &str)] = match form.as_str() {
             "DrivenCoordinate" => &[("joint = \"pin\"", "")],
@@ -411,7 +411,7 @@ fn every_driver_in_a_plane_is_what_its_shorthand_stands_for() {
 }
 
 #[test]
-fn every_coupler_in_a_plane_is_what_its_shorthand_stands_for() {
+fn the_planar_shorthand_of_every_coupler_equals_its_long_form() {
     for name in declared("Coupler") {
         let keys = match name.as_str() {
             "gear" => "joints = [\"hinge\", \"pin\"], teeth = [20, 30]",
@@ -436,7 +436,7 @@ fn every_coupler_in_a_plane_is_what_its_shorthand_stands_for() {
 }
 
 #[test]
-fn every_mass_and_force_in_a_plane_is_what_its_shorthand_stands_for() {
+fn the_planar_shorthand_of_every_mass_and_force_equals_its_long_form() {
     for element in ElementType::ALL {
         let point = |body: &str, at: &str| format!("{{ body = \"{body}\", at = {at} }}");
         let keys = match element.name {

@@ -108,7 +108,7 @@ fn holds(drivers: [&str; 2], laws: &[Prescribed<'_>]) {
 }
 
 #[test]
-fn wheel_travel_and_toe_are_what_their_laws_say_in_every_design() {
+fn wheel_travel_and_toe_follow_their_laws_in_every_design() {
     let drivers =
         [r#"measure = "travel", law = "-30 + 60*t""#, r#"measure = "wheel_toe", law = "-4 + 8*t^2""#];
     holds(
@@ -118,7 +118,7 @@ fn wheel_travel_and_toe_are_what_their_laws_say_in_every_design() {
 }
 
 #[test]
-fn a_height_and_a_steer_angle_are_what_their_laws_say() {
+fn a_height_and_a_steer_angle_follow_their_laws() {
     let drivers =
         [r#"measure = "ball_height", law = "-120 + 40*t""#, r#"measure = "steer", law = "-10 + 20*t""#];
     holds(
@@ -128,13 +128,13 @@ fn a_height_and_a_steer_angle_are_what_their_laws_say() {
 }
 
 #[test]
-fn a_distance_and_a_coordinate_are_what_their_laws_say() {
+fn a_distance_and_a_coordinate_follow_their_laws() {
     let drivers = [r#"measure = "spring", law = "585 + 25*t""#, r#"measure = "rack", law = "10*sin(3*t)""#];
     holds(drivers, &[("spring", |t| (585.0 + 25.0 * t) * 1e-3), ("rack", |t| 10e-3 * (3.0 * t).sin())]);
 }
 
 #[test]
-fn an_angle_between_points_and_a_toe_are_what_their_laws_say() {
+fn an_angle_between_points_and_a_toe_follow_their_laws() {
     let drivers = [r#"measure = "arm", law = "-3 + 10*t""#, r#"measure = "toe", law = "5*t""#];
     holds(drivers, &[("arm", |t| (-3.0 + 10.0 * t).to_radians()), ("toe", |t| (5.0 * t).to_radians())]);
 }
@@ -158,7 +158,7 @@ fn a_driver_that_counts_from_zero_is_the_measure_of_the_same() {
 }
 
 #[test]
-fn a_grid_over_measures_stands_where_their_values_are_in_every_design() {
+fn a_grid_over_measures_has_their_values_in_every_design() {
     let rest = "[cases.map]\ngrid = { bump = { at = [-30, 0, 25] }, steering = { at = [-10, -2, 10] } }\n\
                 [cases.bump]\nlaws = { bump = \"10*t\" }\n";
     let model = strut([r#"measure = "travel""#, r#"measure = "toe""#], rest);
@@ -171,10 +171,10 @@ fn a_grid_over_measures_stands_where_their_values_are_in_every_design() {
         for (name, along, per) in [("travel", 0, 1e-3), ("toe", 1, 1f64.to_radians())] {
             let m = map.outputs.iter().position(|o| o.name == name).unwrap();
             for place in map.places() {
-                let stands = map.grid.values[along][place[along]];
-                let off = map.value(place, m).unwrap() - stands;
+                let position = map.grid.values[along][place[along]];
+                let off = map.value(place, m).unwrap() - position;
                 assert!(off.abs() < MET, "{name} at {place:?}: {off:e}");
-                assert!(stands == 0.0 || stands.abs() > per, "places in their units");
+                assert!(position == 0.0 || position.abs() > per, "places in their units");
                 for v in (0..model.variables.len()).map(VariableId) {
                     let d = map.d(place, v, m).unwrap();
                     assert!(d.abs() < STAYS, "{name} by {}: {d:e}", model.variables[v.0].name);
@@ -185,7 +185,7 @@ fn a_grid_over_measures_stands_where_their_values_are_in_every_design() {
 }
 
 #[test]
-fn what_no_driver_can_prescribe_is_said() {
+fn measures_that_no_driver_can_prescribe_are_reported() {
     let driven = |by: &str| VALID.replace("joint = \"J1\"\nlaw", &format!("{by}\nlaw"));
     for (name, by, measures) in [
         ("driver_of_no_measure", r#"measure = "heigth""#, ""),

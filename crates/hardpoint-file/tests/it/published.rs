@@ -1,6 +1,6 @@
-//! Numbers that others have printed: other solvers' output, textbook answers, benchmark problems.
+//! Published results: output of other solvers, textbook results, benchmark problems.
 //!
-//! Each test says where its numbers come from. Tolerances are the accuracy of the source: its printed digits, or
+//! Each test names the source of its numbers. Tolerances are the accuracy of the source: its printed digits, or
 //! the error that its own closed form shows it to have.
 
 use std::f64::consts::TAU;

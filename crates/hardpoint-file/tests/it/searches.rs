@@ -1,4 +1,4 @@
-//! Designs that are searched for: those that are known are found, and what is found is an optimum.
+//! Optimisations: known designs are found, and every result is an optimum.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -59,8 +59,7 @@ fn best(found: &OptimizationResult) -> &SearchResult {
 /// The hardpoints of the four-bar whose motion is given, and how near they are found: parts of the crank's length.
 const KNOWN: [[f64; 2]; 4] = [[0.0, 0.0], [0.04, 0.2], [0.36, 0.6], [0.4, 0.0]];
 const FOUND: f64 = 1e-6 * 0.204;
-/// The published search ends after that many iterations, each with a motion and its derivatives at least, and is 47 mm
-/// off.
+/// Number of iterations of the published search, each with at least a motion and its derivatives; its error is 47 mm.
 const PUBLISHED: usize = 16;
 
 fn is_known(file: &ModelFile, search: &SearchResult) -> bool {
@@ -79,7 +78,7 @@ fn the_four_bar_of_a_known_motion_is_found() {
     assert!(search.cost.designs < PUBLISHED, "{} designs", search.cost.designs);
     assert!(search.optimality.left_of_start <= OPTIMAL, "{:e}", search.optimality.left_of_start);
     assert!(search.optimality.binding.is_empty(), "{:?}", search.optimality.binding);
-    // The work of all variables is the whole change, but for the bend of the way.
+    // The work of all variables is the whole change, except for the curvature of the path.
     let objective = |k: usize| search.iterations[k].objective;
     let change = objective(search.iterations.len() - 1) - objective(0);
     assert!((search.work.iter().sum::<f64>() / change - 1.0).abs() < 0.5, "{:?} of {change}", search.work);
@@ -107,10 +106,10 @@ fn a_search_that_is_interrupted_keeps_the_best_so_far() {
     let file = model("four_bar_inverse.toml");
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let mut told = 0;
+    let mut evaluated = 0;
     let mut progress = |_: usize, _: SearchProgress<'_>| {
-        told += 1;
-        if told < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        evaluated += 1;
+        if evaluated < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let threads = NonZero::<usize>::MIN;
     let searching = OptimizationRequest { progress: &mut progress, more: &|| true, threads, first: 0 };
@@ -121,7 +120,7 @@ fn a_search_that_is_interrupted_keeps_the_best_so_far() {
     assert!(judged.objective < 0.1 * found.nominal.unwrap().objective);
 }
 
-/// Between what is found and the target, over the whole travel, rad.
+/// Tolerance between result and target over the whole travel, rad.
 const WITHIN: f64 = 0.02 * std::f64::consts::PI / 180.0;
 
 #[test]
@@ -163,13 +162,13 @@ fn the_front_axle_gets_the_toe_curve_of_a_published_example() {
     assert!(drawn > 500.0 * FOLLOWED && left < FOLLOWED, "{drawn} {left}");
 }
 
-/// A limit on what a goal of the strut is taken of, in SI.
+/// A limit on the metric of a goal of the strut, in SI.
 fn limit(of: LimitTarget, least: Option<f64>, most: Option<f64>) -> Limit {
     Limit { name: "limit".into(), of, least, most }
 }
 
 #[test]
-fn what_binds_is_worth_what_giving_way_gains() {
+fn multipliers_of_active_constraints_are_the_gain_of_relaxing_them() {
     // The multiplier of a limit against two searches with the limit moved either way.
     const MOVED: f64 = 1e-5;
     const AGREES: f64 = 1e-3;
@@ -196,7 +195,7 @@ fn what_binds_is_worth_what_giving_way_gains() {
 }
 
 #[test]
-fn limits_that_contradict_each_other_and_designs_that_lock_are_told() {
+fn contradictory_limits_and_designs_that_lock_are_reported() {
     let file = model("studies/strut_toe.toml");
     let far =
         OptimizationSettings { limits: vec![limit(LimitTarget::Metric(1), Some(0.5), None)], ..asked(&file) };
@@ -237,7 +236,7 @@ fn a_restart_from_a_claimed_optimum_gains_nothing() {
 
 #[test]
 fn no_start_of_a_published_problem_ends_at_a_false_optimum() {
-    // These two starts lead into a valley in which the error falls from 8e-5 to 7e-7 over a long way: the gradient along it is
+    // These two starts lead into a long valley in which the error falls from 8e-5 to 7e-7: the gradient along it is
     // 1e-9 of that at the start of the search.
     let file = model("synthesis/arc_five_points.toml");
     let found = searched_from(5, 1, &file, &OptimizationSettings { starts: 2, ..asked(&file) });
@@ -248,7 +247,7 @@ fn no_start_of_a_published_problem_ends_at_a_false_optimum() {
         let after = best(&restarted).found.as_ref().unwrap().objective;
         assert!(judged.objective - after <= GAINED * judged.objective, "{:e} {after:e}", judged.objective);
     }
-    // Where the iterations suffice, the end of the valley is reached.
+    // With enough iterations, the end of the valley is reached.
     let least = best(&found).found.as_ref().unwrap().objective;
     assert!(best(&found).status == OptimizationStatus::Optimal && least < 1e-6, "{least:e}");
 }
@@ -258,8 +257,8 @@ const MET: f64 = 1e-18;
 
 #[test]
 fn goals_that_can_all_be_met_are_met_along_limits() {
-    // Five angles of the crank are free: the coupler point passes through six points of a line exactly, with Grashof's condition as a
-    // limit. The misfits lie in a valley as narrow as 1e-6 of its length.
+    // Five angles of the crank are free: the coupler point passes through six points of a line exactly, with Grashof's
+    // condition as a limit. The misfits lie in a valley whose width is 1e-6 of its length.
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/line_six_points.toml");
     let file = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
     let found = searched(&file, &asked(&file));
@@ -269,7 +268,7 @@ fn goals_that_can_all_be_met_are_met_along_limits() {
     assert!(search.optimality.met && judged.objective < MET, "{:e}", judged.objective);
     assert!(judged.violation <= 1e-8, "{:e}", judged.violation);
     assert!(search.cost.designs < 300, "{} designs", search.cost.designs);
-    // A search that may not go so far does not claim an optimum.
+    // A search with fewer iterations does not claim an optimum.
     let early = searched(&file, &OptimizationSettings { iterations: 60, ..asked(&file) });
     assert_eq!(best(&early).status, OptimizationStatus::IterationLimit, "{:?}", best(&early).found);
 }

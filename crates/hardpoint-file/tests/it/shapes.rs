@@ -49,7 +49,7 @@ fn file() -> ModelFile {
 }
 
 #[test]
-fn joints_go_where_the_field_takes_them() {
+fn joints_move_with_the_velocity_field() {
     let file = file();
     let model = &file.model;
     let place = |name: &str, variable: &str, by: f64| {

@@ -1,5 +1,4 @@
-//! Every declared type on both sides of a mirror, in motion: what the mirror makes moves as the mirror image, and
-//! measures the same.
+//! Every declared type on both sides of a mirror, in motion: images move as mirror images, with the same measures.
 //!
 //! The lists are those of the declarations, so that a new type fails here until it has a mechanism.
 

@@ -1,5 +1,5 @@
-//! Singular places: drawings that are open where bars lie in line, grooves that turn back, change points; and laws that
-//! count from zero where the drawing does not have the length that is given.
+//! Singular positions: open design configurations with bars in line, grooves that turn back, change points; and laws
+//! that count from zero with a length other than that of the design configuration.
 
 use hardpoint::model::{Model, VariableId};
 use hardpoint::motion::StopKind;
@@ -53,7 +53,7 @@ steps = 1
 }
 
 #[test]
-fn a_law_that_counts_from_zero_gives_the_whole_length_whatever_is_drawn() {
+fn a_law_that_counts_from_zero_is_the_whole_length_in_every_design_configuration() {
     let zero = r#"counted_from = "zero", law = "120 + t""#;
     let drawing = r#"law = "20 + t""#;
     // Keys of the leg, the driver, the length at t = 0 and its derivatives by the end of the leg, made anew or kept.
@@ -118,7 +118,7 @@ apart = {{ type = "distance", from = "tip", to = "other" }}
 }
 
 #[test]
-fn bars_drawn_in_line_or_parallel_assemble_where_they_can() {
+fn bars_in_line_or_parallel_assemble_if_possible() {
     let cases = [
         ([0.0, -0.46], [0.3, -0.46]),
         ([0.0, 0.46], [0.3, 0.46]),
@@ -150,7 +150,7 @@ fn bars_drawn_in_line_or_parallel_assemble_where_they_can() {
 }
 
 #[test]
-fn bars_that_are_too_short_do_not_assemble_and_stay_open_by_what_they_lack() {
+fn bars_that_are_too_short_stay_open_by_the_missing_length() {
     let model = model(&two_bars([0.0, -0.1], [0.3, -0.1]));
     for formulation in BOTH {
         let stop = run(&model, formulation).stop.unwrap();
@@ -198,7 +198,7 @@ steps = {steps}
 }
 
 #[test]
-fn a_groove_that_turns_back_ends_the_motion_there_whatever_the_output_times() {
+fn a_groove_that_turns_back_stops_the_motion_for_all_output_times() {
     for (b, n) in [(1.5, 6.0), (3.0, 12.0), (1.05, 3.0)] {
         for side in [1.0, -1.0] {
             let s = f64::acos(-1.0 / b) / n;
@@ -242,7 +242,7 @@ design.longer = {{ move = "C", along = "x" }}
 }
 
 #[test]
-fn change_points_are_passed_where_the_file_says_so() {
+fn change_points_are_passed_on_request() {
     let parallelogram = [[0.0, 1.0], [3.0, 1.0], [3.0, 0.0]];
     // The same lengths, crossed: B and C on opposite sides of the ground.
     let crossed = {
@@ -308,7 +308,7 @@ fn change_points_are_passed_where_the_file_says_so() {
 }
 
 #[test]
-fn a_dead_point_is_no_change_point() {
+fn a_dead_point_is_not_a_change_point() {
     // A crank-rocker driven at its rocker reaches a limit, whatever the file says of change points.
     let rocker = [[0.0, 2.5], [1.0, 2.6], [3.0, 0.0]];
     let stop = run(&model(&four_bar(rocker, 1.0, 50, "continue")), Formulation::Relative).stop;
@@ -360,13 +360,13 @@ fn loads_are_right_beside_change_points_and_absent_at_them() {
                     assert!(found.iter().all(|x| x.is_nan()), "{t} of {end}: {found:?}");
                     continue;
                 }
-                // The coupler only translates, by -speed^2 (cos, sin). The rocker has no mass: it pushes along itself, by moments about B
-                // 3 F sin = 2 (g - speed^2 sin); the driver lifts the weight.
+                // The coupler only translates, by -speed^2 (cos, sin). The rocker has no mass: its force is axial, by
+                // moments about B 3 F sin = 2 (g - speed^2 sin); the driver lifts the weight.
                 let lift = 2.0 * (9.8 - speed * speed * sine);
                 let rocker = lift / (3.0 * sine);
                 let expected = [
                     2.0 * 9.8 * cosine,
-                    // What ground puts on the rocker is what the rocker puts on the coupler.
+                    // The reaction of ground on the rocker is that of the rocker on the coupler.
                     rocker * cosine,
                     rocker * sine,
                     lift - rocker * sine,
@@ -381,7 +381,7 @@ fn loads_are_right_beside_change_points_and_absent_at_them() {
     }
 }
 
-/// A linkage that is drawn open in a singular position, in the plane z = 0.
+/// A linkage whose design configuration is open and singular, in the plane z = 0.
 struct SingularDrawing {
     name: &'static str,
     /// Hardpoints; the last two are the places of the joint that is drawn open.
@@ -582,7 +582,7 @@ const SINGULAR_DRAWINGS: &[SingularDrawing] = &[
 ];
 
 #[test]
-fn singular_drawings_of_all_kinds_assemble_or_stay_open_by_what_they_lack() {
+fn singular_configurations_assemble_or_stay_open_by_the_missing_length() {
     let places = [
         (0.0, [0.0, 0.0], 1.0),
         (0.7, [0.0, 0.0], 1.0),

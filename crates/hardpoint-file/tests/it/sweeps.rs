@@ -1,4 +1,4 @@
-//! Sweeps: designs where they should be, metrics that are those of each design by itself, and what files say wrongly.
+//! Sweeps: positions of the designs, metrics compared with single designs, and errors in files.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;

@@ -1,4 +1,4 @@
-//! Path synthesis of linkages as others have published it: the designs found here are no worse than the best of theirs.
+//! Published path syntheses of linkages: the optimised designs are no worse than the best published ones.
 //!
 //! The problems are `models/synthesis/`; each file says where its numbers come from. The error is computed from the
 //! points that the found design reaches, not from what was minimised.

@@ -1,4 +1,4 @@
-//! Tolerance studies: compared with closed forms, with designs that are drawn and solved, and with each other.
+//! Tolerance studies: compared with closed forms, with Monte Carlo designs, and with each other.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -71,7 +71,7 @@ fn near(a: f64, b: f64, relative: f64) {
     assert!((a - b).abs() <= relative * b.abs(), "{a:e} is not {b:e}: {:e}", a / b - 1.0);
 }
 
-/// As the file says, with other tolerances of the slider-crank.
+/// Settings of the file, with other tolerances of the slider-crank.
 fn crank(tolerance: &str) -> ModelFile {
     model(&format!("{CRANK}\n[tolerance]\nsamples = 20000\n{tolerance}\n"))
 }
@@ -196,14 +196,14 @@ fn squares_and_moments_match_re_solved_designs() {
     }
 }
 
-/// That many standard errors may be between what derivatives say and what is drawn: of all numbers of these tests none
-/// is beyond, since the seeds are fixed.
+/// Maximum deviation between derivatives and Monte Carlo designs in standard errors; no number of these tests exceeds
+/// it, since the seeds are fixed.
 const ERRORS: f64 = 4.0;
 /// Tolerance of angles, rad.
 const ROUND_OFF: f64 = 1e-12;
 
 #[test]
-fn squares_and_designs_drawn_agree_on_the_strut() {
+fn rss_and_monte_carlo_agree_on_the_strut() {
     let file = study("strut_tolerances.toml");
     let found = examined(&file, |asked| (asked.samples, asked.allocation) = (4000, None));
     let drawn = sampled(&found);
@@ -247,7 +247,7 @@ fn near_dead_point(tolerance: f64) -> ModelFile {
 }
 
 #[test]
-fn near_a_dead_point_squares_are_off_and_the_second_derivatives_say_so() {
+fn near_a_dead_point_rss_fails_and_second_derivatives_detect_it() {
     let file = near_dead_point(0.6);
     let found = examined(&file, |asked| asked.samples = 100_000);
     let of = spread(&file, &found, "first");
@@ -344,7 +344,7 @@ const BARRIER: f64 = 1e-6;
 const COSTS: &str = "[tolerance.variables]\nrod = { tolerance = 0.6, cost = 2 }\noffset = { tolerance = 0.4, cost = 1 }\nradius = { tolerance = 0.3, cost = 5 }";
 
 #[test]
-fn one_limit_is_allocated_as_the_closed_form_says() {
+fn the_allocation_to_one_limit_equals_the_closed_form() {
     let (g, _) = closed_form();
     let costs = [2.0, 1.0, 5.0];
     for (rule, power) in [(AllocationRule::Rss { sigmas: 3.0 }, 3.0), (AllocationRule::Worst, 2.0)] {
@@ -439,7 +439,7 @@ fn the_tolerances_found_keep_the_limits_of_the_strut() {
 }
 
 #[test]
-fn what_cannot_be_allocated_is_told() {
+fn impossible_allocations_are_reported() {
     let error_of = |text: &str, most: f64| {
         let file = crank(text);
         let found = examined(&file, |asked| {
@@ -458,7 +458,7 @@ fn what_cannot_be_allocated_is_told() {
 }
 
 #[test]
-fn nothing_depends_on_threads_or_on_how_many_are_drawn() {
+fn results_do_not_depend_on_threads_or_on_the_number_of_samples() {
     let file = near_dead_point(0.9);
     let asked = |samples: usize| ToleranceSettings { samples, ..file.model.tolerancing.clone().unwrap() };
     let drawn = |threads: usize, samples: usize| {
@@ -486,7 +486,7 @@ fn nothing_depends_on_threads_or_on_how_many_are_drawn() {
 }
 
 #[test]
-fn what_was_drawn_before_an_interruption_is_kept() {
+fn samples_before_an_interruption_are_kept() {
     let file = crank("[tolerance.variables]\nrod = 6");
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
@@ -502,7 +502,7 @@ fn what_was_drawn_before_an_interruption_is_kept() {
 }
 
 #[test]
-fn what_is_asked_is_read_in_si() {
+fn settings_are_read_in_si() {
     let file = study("strut_tolerances.toml");
     let model = &file.model;
     let asked = model.tolerancing.as_ref().unwrap();

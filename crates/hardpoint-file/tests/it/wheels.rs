@@ -122,7 +122,7 @@ fn of_a_rack(text: &str) -> String {
 }
 
 /// The kingpins of the steered axle are on the chassis.
-fn stands_still(name: &str, what: WheelMeasure) -> bool {
+fn is_at_rest(name: &str, what: WheelMeasure) -> bool {
     name == "rack_steering" && matches!(what, WheelMeasure::Caster | WheelMeasure::KingpinInclination)
 }
 
@@ -213,7 +213,7 @@ fn every_measure_agrees_with_resolved_designs_on_every_suspension() {
                     && *what == WheelMeasure::WheelTravel;
                 // That model's design moves its kingpins in side view only.
                 let leans = order == 0 && *what == WheelMeasure::Caster;
-                let expected = !driven && (leans || !stands_still(name, *what));
+                let expected = !driven && (leans || !is_at_rest(name, *what));
                 assert_eq!(felt, expected, "{name}: {} in order {order}", what.name());
             }
         }
@@ -237,7 +237,7 @@ fn rates_and_accelerations_agree_with_differences_over_time() {
             let value = |k: usize| solution.measured.value(k, m);
             for order in 1..3 {
                 let largest = (0..at.len()).map(|n| value(3 * n + 1)[order].abs()).fold(0.0, f64::max);
-                if stands_still(name, *what) {
+                if is_at_rest(name, *what) {
                     assert!(largest < 1e-9, "{name}: {}: {largest:e}", what.name());
                     continue;
                 }
@@ -258,7 +258,7 @@ fn rates_and_accelerations_agree_with_differences_over_time() {
 }
 
 #[test]
-fn a_right_wheel_measures_what_its_mirror_image_does() {
+fn a_right_wheel_has_the_measures_of_its_mirror_image() {
     let left = steered(&text("double_wishbone_4x4"));
     let [left, right] = [left.clone(), mirrored(&left)].map(|text| parsed(&text));
     assert_eq!(left.model.wheels[0].side.name(), "left");

@@ -291,19 +291,19 @@ fn sdf_frames_have_the_poses_of_gazebo() {
     let config = "<model><sdf version=\"1.4\">old.sdf</sdf><sdf version=\"1.9\">lamp.sdf</sdf></model>";
     let beside = [("lamp/model.config", config), ("lamp/lamp.sdf", LAMP)];
     let (imported, file) = read_with("w.sdf", NESTED.as_bytes(), &beside);
-    let stands = |name: &str, at: [f64; 3]| {
+    let assert_at = |name: &str, at: [f64; 3]| {
         is_at(
             file.model.bodies.iter().find(|b| b.name == name).unwrap_or_else(|| panic!("no {name}")).frame.r,
             at,
         );
     };
-    stands("stand::post", [1.0, 0.0, 1.0]);
-    stands("stand::arm::rod", [1.0, 0.0, 3.5]);
-    stands("cart::frame", [3.0, 0.0, 1.0]);
-    stands("cart::wheel", [3.0, 1.0, 1.0]);
+    assert_at("stand::post", [1.0, 0.0, 1.0]);
+    assert_at("stand::arm::rod", [1.0, 0.0, 3.5]);
+    assert_at("cart::frame", [3.0, 0.0, 1.0]);
+    assert_at("cart::wheel", [3.0, 1.0, 1.0]);
     // Names are made unique.
-    stands("cart_2::frame", [0.0, 0.0, 0.0]);
-    stands("bulb", [7.0, 0.0, 0.5]);
+    assert_at("cart_2::frame", [0.0, 0.0, 0.0]);
+    assert_at("bulb", [7.0, 0.0, 0.5]);
     // A joint of the world on the body that carries the frame of a model.
     let bolted = joint(&file, "bolt").bodies.map(|b| file.model.bodies[b.0].name.as_str());
     assert_eq!(bolted, ["stand::arm::rod", "bulb"]);

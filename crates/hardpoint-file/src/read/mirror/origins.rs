@@ -8,16 +8,16 @@ use crate::side_names::{exchanged, is_original};
 /// Origins of a mirror's images.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Origins {
-    /// The names of what was made from something else, and the names of that.
+    /// Names of images, and of their originals.
     pub names: BTreeMap<String, String>,
-    /// The words that are exchanged in names.
+    /// Words that are exchanged in names.
     pub(super) words: Vec<(String, String)>,
-    /// The names of what is in another file than the first, and in which.
+    /// Names of entries of included files, with their files.
     pub included: BTreeMap<String, String>,
 }
 
 impl Origins {
-    /// The same where these names have a prefix.
+    /// Adds a prefix to these names.
     pub fn renamed(&mut self, prefix: &str, own: &HashSet<String>) {
         let say = |name: String| if own.contains(&name) { format!("{prefix}{name}") } else { name };
         self.names = std::mem::take(&mut self.names).into_iter().map(|(a, b)| (say(a), say(b))).collect();
@@ -26,7 +26,7 @@ impl Origins {
 }
 
 /// Reports each error once, under the name of the entry that was written; errors of images name their original.
-pub(crate) fn told_once(list: Vec<Diagnostic>, origins: &Origins) -> Vec<Diagnostic> {
+pub(crate) fn deduplicated(list: Vec<Diagnostic>, origins: &Origins) -> Vec<Diagnostic> {
     if origins.words.is_empty() {
         return list;
     }
@@ -35,16 +35,16 @@ pub(crate) fn told_once(list: Vec<Diagnostic>, origins: &Origins) -> Vec<Diagnos
         ((d.code, d.span.as_ref().map(|s| (s.start, s.end)), message), made)
     };
     let own: HashSet<_> = list.iter().map(key).filter(|(_, made)| made.is_none()).map(|k| k.0).collect();
-    let mut told = HashSet::new();
+    let mut seen = HashSet::new();
     let keeps = |d: &Diagnostic| {
         let (key, made) = key(d);
-        (made.is_none() || !own.contains(&key)) && told.insert(key)
+        (made.is_none() || !own.contains(&key)) && seen.insert(key)
     };
     let mut keeps = keeps;
     list.into_iter().filter(|d| keeps(d)).map(|d| with_origin(d, origins)).collect()
 }
 
-/// With a note if it speaks of what was made from something else.
+/// Adds a note if the diagnostic refers to an image.
 pub(crate) fn with_origin(diagnostic: Diagnostic, origins: &Origins) -> Diagnostic {
     match in_original_names(&diagnostic.message, origins).1.filter(|made| origins.names.contains_key(made)) {
         Some(made) => {
@@ -55,7 +55,7 @@ pub(crate) fn with_origin(diagnostic: Diagnostic, origins: &Origins) -> Diagnost
     }
 }
 
-/// A message about what it was made from, and the first name in it of what was made.
+/// Message in terms of the original, and the first name of an image in it.
 fn in_original_names(message: &str, origins: &Origins) -> (String, Option<String>) {
     let mut made = None;
     let parts = message.split('`').enumerate().map(|(k, part)| {

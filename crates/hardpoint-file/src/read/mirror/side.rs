@@ -1,4 +1,4 @@
-//! Images of all kinds of entries under a mirror.
+//! Mirror images of all kinds of entries.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -21,13 +21,13 @@ use crate::walk::{list_of, table_of};
 
 use super::{Opposites, Rule, each, turn_sign};
 
-/// Measures whose `along` is a direction to turn about.
+/// Measures whose `along` is an axis of rotation.
 const TURNING_MEASURES: [&str; 2] = ["angular_velocity", "shaking_moment"];
 
-/// The other side while it is made.
+/// The other side under construction.
 pub(super) struct Side<'m, 'a> {
     pub rule: Rule<'a>,
-    /// As it is written.
+    /// The written side.
     pub model: &'m DeTable<'a>,
     pub opposite: HashSet<String>,
     /// Images by section and name, with the name of their original.
@@ -41,7 +41,7 @@ impl<'a> Side<'_, 'a> {
         self.model.get(section)?.get_ref().as_table()?.get(name)?.get_ref().as_table()
     }
 
-    /// The mirror images of a section's entries, behind these; what is written there by hand counts more.
+    /// Adds the mirror images of a section's entries after these; entries written by hand take precedence.
     pub fn add(&mut self, section: &'static str, entries: &mut DeTable<'a>) {
         let shape = MODEL.keys().find(|k| k.key == section).map(|k| k.shape);
         let Some(Shape::Entries(_, of)) = shape else { return };
@@ -64,7 +64,7 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Returns whether something else has an image of that name, which is refused.
+    /// Returns whether another entry has an image of that name, which is an error.
     fn is_taken(&mut self, section: &'static str, twin: &str, name: &str, at: &Range<usize>) -> bool {
         let Some(other) = self.made.get(&(section, twin.to_owned())) else { return false };
         let message = format!(
@@ -78,7 +78,7 @@ impl<'a> Side<'_, 'a> {
         true
     }
 
-    /// One entry on the other side.
+    /// Mirror image of one entry.
     fn mirror(&mut self, section: &str, of: Shape, name: &str, value: &mut Value<'a>) -> bool {
         let entry = value.get_ref().as_table();
         let joint = entry.filter(|_| section == "joints").and_then(type_of);
@@ -113,7 +113,7 @@ impl<'a> Side<'_, 'a> {
         match section {
             "joints" => {
                 table.get_mut("lead").into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
-                // It is at the first point of its axis, whichever way that goes.
+                // It is at the first point of its axis, for both directions.
                 if let (Some(at), false) =
                     (through.filter(|at| turns("axis") && at.get_ref().is_str()), table.contains_key("at"))
                 {
@@ -129,7 +129,7 @@ impl<'a> Side<'_, 'a> {
                 let by_points = table.get("frame").is_some_and(|f| is_by_points(f.get_ref().as_table()));
                 self.mesh(table, by_points);
             }
-            // The shape, and the products of inertia with what goes across.
+            // The shape, and the products of inertia with the mirrored axis.
             "masses" => {
                 let body = self.entry("masses", name).and_then(|mass| word(mass, "body"));
                 let frame = body.and_then(|body| self.entry("bodies", body)).and_then(|b| b.get("frame"));
@@ -166,7 +166,7 @@ impl<'a> Side<'_, 'a> {
             }
             "design" => {
                 self.fields(table);
-                // Its three variables move as the images of the three of the original.
+                // Its three variables are the images of those of the original.
                 let moved = table.get("move").filter(|_| word(table, "along") == Some("xyz")).cloned();
                 if let (Some(moved), false) = (moved, table.contains_key("mirror")) {
                     let axis = DeValue::String(Cow::Borrowed(["x", "y", "z"][self.rule.across]));
@@ -180,8 +180,7 @@ impl<'a> Side<'_, 'a> {
         named
     }
 
-    /// The values of a coordinate that is reversed in the mirror change their signs: numbers of an element on it that
-    /// measure what it does.
+    /// Changes the signs of an element's numbers that refer to a coordinate with the opposite sign in the mirror.
     fn coordinate_values(&self, name: &str, table: &mut DeTable<'a>) {
         let Some(original) = self.entry("forces", name) else { return };
         let kind = word(original, "type").and_then(|t| ElementType::ALL.iter().find(|e| e.name == t));
@@ -201,7 +200,7 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Returns whether a coordinate of a mirrored joint is the opposite on the other side.
+    /// Returns whether a coordinate of a mirrored joint has the opposite sign on the other side.
     fn is_reversed(&self, joint: &str, coordinate: Option<&str>) -> bool {
         let kind = self.entry("joints", joint).and_then(type_of);
         kind.is_some_and(|kind| {
@@ -209,7 +208,7 @@ impl<'a> Side<'_, 'a> {
         })
     }
 
-    /// True if a driver's law has the other sign on the other side while the first does what it does.
+    /// True if a driver's law has the opposite sign on the other side for a symmetric motion.
     fn is_turned(&self, driver: &str) -> bool {
         self.opposite.contains(driver) != self.is_handed(driver)
     }
@@ -224,14 +223,14 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Returns whether a measure that a driver may prescribe is the opposite on the other side.
+    /// Returns whether a measure that a driver may prescribe has the opposite sign on the other side.
     fn is_opposite_measure(&self, name: &str) -> bool {
         if let Some(measure) = self.entry("measures", name) {
             let is_coordinate = word(measure, "type") == Some("coordinate");
             let joint = word(measure, "joint").filter(|_| is_coordinate);
             return joint.is_some_and(|joint| self.is_reversed(joint, word(measure, "coordinate")));
         }
-        // Of a wheel it is counted about z on either side.
+        // For a wheel it is counted about z on both sides.
         let of_wheel = name.split_once('.').filter(|(wheel, _)| self.entry("wheels", wheel).is_some());
         of_wheel.is_some_and(|(_, what)| what == WheelMeasure::SteerAngle.name()) && self.rule.across != 2
     }
@@ -245,7 +244,7 @@ impl<'a> Side<'_, 'a> {
         ));
     }
 
-    /// The shape of a body, or of a mass on it, in the mirror; a frame by points has another axis there.
+    /// Mirrored shape of a body, or of a mass on it; a frame by points has another axis there.
     fn mesh(&self, entry: &mut DeTable<'a>, by_points: bool) {
         let Some(mesh) = entry.get_mut("mesh") else { return };
         if mesh.get_ref().is_str() {
@@ -260,10 +259,10 @@ impl<'a> Side<'_, 'a> {
         put(table, "mirror", Spanned::new(span, DeValue::String(Cow::Borrowed(axis))));
     }
 
-    /// A coupler holds the same relation between coordinates of joints that are mirrored; of others, and of joints
-    /// whose angle changes its sign, it depends on these signs.
+    /// Mirror image of a coupler: the same relation between mirrored joints; otherwise it depends on the signs of the
+    /// coordinates.
     fn coupler(&mut self, name: &str, coupler: &mut DeTable<'a>, at: Range<usize>) {
-        // The entry is mirrored already: the originals stand in the model.
+        // The entry is mirrored already: the originals are in the model.
         let Some(original) = self.entry("couplers", name) else { return };
         let list = |key: &str| -> Vec<String> {
             let list = original.get(key).and_then(|v| v.get_ref().as_array());
@@ -325,9 +324,9 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// True if a coordinate of a joint changes its sign in the mirror; none where it becomes another one.
+    /// True if a coordinate of a joint changes its sign in the mirror; `None` if it becomes another coordinate.
     fn sign(&self, joint: &str, coordinate: &str) -> Option<bool> {
-        // What is not known is reported when it is read.
+        // Unknown names are reported when they are read.
         let Some(table) = self.entry("joints", joint) else { return Some(false) };
         let Some(kind) = type_of(table) else { return Some(false) };
         let coordinate = Some(coordinate).filter(|c| !c.is_empty());
@@ -335,8 +334,8 @@ impl<'a> Side<'_, 'a> {
         if self.rule.twin(joint).is_some() {
             return Some(kind.is_reversed_in_mirror(coordinate));
         }
-        // It is shared: its axis has to be its own image, or the opposite of that. Where its bodies are images of each other, its
-        // coordinate is that of the first relative to the second.
+        // A shared joint: its axis has to be its own image, or the opposite. If its bodies are images of each other,
+        // its coordinate is that of the first relative to the second.
         let bodies = table.get("bodies").and_then(|v| v.get_ref().as_array());
         let bodies: Vec<_> = bodies.into_iter().flatten().filter_map(|v| v.get_ref().as_str()).collect();
         let swapped = matches!(bodies[..], [i, j] if self.rule.said(i).as_deref() == Some(j));
@@ -379,7 +378,7 @@ impl<'a> Side<'_, 'a> {
         let direction = [direction.x, direction.y, direction.z];
         let out = direction[self.rule.across] != 0.0;
         let in_plane = (0..3).any(|k| k != self.rule.across && direction[k] != 0.0);
-        // An arrow perpendicular to the mirror is turned round; a turn is where the arrow is not.
+        // A translation perpendicular to the mirror is reversed; a rotation is reversed parallel to it.
         if out && in_plane { None } else { Some((out != angle) != swapped) }
     }
 
@@ -407,7 +406,7 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Cases of one side become cases of the other; in all others a driver's law is that of its image as well.
+    /// Cases of one side become cases of the other; in all other cases a driver's law also applies to its image.
     pub fn cases(&mut self, cases: &mut DeTable<'a>) {
         for (name, case) in cases.iter_mut() {
             if self
@@ -446,7 +445,8 @@ impl<'a> Side<'_, 'a> {
             self.rule.mirror(Shape::Table(&cases::CASE), &mut case, &|_| false);
             let laws = table_of(&mut case).and_then(|case| table_of(case.get_mut("laws")?));
             for (driver, law) in laws.into_iter().flat_map(|laws| laws.iter_mut()) {
-                // A driver of one side does what its image did; one that both share, as steering, may do the opposite.
+                // A driver of one side has the law of its image; a shared one, such as steering, may have the opposite
+                // law.
                 let original =
                     self.rule.said(driver.get_ref()).unwrap_or_else(|| driver.get_ref().to_string());
                 let shared = original == **driver.get_ref();
@@ -461,7 +461,7 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Each design variable also does on the other side what it does on this one.
+    /// Applies each design variable to the other side, too.
     pub fn design(&mut self, design: &mut DeTable<'a>, twins: &mut HashMap<String, Value<'a>>) {
         let shape = Shape::Kinds(&design::VARIABLE);
         let kept = self.rule.kept.clone();
@@ -505,7 +505,7 @@ impl<'a> Side<'_, 'a> {
                 self.refused.push((name.span(), message, help));
                 continue;
             }
-            // What is on both sides already, or shared, is not to change twice.
+            // Entries on both sides, or shared ones, must not change twice.
             if let (Some(twin), Some(original)) = (table_of(&mut twin), value.get_ref().as_table()) {
                 for key in ["shape", "fields", "markers"] {
                     let old = original.get(key).and_then(|v| v.get_ref().as_array());
@@ -544,7 +544,7 @@ fn text<'a>(text: impl Into<String>, at: &Value<'_>) -> Value<'a> {
     Spanned::new(at.span(), DeValue::String(Cow::Owned(text.into())))
 }
 
-/// Puts a value into a table under a key that is where the value does.
+/// Inserts a value into a table; the key has the location of the value.
 fn put<'a>(table: &mut DeTable<'a>, key: &'static str, value: Value<'a>) {
     table.insert(Spanned::new(value.span(), Cow::Borrowed(key)), value);
 }
@@ -553,12 +553,12 @@ fn word<'t>(table: &'t DeTable<'_>, key: &str) -> Option<&'t str> {
     table.get(key)?.get_ref().as_str()
 }
 
-/// A joint's type, whatever it is called in the file.
+/// Type of a joint, also for aliases.
 fn type_of(joint: &DeTable<'_>) -> Option<&'static JointType> {
     word(joint, "type").and_then(joint::named)
 }
 
-/// The coordinate of that name, or the only one where none is named.
+/// Coordinate of that name, or the only one by default.
 fn coordinate_of(kind: &'static JointType, name: Option<&str>) -> Option<&'static CoordinateType> {
     match (name, kind.coordinates) {
         (Some(name), _) => kind.coordinate(name).map(|c| c.1),
@@ -567,7 +567,7 @@ fn coordinate_of(kind: &'static JointType, name: Option<&str>) -> Option<&'stati
     }
 }
 
-/// Lines through two points that are turned about go from the second to the first.
+/// Reverses lines through two points that are axes of rotation.
 fn turn_lines(value: &mut Value<'_>, turns: &dyn Fn(&str) -> bool) {
     if let Some(list) = list_of(value) {
         list.iter_mut().for_each(|value| turn_lines(value, turns));
@@ -588,7 +588,7 @@ fn turn_lines(value: &mut Value<'_>, turns: &dyn Fn(&str) -> bool) {
     }
 }
 
-/// A law with the other sign; whether it could be said.
+/// Law with the opposite sign; `None` if it cannot be written.
 fn turn_law<'a>(value: &mut Value<'a>, numbers: &'a Opposites) -> bool {
     let Some(table) = table_of(value) else {
         turn_sign(value, numbers);
