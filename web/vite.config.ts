@@ -3,7 +3,6 @@ import { defineConfig } from 'vitest/config'
 import { packed } from './packed'
 import { TEST, WAIT } from './test/limits'
 
-
 // The built files are committed in the Rust crate that embeds them, so their names are fixed
 // and nothing in them depends on the folder or on the time of the build.
 export default defineConfig({

@@ -14,7 +14,8 @@ export type Ask = (request: Request) => ArrayBuffer
 /** An engine of its own; `tell` hears how far a study is. */
 export async function instantiate(module: WebAssembly.Module, tell: (told: ProgressReply) => void): Promise<Ask> {
   let why = ''
-  const text = (place: number, length: number) => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))
+  const text = (place: number, length: number) =>
+    new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))
   const page = {
     tell: (place: number, length: number) => tell(JSON.parse(text(place, length))),
     panicked: (place: number, length: number) => (why = text(place, length)),
