@@ -19,13 +19,24 @@ export function packed(): Plugin {
     name: 'packed',
     // Before plugins that take a name with a question mark as a file name.
     enforce: 'pre',
-    resolveId: (source, importer) => (source.endsWith(MARK) && importer ? RESOLVED + resolve(dirname(importer), `${source.slice(0, -MARK.length)}.ts`) : undefined),
+    resolveId: (source, importer) =>
+      source.endsWith(MARK) && importer
+        ? RESOLVED + resolve(dirname(importer), `${source.slice(0, -MARK.length)}.ts`)
+        : undefined,
     load: async (id) => {
       if (!id.startsWith(RESOLVED)) return undefined
       const made = (await build({
         configFile: false,
         logLevel: 'silent',
-        build: { write: false, target: 'es2022', rolldownOptions: { input: id.slice(RESOLVED.length), preserveEntrySignatures: 'strict', output: { format: 'iife', name: 'PART' } } },
+        build: {
+          write: false,
+          target: 'es2022',
+          rolldownOptions: {
+            input: id.slice(RESOLVED.length),
+            preserveEntrySignatures: 'strict',
+            output: { format: 'iife', name: 'PART' },
+          },
+        },
       })) as Rollup.RollupOutput
       const code = made.output.find((part) => part.type === 'chunk')!.code
       const bytes = deflateSync(new TextEncoder().encode(code), { level: 9 })

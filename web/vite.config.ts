@@ -3,7 +3,6 @@ import { defineConfig } from 'vitest/config'
 import { packed } from './packed'
 import { TEST, WAIT } from './test/limits'
 
-
 // The built files are committed in the Rust crate that embeds them, so their names are fixed
 // and nothing in them depends on the folder or on the time of the build.
 export default defineConfig({
@@ -22,7 +21,7 @@ export default defineConfig({
   test: {
     include: ['test/**/*.test.ts'],
     globalSetup: 'test/samples.ts',
-    // On two cores Vitest would run one file after the other, although each mostly waits for its browser.
+    // On two cores Vitest would by itself run one file after the other, each of which waits for its browser most of the time.
     maxWorkers: Math.max(2, availableParallelism()),
     testTimeout: TEST,
     hookTimeout: TEST,

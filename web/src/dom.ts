@@ -51,11 +51,18 @@ export function css(name: string): string {
  */
 export function onSchemeChange(callback: () => void, signal?: AbortSignal): void {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback, { signal })
-  for (const [event, printing] of [['beforeprint', true], ['afterprint', false]] as const) {
-    addEventListener(event, () => {
-      document.documentElement.classList.toggle('printing', printing)
-      callback()
-    }, { signal })
+  for (const [event, printing] of [
+    ['beforeprint', true],
+    ['afterprint', false],
+  ] as const) {
+    addEventListener(
+      event,
+      () => {
+        document.documentElement.classList.toggle('printing', printing)
+        callback()
+      },
+      { signal },
+    )
   }
 }
 

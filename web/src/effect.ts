@@ -21,18 +21,27 @@ export function effects(report: Report, quantity: number, order: Order): Effect[
   for (const variable of report.variables) {
     const sensitivity = variable.sensitivities.get(quantity)
     // Of body origins, velocities and accelerations may be left out.
-    if (sensitivity?.curves[order].length) found.push({ variable, sensitivity, extreme: sensitivity.extremes[order], share: 0 })
+    if (sensitivity?.curves[order].length)
+      found.push({ variable, sensitivity, extreme: sensitivity.extremes[order], share: 0 })
   }
   const typical = found.length > 0 && found.every(({ variable }) => variable.typical !== null)
   const size = ({ variable, extreme }: Effect) => Math.abs(extreme) * (typical ? Math.abs(variable.typical ?? 0) : 1)
   const kind = ({ variable }: Effect) => (typical ? '' : variable.unit)
   const kinds = [...new Set(found.map(kind))]
-  const largest = new Map(kinds.map((name) => [name, Math.max(...found.filter((item) => kind(item) === name).map(size))]))
+  const largest = new Map(
+    kinds.map((name) => [name, Math.max(...found.filter((item) => kind(item) === name).map(size))]),
+  )
   for (const item of found) {
     const most = largest.get(kind(item)) ?? 0
     item.share = most > 0 ? rounded(size(item) / most) : 0
   }
-  return found.sort((a, b) => Number(a.share === 0) - Number(b.share === 0) || kinds.indexOf(kind(a)) - kinds.indexOf(kind(b)) || b.share - a.share || a.variable.index - b.variable.index)
+  return found.sort(
+    (a, b) =>
+      Number(a.share === 0) - Number(b.share === 0) ||
+      kinds.indexOf(kind(a)) - kinds.indexOf(kind(b)) ||
+      b.share - a.share ||
+      a.variable.index - b.variable.index,
+  )
 }
 
 /** The quantity that the page opens on: the one given, else the first offered, measures first. */

@@ -125,7 +125,14 @@ export class Plot {
     private readonly time = new Zoom(),
   ) {
     const caption = el('figcaption', {}, this.#title, ...head)
-    this.element = el('figure', { class: 'plot', 'data-testid': testId }, caption, el('div', { class: 'above' }, this.#legend, el('span', { class: 'zoom' }, this.#closer, this.#whole)), this.area, this.#caption)
+    this.element = el(
+      'figure',
+      { class: 'plot', 'data-testid': testId },
+      caption,
+      el('div', { class: 'above' }, this.#legend, el('span', { class: 'zoom' }, this.#closer, this.#whole)),
+      this.area,
+      this.#caption,
+    )
     new ResizeObserver(([{ contentRect }]) => {
       this.#extent = { width: Math.round(contentRect.width), height: Math.round(contentRect.height) }
       this.#uplot?.setSize(this.#size())
@@ -161,7 +168,10 @@ export class Plot {
     }
     this.area.setAttribute('role', 'application')
     this.area.tabIndex = 0
-    this.area.setAttribute('aria-label', `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}: plus and minus zoom, 0 shows the whole`)
+    this.area.setAttribute(
+      'aria-label',
+      `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}: plus and minus zoom, 0 shows the whole`,
+    )
     const entries = content.lines.map((line) => this.#entry(line))
     keepFocus(this.#legend, () => this.#legend.replaceChildren(this.#moment, ...entries))
     const all = content.over ? faceted(content.over.curve, content) : data(this.state, content)
@@ -197,10 +207,17 @@ export class Plot {
     const { units } = this.state.report
     const ink = css('--muted')
     const grid = { stroke: css('--rule'), width: 1 }
-    const axis = { stroke: ink, grid, ticks: { ...grid, size: 4 }, font: css('--plot-font'), labelFont: css('--plot-font') }
+    const axis = {
+      stroke: ink,
+      grid,
+      ticks: { ...grid, size: 4 },
+      font: css('--plot-font'),
+      labelFont: css('--plot-font'),
+    }
     const values = (_: uPlot, splits: number[]) => splits.map((value) => number(value, 6))
     const { over, logarithmic } = content
-    const across = (low: number | null, high: number | null) => this.content.part ?? (over ? padded(low, high) : [low, high])
+    const across = (low: number | null, high: number | null) =>
+      this.content.part ?? (over ? padded(low, high) : [low, high])
     // uPlot finds whole steps only, and over another quantity among all of them.
     const upright = (low: number | null, high: number | null) => {
       const [least, most] = (this.content.part && this.#ordinates()) ?? [low, high]
@@ -211,7 +228,10 @@ export class Plot {
     const abscissa = over ? titled(over.label, over.unit) : titled('time', units.time)
     return {
       mode: over ? 2 : 1,
-      hooks: { drawClear: [(u: uPlot) => drawWanted(u, content)], draw: [() => (this.#showTime(), this.overlay?.drawn())] },
+      hooks: {
+        drawClear: [(u: uPlot) => drawWanted(u, content)],
+        draw: [() => (this.#showTime(), this.overlay?.drawn())],
+      },
       ...this.#size(),
       legend: { show: false },
       cursor: { show: false, drag: { x: false, y: false, setScale: false } },
@@ -241,9 +261,17 @@ export class Plot {
     const swatch = el('span', { class: `swatch ${kind}`, style: `--swatch: ${line.color}` })
     const parts = [swatch, el('span', { class: 'label' }, line.label), output]
     const selected = line.pick && (line.width ?? 0) > 2
-    return el('li', {}, line.pick
-      ? el('button', { type: 'button', name: line.label, onclick: line.pick, 'aria-pressed': String(!!selected) }, ...parts)
-      : el('span', {}, ...parts))
+    return el(
+      'li',
+      {},
+      line.pick
+        ? el(
+            'button',
+            { type: 'button', name: line.label, onclick: line.pick, 'aria-pressed': String(!!selected) },
+            ...parts,
+          )
+        : el('span', {}, ...parts),
+    )
   }
 
   /** The pointer reads the curves; pressed, it moves the time, or selects the visible range. */
@@ -353,7 +381,12 @@ export class Plot {
 
   #ordinates(): [number, number] | undefined {
     const { lines, over, part, logarithmic } = this.content
-    return ordinates(lines.map(({ curve, marks }) => marks ?? curve), over?.curve ?? this.state.report.times, part, logarithmic)
+    return ordinates(
+      lines.map(({ curve, marks }) => marks ?? curve),
+      over?.curve ?? this.state.report.times,
+      part,
+      logarithmic,
+    )
   }
 
   #showTime(): void {
@@ -369,7 +402,9 @@ export class Plot {
     place(this.#marker, this.state.step)
     place(this.#pointer, this.#pointed)
     const step = this.#pointed ?? this.state.step
-    this.#moment.textContent = over ? `${over.label} ${figure4(at(step), over.unit)}` : figure4(at(step), this.state.report.units.time)
+    this.#moment.textContent = over
+      ? `${over.label} ${figure4(at(step), over.unit)}`
+      : figure4(at(step), this.state.report.units.time)
     this.#moment.classList.toggle('pointed', this.#pointed !== undefined)
     for (const { curve, output } of this.#readings) output.textContent = figure4(valueAt(curve, step), unit)
   }
@@ -449,7 +484,14 @@ function facets(line: Line): uPlot.Series {
     }
     return { stroke: path }
   }
-  return { stroke: line.color, width: marks ? 1.5 : (line.width ?? 1.8), dash: line.dash, paths, facets: auto, points: { show: false } }
+  return {
+    stroke: line.color,
+    width: marks ? 1.5 : (line.width ?? 1.8),
+    dash: line.dash,
+    paths,
+    facets: auto,
+    points: { show: false },
+  }
 }
 
 /** Radius of the circles over another quantity than time, px. */

@@ -99,7 +99,11 @@ export interface SweepAxis extends Omit<wire.SweepAxis, 'values'> {
 }
 
 /** The payload with its curves decoded. */
-export interface Report extends Omit<wire.Payload, 'times' | 'bodies' | 'drivers' | 'loads' | 'quantities' | 'margin' | 'variables' | 'designs' | 'maps' | 'sweep'> {
+export interface Report
+  extends Omit<
+    wire.Payload,
+    'times' | 'bodies' | 'drivers' | 'loads' | 'quantities' | 'margin' | 'variables' | 'designs' | 'maps' | 'sweep'
+  > {
   times: Curve
   bodies: Body[]
   drivers: Driver[]
@@ -118,7 +122,11 @@ export function read(payload: wire.Payload, decode: Decode): Report {
     ...payload,
     times: decode(payload.times),
     bodies: payload.bodies.map((body) => ({ ...body, poses: decode(body.poses), mesh: mesh(body.mesh, decode) })),
-    drivers: payload.drivers.map((driver) => ({ ...driver, travel: decode(driver.travel), alone: driver.alone.map(decode) })),
+    drivers: payload.drivers.map((driver) => ({
+      ...driver,
+      travel: decode(driver.travel),
+      alone: driver.alone.map(decode),
+    })),
     loads: payload.loads.map((load) => ({ ...load, force: decode(load.force) })),
     quantities: payload.quantities.map((quantity, index) => ({
       index,
@@ -136,7 +144,9 @@ export function read(payload: wire.Payload, decode: Decode): Report {
         sensitivities: quantity.sensitivities.map((item) => ({ ...item, values: quiet(decode(item.values), 1) })),
       })),
     })),
-    sweep: payload.sweep ? { ...payload.sweep, axes: payload.sweep.axes.map((axis) => ({ ...axis, values: decode(axis.values) })) } : undefined,
+    sweep: payload.sweep
+      ? { ...payload.sweep, axes: payload.sweep.axes.map((axis) => ({ ...axis, values: decode(axis.values) })) }
+      : undefined,
     margin: payload.margin ? { curve: decode(payload.margin.value), note: payload.margin.note } : undefined,
     variables: payload.variables.map((variable, index) => {
       const shifts = once(() => variable.shifts.map(decode))

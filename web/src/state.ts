@@ -73,7 +73,10 @@ export class State {
 
   constructor(readonly report: Report) {
     const quantity = firstQuantity(report)
-    const variable = effects(report, quantity, 0)[0]?.variable.index ?? report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ?? 0
+    const variable =
+      effects(report, quantity, 0)[0]?.variable.index ??
+      report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ??
+      0
     const exact = report.designs.find(({ kind }) => kind === 'exact')
     this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
     this.choice = { quantity, variable, order: 0, over: report.over ?? undefined, labels: false, forces: true }
@@ -94,7 +97,9 @@ export class State {
 
   /** Changed variables, by name. */
   get settings(): VariableSetting[] {
-    const changed = this.report.variables.flatMap(({ name }, index) => (this.changes[index] === 0 ? [] : [{ name, by: this.changes[index] }]))
+    const changed = this.report.variables.flatMap(({ name }, index) =>
+      this.changes[index] === 0 ? [] : [{ name, by: this.changes[index] }],
+    )
     return [...changed, ...[...this.moves].map(([name, by]) => ({ name, by }))]
   }
 
@@ -117,7 +122,9 @@ export class State {
   get present(): Design | undefined {
     if (this.#solved) return this.#solved
     if (this.moves.size > 0) return undefined
-    return this.report.designs.find(({ kind, change }) => kind === 'exact' && this.changes.every((by, index) => by === (change[index] ?? 0)))
+    return this.report.designs.find(
+      ({ kind, change }) => kind === 'exact' && this.changes.every((by, index) => by === (change[index] ?? 0)),
+    )
   }
 
   /** The design that the present one is compared with; the one as loaded where there is none. */
@@ -161,7 +168,11 @@ export class State {
     const { present } = this
     if (present) return present.values[index] ?? null
     if (value === null) return null
-    return this.changes.reduce((sum: number | null, by, k) => (by === 0 ? sum : sum === null || sensitivities[k] == null ? null : sum + by * sensitivities[k]), value)
+    return this.changes.reduce(
+      (sum: number | null, by, k) =>
+        by === 0 ? sum : sum === null || sensitivities[k] == null ? null : sum + by * sensitivities[k],
+      value,
+    )
   }
 
   onChoice(listener: () => void): void {
@@ -196,7 +207,9 @@ export class State {
   #distance(): number | undefined {
     const { quantities, distances } = this.report
     const found = [this.#pointed, this.choice.quantity]
-      .map((quantity) => (quantity === undefined ? -1 : distances.findIndex(({ name }) => name === quantities[quantity]?.name)))
+      .map((quantity) =>
+        quantity === undefined ? -1 : distances.findIndex(({ name }) => name === quantities[quantity]?.name),
+      )
       .find((index) => index >= 0)
     return found
   }

@@ -48,7 +48,8 @@ function bytesOf85(text: string): Uint8Array<ArrayBuffer> {
   const view = new DataView(new ArrayBuffer(groups * 4))
   for (let group = 0; group < groups; group++) {
     let number = 0
-    for (let k = group * 5; k < group * 5 + 5; k++) number = number * 85 + (k < text.length ? value[text.charCodeAt(k)] : 84)
+    for (let k = group * 5; k < group * 5 + 5; k++)
+      number = number * 85 + (k < text.length ? value[text.charCodeAt(k)] : 84)
     view.setUint32(group * 4, number)
   }
   return new Uint8Array(view.buffer, 0, Math.floor((text.length * 4) / 5))

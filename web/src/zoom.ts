@@ -68,7 +68,8 @@ export function inside(values: ArrayLike<number | null>, abscissa: Curve, [low, 
     if (low <= x && x <= high) found.push(y)
     // Before the first step there is nothing, and NaN is on neither side of an edge.
     const [x0, y0] = [abscissa[k - 1] ?? NaN, values[k - 1] ?? NaN]
-    for (const edge of [low, high]) if ((x0 - edge) * (x - edge) < 0) found.push(y0 + ((y - y0) * (edge - x0)) / (x - x0))
+    for (const edge of [low, high])
+      if ((x0 - edge) * (x - edge) < 0) found.push(y0 + ((y - y0) * (edge - x0)) / (x - x0))
   }
   return found
 }
@@ -84,7 +85,17 @@ export function stepsWithin(abscissa: Curve, [low, high]: Part): Set<number> {
 }
 
 /** Least and largest of the values that are seen; where there are none, of all. */
-export function ordinates(curves: ArrayLike<number | null>[], abscissa: Curve, part: Part | undefined, positive = false): [number, number] | undefined {
-  const seen = part && extent(curves.map((values) => inside(values, abscissa, part)), positive)
+export function ordinates(
+  curves: ArrayLike<number | null>[],
+  abscissa: Curve,
+  part: Part | undefined,
+  positive = false,
+): [number, number] | undefined {
+  const seen =
+    part &&
+    extent(
+      curves.map((values) => inside(values, abscissa, part)),
+      positive,
+    )
   return seen ?? extent(curves, positive)
 }

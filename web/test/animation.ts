@@ -13,7 +13,9 @@ export async function animation(desk: Page, pictures: Buffer[], milliseconds: nu
         const context = canvas.getContext('2d', { alpha: false })!
         context.imageSmoothingQuality = 'high'
         context.drawImage(image, 0, 0, width, height)
-        const bytes = new Uint8Array(await (await canvas.convertToBlob({ type: 'image/webp', quality: 0.8 })).arrayBuffer())
+        const bytes = new Uint8Array(
+          await (await canvas.convertToBlob({ type: 'image/webp', quality: 0.8 })).arrayBuffer(),
+        )
         made.push({ image: btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join('')), width, height })
       }
       return made
@@ -32,7 +34,14 @@ export async function animation(desk: Page, pictures: Buffer[], milliseconds: nu
   const head = chunk('VP8X', Buffer.from([ANIMATED, 0, 0, 0, ...size(width - 1), ...size(height - 1)]))
   const forever = chunk('ANIM', Buffer.from([255, 255, 255, 255, 0, 0]))
   const shown = frames.map(({ image }) => {
-    const place = Buffer.from([...size(0), ...size(0), ...size(width - 1), ...size(height - 1), ...size(milliseconds), 0])
+    const place = Buffer.from([
+      ...size(0),
+      ...size(0),
+      ...size(width - 1),
+      ...size(height - 1),
+      ...size(milliseconds),
+      0,
+    ])
     return chunk('ANMF', Buffer.concat([place, still(Buffer.from(image, 'base64'))]))
   })
   const body = Buffer.concat([Buffer.from('WEBP', 'ascii'), head, forever, ...shown])
@@ -44,7 +53,8 @@ function still(file: Buffer): Buffer {
   for (let at = 12; at < file.length; ) {
     const length = file.readUInt32LE(at + 4)
     const end = at + 8 + length + (length % 2)
-    if (file.toString('ascii', at, at + 3) === 'VP8' && file.toString('ascii', at, at + 4) !== 'VP8X') return file.subarray(at, end)
+    if (file.toString('ascii', at, at + 3) === 'VP8' && file.toString('ascii', at, at + 4) !== 'VP8X')
+      return file.subarray(at, end)
     at = end
   }
   throw new Error('the browser gave no picture')

@@ -1,6 +1,12 @@
 import { existsSync } from 'node:fs'
 import { delimiter, join } from 'node:path'
-import { type Browser, type BrowserContext, type BrowserContextOptions, chromium, type LaunchOptions } from 'playwright-core'
+import {
+  type Browser,
+  type BrowserContext,
+  type BrowserContextOptions,
+  chromium,
+  type LaunchOptions,
+} from 'playwright-core'
 import { WAIT } from './limits'
 
 /** Draws WebGL in software, so that the tests need neither a graphics card nor a screen. */
@@ -35,7 +41,11 @@ export interface Visit {
 }
 
 /** `engine: false` is a browser that runs no WebAssembly: the page stays the report that it was made as. */
-export async function visit(browser: Browser, url: string, { engine = true, ...options }: BrowserContextOptions & { engine?: boolean } = {}): Promise<Visit> {
+export async function visit(
+  browser: Browser,
+  url: string,
+  { engine = true, ...options }: BrowserContextOptions & { engine?: boolean } = {},
+): Promise<Visit> {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options })
   if (!engine) await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'WebAssembly'))
   page.setDefaultTimeout(WAIT)
@@ -48,6 +58,8 @@ export async function visit(browser: Browser, url: string, { engine = true, ...o
   await page.goto(url)
   await page.waitForFunction(() => performance.getEntriesByName('ready').length > 0)
   // Harnesses of single parts have no engine to wait for.
-  await page.waitForFunction(() => !document.getElementById('engine') || document.getElementById('page')!.dataset.engine !== undefined)
+  await page.waitForFunction(
+    () => !document.getElementById('engine') || document.getElementById('page')!.dataset.engine !== undefined,
+  )
   return { page, complaints }
 }

@@ -55,6 +55,18 @@ export function distance(a: string, b: string, blindness?: Matrix): number {
 
 /** Contrast of two colours as the accessibility guidelines define it, from 1 to 21. */
 export function contrast(a: string, b: string): number {
-  const [dark, light] = [a, b].map((hex) => times([[0.2126, 0.7152, 0.0722], [0, 0, 0], [0, 0, 0]], linear(hex))[0]).sort((x, y) => x - y)
+  const [dark, light] = [a, b]
+    .map(
+      (hex) =>
+        times(
+          [
+            [0.2126, 0.7152, 0.0722],
+            [0, 0, 0],
+            [0, 0, 0],
+          ],
+          linear(hex),
+        )[0],
+    )
+    .sort((x, y) => x - y)
   return (light + 0.05) / (dark + 0.05)
 }

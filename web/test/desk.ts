@@ -30,7 +30,16 @@ export interface Seen {
 export function paper(page: Page): Promise<Paper> {
   return page.evaluate(() => {
     const style = getComputedStyle(document.documentElement)
-    const channels = (name: string) => [1, 3, 5].map((at) => parseInt(style.getPropertyValue(name).trim().slice(at, at + 2), 16))
+    const channels = (name: string) =>
+      [1, 3, 5].map((at) =>
+        parseInt(
+          style
+            .getPropertyValue(name)
+            .trim()
+            .slice(at, at + 2),
+          16,
+        ),
+      )
     const greys = ['--view', '--grid', '--grid-main'].flatMap(channels)
     const lit = 1 - Number(style.getPropertyValue('--shadow'))
     return { darkest: Math.min(...greys) * lit, lightest: Math.max(...greys) }
@@ -51,12 +60,14 @@ export function examine(desk: Page, png: Buffer, { darkest, lightest }: Paper): 
         const [least, most] = [Math.min(r, g, b), Math.max(r, g, b)]
         return least < low || most > high || most - least > spread
       }
-      const solid = (x: number, y: number) => within.every((right) => within.every((down) => inked(x + right, y + down)))
+      const solid = (x: number, y: number) =>
+        within.every((right) => within.every((down) => inked(x + right, y + down)))
       const all: { x: number; y: number }[] = []
       for (let y = 0; y < height; y++) for (let x = 0; x < width; x++) if (inked(x, y)) all.push({ x, y })
       const inner = all.filter(({ x, y }) => x >= band && y >= band && x < width - band && y < height - band)
       const places = inner.filter(({ x, y }) => solid(x, y))
-      const range = (values: number[]) => values.reduce((a, b) => Math.max(a, b), 0) - values.reduce((a, b) => Math.min(a, b), Infinity)
+      const range = (values: number[]) =>
+        values.reduce((a, b) => Math.max(a, b), 0) - values.reduce((a, b) => Math.min(a, b), Infinity)
       return {
         drawn: all.length / (width * height),
         border: all.length - inner.length,
@@ -85,7 +96,11 @@ const CAPTION = 22
 const QUALITY = 0.82
 
 /** Pictures with their names, side by side, as one WebP. */
-export async function sheet(desk: Page, pictures: [name: string, png: Buffer][], colours: { background: string; text: string }): Promise<Buffer> {
+export async function sheet(
+  desk: Page,
+  pictures: [name: string, png: Buffer][],
+  colours: { background: string; text: string },
+): Promise<Buffer> {
   const data = await desk.evaluate(
     async ({ pictures, tile, columns, caption, quality, colours }) => {
       const canvas = document.createElement('canvas')

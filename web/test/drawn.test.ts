@@ -27,7 +27,11 @@ async function drawing(address: string): Promise<{ mechanism: Mechanism; kit: Ki
   const report = await reportOf(address)
   const mechanism = new Mechanism(report)
   const kit = new Kit(mechanism, LIGHT)
-  return { mechanism, kit, drawn: [...matter, ...marks].flatMap((draw) => draw(mechanism, kit, new State(report).choice)) }
+  return {
+    mechanism,
+    kit,
+    drawn: [...matter, ...marks].flatMap((draw) => draw(mechanism, kit, new State(report).choice)),
+  }
 }
 
 /** Vertices of an object at its pose. */
@@ -39,7 +43,8 @@ function vertices(object: Object3D): Vector3[] {
     const { position, instanceStart, instanceEnd } = geometry?.attributes ?? {}
     // Of a wide line the positions are those of a stretch that is laid from place to place.
     for (const places of instanceStart ? [instanceStart, instanceEnd] : [position]) {
-      for (let k = 0; k < (places?.count ?? 0); k++) found.push(new Vector3().fromBufferAttribute(places, k).applyMatrix4(one.matrixWorld))
+      for (let k = 0; k < (places?.count ?? 0); k++)
+        found.push(new Vector3().fromBufferAttribute(places, k).applyMatrix4(one.matrixWorld))
     }
   })
   return found
@@ -48,10 +53,12 @@ function vertices(object: Object3D): Vector3[] {
 describe.each(Object.entries(models))('of %s', async (_, address) => {
   const { mechanism, kit, drawn } = await drawing(address)
   const { report } = mechanism
-  const count = (kind: Part['kind'], index: number) => drawn.filter(({ part }) => part.kind === kind && part.index === index).length
+  const count = (kind: Part['kind'], index: number) =>
+    drawn.filter(({ part }) => part.kind === kind && part.index === index).length
 
   test('every body, joint, coupler, driver and wheel is drawn', () => {
-    const missing = (kind: Part['kind'], list: { name: string }[]) => list.filter((_, index) => count(kind, index) === 0).map(({ name }) => `${kind} ${name}`)
+    const missing = (kind: Part['kind'], list: { name: string }[]) =>
+      list.filter((_, index) => count(kind, index) === 0).map(({ name }) => `${kind} ${name}`)
     // A slider is the block of its joint, a cam the plate of its curve: parts fixed to such a body represent it.
     const bodies = report.bodies.filter((_, index) => !drawn.some(({ body }) => body === index))
     // A linear relation has no look, and that of a screw is its joint's.
@@ -78,14 +85,19 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
     const room = new Box3().setFromCenterAndSize(mechanism.centre, new Vector3(4, 4, 4).multiplyScalar(mechanism.size))
     for (const { object, part } of drawn) {
       const points = vertices(object)
-      expect(points.every(({ x, y, z }) => Number.isFinite(x + y + z)), part.name).toBe(true)
+      expect(
+        points.every(({ x, y, z }) => Number.isFinite(x + y + z)),
+        part.name,
+      ).toBe(true)
     }
     for (const step of [0, Math.floor(report.times.length / 3), report.times.length - 1]) {
       const frame = mechanism.frame(step)
       for (const { object, part, body, follow } of drawn) {
         follow?.(frame)
         if (!object.visible || (body !== undefined && !frame.visible(body))) continue
-        const outside = vertices(object).find((point) => !room.containsPoint(body === undefined ? point : frame.at(body, point)))
+        const outside = vertices(object).find(
+          (point) => !room.containsPoint(body === undefined ? point : frame.at(body, point)),
+        )
         expect(outside, `${part.kind} ${part.name} at step ${step}`).toBeUndefined()
       }
     }
@@ -93,7 +105,8 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
 
   test('two bodies that a joint joins have two colours, and what is fixed has its own', () => {
     expect(mechanism.colourOf(0)).toBe(-1)
-    for (const { name, body_i, body_j } of report.joints) expect(mechanism.colourOf(body_i), name).not.toBe(mechanism.colourOf(body_j))
+    for (const { name, body_i, body_j } of report.joints)
+      expect(mechanism.colourOf(body_i), name).not.toBe(mechanism.colourOf(body_j))
   })
 
   test('glyphs are no larger than the grammar allows', () => {
@@ -103,15 +116,25 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
   })
 
   test('a fitted picture shows everything at every moment, and little else', () => {
-    const assemblies = [matter, marks].map((draws) => new Assembly(mechanism, LIGHT, new State(report).choice, draws, new Outlines(), 0))
+    const assemblies = [matter, marks].map(
+      (draws) => new Assembly(mechanism, LIGHT, new State(report).choice, draws, new Outlines(), 0),
+    )
     const camera = cameraFor(mechanism)
-    fit(camera, assemblies.flatMap(({ reach }) => reach), mechanism.size, looksOf(mechanism)[0], WIDTH, HEIGHT)
+    fit(
+      camera,
+      assemblies.flatMap(({ reach }) => reach),
+      mechanism.size,
+      looksOf(mechanism)[0],
+      WIDTH,
+      HEIGHT,
+    )
     const seen = new Box3()
     const last = report.times.length - 1
     for (const step of [0, 1, 2, 3, 4, 5].map((k) => Math.round((k * last) / 5))) {
       for (const assembly of assemblies) {
         assembly.pose(mechanism.frame(step))
-        for (const group of assembly.groups.filter(({ visible }) => visible)) for (const point of vertices(group)) seen.expandByPoint(point.project(camera))
+        for (const group of assembly.groups.filter(({ visible }) => visible))
+          for (const point of vertices(group)) seen.expandByPoint(point.project(camera))
       }
     }
     expect(seen.max.x).toBeLessThan(1)
@@ -121,7 +144,9 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
     expect(seen.max.y).toBeLessThan(1 - (2 * 34) / HEIGHT)
     // From side to side or from top to bottom; what is nearest to the eye at another moment leaves some air at this
     // one.
-    expect(Math.max((seen.max.x - seen.min.x) / 2, (seen.max.y - seen.min.y) / (2 - (2 * 34) / HEIGHT))).toBeGreaterThan(0.85)
+    expect(
+      Math.max((seen.max.x - seen.min.x) / 2, (seen.max.y - seen.min.y) / (2 - (2 * 34) / HEIGHT)),
+    ).toBeGreaterThan(0.85)
   })
 
   test('nothing drawn stays on the graphics card when its kit is freed', () => {
@@ -145,8 +170,21 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
 })
 
 const PLANAR = [
-  'cam', 'dwell', 'excavator', 'four_bar', 'four_bar_by_lengths', 'four_bar_inverse', 'jansen', 'klann', 'pantograph', 'peaucellier', 'press',
-  'quick_return', 'scissor_lift', 'three_rrr', 'watt_six_bar',
+  'cam',
+  'dwell',
+  'excavator',
+  'four_bar',
+  'four_bar_by_lengths',
+  'four_bar_inverse',
+  'jansen',
+  'klann',
+  'pantograph',
+  'peaucellier',
+  'press',
+  'quick_return',
+  'scissor_lift',
+  'three_rrr',
+  'watt_six_bar',
 ]
 
 test('planar models are known to be planar, and no others', async () => {

@@ -30,7 +30,8 @@ const status = () => page.getByTestId('model-status').innerText()
 const text = () => page.evaluate(() => window.pane.text)
 const valid = () => page.evaluate(() => window.valid)
 const checked = () => expect.poll(() => page.getByTestId('model-pane').getAttribute('aria-busy')).toBe('false')
-const reveal = (line: number, column: number) => page.evaluate(([line, column]) => window.pane.reveal(line, column), [line, column])
+const reveal = (line: number, column: number) =>
+  page.evaluate(([line, column]) => window.pane.reveal(line, column), [line, column])
 const press = async (...keys: string[]) => {
   for (const key of keys) await page.keyboard.press(key)
 }
@@ -40,15 +41,16 @@ async function place(part: string): Promise<[line: number, column: number]> {
   return [before.length, before.at(-1)!.length + 1]
 }
 /** The text with the cursor as `|`. */
-const aroundCursor = () => page.evaluate(() => {
-  const { anchorNode, anchorOffset } = getSelection()!
-  const line = (anchorNode instanceof Element ? anchorNode : anchorNode!.parentElement!).closest('.cm-line')!
-  const range = document.createRange()
-  range.setStart(line, 0)
-  range.setEnd(anchorNode!, anchorOffset)
-  const before = range.toString()
-  return `${before}|${line.textContent!.slice(before.length)}`
-})
+const aroundCursor = () =>
+  page.evaluate(() => {
+    const { anchorNode, anchorOffset } = getSelection()!
+    const line = (anchorNode instanceof Element ? anchorNode : anchorNode!.parentElement!).closest('.cm-line')!
+    const range = document.createRange()
+    range.setStart(line, 0)
+    range.setEnd(anchorNode!, anchorOffset)
+    const before = range.toString()
+    return `${before}|${line.textContent!.slice(before.length)}`
+  })
 
 describe('a text that is typed', () => {
   test('shows what is wrong at its place while it is, and goes to the page when it is mended', async () => {
@@ -58,7 +60,9 @@ describe('a text that is typed', () => {
     await checked()
     expect(await page.locator('.cm-lintRange-error').innerText()).toBe('"xknuckle"')
     expect(await status()).toBe('1 error, 1 note. The page shows the last valid model.')
-    expect(await messages().first().innerText()).toMatch(/there is no body named xknuckle.*valid names: ground, lca.*help correct the name/s)
+    expect(await messages().first().innerText()).toMatch(
+      /there is no body named xknuckle.*valid names: ground, lca.*help correct the name/s,
+    )
     expect(await page.locator('.cm-lint-marker-error').count()).toBe(1)
     expect(await valid()).toEqual([])
     await page.keyboard.press('Backspace')
@@ -112,7 +116,9 @@ describe('by the keyboard alone', () => {
     const passed: string[] = []
     for (let k = 0; k < 12 && passed.at(-1) !== 'after'; k++) {
       await press('Tab')
-      passed.push(await page.evaluate(() => document.activeElement!.getAttribute('data-testid') ?? document.activeElement!.id))
+      passed.push(
+        await page.evaluate(() => document.activeElement!.getAttribute('data-testid') ?? document.activeElement!.id),
+      )
     }
     expect(passed).toEqual(expect.arrayContaining(['model-find', 'model-text', 'after']))
     await press('Shift+Tab', 'Shift+Tab')
@@ -158,12 +164,17 @@ describe('by the keyboard alone', () => {
     await reveal(...(await place('"tie_rod_outer", "tie_rod_inner"]')))
     await page.keyboard.type('"strut_t')
     await page.locator('.cm-tooltip-autocomplete').waitFor()
-    expect(await page.locator('.cm-tooltip-autocomplete li').allInnerTexts()).toEqual([expect.stringContaining('strut_top')])
+    expect(await page.locator('.cm-tooltip-autocomplete li').allInnerTexts()).toEqual([
+      expect.stringContaining('strut_top'),
+    ])
   })
 })
 
 describe('a text from outside', () => {
-  const longer = (text: string) => text.replace('[270.51, 345.44, -59.69]', '[271.25, 345.44, -59.69]').replace('[-200, 200, -50]', '[-200, 212.5, -50]')
+  const longer = (text: string) =>
+    text
+      .replace('[270.51, 345.44, -59.69]', '[271.25, 345.44, -59.69]')
+      .replace('[-200, 200, -50]', '[-200, 212.5, -50]')
 
   test('leaves the cursor and what is seen where they are, and is one step of undo', async () => {
     const [line, column] = await place('"rack_slide"')
@@ -227,9 +238,16 @@ test('buttons undo and find without a keyboard', async () => {
 })
 
 test('a finger writes, and goes from a message to its place', async () => {
-  const { page, complaints } = await visit(browser, url, { viewport: { width: 390, height: 760 }, hasTouch: true, isMobile: true })
+  const { page, complaints } = await visit(browser, url, {
+    viewport: { width: 390, height: 760 },
+    hasTouch: true,
+    isMobile: true,
+  })
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(390)
-  await page.locator('.cm-line').first().tap({ position: { x: 1, y: 8 } })
+  await page
+    .locator('.cm-line')
+    .first()
+    .tap({ position: { x: 1, y: 8 } })
   await page.keyboard.insertText('x =\n')
   await expect.poll(() => page.getByTestId('model-pane').getAttribute('aria-busy')).toBe('false')
   const message = page.getByTestId('model-messages').locator('.error button')

@@ -17,7 +17,9 @@ const DRAWN = 3e-7
 
 const ROOT = join(import.meta.dirname, '../..')
 const MODELS = join(ROOT, 'models')
-const files = readdirSync(MODELS).filter((file) => file.endsWith('.toml')).sort()
+const files = readdirSync(MODELS)
+  .filter((file) => file.endsWith('.toml'))
+  .sort()
 
 async function engine(tell: (progress: ProgressReply) => void = () => {}): Promise<Ask> {
   const binary = readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.wasm'))
@@ -26,16 +28,29 @@ async function engine(tell: (progress: ProgressReply) => void = () => {}): Promi
 
 /** The native engine's answers to the same requests. */
 function native(requests: Request[]): ArrayBuffer[] {
-  const { stdout, stderr, status } = spawnSync(inject('samples').answers, { input: requests.map((request) => JSON.stringify(request)).join('\n'), maxBuffer: 2 ** 30, encoding: 'utf8' })
+  const { stdout, stderr, status } = spawnSync(inject('samples').answers, {
+    input: requests.map((request) => JSON.stringify(request)).join('\n'),
+    maxBuffer: 2 ** 30,
+    encoding: 'utf8',
+  })
   expect(status, stderr).toBe(0)
-  return stdout.trim().split('\n').map((line) => Uint8Array.from(Buffer.from(line, 'base64')).buffer)
+  return stdout
+    .trim()
+    .split('\n')
+    .map((line) => Uint8Array.from(Buffer.from(line, 'base64')).buffer)
 }
 
 /** A model's text; files that it names are next to it. */
 function model(file: string): ModelText {
   const text = readFileSync(join(MODELS, file), 'utf8')
   const named = [...text.matchAll(/"([\w/.-]+\.csv)"/g)].map(([, name]) => name)
-  return { file, text, files: Object.fromEntries(named.map((name) => [name, readFileSync(join(MODELS, name), 'utf8')])), case: null, shown: null }
+  return {
+    file,
+    text,
+    files: Object.fromEntries(named.map((name) => [name, readFileSync(join(MODELS, name), 'utf8')])),
+    case: null,
+    shown: null,
+  }
 }
 
 function near(found: readonly (number | null)[], wanted: readonly (number | null)[], part: number, what: string): void {
@@ -61,7 +76,12 @@ test.each(files)('%s is understood and solved as the command does', async (file)
   // One hardpoint moves a little, if the change is admissible.
   const size = Math.max(...grips.flatMap(({ place }) => place.map(Math.abs)))
   const change = grips.slice(0, 1).map(({ coordinates }) => ({ name: coordinates[0].variable, by: 1e-3 * size }))
-  const requests: Request[] = [open, { ask: 'design', change, from: null }, { ask: 'page', model: model(file) }, { ask: 'text', change }]
+  const requests: Request[] = [
+    open,
+    { ask: 'design', change, from: null },
+    { ask: 'page', model: model(file) },
+    { ask: 'text', change },
+  ]
   const wanted = native(requests)
   const found = requests.map((request) => ask(request))
   const [a, b] = [found, wanted].map((blocks) => answer<DesignReply>(blocks[1]))
@@ -77,7 +97,9 @@ test.each(files)('%s is understood and solved as the command does', async (file)
     near([page.json.values[k].value], [value.value], SAME, value.name)
     near(page.json.values[k].sensitivities, value.sensitivities, 10 * SAME, `sensitivities of ${value.name}`)
   })
-  page2.json.quantities.forEach((quantity, k) => near([...page.decode(page.json.quantities[k].value)], [...page2.decode(quantity.value)], DRAWN, quantity.name))
+  page2.json.quantities.forEach((quantity, k) =>
+    near([...page.decode(page.json.quantities[k].value)], [...page2.decode(quantity.value)], DRAWN, quantity.name),
+  )
   expect(new Uint8Array(found[3])).toEqual(new Uint8Array(wanted[3]))
 })
 
@@ -98,6 +120,11 @@ test('a search indicates of its iterations and finds what the native one finds',
   expect(reports.length).toBeGreaterThan(2)
   expect(reports.at(-1)!.change!.length).toBeGreaterThan(0)
   // Two machines differ in the last digits: the results agree within the tolerance of the search.
-  near(found.change!.map(({ by }) => by), wanted.change!.map(({ by }) => by), 1e-4, 'design found')
+  near(
+    found.change!.map(({ by }) => by),
+    wanted.change!.map(({ by }) => by),
+    1e-4,
+    'design found',
+  )
   expect(found.text).toContain('[optimize')
 })

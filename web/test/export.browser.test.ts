@@ -50,13 +50,20 @@ describe('what a reader takes away', () => {
     page.evaluate(
       ({ svg, selector }) => {
         const parsed = new DOMParser().parseFromString(svg, 'image/svg+xml')
-        return { errors: parsed.querySelectorAll('parsererror').length, root: parsed.documentElement.localName, found: parsed.querySelectorAll(selector).length }
+        return {
+          errors: parsed.querySelectorAll('parsererror').length,
+          root: parsed.documentElement.localName,
+          found: parsed.querySelectorAll(selector).length,
+        }
       },
       { svg: svg.toString(), selector },
     )
 
   const wordsOf = (svg: Buffer) =>
-    page.evaluate((svg) => new DOMParser().parseFromString(svg, 'image/svg+xml').documentElement.textContent, svg.toString())
+    page.evaluate(
+      (svg) => new DOMParser().parseFromString(svg, 'image/svg+xml').documentElement.textContent,
+      svg.toString(),
+    )
 
   test('the view as PNG is twice as large as on the screen', async () => {
     const { width, height } = (await page.locator(VIEW).boundingBox())!
@@ -93,13 +100,17 @@ describe('what a reader takes away', () => {
       const theirs = motion.get(name)!
       const scale = Math.max(...theirs.map(Math.abs))
       expect(ours.length).toBe(theirs.length)
-      for (const [k, value] of ours.entries()) expect(Math.abs(value - theirs[k]), `${name}, row ${k}`).toBeLessThanOrEqual(SINGLE * scale)
+      for (const [k, value] of ours.entries())
+        expect(Math.abs(value - theirs[k]), `${name}, row ${k}`).toBeLessThanOrEqual(SINGLE * scale)
     }
   })
 
   test('of plots that show a part, CSV and SVG are of that part', async () => {
     const { page } = visited
-    const [rows, words] = [table((await taken('export-csv')).toString()).get('time [s]')!.length, await wordsOf(await taken('export-plot-svg'))]
+    const [rows, words] = [
+      table((await taken('export-csv')).toString()).get('time [s]')!.length,
+      await wordsOf(await taken('export-plot-svg')),
+    ]
     await page.getByTestId('plot-0').getByTestId('closer').click()
     const part = table((await taken('export-csv')).toString()).get('time [s]')!
     expect(part.length).toBeGreaterThan(rows / 2 - 2)
@@ -113,7 +124,8 @@ describe('what a reader takes away', () => {
     const tutorial = await visit(browser, inject('samples').tutorial)
     const svg = await taken('export-plot-svg', tutorial.page)
     const words = await wordsOf(svg)
-    for (const word of ['toe', 'wheel_travel', 'changed', 'original', 'predicted to first order']) expect(words).toContain(word)
+    for (const word of ['toe', 'wheel_travel', 'changed', 'original', 'predicted to first order'])
+      expect(words).toContain(word)
     if (IMAGES) writeFileSync(join(IMAGES, 'tutorial.svg'), svg)
     await tutorial.page.context().close()
   })

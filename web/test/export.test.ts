@@ -96,7 +96,8 @@ describe('SVG of a plot', () => {
   test('of a part has the axes of that part', async () => {
     const whole = await plotSvg(content, times, 's', PAPER).text()
     const part = await plotSvg({ ...content, part: [0, 1] }, times, 's', PAPER).text()
-    const numbers = (text: string) => [...text.matchAll(/>([\d.−]+)<\/text>/g)].map(([, number]) => Number(number.replace('−', '-')))
+    const numbers = (text: string) =>
+      [...text.matchAll(/>([\d.−]+)<\/text>/g)].map(([, number]) => Number(number.replace('−', '-')))
     expect(Math.max(...numbers(whole))).toBe(6)
     // Up to 1 s and 2 deg; an axis adds its margin.
     expect(Math.max(...numbers(part))).toBeLessThan(2.2)
@@ -115,7 +116,15 @@ describe('SVG of a plot', () => {
 })
 
 describe('SVG of the view', () => {
-  const picture = { width: 400, height: 300, title: 'a & b', view: '#ffffff', ground: '#66717c', outline: '#2a323a', label: '#000000' }
+  const picture = {
+    width: 400,
+    height: 300,
+    title: 'a & b',
+    view: '#ffffff',
+    ground: '#66717c',
+    outline: '#2a323a',
+    label: '#000000',
+  }
   const camera = new PerspectiveCamera(22, 4 / 3, 1, 100)
   camera.position.set(6, 8, 10)
   camera.lookAt(0, 0, 0)
@@ -139,7 +148,10 @@ describe('SVG of the view', () => {
     hidden.visible = false
     const behind = new Mesh(new BoxGeometry(1, 1, 1), new MeshLambertMaterial({ color: '#00ffff' }))
     behind.position.set(12, 16, 20)
-    const over = new Mesh(new BoxGeometry(0.5, 0.5, 0.5), new MeshBasicMaterial({ color: '#c2185b', depthTest: false, transparent: true }))
+    const over = new Mesh(
+      new BoxGeometry(0.5, 0.5, 0.5),
+      new MeshBasicMaterial({ color: '#c2185b', depthTest: false, transparent: true }),
+    )
     over.position.set(-3, -4, -5)
     const front = new Mesh(new BoxGeometry(2, 2, 2), new MeshLambertMaterial({ color: '#ff0000' }))
     const text = await viewSvg([hidden, behind, over, front], camera, picture).text()
@@ -214,7 +226,9 @@ describe('glTF of the motion', () => {
       const want = (place: Vector3) => new Vector3(place.x, place.z, -place.y).multiplyScalar(1e-3)
       const tip = new Vector3(2, 0, 0)
       expect(crankBody.localToWorld(tip.clone()).distanceTo(want(mechanism.worldAt(1, tip, step)))).toBeLessThan(1e-7)
-      expect(rodBody.getWorldPosition(new Vector3()).distanceTo(want(mechanism.worldAt(1, tip, step)))).toBeLessThan(1e-7)
+      expect(rodBody.getWorldPosition(new Vector3()).distanceTo(want(mechanism.worldAt(1, tip, step)))).toBeLessThan(
+        1e-7,
+      )
     }
     // Half way between two times it is half way turned.
     mixer.setTime((times[1] + times[2]) / 2 - times[0])

@@ -1,7 +1,11 @@
 import { expect, test } from 'vitest'
 import { History, type Step } from '../src/studio/history'
 
-const step = (by: number, label = `by ${by}`, text = 'model'): Step => ({ text, settings: [{ name: 'rack_z', by }], label })
+const step = (by: number, label = `by ${by}`, text = 'model'): Step => ({
+  text,
+  settings: [{ name: 'rack_z', by }],
+  label,
+})
 const first = (): Step => ({ text: 'model', settings: [], label: 'opened' })
 
 test('steps are gone back and forth, and named', () => {

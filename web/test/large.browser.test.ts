@@ -38,7 +38,8 @@ describe('a model of 81 bodies and 240 variables', () => {
 
   /** Number of layouts of the page meanwhile. */
   async function layouts(doing: () => Promise<unknown>): Promise<number> {
-    const count = async () => (await session.send('Performance.getMetrics')).metrics.find(({ name }) => name === 'LayoutCount')!.value
+    const count = async () =>
+      (await session.send('Performance.getMetrics')).metrics.find(({ name }) => name === 'LayoutCount')!.value
     await drawn(page)
     const before = await count()
     await doing()
@@ -47,13 +48,16 @@ describe('a model of 81 bodies and 240 variables', () => {
 
   /** Scrolls by this number of pixels in every frame. */
   const scroll = (selector: string, by: number) =>
-    page.locator(selector).evaluate(async (window, { by, frames }) => {
-      for (let k = 0; k < frames; k++) {
-        window.scrollTop += by
-        await new Promise(requestAnimationFrame)
-      }
-      return window.scrollTop
-    }, { by, frames: FRAMES })
+    page.locator(selector).evaluate(
+      async (window, { by, frames }) => {
+        for (let k = 0; k < frames; k++) {
+          window.scrollTop += by
+          await new Promise(requestAnimationFrame)
+        }
+        return window.scrollTop
+      },
+      { by, frames: FRAMES },
+    )
 
   const elements = (selector: string) => page.locator(`${selector} *`).count()
 
@@ -84,28 +88,35 @@ describe('a model of 81 bodies and 240 variables', () => {
 
   test('is scrubbed with one layout a frame, and nothing is left behind', async () => {
     const [time, size] = [await page.getByTestId('time').innerText(), await elements('html')]
-    const scrub = () => page.getByTestId('scrub').evaluate(async (slider: HTMLInputElement, frames) => {
-      for (let k = 1; k <= frames; k++) {
-        slider.value = String(3 * k)
-        slider.dispatchEvent(new Event('input', { bubbles: true }))
-        await new Promise(requestAnimationFrame)
-      }
-    }, FRAMES)
+    const scrub = () =>
+      page.getByTestId('scrub').evaluate(async (slider: HTMLInputElement, frames) => {
+        for (let k = 1; k <= frames; k++) {
+          slider.value = String(3 * k)
+          slider.dispatchEvent(new Event('input', { bubbles: true }))
+          await new Promise(requestAnimationFrame)
+        }
+      }, FRAMES)
     expect(await layouts(scrub)).toBeLessThanOrEqual(LAYOUTS)
     expect(await page.getByTestId('time').innerText()).not.toBe(time)
     expect(await elements('html')).toBe(size)
   })
 
   test('lets variables be chosen, a few layouts each', async () => {
-    const choose = () => page.getByTestId('variables').evaluate(async (list, frames) => {
-      const names = [...list.querySelectorAll<HTMLElement>('.name')]
-      for (let k = 1; k <= frames; k++) {
-        names[7 * k].click()
-        await new Promise(requestAnimationFrame)
-      }
-    }, FRAMES)
+    const choose = () =>
+      page.getByTestId('variables').evaluate(async (list, frames) => {
+        const names = [...list.querySelectorAll<HTMLElement>('.name')]
+        for (let k = 1; k <= frames; k++) {
+          names[7 * k].click()
+          await new Promise(requestAnimationFrame)
+        }
+      }, FRAMES)
     expect(await layouts(choose)).toBeLessThanOrEqual(FRAMES * PER_CHOICE)
-    expect(await page.locator('.variables [aria-current=true] .name').innerText()).toBe(await page.locator('.variables .name').nth(7 * FRAMES).innerText())
+    expect(await page.locator('.variables [aria-current=true] .name').innerText()).toBe(
+      await page
+        .locator('.variables .name')
+        .nth(7 * FRAMES)
+        .innerText(),
+    )
   })
 
   test('was requested nothing else, and reported nothing on the console', () => {

@@ -56,7 +56,10 @@ describe.each([
     for (const [k, a] of areas.entries()) {
       for (const b of areas.slice(0, k)) {
         const apart =
-          a.x + a.width <= b.x + LINE || b.x + b.width <= a.x + LINE || a.y + a.height <= b.y + LINE || b.y + b.height <= a.y + LINE
+          a.x + a.width <= b.x + LINE ||
+          b.x + b.width <= a.x + LINE ||
+          a.y + a.height <= b.y + LINE ||
+          b.y + b.height <= a.y + LINE
         expect(apart, `${a.name} beside ${b.name}`).toBe(true)
       }
     }
@@ -81,7 +84,11 @@ describe.each([
 
   test('the table shows its figures with their units, whole', async () => {
     if (width < NARROW) await page.getByTestId('nav-tables').click()
-    const cut = await page.locator('.ranking td.figure').evaluateAll((cells) => cells.filter((cell) => cell.scrollWidth > cell.clientWidth).map((cell) => cell.textContent))
+    const cut = await page
+      .locator('.ranking td.figure')
+      .evaluateAll((cells) =>
+        cells.filter((cell) => cell.scrollWidth > cell.clientWidth).map((cell) => cell.textContent),
+      )
     expect(cut).toEqual([])
     if (width < NARROW) await page.getByTestId('nav-curves').click()
   })
@@ -91,7 +98,8 @@ describe.each([
       await page.getByTestId(button).click()
       expect(await page.getByTestId(area).isVisible(), area).toBe(true)
       expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(width)
-      for (const stays of ['view-canvas', 'scrub', 'values']) expect(await page.getByTestId(stays).isVisible(), stays).toBe(true)
+      for (const stays of ['view-canvas', 'scrub', 'values'])
+        expect(await page.getByTestId(stays).isVisible(), stays).toBe(true)
     }
     if (width < NARROW) {
       await bring('nav-curves', 'curves')
@@ -126,7 +134,10 @@ describe('with the keyboard only', () => {
       if (id) reached.add(id)
     }
     expect(unseen).toEqual([])
-    const missed = await page.evaluate((ids) => ids.map((id) => document.getElementById(id)?.outerHTML.slice(0, 120)), expected.filter((id) => !reached.has(id)))
+    const missed = await page.evaluate(
+      (ids) => ids.map((id) => document.getElementById(id)?.outerHTML.slice(0, 120)),
+      expected.filter((id) => !reached.has(id)),
+    )
     expect(missed).toEqual([])
     expect(complaints).toEqual([])
     await page.context().close()
@@ -168,11 +179,15 @@ describe('printed', () => {
     const pages = pdf.toString('latin1').match(/\/Type\s*\/Page\b/g)!.length
     expect(pages).toBeLessThanOrEqual(6)
     await page.emulateMedia({ media: 'print' })
-    for (const name of ['title', 'values', 'plot-0', 'variables', 'summary']) expect(await page.getByTestId(name).isVisible(), name).toBe(true)
+    for (const name of ['title', 'values', 'plot-0', 'variables', 'summary'])
+      expect(await page.getByTestId(name).isVisible(), name).toBe(true)
     // Buttons are of no use on paper.
-    for (const name of ['export', 'help', 'play', 'scrub']) expect(await page.getByTestId(name).isVisible(), name).toBe(false)
+    for (const name of ['export', 'help', 'play', 'scrub'])
+      expect(await page.getByTestId(name).isVisible(), name).toBe(false)
     // Paper is white, independent of the screen.
-    expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor)).toMatch(/^rgb\(255, 255, 255\)$|^rgba\(0, 0, 0, 0\)$/)
+    expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor)).toMatch(
+      /^rgb\(255, 255, 255\)$|^rgba\(0, 0, 0, 0\)$/,
+    )
     expect(complaints).toEqual([])
     await page.context().close()
   })
@@ -217,7 +232,9 @@ describe('what went wrong', () => {
   test('a variable that no motion follows is struck out and says why', async () => {
     const { page } = await visit(browser, whole)
     const row = page.getByTestId('variable-crank_pin_tilt')
-    expect(await row.locator('.name').evaluate((name) => getComputedStyle(name).textDecorationLine)).toBe('line-through')
+    expect(await row.locator('.name').evaluate((name) => getComputedStyle(name).textDecorationLine)).toBe(
+      'line-through',
+    )
     await row.locator('.name').click()
     expect(await page.locator('body').innerText()).toContain('No motion closes crank_pin')
     await page.context().close()

@@ -31,16 +31,27 @@ const open = async (name: string) => {
   page = visited.page
   await ready()
 }
-const card = async (name: string) => Number((await page.getByTestId(`card-${name}`).getByTestId('card-value').innerText()).replace('−', '-'))
+const card = async (name: string) =>
+  Number((await page.getByTestId(`card-${name}`).getByTestId('card-value').innerText()).replace('−', '-'))
 const grip = (name: string) => page.getByTestId(`grip-${name}`)
 /** Value of the command for a measure of the strut at the start, with a change. */
-const coordinate = async (axis: string) => Number((await page.getByTestId(`grip-${axis}`).inputValue()).replace('−', '-'))
+const coordinate = async (axis: string) =>
+  Number((await page.getByTestId(`grip-${axis}`).inputValue()).replace('−', '-'))
 
 /** The value of every card as the native engine has it with these changes. */
 function native(file: string, change: { name: string; by: number }[]): number[] {
   const model = { file, text: readFileSync(join(MODELS, file), 'utf8'), files: {}, case: null, shown: null }
-  const requests = [{ ask: 'open', model }, { ask: 'design', change, from: null }]
-  const lines = execFileSync(answers, { input: requests.map((r) => JSON.stringify(r)).join('\n'), encoding: 'utf8', maxBuffer: 2 ** 28 }).trim().split('\n')
+  const requests = [
+    { ask: 'open', model },
+    { ask: 'design', change, from: null },
+  ]
+  const lines = execFileSync(answers, {
+    input: requests.map((r) => JSON.stringify(r)).join('\n'),
+    encoding: 'utf8',
+    maxBuffer: 2 ** 28,
+  })
+    .trim()
+    .split('\n')
   const block = Buffer.from(lines[1], 'base64')
   return JSON.parse(block.subarray(4, 4 + block.readUInt32LE(0)).toString()).design.values
 }
@@ -63,16 +74,28 @@ describe('a hardpoint of the strut in the hand', () => {
     const after = (await grip('tie_rod_outer').boundingBox())!
     expect(Math.hypot(after.x - box.x, after.y - (box.y - 11))).toBeLessThan(2)
     expect(await card('tie_rod_length')).not.toBe(before)
-    const by = await page.evaluate(() => [...document.querySelectorAll<HTMLInputElement>('.coordinates input')].map(({ value }) => Number(value)))
+    const by = await page.evaluate(() =>
+      [...document.querySelectorAll<HTMLInputElement>('.coordinates input')].map(({ value }) => Number(value)),
+    )
     expect(by.every(Number.isFinite)).toBe(true)
     const names = await page.getByTestId('values').locator('.card-name b').allInnerTexts()
     const text = await toml()
     // Read from the page's own text, the command's engine gives the same cards.
     const model = { file: 'x.toml', text, files: {}, case: null, shown: null }
-    const lines = execFileSync(answers, { input: JSON.stringify({ ask: 'page', model }), encoding: 'utf8', maxBuffer: 2 ** 28 })
+    const lines = execFileSync(answers, {
+      input: JSON.stringify({ ask: 'page', model }),
+      encoding: 'utf8',
+      maxBuffer: 2 ** 28,
+    })
     const block = Buffer.from(lines, 'base64')
-    const values: { name: string; value: number }[] = JSON.parse(block.subarray(4, 4 + block.readUInt32LE(0)).toString()).values
-    for (const name of new Set(names)) expect(await card(name), name).toBeCloseTo(Number(values.find((value) => value.name === name)!.value.toPrecision(4)), 6)
+    const values: { name: string; value: number }[] = JSON.parse(
+      block.subarray(4, 4 + block.readUInt32LE(0)).toString(),
+    ).values
+    for (const name of new Set(names))
+      expect(await card(name), name).toBeCloseTo(
+        Number(values.find((value) => value.name === name)!.value.toPrecision(4)),
+        6,
+      )
   })
 
   test('is typed with a unit, reset, undone and done again', async () => {
@@ -131,7 +154,10 @@ describe('the model in the page', () => {
     await settled()
     expect(await page.getByTestId('plot-0').innerText()).toContain('changed')
     const by = Number(await page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue())
-    expect(await card('toe')).toBeCloseTo(Number(native('macpherson.toml', [{ name: 'tie_rod_outer_z', by }])[0].toPrecision(4)), 6)
+    expect(await card('toe')).toBeCloseTo(
+      Number(native('macpherson.toml', [{ name: 'tie_rod_outer_z', by }])[0].toPrecision(4)),
+      6,
+    )
     expect(await toml()).not.toBe(readFileSync(join(MODELS, 'macpherson.toml'), 'utf8'))
   })
 
@@ -202,7 +228,10 @@ describe('studies in the page', () => {
     await page.getByTestId('optimise-take').waitFor()
     const before = await page.getByTestId('values').innerText()
     await page.getByTestId('optimise-take').click()
-    await page.waitForFunction((before) => document.querySelector('[data-testid=values]')!.textContent !== before, before)
+    await page.waitForFunction(
+      (before) => document.querySelector('[data-testid=values]')!.textContent !== before,
+      before,
+    )
     await ready()
     expect(await page.getByTestId('undo').isDisabled()).toBe(false)
     expect(visited.complaints).toEqual([])
@@ -240,7 +269,10 @@ async function openText(file: string): Promise<void> {
     document.getSelection()!.selectAllChildren(content)
     content.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, bubbles: true, cancelable: true }))
   }, text)
-  await page.waitForFunction((title) => document.querySelector('[data-testid=title]')!.textContent!.includes(title), title)
+  await page.waitForFunction(
+    (title) => document.querySelector('[data-testid=title]')!.textContent!.includes(title),
+    title,
+  )
   await ready()
   await page.getByTestId('drawer-close').click()
 }

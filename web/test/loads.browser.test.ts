@@ -17,7 +17,9 @@ afterAll(() => browser?.close())
 
 /** The rows of the run's loads.csv, by their headings. */
 function table(): Record<string, string>[] {
-  const [header, ...lines] = readFileSync(fileURLToPath(models.press).replace('report.html', 'loads.csv'), 'utf8').trim().split('\n')
+  const [header, ...lines] = readFileSync(fileURLToPath(models.press).replace('report.html', 'loads.csv'), 'utf8')
+    .trim()
+    .split('\n')
   const names = header.split(',')
   return lines.map((line) => Object.fromEntries(line.split(',').map((cell, k) => [names[k], cell])))
 }
@@ -26,8 +28,13 @@ describe('forces of the press', () => {
   let visited: Visit
   let page: Page
   const reading = () => page.getByTestId('load-reading').innerText()
-  const row = (name: string) => page.getByTestId('load-row').filter({ has: page.locator('td:first-child', { hasText: new RegExp(`^${name}$`) }) }).locator('td')
-  const close = (shown: number, expected: number) => expect(Math.abs(shown - expected)).toBeLessThanOrEqual(SHOWN * Math.abs(expected))
+  const row = (name: string) =>
+    page
+      .getByTestId('load-row')
+      .filter({ has: page.locator('td:first-child', { hasText: new RegExp(`^${name}$`) }) })
+      .locator('td')
+  const close = (shown: number, expected: number) =>
+    expect(Math.abs(shown - expected)).toBeLessThanOrEqual(SHOWN * Math.abs(expected))
 
   beforeAll(async () => {
     visited = await visit(browser, models.press)

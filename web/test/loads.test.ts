@@ -22,7 +22,13 @@ test('a force that is goes round as the body sees it, the other way', () => {
   const plane = planeAcross(new Vector3(0, 0, 1))
   expect(plane.names).toEqual(['x', 'y'])
   const seen = pathOf(steady, crank().bodies[1].poses, plane, 1)
-  const expected = [[30, 0], [0, -30], [-30, 0], [0, 30], [30, 0]]
+  const expected = [
+    [30, 0],
+    [0, -30],
+    [-30, 0],
+    [0, 30],
+    [30, 0],
+  ]
   seen.forEach(([x, y], k) => {
     expect(x).toBeCloseTo(expected[k][0], 4)
     expect(y).toBeCloseTo(expected[k][1], 4)
@@ -31,7 +37,13 @@ test('a force that is goes round as the body sees it, the other way', () => {
   for (const [x, y] of pathOf(steady, crank().bodies[0].poses, plane, -1)) expect([x, y]).toEqual([-30, 0])
 })
 
-test.each([[1, 0, 0], [0, 1, 0], [0, 0, -1], [1, 2, 3], [-3, 1, 0.5]])('a plane across %d %d %d is right-handed and square', (...normal) => {
+test.each([
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, -1],
+  [1, 2, 3],
+  [-3, 1, 0.5],
+])('a plane across %d %d %d is right-handed and square', (...normal) => {
   const n = new Vector3(...(normal as [number, number, number])).normalize()
   const [u, v] = planeAcross(n).across
   expect(u.clone().cross(v).distanceTo(n)).toBeLessThan(1e-12)

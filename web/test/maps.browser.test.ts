@@ -29,7 +29,9 @@ describe('a map over travel and steer', () => {
     // -25 to 25 deg: between the levels -20, -10, 0, 10 and 20 there are six bands.
     await expect.poll(() => map.locator('path.area').count()).toBe(5)
     expect(await map.locator('rect.band').count()).toBe(6)
-    expect(await map.locator('text').allTextContents()).toEqual(expect.arrayContaining(['bump [mm]', 'steering [deg]', '20 deg', '−20']))
+    expect(await map.locator('text').allTextContents()).toEqual(
+      expect.arrayContaining(['bump [mm]', 'steering [deg]', '20 deg', '−20']),
+    )
     expect(await map.locator('circle.place').count()).toBe(13 * 11)
     expect(await reading()).toBe('steer: −25 to 25 deg')
   })

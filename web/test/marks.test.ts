@@ -48,7 +48,10 @@ describe('labels', () => {
   })
 
   test('cover neither one another nor the edges nor the title, and what finds no place is left out', () => {
-    const crowd = Array.from({ length: 80 }, (_, k): Spot => ({ x: 180 + (k % 9) * 5, y: 30 + Math.floor(k / 9) * 5, text: `hardpoint_${k}` }))
+    const crowd = Array.from(
+      { length: 80 },
+      (_, k): Spot => ({ x: 180 + (k % 9) * 5, y: 30 + Math.floor(k / 9) * 5, text: `hardpoint_${k}` }),
+    )
     const placed = placeLabels(crowd, room, middle)
     expect(placed.length).toBeGreaterThan(3)
     expect(placed.length).toBeLessThan(80)
@@ -57,7 +60,9 @@ describe('labels', () => {
       expect(a.x + a.width / 2).toBeLessThanOrEqual(396)
       expect(a.y - a.height / 2).toBeGreaterThanOrEqual(34)
       for (const b of placed.slice(k + 1)) {
-        expect(Math.abs(a.x - b.x) >= (a.width + b.width) / 2 || Math.abs(a.y - b.y) >= (a.height + b.height) / 2).toBe(true)
+        expect(Math.abs(a.x - b.x) >= (a.width + b.width) / 2 || Math.abs(a.y - b.y) >= (a.height + b.height) / 2).toBe(
+          true,
+        )
       }
     })
   })
@@ -84,19 +89,46 @@ describe('a mesh', () => {
     const positions = Float32Array.from([0, 0, 0, 100, 0, 0, 50, 7, 0])
     const bent = deformed(positions, from, [from[0], new Vector3(100, 0, 10)])
     ;[0, 10, 5].forEach((z, k) => expect(bent[3 * k + 2]).toBeCloseTo(z, 6))
-    const moved = deformed(positions, from, from.map((point) => point.clone().add(new Vector3(1, 2, 3))))
+    const moved = deformed(
+      positions,
+      from,
+      from.map((point) => point.clone().add(new Vector3(1, 2, 3))),
+    )
     for (let k = 0; k < 9; k++) expect(moved[k] - positions[k]).toBeCloseTo([1, 2, 3][k % 3], 5)
     expect(deformed(positions, [], [])).toEqual(positions)
   })
 
   test('is drawn in place of our shape, changed with the design', () => {
-    const mesh = { file: 'crank.stl', positions: Float32Array.from([0, 0, 0, 200, 0, 0, 0, 50, 0]), triangles: Float32Array.from([0, 1, 2]) }
+    const mesh = {
+      file: 'crank.stl',
+      positions: Float32Array.from([0, 0, 0, 200, 0, 0, 0, 50, 0]),
+      triangles: Float32Array.from([0, 1, 2]),
+    }
     const report = crank()
     const bodies = report.bodies.map((body, k) => (k === 1 ? { ...body, mesh } : body))
     const today = new Mechanism({ ...report, bodies })
-    const changed = new Mechanism({ ...report, bodies: bodies.map((body, k) => (k === 1 ? { ...body, skeleton: [[0, 0, 0], [300, 0, 0]] } : body)) }, today, today)
+    const changed = new Mechanism(
+      {
+        ...report,
+        bodies: bodies.map((body, k) =>
+          k === 1
+            ? {
+                ...body,
+                skeleton: [
+                  [0, 0, 0],
+                  [300, 0, 0],
+                ],
+              }
+            : body,
+        ),
+      },
+      today,
+      today,
+    )
     const draw = (mechanism: Mechanism) =>
-      matter.flatMap((draw) => draw(mechanism, new Kit(mechanism, PALETTE), CHOICE)).filter(({ part }) => part.name === 'crank')
+      matter
+        .flatMap((draw) => draw(mechanism, new Kit(mechanism, PALETTE), CHOICE))
+        .filter(({ part }) => part.name === 'crank')
     expect(boxOf(today, draw(today)[0]).max.x).toBeCloseTo(200)
     expect(boxOf(changed, draw(changed)[0]).max.x).toBeCloseTo(300)
   })
@@ -142,13 +174,22 @@ describe('travel', () => {
   test('of nothing solved is not drawn', () => {
     const report = crank()
     const nothing = new Float32Array(5).fill(NaN)
-    expect(drawn(new Mechanism({ ...report, drivers: report.drivers.map((driver) => ({ ...driver, travel: nothing })) }))).toEqual([])
+    expect(
+      drawn(new Mechanism({ ...report, drivers: report.drivers.map((driver) => ({ ...driver, travel: nothing })) })),
+    ).toEqual([])
   })
 
   test('of a point goes along its line', () => {
     const report = crank()
     const travel = Float32Array.from([0, 200, 0, -200, 0])
-    const point = { ...report.drivers[0], joint: null, turns: false, point: { body: 1, at: [200, 0, 0] as [number, number, number] }, along: [0, 1, 0] as [number, number, number], travel }
+    const point = {
+      ...report.drivers[0],
+      joint: null,
+      turns: false,
+      point: { body: 1, at: [200, 0, 0] as [number, number, number] },
+      along: [0, 1, 0] as [number, number, number],
+      travel,
+    }
     const mechanism = new Mechanism({ ...report, drivers: [point] })
     const [arrow] = drawn(mechanism)
     for (const step of [0, 1]) {
@@ -166,7 +207,9 @@ describe('design velocities', () => {
   ]
 
   test('are in proportion, the longest 0.11 of the size, one per place', () => {
-    const mechanism = new Mechanism(crank({ variables: [variable({ arrows: [...arrows, arrows[1]] }) as never], drivers: [] }))
+    const mechanism = new Mechanism(
+      crank({ variables: [variable({ arrows: [...arrows, arrows[1]] }) as never], drivers: [] }),
+    )
     const velocities = drawn(mechanism)
     expect(velocities).toHaveLength(2)
     expect(boxOf(mechanism, velocities[1]).max.x).toBeCloseTo(200 + 0.11 * mechanism.size, 3)
@@ -174,10 +217,20 @@ describe('design velocities', () => {
   })
 
   test('are no towers over a long low mechanism, and say for which change they are drawn', () => {
-    const skeleton: [number, number, number][] = [[0, 0, 0], [10_000, 0, 0], [0, 250, 0]]
+    const skeleton: [number, number, number][] = [
+      [0, 0, 0],
+      [10_000, 0, 0],
+      [0, 250, 0],
+    ]
     const report = crank({ variables: [variable({ arrows: [{ ...arrows[0], v: [0, 2, 0] }] }) as never], drivers: [] })
     const still = report.bodies[0].poses
-    const bodies = report.bodies.map((body) => ({ ...body, poses: still, skeleton, labels: ['', '', ''], roles: skeleton.map(() => 'joint' as const) }))
+    const bodies = report.bodies.map((body) => ({
+      ...body,
+      poses: still,
+      skeleton,
+      labels: ['', '', ''],
+      roles: skeleton.map(() => 'joint' as const),
+    }))
     const mechanism = new Mechanism({ ...report, bodies })
     const [arrow] = drawn(mechanism)
     const { y } = boxOf(mechanism, arrow).max
@@ -199,7 +252,11 @@ describe('design velocities', () => {
 describe('paths', () => {
   test('have gaps where there is no solution', () => {
     const at = (step: number) => new Vector3([2, 3, 6].includes(step) ? NaN : step, 0, 0)
-    expect(pieces(9, at).map((piece) => piece.map(({ x }) => x))).toEqual([[0, 1], [4, 5], [7, 8]])
+    expect(pieces(9, at).map((piece) => piece.map(({ x }) => x))).toEqual([
+      [0, 1],
+      [4, 5],
+      [7, 8],
+    ])
   })
 
   test('have dots at equal, round times', () => {
@@ -232,7 +289,14 @@ describe('the former design', () => {
   test('of a body that one hardpoint represents has no line', () => {
     const block = (x: number) => {
       const report = crank({ drivers: [] })
-      return { ...report, bodies: report.bodies.map((body, k) => (k === 1 ? { ...body, skeleton: [[x, 0, 0] as [number, number, number]], labels: ['pin'], roles: ['joint' as const] } : body)) }
+      return {
+        ...report,
+        bodies: report.bodies.map((body, k) =>
+          k === 1
+            ? { ...body, skeleton: [[x, 0, 0] as [number, number, number]], labels: ['pin'], roles: ['joint' as const] }
+            : body,
+        ),
+      }
     }
     const today = new Mechanism(block(0))
     expect(drawn(new Mechanism(block(40), today, today))).toEqual([])
@@ -240,10 +304,25 @@ describe('the former design', () => {
 
   test('has every line once', () => {
     const report = crank()
-    const square = [[0, 0, 0], [200, 0, 0], [200, 200, 0], [0, 200, 0], [80, 90, 0]] as [number, number, number][]
-    const bodies = report.bodies.map((body, k) => (k === 1 ? { ...body, skeleton: square, labels: square.map(() => ''), roles: square.map(() => 'joint' as const) } : body))
+    const square = [
+      [0, 0, 0],
+      [200, 0, 0],
+      [200, 200, 0],
+      [0, 200, 0],
+      [80, 90, 0],
+    ] as [number, number, number][]
+    const bodies = report.bodies.map((body, k) =>
+      k === 1
+        ? { ...body, skeleton: square, labels: square.map(() => ''), roles: square.map(() => 'joint' as const) }
+        : body,
+    )
     const lines = centreLines(new Mechanism({ ...report, bodies }), 1)
-    const names = lines.map(([a, b]) => [a, b].map((p) => p.toArray().join()).sort().join(' '))
+    const names = lines.map(([a, b]) =>
+      [a, b]
+        .map((p) => p.toArray().join())
+        .sort()
+        .join(' '),
+    )
     expect(new Set(names).size).toBe(5)
     expect(lines).toHaveLength(5)
   })
@@ -259,8 +338,20 @@ test('a measured distance is a line as long as it, beside it', () => {
 })
 
 describe('a measured distance that is pointed at', () => {
-  const distances = ['near', 'far'].map((name) => ({ name, from: { body: 0, at: [0, 0, 0] }, to: { body: 1, at: [200, 0, 0] }, draw: null }))
-  const quantities = ['angle', 'far', 'near'].map((name, index) => ({ index, name, group: '', units: ['mm', 'mm/s', 'mm/s^2'], curves: [], wanted: [] }))
+  const distances = ['near', 'far'].map((name) => ({
+    name,
+    from: { body: 0, at: [0, 0, 0] },
+    to: { body: 1, at: [200, 0, 0] },
+    draw: null,
+  }))
+  const quantities = ['angle', 'far', 'near'].map((name, index) => ({
+    index,
+    name,
+    group: '',
+    units: ['mm', 'mm/s', 'mm/s^2'],
+    curves: [],
+    wanted: [],
+  }))
   const report = crank({ drivers: [], distances: distances as never, quantities: quantities as never })
 
   test('comes before the selected one until the pointer leaves, and listeners hear of changes only', () => {
@@ -308,7 +399,11 @@ test('the unit stays between what is seen and what is clumsy, and comes back', (
 
 test('axes of a vehicle are words that point its way', () => {
   const vehicle = { forward: new Vector3(-1, 0, 0), up: new Vector3(0, 0, 1) }
-  expect(directions(vehicle).map(({ name, unit }) => [name, unit.x, unit.y + 0, unit.z])).toEqual([['front', -1, 0, 0], ['left', 0, -1, 0], ['up', 0, 0, 1]])
+  expect(directions(vehicle).map(({ name, unit }) => [name, unit.x, unit.y + 0, unit.z])).toEqual([
+    ['front', -1, 0, 0],
+    ['left', 0, -1, 0],
+    ['up', 0, 0, 1],
+  ])
   expect(directions().map(({ name }) => name)).toEqual(['x', 'y', 'z'])
 })
 
@@ -317,7 +412,9 @@ describe('the path of a point', () => {
     const report = crank(changes)
     report.bodies[1].roles = ['joint', role]
     const mechanism = new Mechanism(report)
-    return paths(mechanism, new Kit(mechanism, PALETTE), CHOICE).map((one) => boxOf(mechanism, one).getSize(new Vector3()))
+    return paths(mechanism, new Kit(mechanism, PALETTE), CHOICE).map((one) =>
+      boxOf(mechanism, one).getSize(new Vector3()),
+    )
   }
 
   test('that is measured and that no joint holds is as large as its way', () => {

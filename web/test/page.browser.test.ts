@@ -111,7 +111,9 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     const select = page.getByTestId('plot-0').getByTestId('quantity')
     const first = await select.inputValue()
     const before = { curve: await curve(page, 'plot-0'), variables: await text(page, 'variables') }
-    const values = await select.locator('option').evaluateAll((all) => all.map((one) => (one as HTMLOptionElement).value))
+    const values = await select
+      .locator('option')
+      .evaluateAll((all) => all.map((one) => (one as HTMLOptionElement).value))
     await select.selectOption(values.find((value) => value !== first)!)
     expect((await curve(page, 'plot-0')).sum).not.toBe(before.curve.sum)
     expect(await text(page, 'variables')).not.toBe(before.variables)
@@ -132,9 +134,14 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     const before = await curve(page, 'plot-0')
     await over.selectOption({ index: 1 })
     expect((await curve(page, 'plot-0')).sum).not.toBe(before.sum)
-    expect(await page.getByTestId('plot-0').getByRole('application').getAttribute('aria-label')).toContain(`over ${name}`)
+    expect(await page.getByTestId('plot-0').getByRole('application').getAttribute('aria-label')).toContain(
+      `over ${name}`,
+    )
     const time = await text(page, 'time')
-    await page.getByTestId('plot-0').locator('.u-over').click({ position: { x: 60, y: 40 } })
+    await page
+      .getByTestId('plot-0')
+      .locator('.u-over')
+      .click({ position: { x: 60, y: 40 } })
     expect(await text(page, 'time')).not.toBe(time)
     await over.selectOption({ index: 0 })
     await scrub(page, 0)

@@ -33,7 +33,8 @@ describe.each(Object.entries(schemes))('in the %s scheme', (_, palette) => {
   })
 
   test('the model can be read on the page', () => {
-    for (const name of ['code-text', 'code-number', 'accent', 'muted', 'ink']) expect(contrast(palette[name], palette.page), name).toBeGreaterThan(4.5)
+    for (const name of ['code-text', 'code-number', 'accent', 'muted', 'ink'])
+      expect(contrast(palette[name], palette.page), name).toBeGreaterThan(4.5)
   })
 
   test('labels can be read on the view', () => {

@@ -25,12 +25,16 @@ export async function picture(page: Page): Promise<Buffer> {
 /** Contents of a curve's canvas: number of colours, and a sum that changes with the picture. */
 export async function curve(page: Page, id: string): Promise<{ colours: number; sum: number }> {
   await drawn(page)
-  return page.getByTestId(id).locator('canvas').first().evaluate((canvas: HTMLCanvasElement) => {
-    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d')!
-    copy.drawImage(canvas, 0, 0)
-    const pixels = new Uint32Array(copy.getImageData(0, 0, canvas.width, canvas.height).data.buffer)
-    return { colours: new Set(pixels).size, sum: pixels.reduce((sum, pixel) => (Math.imul(sum, 31) + pixel) | 0, 0) }
-  })
+  return page
+    .getByTestId(id)
+    .locator('canvas')
+    .first()
+    .evaluate((canvas: HTMLCanvasElement) => {
+      const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d')!
+      copy.drawImage(canvas, 0, 0)
+      const pixels = new Uint32Array(copy.getImageData(0, 0, canvas.width, canvas.height).data.buffer)
+      return { colours: new Set(pixels).size, sum: pixels.reduce((sum, pixel) => (Math.imul(sum, 31) + pixel) | 0, 0) }
+    })
 }
 
 /** Text of one part of the page. */

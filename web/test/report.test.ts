@@ -22,15 +22,27 @@ const variable = (name: string, unit: string, scale?: number): Variable => ({
   sensitivities: scale === undefined ? [] : [{ quantity: 0, ...curves(scale), fd: null }],
 })
 
-const quantity = (name: string, group: string) =>
-  ({ name, group, unit: 'deg', rate_unit: 'deg/s', accel_unit: 'deg/s^2', wanted: [], ...curves(1) })
+const quantity = (name: string, group: string) => ({
+  name,
+  group,
+  unit: 'deg',
+  rate_unit: 'deg/s',
+  accel_unit: 'deg/s^2',
+  wanted: [],
+  ...curves(1),
+})
 
 const payload: Payload = {
   ...EMPTY,
   times: encode(0, 1),
   quantities: [quantity('hub.x', 'point'), quantity('toe', 'measure')],
   margin: { value: encode(0.5, 0.25), note: '' },
-  variables: [variable('small', 'mm', 1), variable('tilt', 'deg', 5), variable('large', 'mm', -4), variable('stuck', 'mm')],
+  variables: [
+    variable('small', 'mm', 1),
+    variable('tilt', 'deg', 5),
+    variable('large', 'mm', -4),
+    variable('stuck', 'mm'),
+  ],
 }
 const report = read(payload, decode)
 const [hub] = report.quantities
@@ -45,7 +57,11 @@ test('variables are ranked by their largest magnitude within one unit', () => {
 })
 
 test('where nothing has an influence no share is given', () => {
-  expect(ranking(report, hub, 1).get('mm')!.map(({ share }) => share)).toEqual([0, 0])
+  expect(
+    ranking(report, hub, 1)
+      .get('mm')!
+      .map(({ share }) => share),
+  ).toEqual([0, 0])
 })
 
 test('measures are offered before other quantities', () => {
@@ -71,6 +87,10 @@ test('curves of sensitivities and shifts are decoded once, and not before they a
   expect(asked).not.toContain(sensitivity)
   expect(asked).not.toContain(shifts)
   const { shifts: found, sensitivities } = variables[0]
-  expect([...found[0], ...sensitivities.get(0)!.peaks, ...variables[0].shifts[0]]).toEqual([1, 2, 3, 4, 5, 6, 6, 0, 3, 1, 2, 3, 4, 5, 6])
-  expect(asked.filter((track) => track === shifts || track === sensitivity).sort()).toEqual([sensitivity, shifts].sort())
+  expect([...found[0], ...sensitivities.get(0)!.peaks, ...variables[0].shifts[0]]).toEqual([
+    1, 2, 3, 4, 5, 6, 6, 0, 3, 1, 2, 3, 4, 5, 6,
+  ])
+  expect(asked.filter((track) => track === shifts || track === sensitivity).sort()).toEqual(
+    [sensitivity, shifts].sort(),
+  )
 })

@@ -46,13 +46,24 @@ export default async function setup(project: TestProject): Promise<() => void> {
   const folder = mkdtempSync(join(tmpdir(), 'hardpoint-page-'))
   const page = (...names: string[]) => pathToFileURL(join(folder, ...names)).href
   const { hardpoint, sample_page: sample, rockers, answers } = build()
-  const files = readdirSync(MODELS).filter((file) => file.endsWith('.toml')).sort()
+  const files = readdirSync(MODELS)
+    .filter((file) => file.endsWith('.toml'))
+    .sort()
   const models = files.map((file) => [basename(file, '.toml'), page(basename(file, '.toml'), 'report.html')])
   const ride = join(folder, 'ride.toml')
   writeFileSync(ride, ridden(readFileSync(join(MODELS, 'macpherson.toml'), 'utf8')))
   const large = join(folder, 'rockers.toml')
   const change = ['--set', 'tie_rod_outer.z=+6mm', '-o', join(folder, 'changed')]
-  const higher = ['--set', 'tie_rod_inner.z=+32mm', '--measure', 'toe', '--measure', 'camber', '--measure', 'half_track']
+  const higher = [
+    '--set',
+    'tie_rod_inner.z=+32mm',
+    '--measure',
+    'toe',
+    '--measure',
+    'camber',
+    '--measure',
+    'half_track',
+  ]
   await sideBySide([
     async () => {
       await command(rockers, [large])
@@ -63,7 +74,9 @@ export default async function setup(project: TestProject): Promise<() => void> {
     () => command(hardpoint, ['whatif', join(MODELS, 'macpherson.toml'), ...change]),
     () => command(hardpoint, ['whatif', ride, ...higher, '--over', 'wheel_travel', '-o', join(folder, 'tutorial')]),
     () => command(hardpoint, ['run', join(MODELS, 'studies', 'strut_map.toml'), '-o', join(folder, 'map')]),
-    ...files.map((file) => () => command(hardpoint, ['run', join(MODELS, file), '-o', join(folder, basename(file, '.toml'))])),
+    ...files.map(
+      (file) => () => command(hardpoint, ['run', join(MODELS, file), '-o', join(folder, basename(file, '.toml'))]),
+    ),
   ])
 
   project.provide('samples', {
@@ -106,14 +119,36 @@ function ridden(strut: string): string {
  * after that.
  */
 function build(): Record<'hardpoint' | 'sample_page' | 'rockers' | 'answers', string> {
-  const command = ['build', '--release', '--workspace', '--bin', 'hardpoint', '--example', 'sample_page', '--example', 'rockers', '--example', 'answers', '--message-format', 'json']
+  const command = [
+    'build',
+    '--release',
+    '--workspace',
+    '--bin',
+    'hardpoint',
+    '--example',
+    'sample_page',
+    '--example',
+    'rockers',
+    '--example',
+    'answers',
+    '--message-format',
+    'json',
+  ]
   const stdio: StdioOptions = ['ignore', 'pipe', 'inherit']
-  const messages = execFileSync('cargo', command, { cwd: ROOT, maxBuffer: Infinity, stdio }).toString().trim().split('\n')
+  const messages = execFileSync('cargo', command, { cwd: ROOT, maxBuffer: Infinity, stdio })
+    .toString()
+    .trim()
+    .split('\n')
   const built = messages.map((line) => JSON.parse(line) as { executable?: string | null; target?: { name: string } })
   const program = (name: string) => {
     const path = built.find(({ executable, target }) => executable && target?.name === name)?.executable
     if (!path) throw new Error(`cargo built no ${name}`)
     return path
   }
-  return { hardpoint: program('hardpoint'), sample_page: program('sample_page'), rockers: program('rockers'), answers: program('answers') }
+  return {
+    hardpoint: program('hardpoint'),
+    sample_page: program('sample_page'),
+    rockers: program('rockers'),
+    answers: program('answers'),
+  }
 }

@@ -64,12 +64,17 @@ test('bounds stand where the object does, and keep every point of a few', () => 
 
 describe('the camera', () => {
   const points = [new Vector3(-50, -50, 3), new Vector3(200, 50, 3), new Vector3(20, 10, 700)]
-  const directions = [new Vector3(0.75, -1, 0.55), new Vector3(1, 0, 1e-4), new Vector3(0, -1e-4, 1)].map((one) => one.normalize())
+  const directions = [new Vector3(0.75, -1, 0.55), new Vector3(1, 0, 1e-4), new Vector3(0, -1e-4, 1)].map((one) =>
+    one.normalize(),
+  )
   const size = 750
 
   test.each(directions)('sees the whole motion from %s, below the buttons', (direction) => {
     for (const camera of [new PerspectiveCamera(22), new OrthographicCamera()]) {
-      for (const [width, height] of [[600, 1000], [1400, 1000]]) {
+      for (const [width, height] of [
+        [600, 1000],
+        [1400, 1000],
+      ]) {
         camera.up.set(0, 0, 1)
         camera.near = 0.02 * size
         camera.far = 60 * size
@@ -86,16 +91,29 @@ describe('the camera', () => {
 
 describe('wheels of a pair', () => {
   const bodies = ['ground', 'carrier', 'sun', 'planet'].map((name) => ({ ...crank().bodies[0], name }))
-  const hinge = (name: string, body_i: number, body_j: number, x = 0) => ({ ...crank().joints[0], name, body_i, body_j, at_i: [x, 0, 0], at_j: [x, 0, 0] })
+  const hinge = (name: string, body_i: number, body_j: number, x = 0) => ({
+    ...crank().joints[0],
+    name,
+    body_i,
+    body_j,
+    at_i: [x, 0, 0],
+    at_j: [x, 0, 0],
+  })
   const joints = [hinge('carrier', 1, 0), hinge('sun', 1, 2), hinge('planet', 3, 1, 60)] as Report['joints']
   const term = (joint: number, coefficient: number) => ({ joint, coefficient, turns: true })
   const coupler = (name: string, terms: ReturnType<typeof term>[]) => ({ name, kind: 'gear', terms, sizes: [20, 60] })
-  const couplers = [coupler('inner', [term(1, 1), term(2, 1)]), coupler('ring', [term(2, 1), term(0, -3)])] as Report['couplers']
+  const couplers = [
+    coupler('inner', [term(1, 1), term(2, 1)]),
+    coupler('ring', [term(2, 1), term(0, -3)]),
+  ] as Report['couplers']
 
   test('of a planetary train are not fixed to the carrier, and the ring is fixed to ground', () => {
     const train = new Train(new Mechanism({ ...crank(), bodies, joints, couplers, drivers: [] }))
     const names = [0, 1].map((k) => train.pair(k)!.map(({ body }) => bodies[body].name))
-    expect(names).toEqual([['sun', 'planet'], ['planet', 'ground']])
+    expect(names).toEqual([
+      ['sun', 'planet'],
+      ['planet', 'ground'],
+    ])
   })
 
   // A planar train, where both pairs lie in one plane.
@@ -145,17 +163,34 @@ describe('the corner that a mechanism is seen from', () => {
 
 describe('a link', () => {
   const link = { ...crank().bodies[1], poses: crank().bodies[0].poses, roles: ['joint', 'joint'] as const }
-  const pin = (body_i: number, body_j: number, x: number, axis: [number, number, number]) =>
-    ({ ...crank().joints[0], body_i, body_j, at_i: [x, 0, 0], at_j: [x, 0, 0], axis, axis_j: axis })
-  const at = (...places: number[]) => ({ ...link, skeleton: places.map((x) => [x, 0, 0]) }) as unknown as Report['bodies'][number]
+  const pin = (body_i: number, body_j: number, x: number, axis: [number, number, number]) => ({
+    ...crank().joints[0],
+    body_i,
+    body_j,
+    at_i: [x, 0, 0],
+    at_j: [x, 0, 0],
+    axis,
+    axis_j: axis,
+  })
+  const at = (...places: number[]) =>
+    ({ ...link, skeleton: places.map((x) => [x, 0, 0]) }) as unknown as Report['bodies'][number]
   /** Two links in a row and a platform, hinged about y but for the last hinge, which makes it a mechanism in space. */
   const chain = (middle: [number, number, number]) => {
-    const joints = [pin(0, 1, 0, [0, 1, 0]), pin(1, 2, 100, middle), pin(2, 3, 200, [0, 1, 0]), pin(3, 0, 300, [0, 0, 1])] as Report['joints']
+    const joints = [
+      pin(0, 1, 0, [0, 1, 0]),
+      pin(1, 2, 100, middle),
+      pin(2, 3, 200, [0, 1, 0]),
+      pin(3, 0, 300, [0, 0, 1]),
+    ] as Report['joints']
     return new Mechanism({ ...crank(), bodies: [at(0), at(0, 100), at(100, 200), at(200, 300)], joints, drivers: [] })
   }
 
   test('between parallel hinges folds on another such link', () => {
-    expect([1, 2, 3].map((body) => foldAxis(chain([0, 1, 0]), body)?.toArray())).toEqual([[0, 1, 0], [0, 1, 0], undefined])
+    expect([1, 2, 3].map((body) => foldAxis(chain([0, 1, 0]), body)?.toArray())).toEqual([
+      [0, 1, 0],
+      [0, 1, 0],
+      undefined,
+    ])
   })
 
   test('between hinges across one another does not', () => {
@@ -165,7 +200,8 @@ describe('a link', () => {
 
 describe('arrows of a variable', () => {
   const arrow = (v: number, turn: number) => ({ body: 1, at: [200, 0, 0], v: [v, 0, 0], turn: [0, 0, turn] })
-  const shown = (v: number, turn: number) => shownChange(new Mechanism(crank()), { arrows: [arrow(v, turn)] } as unknown as Report['variables'][number])
+  const shown = (v: number, turn: number) =>
+    shownChange(new Mechanism(crank()), { arrows: [arrow(v, turn)] } as unknown as Report['variables'][number])
 
   test('stand for no change where a turn leaves its place but for rounding', () => {
     expect(shown(1e-15, 1)).toBeUndefined()

@@ -21,7 +21,10 @@ let server: ChildProcess | undefined
 /** Starts the studio; the address that it prints. */
 function start(port = 0): Promise<string> {
   const options = ['--no-browser', '--token', TOKEN, '--port', String(port)]
-  const child = spawn(hardpoint, ['studio', 'strut.toml', ...options], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] })
+  const child = spawn(hardpoint, ['studio', 'strut.toml', ...options], {
+    cwd: folder,
+    stdio: ['ignore', 'pipe', 'inherit'],
+  })
   server = child
   return new Promise((resolve) => child.stdout.once('data', (line) => resolve(String(line).trim())))
 }
@@ -37,7 +40,13 @@ async function open(address: string): Promise<Page> {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 } })
   page.setDefaultTimeout(WAIT)
   page.on('pageerror', (error) => faults.push(error.message))
-  page.on('request', (request) => new URL(request.url()).hostname === '127.0.0.1' || /^(data|blob):/.test(request.url()) || faults.push(request.url()))
+  page.on(
+    'request',
+    (request) =>
+      new URL(request.url()).hostname === '127.0.0.1' ||
+      /^(data|blob):/.test(request.url()) ||
+      faults.push(request.url()),
+  )
   await page.goto(address)
   await page.waitForFunction(() => performance.getEntriesByName('ready').length > 0)
   return page

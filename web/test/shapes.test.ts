@@ -9,7 +9,10 @@ import { drawnTeeth, gearOutline, rackOutline, toothHeight } from '../src/scene/
 
 const radius = ([x, y]: Flat) => Math.hypot(x, y)
 const circle = (r: number, count = 360): Flat[] =>
-  Array.from({ length: count }, (_, k) => [r * Math.cos((2 * Math.PI * k) / count), r * Math.sin((2 * Math.PI * k) / count)])
+  Array.from({ length: count }, (_, k) => [
+    r * Math.cos((2 * Math.PI * k) / count),
+    r * Math.sin((2 * Math.PI * k) / count),
+  ])
 
 /** True if a point is inside an outline. */
 function inside([x, y]: Flat, outline: Flat[]): boolean {
@@ -46,8 +49,11 @@ describe('gears', () => {
     for (let turn = 0; turn < 0.6; turn += 0.05) {
       const a = gearOutline(n, r, height, turn)
       // A gap faces the other's tooth, at the angle π.
-      const b = gearOutline(m, 3 * r, height, Math.PI + Math.PI / m - (turn * n) / m).map(([x, y]): Flat => [x + apart, y])
-      const tips = (outline: Flat[], about: number, limit: number) => outline.filter(([x, y]) => Math.hypot(x - about, y) > limit)
+      const b = gearOutline(m, 3 * r, height, Math.PI + Math.PI / m - (turn * n) / m).map(
+        ([x, y]): Flat => [x + apart, y],
+      )
+      const tips = (outline: Flat[], about: number, limit: number) =>
+        outline.filter(([x, y]) => Math.hypot(x - about, y) > limit)
       for (const tip of tips(a, 0, r)) expect(inside(tip, b)).toBe(false)
       for (const tip of tips(b, apart, 3 * r)) expect(inside(tip, a)).toBe(false)
     }
@@ -127,9 +133,12 @@ describe('belts', () => {
 })
 
 describe('cams', () => {
-  test.each([circle(50), circle(50).reverse()])('the profile of a round cam is the roller within its pitch curve', (...pitch) => {
-    for (const point of camProfile(pitch, 8)) expect(radius(point)).toBeCloseTo(42, 2)
-  })
+  test.each([circle(50), circle(50).reverse()])(
+    'the profile of a round cam is the roller within its pitch curve',
+    (...pitch) => {
+      for (const point of camProfile(pitch, 8)) expect(radius(point)).toBeCloseTo(42, 2)
+    },
+  )
 
   test('the least radius of curvature of an ellipse is b²/a', () => {
     const ellipse = circle(1, 2000).map(([x, y]): Flat => [30 * x, 20 * y])
@@ -139,13 +148,40 @@ describe('cams', () => {
   })
 
   test('a straight curve bends nowhere', () => {
-    expect(leastCurvature([[0, 0], [1, 0], [2, 0]], false)).toBe(Infinity)
+    expect(
+      leastCurvature(
+        [
+          [0, 0],
+          [1, 0],
+          [2, 0],
+        ],
+        false,
+      ),
+    ).toBe(Infinity)
   })
 
   test('a groove reaches its half width all round its curve', () => {
-    const groove = grooveOutline([[0, 0], [10, 0], [20, 0]], 2)
-    for (const point of [[10, 1.9], [10, -1.9], [21.8, 0], [-1.8, 0]] as Flat[]) expect(inside(point, groove)).toBe(true)
-    for (const point of [[10, 2.1], [22.2, 0], [-2.2, 0]] as Flat[]) expect(inside(point, groove)).toBe(false)
+    const groove = grooveOutline(
+      [
+        [0, 0],
+        [10, 0],
+        [20, 0],
+      ],
+      2,
+    )
+    for (const point of [
+      [10, 1.9],
+      [10, -1.9],
+      [21.8, 0],
+      [-1.8, 0],
+    ] as Flat[])
+      expect(inside(point, groove)).toBe(true)
+    for (const point of [
+      [10, 2.1],
+      [22.2, 0],
+      [-2.2, 0],
+    ] as Flat[])
+      expect(inside(point, groove)).toBe(false)
   })
 })
 

@@ -47,32 +47,38 @@ describe('every model', () => {
   }
 
   // Opened in one scheme and switched to the other, by turns, so that both ways to each are seen.
-  test.each(Object.entries(models).map(([name, url], k) => ({ name, url, order: k % 2 ? SCHEMES : SCHEMES.toReversed() })))(
-    '$name is drawn whole in both schemes and says nothing on the console',
-    async ({ name, url, order }) => {
-      const { page, complaints } = await visit(browser, url, { viewport: { width: 1440, height: 900 }, colorScheme: order[0] })
-      for (const scheme of order) {
-        await page.emulateMedia({ colorScheme: scheme })
-        pictures[scheme].push([name, await whole(page, scheme)])
-      }
-      const last = Number(await page.getByTestId('scrub').getAttribute('max'))
-      for (const moment of MOMENTS) {
-        await scrub(page, Math.round(moment * last))
-        await whole(page, `at step ${Math.round(moment * last)} of ${last}`)
-      }
-      expect.soft(complaints).toEqual([])
+  test.each(
+    Object.entries(models).map(([name, url], k) => ({ name, url, order: k % 2 ? SCHEMES : SCHEMES.toReversed() })),
+  )('$name is drawn whole in both schemes and says nothing on the console', async ({ name, url, order }) => {
+    const { page, complaints } = await visit(browser, url, {
+      viewport: { width: 1440, height: 900 },
+      colorScheme: order[0],
+    })
+    for (const scheme of order) {
+      await page.emulateMedia({ colorScheme: scheme })
+      pictures[scheme].push([name, await whole(page, scheme)])
+    }
+    const last = Number(await page.getByTestId('scrub').getAttribute('max'))
+    for (const moment of MOMENTS) {
+      await scrub(page, Math.round(moment * last))
+      await whole(page, `at step ${Math.round(moment * last)} of ${last}`)
+    }
+    expect.soft(complaints).toEqual([])
 
-      const motion = motionBeside(url)
-      const varies = (quantity: string) => spread(motion.get(quantity) ?? []) > CONSTANT
-      const offered = page.getByTestId('quantity').first().locator('option')
-      const first = await offered.and(page.locator(':checked')).innerText()
-      if ((await offered.allInnerTexts()).some(varies)) expect.soft(varies(first), `${first}, on which it opens, varies`).toBe(true)
-      await page.context().close()
-    },
-  )
+    const motion = motionBeside(url)
+    const varies = (quantity: string) => spread(motion.get(quantity) ?? []) > CONSTANT
+    const offered = page.getByTestId('quantity').first().locator('option')
+    const first = await offered.and(page.locator(':checked')).innerText()
+    if ((await offered.allInnerTexts()).some(varies))
+      expect.soft(varies(first), `${first}, on which it opens, varies`).toBe(true)
+    await page.context().close()
+  })
 
   test.skipIf(!IMAGES)('is shown on the contact sheets', async () => {
-    const colours = { light: { background: '#ffffff', text: '#1c2126' }, dark: { background: '#0f1215', text: '#e6e9ec' } }
+    const colours = {
+      light: { background: '#ffffff', text: '#1c2126' },
+      dark: { background: '#0f1215', text: '#e6e9ec' },
+    }
     for (const scheme of SCHEMES) {
       const made = await sheet(desk, pictures[scheme], colours[scheme])
       expect(made.length, 'bytes of a sheet that readers load').toBeLessThan(400_000)

@@ -31,7 +31,11 @@ const press = async (...keys: string[]) => {
 }
 
 describe('the designs that were gone through', () => {
-  const go = (by: number) => page.evaluate((by) => window.designs.go({ text: window.model, settings: [{ name: 'rack_z', by }], label: `rack_z ${by}` }), by)
+  const go = (by: number) =>
+    page.evaluate(
+      (by) => window.designs.go({ text: window.model, settings: [{ name: 'rack_z', by }], label: `rack_z ${by}` }),
+      by,
+    )
   const shown = () => page.evaluate(() => window.shown.map(({ settings }) => settings[0]?.by ?? 0))
 
   test('are undone and done again by buttons that say what, and by keys', async () => {
@@ -63,7 +67,8 @@ describe('the designs that were gone through', () => {
     await press('Enter')
     await go(2)
     await press('Enter')
-    const names = () => page.getByTestId('snapshot-rename').evaluateAll((all) => all.map((one) => (one as HTMLInputElement).value))
+    const names = () =>
+      page.getByTestId('snapshot-rename').evaluateAll((all) => all.map((one) => (one as HTMLInputElement).value))
     expect(await names()).toEqual(['stiff', 'design 1'])
     await press('Tab', 'Tab')
     await page.keyboard.insertText('soft')
@@ -86,10 +91,21 @@ describe('the designs that were gone through', () => {
 })
 
 describe('a study', () => {
-  const table = { title: 'Goals', note: '', header: ['goal', 'nominal', 'optimised', 'target'], rows: [['toe_error (bump)', '0.40243 deg', '0.0058794 deg', '0 deg']] }
-  const found = { tables: [table], change: [{ name: 'rack_z', by: 2 }], text: 'name = "found"', message: 'an optimum within the bounds' }
+  const table = {
+    title: 'Goals',
+    note: '',
+    header: ['goal', 'nominal', 'optimised', 'target'],
+    rows: [['toe_error (bump)', '0.40243 deg', '0.0058794 deg', '0 deg']],
+  }
+  const found = {
+    tables: [table],
+    change: [{ name: 'rack_z', by: 2 }],
+    text: 'name = "found"',
+    message: 'an optimum within the bounds',
+  }
   const last = () => page.evaluate(() => ({ ...window.studies.at(-1)! }))
-  const end = (result: typeof found | { tables: never[]; change: null; text: null; message: string }) => page.evaluate((result) => window.studies.at(-1)!.end(result), result)
+  const end = (result: typeof found | { tables: never[]; change: null; text: null; message: string }) =>
+    page.evaluate((result) => window.studies.at(-1)!.end(result), result)
 
   test('is requested by a form, indicates how far it is, and its design is taken', async () => {
     await page.getByTestId('search-outer_z').getByRole('checkbox').uncheck()
@@ -100,17 +116,27 @@ describe('a study', () => {
     await page.getByTestId('optimise-starts').fill('8')
     await page.getByTestId('optimise-run').click()
     expect((await last()).request).toEqual({
-      variables: [{ name: 'outer_x', bounds: [-15, 15] }, { name: 'rack_z', bounds: [-15, 20.5] }],
-      goals: [{ metric: 'toe_error', weight: 1, target: null }, { metric: 'camber_range', weight: 0.5, target: 2 }],
+      variables: [
+        { name: 'outer_x', bounds: [-15, 15] },
+        { name: 'rack_z', bounds: [-15, 20.5] },
+      ],
+      goals: [
+        { metric: 'toe_error', weight: 1, target: null },
+        { metric: 'camber_range', weight: 0.5, target: 2 },
+      ],
       starts: 8,
       iterations: 100,
     })
     await page.evaluate(() => window.studies[0].tell(3, 100, '3  objective 3.4786e-5  limits kept'))
     expect(await page.getByTestId('optimise-lines').innerText()).toBe('3  objective 3.4786e-5  limits kept')
-    expect(await page.getByTestId('optimise-progress').evaluate((bar: HTMLProgressElement) => [bar.value, bar.max])).toEqual([3, 100])
+    expect(
+      await page.getByTestId('optimise-progress').evaluate((bar: HTMLProgressElement) => [bar.value, bar.max]),
+    ).toEqual([3, 100])
     await end(found)
     await page.getByTestId('optimise-take').click()
-    expect(await page.evaluate(() => window.taken)).toEqual([{ change: [{ name: 'rack_z', by: 2 }], studied: 'name = "strut"' }])
+    expect(await page.evaluate(() => window.taken)).toEqual([
+      { change: [{ name: 'rack_z', by: 2 }], studied: 'name = "strut"' },
+    ])
     // The selection is unchanged.
     expect(await page.getByLabel('highest of rack_z').inputValue()).toBe('20.5')
   })
@@ -121,7 +147,9 @@ describe('a study', () => {
     expect((await last()).cancelled).toBe(true)
     expect(await page.getByTestId('optimise-cancel').isDisabled()).toBe(true)
     await end({ ...found, message: 'interrupted; the best of 4 designs' })
-    expect(await page.getByTestId('optimise').innerText()).toMatch(/interrupted.*toe_error \(bump\)\s+0.40243 deg\s+0.0058794 deg/s)
+    expect(await page.getByTestId('optimise').innerText()).toMatch(
+      /interrupted.*toe_error \(bump\)\s+0.40243 deg\s+0.0058794 deg/s,
+    )
     await page.getByTestId('optimise-discard').click()
     expect(await page.evaluate(() => window.taken)).toEqual([])
     expect(await page.getByTestId('optimise-run').isEnabled()).toBe(true)
@@ -153,16 +181,19 @@ describe('a study', () => {
 
   test('follows the text, but keeps what was chosen until it is reported to read it again', async () => {
     await page.getByTestId('optimise-starts').fill('5')
-    const change = (text: string) => page.evaluate((text) => {
-      window.model = text
-      window.refresh()
-    }, text)
+    const change = (text: string) =>
+      page.evaluate((text) => {
+        window.model = text
+        window.refresh()
+      }, text)
     await change('name = "other"')
     expect(await page.getByTestId('optimise-starts').inputValue()).toBe('5')
     await page.getByTestId('optimise-again').click()
     await expect.poll(() => page.getByTestId('optimise-starts').inputValue()).toBe('1')
     await change('broken')
-    await expect.poll(() => page.getByTestId('optimise-refused').innerText()).toBe('the mechanism does not move: rack_drive has no law')
+    await expect
+      .poll(() => page.getByTestId('optimise-refused').innerText())
+      .toBe('the mechanism does not move: rack_drive has no law')
     await change('name = "strut"')
     await page.getByTestId('optimise-run').waitFor()
   })
@@ -221,7 +252,8 @@ describe('a target that is drawn', () => {
     await stroke(0.6, 0.4, () => 0.25)
     await page.getByTestId('sketch-take').click()
     const points = await made()
-    const at = (x: number) => points.reduce((best, point) => (Math.abs(point[0] - x) < Math.abs(best[0] - x) ? point : best))[1]
+    const at = (x: number) =>
+      points.reduce((best, point) => (Math.abs(point[0] - x) < Math.abs(best[0] - x) ? point : best))[1]
     expect(Math.abs(at(0))).toBeLessThan(0.02)
     expect(Math.abs(at(10))).toBeLessThan(0.02)
     expect(at(4)).toBeGreaterThan(0.5)
@@ -235,7 +267,12 @@ describe('a target that is drawn', () => {
     await press('PageUp', 'PageUp', 'PageUp')
     expect(await page.getByTestId('sketch-reading').innerText()).toMatch(/^5 s: 0 deg/)
     await press('Shift+Tab')
-    for (let k = 0; k < 6 && !(await page.getByTestId('sketch-take').evaluate((one) => one === document.activeElement)); k++) await press('Shift+Tab')
+    for (
+      let k = 0;
+      k < 6 && !(await page.getByTestId('sketch-take').evaluate((one) => one === document.activeElement));
+      k++
+    )
+      await press('Shift+Tab')
     await press('Enter')
     const points = await made()
     expect(points).toHaveLength(2)
@@ -282,7 +319,9 @@ test('a target that is drawn becomes a metric of the text', async () => {
   await button.click()
   await press('Enter', 'ArrowRight', 'Enter')
   await page.getByTestId('sketch-take').click()
-  expect(await page.evaluate(() => window.model)).toBe('name = "strut"\n\n[metrics.wheel_z_target]\nof = "wheel.z"\nover = "travel"\ntake = "rms"\nwindow = [5, 5.2]\ntarget = [[5, 0], [5.2, 0]]\n')
+  expect(await page.evaluate(() => window.model)).toBe(
+    'name = "strut"\n\n[metrics.wheel_z_target]\nof = "wheel.z"\nover = "travel"\ntake = "rms"\nwindow = [5, 5.2]\ntarget = [[5, 0], [5.2, 0]]\n',
+  )
   expect(await button.evaluate((one) => one === document.activeElement)).toBe(true)
   await button.click()
   await button.click()
@@ -301,7 +340,10 @@ test('a finger sets points, and draws with touch as a mouse does', async () => {
   await expect.poll(points).toBe(2)
   const devtools = await page.context().newCDPSession(page)
   const touch = (type: 'touchStart' | 'touchMove' | 'touchEnd', across?: number) =>
-    devtools.send('Input.dispatchTouchEvent', { type, touchPoints: across === undefined ? [] : [{ x: x + across * width, y: y + 0.4 * height }] })
+    devtools.send('Input.dispatchTouchEvent', {
+      type,
+      touchPoints: across === undefined ? [] : [{ x: x + across * width, y: y + 0.4 * height }],
+    })
   await touch('touchStart', 0.4)
   for (let k = 1; k <= 10; k++) await touch('touchMove', 0.4 + 0.02 * k)
   await touch('touchEnd')

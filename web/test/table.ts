@@ -8,7 +8,9 @@ export function table(text: string): Map<string, number[]> {
 
 /** The cells of a line; quoted ones may hold commas. */
 function cells(line: string): string[] {
-  return [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,]*))/g)].map(([, quoted, plain]) => quoted?.replaceAll('""', '"') ?? plain)
+  return [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,]*))/g)].map(
+    ([, quoted, plain]) => quoted?.replaceAll('""', '"') ?? plain,
+  )
 }
 
 /** The motion that the command wrote next to a report: columns by their names without units. */

@@ -6,7 +6,9 @@ import { suggest, type Schema } from '../src/editor/complete'
 import { type Kind, outline, parts, piece, quoted, start } from '../src/editor/toml'
 
 const MODELS = join(import.meta.dirname, '../../models')
-const models = readdirSync(MODELS).filter((file) => file.endsWith('.toml')).map((file) => readFileSync(join(MODELS, file), 'utf8'))
+const models = readdirSync(MODELS)
+  .filter((file) => file.endsWith('.toml'))
+  .map((file) => readFileSync(join(MODELS, file), 'utf8'))
 const schema = JSON.parse(readFileSync(join(MODELS, 'hardpoint.schema.json'), 'utf8')) as Schema
 
 /** The pieces of a text that are of a kind. */
@@ -61,9 +63,19 @@ describe('pieces of TOML', () => {
 })
 
 test('an outline has the paths and ends of headings and keys', () => {
-  const text = 'name = "x"\n\n[metrics.a]   # one\nof = "toe"\ntarget = [\n  [0, 1],\n]\n\n# about b\n[design]\nb = { move = "p", along = "x" }\n'
+  const text =
+    'name = "x"\n\n[metrics.a]   # one\nof = "toe"\ntarget = [\n  [0, 1],\n]\n\n# about b\n[design]\nb = { move = "p", along = "x" }\n'
   const entries = outline(text)
-  expect(entries.map(({ path }) => path.join('/'))).toEqual(['name', 'metrics/a', 'metrics/a/of', 'metrics/a/target', 'design', 'design/b', 'design/b/move', 'design/b/along'])
+  expect(entries.map(({ path }) => path.join('/'))).toEqual([
+    'name',
+    'metrics/a',
+    'metrics/a/of',
+    'metrics/a/target',
+    'design',
+    'design/b',
+    'design/b/move',
+    'design/b/along',
+  ])
   const [, metric, , target, , b] = entries
   expect(text.slice(metric.from, metric.end)).toBe('[metrics.a]   # one\nof = "toe"\ntarget = [\n  [0, 1],\n]')
   expect(text.slice(target.from, target.end)).toBe('target = [\n  [0, 1],\n]')
@@ -71,7 +83,8 @@ test('an outline has the paths and ends of headings and keys', () => {
 })
 
 describe('the smallest changes', () => {
-  const apply = (text: string, list: ReturnType<typeof changes>) => [...list].reverse().reduce((made, { from, to, insert }) => made.slice(0, from) + insert + made.slice(to), text)
+  const apply = (text: string, list: ReturnType<typeof changes>) =>
+    [...list].reverse().reduce((made, { from, to, insert }) => made.slice(0, from) + insert + made.slice(to), text)
   const between = (a: string, b: string) => changes(a.split('\n'), b.split('\n'))
 
   test('make the one text of the other, whatever they are', () => {
@@ -91,7 +104,10 @@ describe('the smallest changes', () => {
 describe('what could stand at a place', () => {
   const text = models.find((model) => model.includes('MacPherson strut'))!
   /** With the cursor at `|`, after the model. */
-  const labels = (written: string, before = text) => suggest(`${before}\n${written}`, before.length + 1 + written.length, schema)?.suggestions.map(({ label }) => label) ?? []
+  const labels = (written: string, before = text) =>
+    suggest(`${before}\n${written}`, before.length + 1 + written.length, schema)?.suggestions.map(
+      ({ label }) => label,
+    ) ?? []
 
   test('are the hardpoints and bodies of the model', () => {
     expect(labels('[joints.new]\nat = "')).toContain('tie_rod_inner')

@@ -33,7 +33,8 @@ test('no part is narrower than a two hundredth', () => {
 })
 
 test('values within a part are those of its steps and those at its edges', () => {
-  const seen = (values: Float32Array, abscissa: Float32Array, part: [number, number]) => inside(values, abscissa, part).sort((a, b) => a - b)
+  const seen = (values: Float32Array, abscissa: Float32Array, part: [number, number]) =>
+    inside(values, abscissa, part).sort((a, b) => a - b)
   expect(seen(curve(0, 10, 0, -10), curve(0, 1, 2, 3), [0.5, 1.5])).toEqual([5, 5, 10])
   // Between two steps only the edges are left.
   expect(seen(curve(0, 10), curve(0, 1), [0.25, 0.5])).toEqual([2.5, 5])

@@ -61,13 +61,30 @@ const NAMED: Record<string, string[]> = {
 }
 
 /** One of each kind, as its table is called. */
-const ONE: Record<string, string> = { hardpoints: 'hardpoint', bodies: 'body', joints: 'joint', points: 'point', wheels: 'wheel', axles: 'axle', drivers: 'driver', measures: 'measure', metrics: 'metric', cases: 'case', design: 'design variable', parameters: 'parameter' }
+const ONE: Record<string, string> = {
+  hardpoints: 'hardpoint',
+  bodies: 'body',
+  joints: 'joint',
+  points: 'point',
+  wheels: 'wheel',
+  axles: 'axle',
+  drivers: 'driver',
+  measures: 'measure',
+  metrics: 'metric',
+  cases: 'case',
+  design: 'design variable',
+  parameters: 'parameter',
+}
 
 /**
  * Possible entries at a place of a text, and the start of the word that they would replace; undefined where nothing is
  * known.
  */
-export function suggest(source: string, at: number, schema?: Schema): { from: number; suggestions: Suggestion[] } | undefined {
+export function suggest(
+  source: string,
+  at: number,
+  schema?: Schema,
+): { from: number; suggestions: Suggestion[] } | undefined {
   const here = standing(source.slice(0, at))
   if (!here) return undefined
   const { table, key, begun, quoted: inQuotes, heading } = here
@@ -81,14 +98,30 @@ export function suggest(source: string, at: number, schema?: Schema): { from: nu
   }
   if (!key) {
     const nodes = schema ? walk(schema, table) : []
-    const present = new Set(entries.filter(({ path }) => path.length === table.length + 1 && table.every((part, k) => path[k] === part)).map(({ path }) => path.at(-1)!))
-    const suggestions = nodes.flatMap((node) => keysOf(node, schema!, (name) => `${name} = `)).filter(({ label }) => !present.has(label) || label === begun)
+    const present = new Set(
+      entries
+        .filter(({ path }) => path.length === table.length + 1 && table.every((part, k) => path[k] === part))
+        .map(({ path }) => path.at(-1)!),
+    )
+    const suggestions = nodes
+      .flatMap((node) => keysOf(node, schema!, (name) => `${name} = `))
+      .filter(({ label }) => !present.has(label) || label === begun)
     return suggestions.length > 0 ? { from, suggestions: unique(suggestions) } : undefined
   }
   const write = (value: string) => (inQuotes ? value : text(value))
   const tables = NAMED[key.at(-1)!] ?? []
-  const names = tables.flatMap((kind) => [...(kind === 'bodies' ? ['ground'] : []), ...namesIn(entries, kind)].map((name) => ({ label: name, insert: write(name), detail: ONE[kind] })))
-  const words = schema ? walk(schema, key).flatMap((node) => valuesOf(node, schema)).map((word) => ({ ...word, insert: write(word.label) })) : []
+  const names = tables.flatMap((kind) =>
+    [...(kind === 'bodies' ? ['ground'] : []), ...namesIn(entries, kind)].map((name) => ({
+      label: name,
+      insert: write(name),
+      detail: ONE[kind],
+    })),
+  )
+  const words = schema
+    ? walk(schema, key)
+        .flatMap((node) => valuesOf(node, schema))
+        .map((word) => ({ ...word, insert: write(word.label) }))
+    : []
   const suggestions = unique([...names, ...words])
   return suggestions.length > 0 ? { from, suggestions } : undefined
 }
@@ -102,32 +135,53 @@ function forms(node: Schema, root: Schema, seen = new Set<Schema>()): Schema[] {
   if (seen.has(node)) return []
   seen.add(node)
   const named = node.$ref?.startsWith('#/$defs/') ? root.$defs?.[node.$ref.slice('#/$defs/'.length)] : undefined
-  return [node, ...[named, ...(node.anyOf ?? []), ...(node.oneOf ?? []), ...(node.allOf ?? [])].flatMap((one) => (one ? forms(one, root, seen) : []))]
+  return [
+    node,
+    ...[named, ...(node.anyOf ?? []), ...(node.oneOf ?? []), ...(node.allOf ?? [])].flatMap((one) =>
+      one ? forms(one, root, seen) : [],
+    ),
+  ]
 }
 
 /** Those of a list's elements, and theirs. */
 function elements(node: Schema, root: Schema): Schema[] {
-  return forms(node, root).flatMap((form) => [form, ...[form.items, ...(form.prefixItems ?? [])].flatMap((item) => (item && typeof item === 'object' ? elements(item, root) : []))])
+  return forms(node, root).flatMap((form) => [
+    form,
+    ...[form.items, ...(form.prefixItems ?? [])].flatMap((item) =>
+      item && typeof item === 'object' ? elements(item, root) : [],
+    ),
+  ])
 }
 
 /** Schemas of the value at a path. */
 function walk(root: Schema, path: string[]): Schema[] {
   let nodes = [root]
   for (const part of path) {
-    nodes = nodes.flatMap((node) => elements(node, root)).flatMap((form) => {
-      const { properties, additionalProperties: others } = form
-      const own = properties?.[part] ?? (others && typeof others === 'object' ? others : undefined)
-      return own ? [own] : []
-    })
+    nodes = nodes
+      .flatMap((node) => elements(node, root))
+      .flatMap((form) => {
+        const { properties, additionalProperties: others } = form
+        const own = properties?.[part] ?? (others && typeof others === 'object' ? others : undefined)
+        return own ? [own] : []
+      })
   }
   return nodes
 }
 
 function keysOf(node: Schema, root: Schema, insert: (name: string) => string): Suggestion[] {
-  return elements(node, root).flatMap(({ properties = {} }) => Object.entries(properties).map(([name, { description }]) => ({ label: name, insert: insert(quoted(name)), about: description })))
+  return elements(node, root).flatMap(({ properties = {} }) =>
+    Object.entries(properties).map(([name, { description }]) => ({
+      label: name,
+      insert: insert(quoted(name)),
+      about: description,
+    })),
+  )
 }
 
 function valuesOf(node: Schema, root: Schema): { label: string; about?: string }[] {
   return elements(node, root).flatMap(({ enum: several = [], const: one, description }) =>
-    [...several, one].flatMap((value) => (typeof value === 'string' ? [{ label: value, about: one === undefined ? undefined : description }] : [])))
+    [...several, one].flatMap((value) =>
+      typeof value === 'string' ? [{ label: value, about: one === undefined ? undefined : description }] : [],
+    ),
+  )
 }

@@ -1,10 +1,37 @@
-import { autocompletion, closeBrackets, closeBracketsKeymap, type CompletionContext, type CompletionResult, completionKeymap } from '@codemirror/autocomplete'
-import { defaultKeymap, history, historyKeymap, indentWithTab, redo, redoDepth, toggleComment, undo, undoDepth } from '@codemirror/commands'
+import {
+  autocompletion,
+  closeBrackets,
+  closeBracketsKeymap,
+  type CompletionContext,
+  type CompletionResult,
+  completionKeymap,
+} from '@codemirror/autocomplete'
+import {
+  defaultKeymap,
+  history,
+  historyKeymap,
+  indentWithTab,
+  redo,
+  redoDepth,
+  toggleComment,
+  undo,
+  undoDepth,
+} from '@codemirror/commands'
 import { bracketMatching, indentUnit } from '@codemirror/language'
 import { lintGutter, nextDiagnostic, previousDiagnostic, setDiagnostics } from '@codemirror/lint'
 import { highlightSelectionMatches, openSearchPanel, search, searchKeymap } from '@codemirror/search'
 import { Annotation, EditorState, type Transaction } from '@codemirror/state'
-import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type Rect } from '@codemirror/view'
+import {
+  drawSelection,
+  dropCursor,
+  EditorView,
+  highlightActiveLine,
+  highlightActiveLineGutter,
+  highlightSpecialChars,
+  keymap,
+  lineNumbers,
+  type Rect,
+} from '@codemirror/view'
 import { el, prose } from '../dom'
 import type { Checker, Diagnostic } from '../engine/engine'
 import { changes } from './changes'
@@ -67,17 +94,38 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
   let version = 0
 
   const status = el('p', { class: 'model-status', role: 'status', 'data-testid': 'model-status' })
-  const list = el('ul', { class: 'model-messages', 'aria-label': 'Messages about the model', 'data-testid': 'model-messages' })
+  const list = el('ul', {
+    class: 'model-messages',
+    'aria-label': 'Messages about the model',
+    'data-testid': 'model-messages',
+  })
   const button = (name: string, title: string, run: (view: EditorView) => void) =>
-    el('button', { type: 'button', title, 'data-testid': `model-${name.toLowerCase()}`, onclick: () => (run(view), view.focus()) }, name)
+    el(
+      'button',
+      { type: 'button', title, 'data-testid': `model-${name.toLowerCase()}`, onclick: () => (run(view), view.focus()) },
+      name,
+    )
   const back = button('Undo', 'Undo typing (Ctrl+Z)', undo)
   const forth = button('Redo', 'Redo typing (Ctrl+Y)', redo)
-  const tools = el('div', { class: 'model-tools', role: 'toolbar', 'aria-label': 'Model text' },
-    back, forth,
+  const tools = el(
+    'div',
+    { class: 'model-tools', role: 'toolbar', 'aria-label': 'Model text' },
+    back,
+    forth,
     button('Comment', 'Comment lines, or take the comment away (Ctrl+/)', toggleComment),
     button('Next', 'Next message (F8)', nextDiagnostic),
-    el('button', { type: 'button', title: 'Find and replace (Ctrl+F)', 'data-testid': 'model-find', onclick: () => openSearchPanel(view) }, 'Find'),
-    status)
+    el(
+      'button',
+      {
+        type: 'button',
+        title: 'Find and replace (Ctrl+F)',
+        'data-testid': 'model-find',
+        onclick: () => openSearchPanel(view),
+      },
+      'Find',
+    ),
+    status,
+  )
 
   /**
    * Typing within a while joins the step before where it is beside it; what comes from outside joins where it is
@@ -93,19 +141,39 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     state: EditorState.create({
       doc: text,
       extensions: [
-        lineNumbers(), highlightActiveLineGutter(), lintGutter(), highlightSpecialChars(), drawSelection(), dropCursor(), highlightActiveLine(),
+        lineNumbers(),
+        highlightActiveLineGutter(),
+        lintGutter(),
+        highlightSpecialChars(),
+        drawSelection(),
+        dropCursor(),
+        highlightActiveLine(),
         EditorState.allowMultipleSelections.of(true),
         history({ newGroupDelay: Infinity, joinToEvent: joins }),
-        indentUnit.of('  '), bracketMatching(), closeBrackets(), highlightSelectionMatches(), search({ top: true }),
+        indentUnit.of('  '),
+        bracketMatching(),
+        closeBrackets(),
+        highlightSelectionMatches(),
+        search({ top: true }),
         autocompletion({ override: [(context) => complete(context, schema)], icons: false, positionInfo: beside }),
-        toml(), theme(),
+        toml(),
+        theme(),
         keymap.of([
           { key: 'F8', run: nextDiagnostic, shift: previousDiagnostic },
-          ...closeBracketsKeymap, ...completionKeymap, ...searchKeymap, ...historyKeymap, ...defaultKeymap, indentWithTab,
+          ...closeBracketsKeymap,
+          ...completionKeymap,
+          ...searchKeymap,
+          ...historyKeymap,
+          ...defaultKeymap,
+          indentWithTab,
           // Only where it closes nothing.
           { key: 'Escape', run: () => (view.setTabFocusMode(true), false) },
         ]),
-        EditorView.contentAttributes.of({ 'aria-label': 'Model, TOML. Escape, then Tab leaves the text.', 'data-testid': 'model-text', spellcheck: 'false' }),
+        EditorView.contentAttributes.of({
+          'aria-label': 'Model, TOML. Escape, then Tab leaves the text.',
+          'data-testid': 'model-text',
+          spellcheck: 'false',
+        }),
         // The Tab key continues to move the focus for those who came by it; typing or clicking into the text edits it.
         EditorView.domEventHandlers({
           focus: () => view.setTabFocusMode(true),
@@ -156,7 +224,12 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
   }
   const tell = () => {
     const messages = [...checked, ...solved]
-    view.dispatch(setDiagnostics(view.state, messages.map((message) => mark(view.state.doc, message))))
+    view.dispatch(
+      setDiagnostics(
+        view.state,
+        messages.map((message) => mark(view.state.doc, message)),
+      ),
+    )
     const count = counted(messages)
     const stale = checked.some(isError)
     status.classList.toggle('stale', stale)
@@ -170,7 +243,12 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
   const entry = (message: Diagnostic) => {
     const { line, column } = message
     if (line === null) return el('div', {}, ...said(message))
-    return el('button', { type: 'button', class: 'plain', onclick: () => reveal(line, column ?? 1) }, el('span', { class: 'line' }, `line ${line}`), el('span', {}, ...said(message)))
+    return el(
+      'button',
+      { type: 'button', class: 'plain', onclick: () => reveal(line, column ?? 1) },
+      el('span', { class: 'line' }, `line ${line}`),
+      el('span', {}, ...said(message)),
+    )
   }
   const reveal = (line: number, column: number) => {
     const at = placeOf(view.state.doc, line, column)
@@ -178,7 +256,13 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     view.focus()
   }
 
-  const element = el('section', { class: 'model', 'aria-label': 'Model', 'data-testid': 'model-pane' }, tools, el('div', { class: 'model-text' }, view.dom), list)
+  const element = el(
+    'section',
+    { class: 'model', 'aria-label': 'Model', 'data-testid': 'model-pane' },
+    tools,
+    el('div', { class: 'model-text' }, view.dom),
+    list,
+  )
   shown = present()
   back.disabled = forth.disabled = true
   list.hidden = true
@@ -218,7 +302,19 @@ function lineBreakOf(text: string): string {
 /** Diagnostic for a failure of the check itself. */
 function failure(error: unknown): Diagnostic {
   const message = `the text could not be checked: ${error instanceof Error ? error.message : String(error)}`
-  return { severity: 'error', code: '', message, file: null, line: null, column: null, length: null, element: null, label: null, notes: [], help: null }
+  return {
+    severity: 'error',
+    code: '',
+    message,
+    file: null,
+    line: null,
+    column: null,
+    length: null,
+    element: null,
+    label: null,
+    notes: [],
+    help: null,
+  }
 }
 
 /** Longer texts are read through for a completion only when it is requested, characters. */
@@ -228,7 +324,12 @@ function complete({ state, pos, explicit }: CompletionContext, schema?: Schema):
   if (state.doc.length > LONG && !explicit) return null
   const found = suggest(state.doc.toString(), pos, schema)
   if (!found || (!explicit && found.from === pos && state.sliceDoc(pos - 1, pos) !== '"')) return null
-  const options = found.suggestions.map(({ label, insert, detail, about }) => ({ label, apply: insert, detail, info: about === undefined ? undefined : () => el('p', {}, ...prose(about)) }))
+  const options = found.suggestions.map(({ label, insert, detail, about }) => ({
+    label,
+    apply: insert,
+    detail,
+    info: about === undefined ? undefined : () => el('p', {}, ...prose(about)),
+  }))
   return { from: found.from, options, validFor: /^[\w-]*$/ }
 }
 

@@ -37,13 +37,26 @@ const WORDS = { error: 'error', warning: 'warning', note: 'note' } as const
 /** A message as the editor marks it; of one about the text as a whole, its beginning. */
 export function mark(doc: Text, message: Diagnostic): Mark {
   const { from, to } = spanOf(doc, message) ?? { from: 0, to: 0 }
-  return { from, to, severity: message.severity === 'note' ? 'info' : message.severity, message: message.message, renderMessage: () => el('div', { class: 'message-tip' }, ...said(message)) }
+  return {
+    from,
+    to,
+    severity: message.severity === 'note' ? 'info' : message.severity,
+    message: message.message,
+    renderMessage: () => el('div', { class: 'message-tip' }, ...said(message)),
+  }
 }
 
 /** Complete text of a message. */
 export function said({ severity, code, message, label, notes, help }: Diagnostic): HTMLElement[] {
   return [
-    el('p', {}, el('b', { class: severity }, `${WORDS[severity]} `), ...prose(message), ' ', el('span', { class: 'code' }, code)),
+    el(
+      'p',
+      {},
+      el('b', { class: severity }, `${WORDS[severity]} `),
+      ...prose(message),
+      ' ',
+      el('span', { class: 'code' }, code),
+    ),
     ...(label ? [el('p', { class: 'aside' }, ...prose(label))] : []),
     ...notes.map((note) => el('p', { class: 'aside' }, ...prose(note))),
     ...(help ? [el('p', { class: 'aside' }, el('b', {}, 'help '), ...prose(help))] : []),

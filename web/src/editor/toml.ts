@@ -29,7 +29,8 @@ const WORD = /[^\s,\]}#"'=[{]+/y
 /** The token of a line that begins at `at`, and its end; `reading` continues. */
 export function piece(line: string, at: number, reading: Reading): [kind: Kind, to: number] {
   const end = (pattern: RegExp) => ((pattern.lastIndex = at), pattern.test(line) ? pattern.lastIndex : 0)
-  if (at === 0 && reading.quotes === '' && (reading.open === '' || SURELY_HEADING.test(line))) Object.assign(reading, start())
+  if (at === 0 && reading.quotes === '' && (reading.open === '' || SURELY_HEADING.test(line)))
+    Object.assign(reading, start())
   if (reading.quotes !== '') return ['string', closing(line, at, reading)]
   const { key, open } = reading
   let to: number
@@ -69,7 +70,9 @@ function closing(line: string, at: number, reading: Reading): number {
 
 /** The parts of a key such as `measures."front toe".type`. */
 export function parts(key: string): string[] {
-  return [...key.matchAll(/"((?:\\.|[^"\\])*)"?|'([^']*)'?|([A-Za-z0-9_-]+)/g)].map(([, double, single, bare]) => double?.replace(/\\(["\\])/g, '$1') ?? single ?? bare)
+  return [...key.matchAll(/"((?:\\.|[^"\\])*)"?|'([^']*)'?|([A-Za-z0-9_-]+)/g)].map(
+    ([, double, single, bare]) => double?.replace(/\\(["\\])/g, '$1') ?? single ?? bare,
+  )
 }
 
 /** A name as a key is written: in quotes where it has to be. */
@@ -127,7 +130,8 @@ export function standing(source: string): Standing | undefined {
   const begun = inQuotes ? word.slice(1) : word
   const within = { begun, quoted: inQuotes, heading: kind === 'heading' }
   if (kind === 'heading') return { ...within, table: [] }
-  if (reading.key) return { ...within, table: (key ? key.path : [...(open?.path ?? table?.path ?? []), '']).slice(0, -1) }
+  if (reading.key)
+    return { ...within, table: (key ? key.path : [...(open?.path ?? table?.path ?? []), '']).slice(0, -1) }
   const of = key ?? open
   return of && { ...within, table: of.path.slice(0, -1), key: of.path }
 }
@@ -158,7 +162,17 @@ function read(source: string) {
       } else if (kind === 'key') {
         const within = around.at(-1)?.path ?? table?.path ?? []
         if (key) key.path.push(...parts(last))
-        else entries.push((key = { path: [...within, ...parts(last)], heading: false, depth: reading.open.length, from, to: end, end }))
+        else
+          entries.push(
+            (key = {
+              path: [...within, ...parts(last)],
+              heading: false,
+              depth: reading.open.length,
+              from,
+              to: end,
+              end,
+            }),
+          )
         key.to = key.end = end
       } else if (reading.open.length > before) {
         around.push(key ?? around.at(-1))
@@ -166,7 +180,8 @@ function read(source: string) {
       } else if (reading.open.length < before) {
         key = around.pop()
       } else if (last === ',') key = undefined
-      if (kind !== 'comment' && last.trim() !== '') for (const one of [table, key, ...around]) if (one) one.end = Math.max(one.end, end)
+      if (kind !== 'comment' && last.trim() !== '')
+        for (const one of [table, key, ...around]) if (one) one.end = Math.max(one.end, end)
     }
     offset += line.length + 1
   }

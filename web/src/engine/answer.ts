@@ -22,7 +22,8 @@ export function answer<T>(block: ArrayBuffer): Answer<T> {
   const json: T | ErrorReply = JSON.parse(new TextDecoder().decode(new Uint8Array(block, 4, length)))
   if (isFailed(json)) throw new Refused(json.failed)
   const start = Math.ceil((4 + length) / 4) * 4
-  const decode = ([first, count]: wire.Curve): Curve => (count ? new Float32Array(block, start + 4 * first, count) : new Float32Array())
+  const decode = ([first, count]: wire.Curve): Curve =>
+    count ? new Float32Array(block, start + 4 * first, count) : new Float32Array()
   return { json, decode }
 }
 

@@ -1,7 +1,22 @@
-import type { DiagnosticMessage, OptimizeOffer, OptimizeRequest, VariableSetting, ToleranceOffer, ToleranceRequest } from './protocol'
+import type {
+  DiagnosticMessage,
+  OptimizeOffer,
+  OptimizeRequest,
+  VariableSetting,
+  ToleranceOffer,
+  ToleranceRequest,
+} from './protocol'
 import type { Table } from '../payload'
 
-export type { DiagnosticMessage as Diagnostic, OptimizeOffer, OptimizeRequest, SearchGoal, SearchVariable, ToleranceOffer, ToleranceRequest } from './protocol'
+export type {
+  DiagnosticMessage as Diagnostic,
+  OptimizeOffer,
+  OptimizeRequest,
+  SearchGoal,
+  SearchVariable,
+  ToleranceOffer,
+  ToleranceRequest,
+} from './protocol'
 
 /** Reads and checks a text. */
 export interface Checker {

@@ -14,7 +14,8 @@ export type Ask = (request: Request) => ArrayBuffer
 /** Creates an engine; `tell` receives the progress of studies. */
 export async function instantiate(module: WebAssembly.Module, tell: (progress: ProgressReply) => void): Promise<Ask> {
   let why = ''
-  const text = (place: number, length: number) => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))
+  const text = (place: number, length: number) =>
+    new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))
   const page = {
     tell: (place: number, length: number) => tell(JSON.parse(text(place, length))),
     panicked: (place: number, length: number) => (why = text(place, length)),

@@ -29,7 +29,10 @@ export function logarithmicAxis([low, high]: [number, number], from: number, to:
   const at = (value: number) => (value > 0 ? from + ((Math.log10(value) - bottom) / (top - bottom)) * (to - from) : NaN)
   const powers = Array.from({ length: Math.round(top - bottom) + 1 }, (_, k) => Math.round(bottom) + k)
   const few = powers.length <= MOST_POWERS
-  return { at, ticks: powers.map((power) => ({ value: 10 ** power, text: few || power % 2 === 0 ? number(10 ** power) : '' })) }
+  return {
+    at,
+    ticks: powers.map((power) => ({ value: 10 ** power, text: few || power % 2 === 0 ? number(10 ** power) : '' })),
+  }
 }
 
 /** The nearest of 1, 2 and 5 times a power of ten that is not below. */

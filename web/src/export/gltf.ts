@@ -87,7 +87,8 @@ function form(object: Object3D, materials: Map<Material, Material>): Object3D {
 function strokes({ geometry, material }: LineSegments2): LineSegments {
   const { instanceStart: start, instanceEnd: end } = geometry.attributes
   const places: number[] = []
-  for (let k = 0; k < start.count; k++) places.push(start.getX(k), start.getY(k), start.getZ(k), end.getX(k), end.getY(k), end.getZ(k))
+  for (let k = 0; k < start.count; k++)
+    places.push(start.getX(k), start.getY(k), start.getZ(k), end.getX(k), end.getY(k), end.getZ(k))
   const lines = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(places, 3))
   // The exporter has a word on the console about any other material without light.
   return new LineSegments(lines, new MeshBasicMaterial({ color: material.color }))
@@ -96,7 +97,15 @@ function strokes({ geometry, material }: LineSegments2): LineSegments {
 function matt(material: Material): Material {
   const { color, map } = material as { color?: Color; map?: Texture | null }
   const { opacity, transparent, side } = material
-  return new MeshStandardMaterial({ color: color ?? new Color(), map: map ?? null, metalness: 0, roughness: 1, opacity, transparent, side })
+  return new MeshStandardMaterial({
+    color: color ?? new Color(),
+    map: map ?? null,
+    metalness: 0,
+    roughness: 1,
+    opacity,
+    transparent,
+    side,
+  })
 }
 
 /** Positions of an object at all times at which it has one. */
@@ -129,7 +138,13 @@ function changes(numbers: number[], stride: number): boolean {
   return numbers.some((number, k) => number !== numbers[k % stride])
 }
 
-function tracks(mechanism: Mechanism, matter: Drawn[], bodies: Object3D[], pairs: [Object3D, Object3D][], step: number): KeyframeTrack[] {
+function tracks(
+  mechanism: Mechanism,
+  matter: Drawn[],
+  bodies: Object3D[],
+  pairs: [Object3D, Object3D][],
+  step: number,
+): KeyframeTrack[] {
   const { times } = mechanism.report
   const followers = matter.filter(({ follow }) => follow)
   const bodyPaths = bodies.map(() => new Path())
@@ -151,7 +166,10 @@ function tracks(mechanism: Mechanism, matter: Drawn[], bodies: Object3D[], pairs
     for (const { pair, path } of paths) path.add(time, pair[0])
   }
   show(step)
-  for (const { pair: [object, copied] } of paths) copied.position.copy(object.position), copied.quaternion.copy(object.quaternion), copied.scale.copy(object.scale)
+  for (const {
+    pair: [object, copied],
+  } of paths)
+    copied.position.copy(object.position), copied.quaternion.copy(object.quaternion), copied.scale.copy(object.scale)
   return [
     ...bodyPaths.flatMap((path, body) => path.tracks(bodies[body])),
     ...paths.flatMap(({ pair, path }) => path.tracks(pair[1])),

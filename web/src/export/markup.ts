@@ -6,7 +6,11 @@ export function escaped(text: string): string {
 }
 
 /** An element with attributes; its content is markup. */
-export function tag(name: string, attributes: Record<string, string | number | undefined>, ...inside: string[]): string {
+export function tag(
+  name: string,
+  attributes: Record<string, string | number | undefined>,
+  ...inside: string[]
+): string {
   const written = Object.entries(attributes).map(([key, value]) =>
     value === undefined ? '' : ` ${key}="${typeof value === 'number' ? round(value) : escaped(value)}"`,
   )

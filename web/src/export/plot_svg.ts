@@ -34,13 +34,17 @@ export function plotSvg(content: Content, times: Curve, timeUnit: string, paper:
   const bottom = HEIGHT - BOTTOM
   const height = HEIGHT + keys.height
   const [first, last] = extent([abscissa]) ?? NOTHING
-  const whole = first === null || last === null || content.over || first === last ? padded(first, last) : [first, last] as [number, number]
+  const whole =
+    first === null || last === null || content.over || first === last
+      ? padded(first, last)
+      : ([first, last] as [number, number])
   const x = linearAxis(content.part ? [...content.part] : whole, LEFT, WIDTH - RIGHT, 8)
   const y = vertical(content, abscissa, bottom)
 
   const text = (at: [number, number], words: string, more: Record<string, string | number> = {}) =>
     tag('text', { x: at[0], y: at[1], fill: paper.muted, ...more }, escaped(words))
-  const rule = (x1: number, y1: number, x2: number, y2: number) => tag('line', { x1, y1, x2, y2, stroke: paper.rule, 'stroke-width': 1 })
+  const rule = (x1: number, y1: number, x2: number, y2: number) =>
+    tag('line', { x1, y1, x2, y2, stroke: paper.rule, 'stroke-width': 1 })
   const middle = (TOP + bottom) / 2
   return svgFile(
     WIDTH,
@@ -60,10 +64,29 @@ export function plotSvg(content: Content, times: Curve, timeUnit: string, paper:
         text([LEFT - 6, y.at(value) + 4], words, { 'text-anchor': 'end' }),
       ]),
       text([(LEFT + WIDTH - RIGHT) / 2, bottom + 36], label, { 'text-anchor': 'middle' }),
-      text([16, middle], pretty(content.unit) || '1', { 'text-anchor': 'middle', transform: `rotate(-90 16 ${round(middle)})` }),
-      tag('svg', { x: LEFT, y: TOP, width: WIDTH - LEFT - RIGHT, height: bottom - TOP, viewBox: `${LEFT} ${TOP} ${WIDTH - LEFT - RIGHT} ${bottom - TOP}` },
-        ...content.lines.map((line) => drawn(line, abscissa, x, y))),
-      tag('rect', { x: LEFT, y: TOP, width: WIDTH - LEFT - RIGHT, height: bottom - TOP, fill: 'none', stroke: paper.rule }),
+      text([16, middle], pretty(content.unit) || '1', {
+        'text-anchor': 'middle',
+        transform: `rotate(-90 16 ${round(middle)})`,
+      }),
+      tag(
+        'svg',
+        {
+          x: LEFT,
+          y: TOP,
+          width: WIDTH - LEFT - RIGHT,
+          height: bottom - TOP,
+          viewBox: `${LEFT} ${TOP} ${WIDTH - LEFT - RIGHT} ${bottom - TOP}`,
+        },
+        ...content.lines.map((line) => drawn(line, abscissa, x, y)),
+      ),
+      tag('rect', {
+        x: LEFT,
+        y: TOP,
+        width: WIDTH - LEFT - RIGHT,
+        height: bottom - TOP,
+        fill: 'none',
+        stroke: paper.rule,
+      }),
       ...content.lines.map((line, k) => {
         const [left, top] = [keys.places[k][0], HEIGHT + keys.places[k][1]]
         return drawnKey(line, left, top) + text([left + SWATCH + 6, top + 4], line.label, { fill: paper.text })
@@ -73,7 +96,13 @@ export function plotSvg(content: Content, times: Curve, timeUnit: string, paper:
 }
 
 function vertical({ lines, part, logarithmic }: Content, abscissa: Curve, bottom: number): Axis {
-  const [low, high] = ordinates(lines.map(({ curve, marks }) => marks ?? curve), abscissa, part, logarithmic) ?? NOTHING
+  const [low, high] =
+    ordinates(
+      lines.map(({ curve, marks }) => marks ?? curve),
+      abscissa,
+      part,
+      logarithmic,
+    ) ?? NOTHING
   if (logarithmic) return logarithmicAxis(decades(low, high), bottom, TOP)
   return linearAxis(padded(low, high), bottom, TOP, 6)
 }
@@ -100,12 +129,26 @@ function drawn({ color, curve, marks, width, dash }: Line, abscissa: Curve, x: A
 }
 
 function drawnKey({ color, marks, width, dash }: Line, left: number, top: number): string {
-  if (marks) return tag('circle', { cx: left + SWATCH / 2, cy: top, r: RADIUS, fill: 'none', stroke: color, 'stroke-width': 1.5 })
+  if (marks)
+    return tag('circle', {
+      cx: left + SWATCH / 2,
+      cy: top,
+      r: RADIUS,
+      fill: 'none',
+      stroke: color,
+      'stroke-width': 1.5,
+    })
   return tag('path', { d: `M${round(left)} ${round(top)}h${SWATCH}`, ...stroked(color, width, dash) })
 }
 
 function stroked(color: string, width = 1.8, dash?: number[]): Record<string, string | number | undefined> {
-  return { fill: 'none', stroke: color, 'stroke-width': width, 'stroke-linejoin': 'round', 'stroke-dasharray': dash?.join(' ') }
+  return {
+    fill: 'none',
+    stroke: color,
+    'stroke-width': width,
+    'stroke-linejoin': 'round',
+    'stroke-dasharray': dash?.join(' '),
+  }
 }
 
 /** Positions of the lines' names below the plot, in rows. */

@@ -1,12 +1,19 @@
 /** Contents of a canvas, as a file. */
 function canvasPng(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture is too large for this browser'))), 'image/png'),
+    canvas.toBlob(
+      (blob) => (blob ? resolve(blob) : reject(new Error('the picture is too large for this browser'))),
+      'image/png',
+    ),
   )
 }
 
 /** A plot's canvas on the page's colour with its title above: a canvas is clear where nothing is drawn. */
-export function plotPng(plot: HTMLCanvasElement, title: string, { page, text }: { page: string; text: string }): Promise<Blob> {
+export function plotPng(
+  plot: HTMLCanvasElement,
+  title: string,
+  { page, text }: { page: string; text: string },
+): Promise<Blob> {
   const scale = devicePixelRatio
   const head = 26 * scale
   const canvas = document.createElement('canvas')

@@ -11,5 +11,10 @@ export function save(blob: Blob, name: string): void {
 
 /** Letters, digits and points stay; the rest becomes a dash. */
 export function fileName(name: string): string {
-  return name.replace(/[^\p{L}\p{N}._]+/gu, '-').replace(/^[-.]+|-+(?=\.|$)/g, '').slice(-120) || 'hardpoint'
+  return (
+    name
+      .replace(/[^\p{L}\p{N}._]+/gu, '-')
+      .replace(/^[-.]+|-+(?=\.|$)/g, '')
+      .slice(-120) || 'hardpoint'
+  )
 }

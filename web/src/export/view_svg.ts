@@ -1,4 +1,16 @@
-import { type BufferGeometry, type Camera, type Color, InstancedMesh, LineSegments, type Material, Matrix4, type Mesh, type Object3D, type Texture, Vector3 } from 'three'
+import {
+  type BufferGeometry,
+  type Camera,
+  type Color,
+  InstancedMesh,
+  LineSegments,
+  type Material,
+  Matrix4,
+  type Mesh,
+  type Object3D,
+  type Texture,
+  Vector3,
+} from 'three'
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js'
 import type { Placed } from '../scene/labels'
 import { escaped, round, svgFile, tag } from './markup'
@@ -70,10 +82,20 @@ export function viewSvg(roots: Object3D[], camera: Camera, picture: Picture): Bl
     tag(
       'g',
       { 'font-family': 'system-ui, sans-serif', 'font-size': 11, 'text-anchor': 'middle' },
-      ...labels.map(({ spot, x, y }) => tag('line', { x1: spot.x, y1: spot.y, x2: x, y2: y, stroke: label, 'stroke-opacity': 0.6 })),
-      ...labels.map((one) =>
-        tag('rect', { x: one.x - one.width / 2, y: one.y - one.height / 2, width: one.width, height: one.height, rx: 4, fill: view, 'fill-opacity': 0.9 }) +
-        tag('text', { x: one.x, y: one.y + 4, fill: label }, escaped(one.spot.text)),
+      ...labels.map(({ spot, x, y }) =>
+        tag('line', { x1: spot.x, y1: spot.y, x2: x, y2: y, stroke: label, 'stroke-opacity': 0.6 }),
+      ),
+      ...labels.map(
+        (one) =>
+          tag('rect', {
+            x: one.x - one.width / 2,
+            y: one.y - one.height / 2,
+            width: one.width,
+            height: one.height,
+            rx: 4,
+            fill: view,
+            'fill-opacity': 0.9,
+          }) + tag('text', { x: one.x, y: one.y + 4, fill: label }, escaped(one.spot.text)),
       ),
     ),
   )
@@ -139,14 +161,18 @@ function fatLines(line: LineSegments2, camera: Camera, picture: Picture): Stroke
       if (joined) before.path += `L${xy(b)}`
       else strokes.push({ layer, depth: 0, style, path: `M${xy(a)}L${xy(b)}` })
     } else {
-      for (const [p, q] of cut(a, b, picture)) strokes.push({ layer, depth: ((p.depth + q.depth) / 2) * (1 - IN_FRONT), style, path: `M${xy(p)}L${xy(q)}` })
+      for (const [p, q] of cut(a, b, picture))
+        strokes.push({ layer, depth: ((p.depth + q.depth) / 2) * (1 - IN_FRONT), style, path: `M${xy(p)}L${xy(q)}` })
     }
   }
   return strokes
 }
 
 function cut(a: Point, b: Point, { width, height }: Picture): [Point, Point][] {
-  const pieces = Math.min(200, Math.max(1, Math.ceil(Math.hypot(b.x - a.x, b.y - a.y) / (PIECE * Math.hypot(width, height)))))
+  const pieces = Math.min(
+    200,
+    Math.max(1, Math.ceil(Math.hypot(b.x - a.x, b.y - a.y) / (PIECE * Math.hypot(width, height)))),
+  )
   const at = (k: number) => mid(a, b, k / pieces)
   return Array.from({ length: pieces }, (_, k) => [at(k), at(k + 1)])
 }
@@ -171,13 +197,19 @@ function faces(mesh: Mesh, material: Material, matrix: Matrix4, camera: Camera, 
   // A mirrored matrix turns the faces inside out.
   const mirrored = matrix.determinant() < 0
   for (let k = 0; k < corners.length; k += 3) {
-    const [i, j, l] = mirrored ? [corners[k], corners[k + 2], corners[k + 1]] : [corners[k], corners[k + 1], corners[k + 2]]
+    const [i, j, l] = mirrored
+      ? [corners[k], corners[k + 2], corners[k + 1]]
+      : [corners[k], corners[k + 1], corners[k + 2]]
     const [a, b, c] = [points[i], points[j], points[l]]
     if (![a, b, c].every(visible)) continue
     const normal = places[j].clone().sub(places[i]).cross(places[l].clone().sub(places[i])).normalize()
     const towards = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) < 0
     const seen = towards || material.side !== 0
-    for (const [from, to] of [[i, j], [j, l], [l, i]]) {
+    for (const [from, to] of [
+      [i, j],
+      [j, l],
+      [l, i],
+    ]) {
       const key = from < to ? `${from} ${to}` : `${to} ${from}`
       const edge = edges.get(key) ?? { a: from, b: to, faces: [] }
       edges.set(key, edge)
@@ -187,14 +219,25 @@ function faces(mesh: Mesh, material: Material, matrix: Matrix4, camera: Camera, 
     const outwards = towards ? normal : normal.clone().negate()
     const fill = lit ? shaded(colour, outwards.transformDirection(camera.matrixWorldInverse).dot(LIGHT)) : colour
     // A hair of the same colour closes the gaps between faces.
-    const style = clear ? `fill="${fill}" fill-opacity="${round(material.opacity)}"` : `fill="${fill}" stroke="${fill}" stroke-width="0.4"`
+    const style = clear
+      ? `fill="${fill}" fill-opacity="${round(material.opacity)}"`
+      : `fill="${fill}" stroke="${fill}" stroke-width="0.4"`
     for (const piece of divided([a, b, c], picture)) {
-      strokes.push({ layer, depth: (piece[0].depth + piece[1].depth + piece[2].depth) / 3, style, path: `M${xy(piece[0])}L${xy(piece[1])}L${xy(piece[2])}z` })
+      strokes.push({
+        layer,
+        depth: (piece[0].depth + piece[1].depth + piece[2].depth) / 3,
+        style,
+        path: `M${xy(piece[0])}L${xy(piece[1])}L${xy(piece[2])}z`,
+      })
     }
   }
   if (clear || layer > 0) return strokes
   const style = `fill="none" stroke="${picture.outline}" stroke-width="${OUTLINE}"`
-  for (const { a, b, faces: [one, other] } of edges.values()) {
+  for (const {
+    a,
+    b,
+    faces: [one, other],
+  } of edges.values()) {
     const outline = !other || one.seen !== other.seen || (one.seen && one.normal.dot(other.normal) < FOLD)
     if (!outline || !(one.seen || other?.seen || material.side !== 0)) continue
     for (const [p, q] of cut(points[a], points[b], picture)) {
@@ -247,7 +290,10 @@ function welded(geometry: BufferGeometry): { corners: number[]; vertices: Vector
   const vertices: Vector3[] = []
   const indices = Array.from({ length: position.count }, (_, k) => {
     const place = new Vector3().fromBufferAttribute(position, k)
-    const key = place.toArray().map((x) => Math.round(x / size)).join(' ')
+    const key = place
+      .toArray()
+      .map((x) => Math.round(x / size))
+      .join(' ')
     const at = known.get(key) ?? vertices.push(place) - 1
     known.set(key, at)
     return at

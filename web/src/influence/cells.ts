@@ -1,4 +1,13 @@
-import { derivativeName, derivativeUnit, groups, ranking, type Order, type Quantity, type Report, type Variable } from '../report'
+import {
+  derivativeName,
+  derivativeUnit,
+  groups,
+  ranking,
+  type Order,
+  type Quantity,
+  type Report,
+  type Variable,
+} from '../report'
 import { figure } from '../format'
 
 /** A row of the map: the heading of a unit, or a variable. */
@@ -21,7 +30,10 @@ export interface Grid {
 /** The groups with quantities that some sensitivity is known of. */
 export function knownGroups(report: Report): [name: string, members: Quantity[]][] {
   const known = new Set(report.variables.flatMap(({ sensitivities }) => [...sensitivities.keys()]))
-  const members = groups(report).map(([name, all]): [string, Quantity[]] => [name, all.filter(({ index }) => known.has(index))])
+  const members = groups(report).map(([name, all]): [string, Quantity[]] => [
+    name,
+    all.filter(({ index }) => known.has(index)),
+  ])
   return members.filter(([, found]) => found.length > 0)
 }
 

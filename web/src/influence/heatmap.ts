@@ -59,7 +59,12 @@ class HeatMap {
     const layOut = () => this.#layOut()
     const options = this.#offered.map(([name]) => el('option', { value: name }, name))
     this.#group = el('select', { 'aria-label': 'quantities shown', onchange: layOut }, ...options)
-    this.#filter = el('input', { type: 'search', placeholder: 'names', 'aria-label': 'filter by names', oninput: layOut })
+    this.#filter = el('input', {
+      type: 'search',
+      placeholder: 'names',
+      'aria-label': 'filter by names',
+      oninput: layOut,
+    })
     this.#window = el(
       'div',
       {
@@ -83,7 +88,11 @@ class HeatMap {
       'section',
       { class: 'heat', 'data-testid': 'heat' },
       el('h2', {}, 'Sensitivity map', this.#title),
-      el('p', { class: 'lead' }, 'The value that is largest over time; colours compare variables of one unit within a column.'),
+      el(
+        'p',
+        { class: 'lead' },
+        'The value that is largest over time; colours compare variables of one unit within a column.',
+      ),
       el(
         'div',
         { class: 'bar' },
@@ -108,7 +117,8 @@ class HeatMap {
 
   #chosen(): void {
     const { order } = this.state.choice
-    if (order !== this.#cells.order || this.#cells.report !== this.state.senses) this.#cells = new Cells(this.state.senses, order)
+    if (order !== this.#cells.order || this.#cells.report !== this.state.senses)
+      this.#cells = new Cells(this.state.senses, order)
     this.#layOut()
   }
 
@@ -124,7 +134,8 @@ class HeatMap {
     Object.assign(this.#extent.style, { width: `${width}px`, height: `${height}px` })
     this.#window.style.height = `${Math.min(height + SPARE, HIGHEST)}px`
     this.#title.textContent = choice.order === 0 ? '' : ` (${ORDERS[choice.order]})`
-    if (this.#pointed && (this.#pointed.row >= rows.length || this.#pointed.column >= quantities.length)) this.#pointed = undefined
+    if (this.#pointed && (this.#pointed.row >= rows.length || this.#pointed.column >= quantities.length))
+      this.#pointed = undefined
     this.#read()
     this.#draw()
   }
@@ -161,7 +172,10 @@ class HeatMap {
     const { width, height } = this.#size
     const last = (far: number, size: number, count: number) => Math.min(count, Math.ceil(far / size))
     return {
-      rows: [Math.floor(this.#scroll.top / ROW), last(this.#scroll.top + height - NAMES.height, ROW, this.#grid.rows.length)],
+      rows: [
+        Math.floor(this.#scroll.top / ROW),
+        last(this.#scroll.top + height - NAMES.height, ROW, this.#grid.rows.length),
+      ],
       columns: [
         Math.floor(this.#scroll.left / this.#column),
         last(this.#scroll.left + width - NAMES.width, this.#column, this.#grid.quantities.length),
@@ -293,7 +307,12 @@ class HeatMap {
   }
 
   #key(event: KeyboardEvent): void {
-    const steps: Record<string, [number, number]> = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] }
+    const steps: Record<string, [number, number]> = {
+      ArrowUp: [-1, 0],
+      ArrowDown: [1, 0],
+      ArrowLeft: [0, -1],
+      ArrowRight: [0, 1],
+    }
     const step = steps[event.key]
     if (event.key === 'Enter') this.#choose(this.#pointed)
     else if (event.key === 'Escape') this.#point(undefined)
@@ -315,7 +334,8 @@ class HeatMap {
     while (rows[row] && !rows[row].variable) row += down
     this.#point({ row: rows[row] ? row : from.row, column })
     const { width, height } = this.#size
-    const inSight = (at: number, size: number, scrolled: number, room: number) => Math.min(at, Math.max(scrolled, at + size - room))
+    const inSight = (at: number, size: number, scrolled: number, room: number) =>
+      Math.min(at, Math.max(scrolled, at + size - room))
     this.#window.scrollTo(
       inSight(column * this.#column, this.#column, this.#scroll.left, width - NAMES.width),
       inSight(this.#pointed!.row * ROW, ROW, this.#scroll.top, height - NAMES.height),

@@ -26,7 +26,12 @@ export function rankingTable(state: State): HTMLElement {
   const { report, choice } = state
   const heading = el('h2')
   const body = el('tbody')
-  const filter = el('input', { type: 'search', placeholder: 'names', 'aria-label': 'filter variables', oninput: () => show() })
+  const filter = el('input', {
+    type: 'search',
+    placeholder: 'names',
+    'aria-label': 'filter variables',
+    oninput: () => show(),
+  })
   const [above, below] = [el('div'), el('div')]
   let rows: Ranking[] = []
   let range = [0, 0]
@@ -91,13 +96,15 @@ function ranked({ senses: report, choice }: State): Ranking[] {
   const quantity = report.quantities[choice.quantity]
   if (!quantity) return []
   const followed = [...ranking(report, quantity, choice.order)].flatMap(([unit, peers]) =>
-    peers.map(({ variable, peak, share }, k): Ranking => ({
-      variable,
-      rank: k + 1,
-      peak,
-      share,
-      unit: derivativeUnit(quantity, choice.order, { unit }),
-    })),
+    peers.map(
+      ({ variable, peak, share }, k): Ranking => ({
+        variable,
+        rank: k + 1,
+        peak,
+        share,
+        unit: derivativeUnit(quantity, choice.order, { unit }),
+      }),
+    ),
   )
   const stuck = report.variables.filter(({ admissibility }) => admissibility === 'cannot_follow')
   return [...followed, ...stuck.map((variable): Ranking => ({ variable, peak: NaN, share: 0, unit: '' }))]

@@ -33,8 +33,16 @@ interface View {
 class Polar {
   readonly element: HTMLElement
   readonly #which: HTMLSelectElement
-  readonly #on = el('select', { 'aria-label': 'body that sees the force', 'data-testid': 'load-body', onchange: () => this.#draw() })
-  readonly #along = el('select', { 'aria-label': 'direction of sight', 'data-testid': 'load-along', onchange: () => this.#draw() })
+  readonly #on = el('select', {
+    'aria-label': 'body that sees the force',
+    'data-testid': 'load-body',
+    onchange: () => this.#draw(),
+  })
+  readonly #along = el('select', {
+    'aria-label': 'direction of sight',
+    'data-testid': 'load-along',
+    onchange: () => this.#draw(),
+  })
   readonly #picture = svg('svg', { role: 'img', viewBox: `0 0 ${SIZE} ${SIZE}`, 'data-testid': 'load-path' })
   readonly #now = svg('g', {})
   readonly #reading = el('output', { class: 'reading', 'aria-live': 'off', 'data-testid': 'load-reading' })
@@ -45,18 +53,36 @@ class Polar {
 
   constructor(private readonly state: State) {
     const { loads, bodies } = state.report
-    const name = (load: Load, k: number) => `${load.name}${loads.some((other, j) => j !== k && other.name === load.name) ? ` on ${bodies[load.at.body].name}` : ''}`
+    const name = (load: Load, k: number) =>
+      `${load.name}${loads.some((other, j) => j !== k && other.name === load.name) ? ` on ${bodies[load.at.body].name}` : ''}`
     const group = (label: string, ofJoints: boolean) => {
-      const members = loads.flatMap((load, k) => ((load.joint !== null) === ofJoints ? [el('option', { value: k }, name(load, k))] : []))
+      const members = loads.flatMap((load, k) =>
+        (load.joint !== null) === ofJoints ? [el('option', { value: k }, name(load, k))] : [],
+      )
       return members.length > 0 ? [el('optgroup', { label }, ...members)] : []
     }
-    this.#which = el('select', { 'aria-label': 'force', 'data-testid': 'load-which', onchange: () => this.#choose(Number(this.#which.value)) }, ...group('joints', true), ...group('forces', false))
+    this.#which = el(
+      'select',
+      { 'aria-label': 'force', 'data-testid': 'load-which', onchange: () => this.#choose(Number(this.#which.value)) },
+      ...group('joints', true),
+      ...group('forces', false),
+    )
     this.#picture.addEventListener('pointerdown', (event) => this.#point(event as PointerEvent))
-    const header = el('tr', {}, ...['force', 'on', 'largest [N]', 'at [s]'].map((title) => el('th', { scope: 'col' }, title)))
+    const header = el(
+      'tr',
+      {},
+      ...['force', 'on', 'largest [N]', 'at [s]'].map((title) => el('th', { scope: 'col' }, title)),
+    )
     this.element = el(
       'section',
       { class: 'loads', 'data-testid': 'loads' },
-      el('p', { class: 'choice' }, el('label', {}, 'Force of ', this.#which), el('label', {}, 'as seen from ', this.#on), el('label', {}, 'looking along ', this.#along)),
+      el(
+        'p',
+        { class: 'choice' },
+        el('label', {}, 'Force of ', this.#which),
+        el('label', {}, 'as seen from ', this.#on),
+        el('label', {}, 'looking along ', this.#along),
+      ),
       el('div', { class: 'seen' }, this.#picture, this.#reading),
       el('table', {}, el('thead', {}, header), this.#table),
     )
@@ -76,7 +102,11 @@ class Polar {
   #follow(): void {
     const { selected } = this.state.choice
     const { loads } = this.state.report
-    const index = loads.findIndex((load, k) => (selected?.kind === 'joint' && load.joint === selected.index) || (selected?.kind === 'load' && k === selected.index))
+    const index = loads.findIndex(
+      (load, k) =>
+        (selected?.kind === 'joint' && load.joint === selected.index) ||
+        (selected?.kind === 'load' && k === selected.index),
+    )
     if (index >= 0 && index !== Number(this.#which.value)) this.#choose(index)
     else this.#draw()
   }
@@ -87,7 +117,11 @@ class Polar {
     const load = loads[index]
     const joint = load.joint === null ? undefined : joints[load.joint]
     // Bearings in components of their housing, pins in their own.
-    this.#on.replaceChildren(...(joint ? [joint.body_j, joint.body_i] : [load.at.body]).map((body) => el('option', { value: body }, bodies[body].name)))
+    this.#on.replaceChildren(
+      ...(joint ? [joint.body_j, joint.body_i] : [load.at.body]).map((body) =>
+        el('option', { value: body }, bodies[body].name),
+      ),
+    )
     const options = [...(joint?.axis ? [['axis', 'its axis']] : []), ['0', 'x'], ['1', 'y'], ['2', 'z']]
     this.#along.replaceChildren(...options.map(([value, text]) => el('option', { value }, text)))
     if (!joint?.axis) this.#along.value = '2'
@@ -102,11 +136,15 @@ class Polar {
     const body = Number(this.#on.value)
     const second = body === load.at.body
     const axis = second ? joint?.axis_j : joint?.axis
-    const normal = this.#along.value === 'axis' && axis ? new Vector3(...axis) : new Vector3().setComponent(this.#along.value === 'axis' ? 2 : Number(this.#along.value), 1)
+    const normal =
+      this.#along.value === 'axis' && axis
+        ? new Vector3(...axis)
+        : new Vector3().setComponent(this.#along.value === 'axis' ? 2 : Number(this.#along.value), 1)
     const plane = planeAcross(normal)
     const sign = second ? 1 : -1
     this.#view = { load, sign, body, plane }
-    const of = (force: Load['force'] | undefined, poses: Load['force'] | undefined) => (force && poses ? pathOf(force, poses, plane, sign) : [])
+    const of = (force: Load['force'] | undefined, poses: Load['force'] | undefined) =>
+      force && poses ? pathOf(force, poses, plane, sign) : []
     const loaded = () => of(load.force, report.bodies[body].poses)
     this.#path = present ? of(present.loads[index], present.poses[body]) : changed ? [] : loaded()
     const before = !compares ? [] : former ? of(former.loads[index], former.poses[body]) : loaded()
@@ -122,7 +160,14 @@ class Polar {
     this.#picture.replaceChildren(
       ...circles.map((size) => svg('circle', { class: 'ring', cx: middle, cy: middle, r: size * this.#scale })),
       svg('path', { class: 'ring', d: `M${ROOM},${middle}H${SIZE - ROOM}M${middle},${ROOM}V${SIZE - ROOM}` }),
-      ...circles.map((size, k) => text(`${number(size, 3)}${k === rings - 1 ? ' N' : ''}`, middle + size * this.#scale * Math.SQRT1_2, middle + size * this.#scale * Math.SQRT1_2 + 12, 'start')),
+      ...circles.map((size, k) =>
+        text(
+          `${number(size, 3)}${k === rings - 1 ? ' N' : ''}`,
+          middle + size * this.#scale * Math.SQRT1_2,
+          middle + size * this.#scale * Math.SQRT1_2 + 12,
+          'start',
+        ),
+      ),
       text(plane.names[0], SIZE - ROOM + 4, middle + 4, 'start'),
       text(plane.names[1], middle, ROOM - 8, 'middle'),
       svg('path', { class: 'path former', d: this.#line(before) }),
@@ -139,7 +184,12 @@ class Polar {
     return path
       .map((at) => {
         const known = Number.isFinite(at[0])
-        const piece = known ? pen + this.#pixels(at).map((x) => x.toFixed(1)).join(',') : ''
+        const piece = known
+          ? pen +
+            this.#pixels(at)
+              .map((x) => x.toFixed(1))
+              .join(',')
+          : ''
         pen = known ? 'L' : 'M'
         return piece
       })
@@ -160,7 +210,9 @@ class Polar {
     const pose = poseAt(present ? present.poses[body] : report.bodies[body].poses, step)
     if (!force?.length || !pose) {
       this.#now.replaceChildren()
-      this.#reading.textContent = changed ? 'Forces of this design are known once it is solved.' : 'The force is not known here.'
+      this.#reading.textContent = changed
+        ? 'Forces of this design are known once it is solved.'
+        : 'The force is not known here.'
       return
     }
     const world = forceAt(force, step).multiplyScalar(sign)
@@ -171,7 +223,10 @@ class Polar {
       return
     }
     const [x, y] = this.#pixels(at)
-    this.#now.replaceChildren(svg('path', { class: 'now', d: `M${SIZE / 2},${SIZE / 2}L${x.toFixed(1)},${y.toFixed(1)}` }), svg('circle', { class: 'dot', cx: x, cy: y, r: 5 }))
+    this.#now.replaceChildren(
+      svg('path', { class: 'now', d: `M${SIZE / 2},${SIZE / 2}L${x.toFixed(1)},${y.toFixed(1)}` }),
+      svg('circle', { class: 'dot', cx: x, cy: y, r: 5 }),
+    )
     const angle = (Math.atan2(at[1], at[0]) * 180) / Math.PI
     const size = Math.hypot(...at)
     const when = largestAt(force)
@@ -188,8 +243,17 @@ class Polar {
     const rows = report.loads.map((load, k) => {
       const force = present ? present.loads[k] : changed ? undefined : load.force
       const most = force ? largestForce([{ ...load, force }]) : NaN
-      const cells = [load.name, report.bodies[load.at.body].name, most > 0 ? number(most, 4) : '–', most > 0 ? number(valueAt(report.times, largestAt(force!)), 4) : '–']
-      return el('tr', { 'aria-selected': String(k === chosen), 'data-testid': 'load-row', onclick: () => this.#choose(k) }, ...cells.map((cell) => el('td', {}, cell)))
+      const cells = [
+        load.name,
+        report.bodies[load.at.body].name,
+        most > 0 ? number(most, 4) : '–',
+        most > 0 ? number(valueAt(report.times, largestAt(force!)), 4) : '–',
+      ]
+      return el(
+        'tr',
+        { 'aria-selected': String(k === chosen), 'data-testid': 'load-row', onclick: () => this.#choose(k) },
+        ...cells.map((cell) => el('td', {}, cell)),
+      )
     })
     this.#table.replaceChildren(...rows)
   }

@@ -37,7 +37,10 @@ export function areas({ columns, rows, values }: Grid, at: readonly number[]): A
   const table = Array.from(values, (x) => (Number.isFinite(x) ? x : NaN))
   return at.map((level) => ({
     level,
-    outlines: find.contour(table, level).coordinates.flat().map((ring) => ring.map(([x, y]): [number, number] => [along(columns, x), along(rows, y)])),
+    outlines: find
+      .contour(table, level)
+      .coordinates.flat()
+      .map((ring) => ring.map(([x, y]): [number, number] => [along(columns, x), along(rows, y)])),
   }))
 }
 

@@ -42,9 +42,22 @@ class DriverMap {
   ) {
     const render = () => this.#render()
     const options = (names: string[]) => names.map((name, k) => el('option', { value: k }, name))
-    this.#quantity = el('select', { 'aria-label': 'measure of the map', 'data-testid': 'map-quantity', onchange: () => this.#choose() }, ...options(map.quantities.map(({ name }) => name)))
-    this.#quantity.value = String(Math.max(0, map.quantities.findIndex(({ name }) => name === first)))
-    this.#by = el('select', { 'aria-label': 'its value, or its sensitivity by', 'data-testid': 'map-by', onchange: render })
+    this.#quantity = el(
+      'select',
+      { 'aria-label': 'measure of the map', 'data-testid': 'map-quantity', onchange: () => this.#choose() },
+      ...options(map.quantities.map(({ name }) => name)),
+    )
+    this.#quantity.value = String(
+      Math.max(
+        0,
+        map.quantities.findIndex(({ name }) => name === first),
+      ),
+    )
+    this.#by = el('select', {
+      'aria-label': 'its value, or its sensitivity by',
+      'data-testid': 'map-by',
+      onchange: render,
+    })
     this.#frame = el(
       'div',
       {
@@ -58,8 +71,21 @@ class DriverMap {
       },
       this.#picture,
     )
-    const choice = el('p', { class: 'choice' }, el('label', {}, 'Measure ', this.#quantity), el('label', {}, 'shown ', this.#by))
-    this.element = el('section', { class: 'driver-map', 'data-testid': 'map' }, el('h3', {}, `${map.name}: over ${map.drivers[0].name} and ${map.drivers[1].name}`), choice, this.#frame, this.#reading, el('p', { class: 'note' }, map.note))
+    const choice = el(
+      'p',
+      { class: 'choice' },
+      el('label', {}, 'Measure ', this.#quantity),
+      el('label', {}, 'shown ', this.#by),
+    )
+    this.element = el(
+      'section',
+      { class: 'driver-map', 'data-testid': 'map' },
+      el('h3', {}, `${map.name}: over ${map.drivers[0].name} and ${map.drivers[1].name}`),
+      choice,
+      this.#frame,
+      this.#reading,
+      el('p', { class: 'note' }, map.note),
+    )
     this.#choose()
     onSchemeChange(render)
     new ResizeObserver(([entry]) => {
@@ -101,14 +127,17 @@ class DriverMap {
     const at = levels(grid.values)
     const colour = shades(grid.values, at)
     const box = { x: MARGIN.left, y: MARGIN.top, width: right - MARGIN.left, height: bottom - MARGIN.top }
-    const path = (lines: Line[]) => lines.map((line) => `M${line.map(([a, b]) => `${x.at(a).toFixed(1)},${y.at(b).toFixed(1)}`).join('L')}Z`).join('')
+    const path = (lines: Line[]) =>
+      lines.map((line) => `M${line.map(([a, b]) => `${x.at(a).toFixed(1)},${y.at(b).toFixed(1)}`).join('L')}Z`).join('')
     this.#picture.setAttribute('viewBox', `0 0 ${width} ${height}`)
     this.#picture.setAttribute('width', String(width))
     this.#picture.setAttribute('height', String(height))
     this.#picture.setAttribute('aria-label', `${titled(name, unit)} over ${first.name} and ${second.name}`)
     this.#picture.replaceChildren(
       svg('rect', { ...box, class: 'area', fill: colour(0) }),
-      ...areas(grid, at).map(({ outlines }, k) => svg('path', { class: 'area', d: path(outlines), fill: colour(k + 1), 'fill-rule': 'evenodd' })),
+      ...areas(grid, at).map(({ outlines }, k) =>
+        svg('path', { class: 'area', d: path(outlines), fill: colour(k + 1), 'fill-rule': 'evenodd' }),
+      ),
       ...this.#gaps(grid, x, y),
       ...this.#marks(grid, x, y),
       svg('rect', { ...box, class: 'frame' }),
@@ -138,8 +167,12 @@ class DriverMap {
 
   #marks({ columns, rows, values }: Grid, x: Axis, y: Axis): SVGElement[] {
     if (columns.length * rows.length > MOST_MARKED) return []
-    const places = rows.flatMap((row, j) => columns.map((column, i) => ({ row, column, known: Number.isFinite(values[j * columns.length + i]) })))
-    return places.map(({ row, column, known }) => svg('circle', { class: known ? 'place' : 'place missed', cx: x.at(column), cy: y.at(row), r: 1.5 }))
+    const places = rows.flatMap((row, j) =>
+      columns.map((column, i) => ({ row, column, known: Number.isFinite(values[j * columns.length + i]) })),
+    )
+    return places.map(({ row, column, known }) =>
+      svg('circle', { class: known ? 'place' : 'place missed', cx: x.at(column), cy: y.at(row), r: 1.5 }),
+    )
   }
 
   #point(event: PointerEvent): void {
@@ -150,16 +183,27 @@ class DriverMap {
       const [a, b] = [places[0], places[places.length - 1]]
       return a + ((pixel - axis.at(a)) / (axis.at(b) - axis.at(a))) * (b - a)
     }
-    this.#say([value(this.#axes.x, event.clientX - corner.left, first.places), value(this.#axes.y, event.clientY - corner.top, second.places)])
+    this.#say([
+      value(this.#axes.x, event.clientX - corner.left, first.places),
+      value(this.#axes.y, event.clientY - corner.top, second.places),
+    ])
   }
 
   #key(event: KeyboardEvent): void {
-    const by = ({ ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] } as Record<string, [number, number]>)[event.key]
+    const by = (
+      { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] } as Record<
+        string,
+        [number, number]
+      >
+    )[event.key]
     if (!by) return
     event.preventDefault()
     event.stopPropagation()
     const [first, second] = this.map.drivers
-    const [i, j] = this.#place ?? [Math.floor(first.places.length / 2) - by[0], Math.floor(second.places.length / 2) - by[1]]
+    const [i, j] = this.#place ?? [
+      Math.floor(first.places.length / 2) - by[0],
+      Math.floor(second.places.length / 2) - by[1],
+    ]
     const inside = (k: number, count: number) => Math.min(Math.max(k, 0), count - 1)
     this.#place = [inside(i + by[0], first.places.length), inside(j + by[1], second.places.length)]
     this.#render()
@@ -171,7 +215,12 @@ class DriverMap {
     const { name, unit, grid } = this.#shown()
     const [first, second] = this.map.drivers
     const value = at ? valueAt(grid, ...at) : NaN
-    const inside = at && at[0] >= first.places[0] && at[0] <= first.places.at(-1)! && at[1] >= second.places[0] && at[1] <= second.places.at(-1)!
+    const inside =
+      at &&
+      at[0] >= first.places[0] &&
+      at[0] <= first.places.at(-1)! &&
+      at[1] >= second.places[0] &&
+      at[1] <= second.places.at(-1)!
     const ends = extent([grid.values])
     this.#reading.textContent = inside
       ? `${name}: ${Number.isFinite(value) ? figure(value, unit) : 'not reached'} at ${first.name} ${figure(at[0], first.unit)}, ${second.name} ${figure(at[1], second.unit)}`
@@ -196,12 +245,22 @@ function shades(values: ArrayLike<number>, at: number[]): (band: number) => stri
   }
 }
 
-function legend(at: number[], colour: (band: number) => string, unit: string, x: number, box: { y: number; height: number }): SVGElement[] {
+function legend(
+  at: number[],
+  colour: (band: number) => string,
+  unit: string,
+  x: number,
+  box: { y: number; height: number },
+): SVGElement[] {
   const band = box.height / (at.length + 1)
   const top = (k: number) => box.y + box.height - (k + 1) * band
   return [
-    ...Array.from({ length: at.length + 1 }, (_, k) => svg('rect', { class: 'band', x, y: top(k), width: 14, height: band, fill: colour(k) })),
-    ...at.map((level, k) => label(`${number(level)}${k === at.length - 1 && unit ? ` ${unit}` : ''}`, x + 20, top(k) + 4, 'start')),
+    ...Array.from({ length: at.length + 1 }, (_, k) =>
+      svg('rect', { class: 'band', x, y: top(k), width: 14, height: band, fill: colour(k) }),
+    ),
+    ...at.map((level, k) =>
+      label(`${number(level)}${k === at.length - 1 && unit ? ` ${unit}` : ''}`, x + 20, top(k) + 4, 'start'),
+    ),
   ]
 }
 

@@ -22,7 +22,18 @@ export function bar(state: State, { find, exports, help }: Offers): HTMLElement 
     find,
     comparison(state),
     menu('Export', 'export', exports),
-    el('button', { type: 'button', class: 'help-button', 'aria-label': 'keys and lines', title: 'Keys and lines (?)', 'data-testid': 'help', onclick: help }, '?'),
+    el(
+      'button',
+      {
+        type: 'button',
+        class: 'help-button',
+        'aria-label': 'keys and lines',
+        title: 'Keys and lines (?)',
+        'data-testid': 'help',
+        onclick: help,
+      },
+      '?',
+    ),
   )
 }
 
@@ -37,7 +48,10 @@ function comparison(state: State): HTMLElement | undefined {
   if (designs.every(isBand)) return undefined
   const select = el(
     'select',
-    { 'data-testid': 'compare', onchange: () => state.choose({ compared: select.value === '' ? undefined : Number(select.value) }) },
+    {
+      'data-testid': 'compare',
+      onchange: () => state.choose({ compared: select.value === '' ? undefined : Number(select.value) }),
+    },
     el('option', { value: '' }, 'original'),
     ...designs.flatMap((design, index) => (isBand(design) ? [] : [el('option', { value: index }, design.name)])),
   )

@@ -20,7 +20,11 @@ export function cards(state: State): HTMLElement {
   }
   state.onChoice(sync)
   sync()
-  return el('section', { class: 'values', 'aria-label': 'Values', 'data-testid': 'values', tabindex: -1 }, ...shown.map(({ element }) => element))
+  return el(
+    'section',
+    { class: 'values', 'aria-label': 'Values', 'data-testid': 'values', tabindex: -1 },
+    ...shown.map(({ element }) => element),
+  )
 }
 
 function card(state: State, value: Value, index: number): { element: HTMLElement; show: () => void } {
@@ -31,7 +35,13 @@ function card(state: State, value: Value, index: number): { element: HTMLElement
   const verdict = el('span', { class: 'hidden' })
   const element = el(
     'button',
-    { type: 'button', class: 'card', 'data-testid': `card-${value.name}`, title: `${value.name}, ${value.what}`, onclick: () => select(state, value) },
+    {
+      type: 'button',
+      class: 'card',
+      'data-testid': `card-${value.name}`,
+      title: `${value.name}, ${value.what}`,
+      onclick: () => select(state, value),
+    },
     el('span', { class: 'card-name' }, el('b', {}, value.name), ` ${value.what}`),
     el('span', { class: 'card-figures' }, figure, el('span', { class: 'unit' }, unit), change),
     value.target ? scale : undefined,
@@ -86,7 +96,12 @@ function showTarget(scale: HTMLElement, target: Target, now: number | null): str
   scale.style.setProperty('--from', low === null ? '0%' : at(low))
   scale.style.setProperty('--to', high === null ? '100%' : at(high))
   scale.style.setProperty('--tick', now === null ? '-10%' : at(now))
-  const wanted = low === null ? `at most ${number(high ?? NaN)}` : high === null ? `at least ${number(low)}` : `${number(low)} to ${number(high)}`
+  const wanted =
+    low === null
+      ? `at most ${number(high ?? NaN)}`
+      : high === null
+        ? `at least ${number(low)}`
+        : `${number(low)} to ${number(high)}`
   scale.title = `wanted: ${wanted}`
   const missed = now !== null && miss(now, target) > 0
   scale.classList.toggle('missed', missed)

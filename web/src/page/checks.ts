@@ -22,7 +22,8 @@ export function checks(state: State): HTMLElement {
       { class: 'summary', 'data-testid': 'summary' },
       ...summary.map(({ label, value }) => el('div', {}, el('dt', {}, label), el('dd', {}, value))),
     ),
-    notes.length > 0 && el('ul', { class: 'notes', 'data-testid': 'notes' }, ...notes.map((note) => el('li', {}, ...prose(note)))),
+    notes.length > 0 &&
+      el('ul', { class: 'notes', 'data-testid': 'notes' }, ...notes.map((note) => el('li', {}, ...prose(note)))),
     state.report.margin && marginPlot(state),
     ...checks.map(factTable),
   )

@@ -29,25 +29,44 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   const scale = largest(state, index, order)
   const own = quantity.curves[order]
   if (own.length === 0) return { ...content, message: unknown(title) }
-  const label = state.isPredicted ? 'predicted to first order' : (present?.name ?? (state.compares ? 'present design' : title))
+  const label = state.isPredicted
+    ? 'predicted to first order'
+    : (present?.name ?? (state.compares ? 'present design' : title))
   content.lines.push({ label, color: css('--trace'), curve: quiet(state.curve(index, order), scale), width: 2.4 })
   if (state.compares) {
     const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own
-    content.lines.push({ label: former?.name ?? 'original', color: css('--former'), curve: quiet(curve, scale), width: 1.8, dash: DASHED })
+    content.lines.push({
+      label: former?.name ?? 'original',
+      color: css('--former'),
+      curve: quiet(curve, scale),
+      width: 1.8,
+      dash: DASHED,
+    })
   }
   const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
   // Over another quantity, which has a tolerance itself, bands would have another meaning.
-  if (over !== undefined && bands.length > 0) content.caption = 'Bands are known over time only: select time as the abscissa to see them.'
+  if (over !== undefined && bands.length > 0)
+    content.caption = 'Bands are known over time only: select time as the abscissa to see them.'
   for (const band of over === undefined ? bands : []) {
     const curve = quiet(band.quantities[index]![order], scale)
     content.lines.push({ label: band.name, color: css('--former'), curve, width: 1.3, dash: DOTTED })
   }
-  const predictions = present ? report.designs.filter(({ kind }) => kind.endsWith('_order')).filter((design) => design !== former) : []
+  const predictions = present
+    ? report.designs.filter(({ kind }) => kind.endsWith('_order')).filter((design) => design !== former)
+    : []
   predictions.forEach((design, k) => {
     const curve = design.quantities[index]?.[order]
-    if (curve?.length) content.lines.push({ label: design.name, color: hue(k + 1), curve: quiet(curve, scale), width: 1.8, dash: DOTTED })
+    if (curve?.length)
+      content.lines.push({
+        label: design.name,
+        color: hue(k + 1),
+        curve: quiet(curve, scale),
+        width: 1.8,
+        dash: DOTTED,
+      })
   })
-  if (order === 0) content.lines.push({ label: 'wanted', color: css('--good'), curve: quantity.wanted, width: 2.4, dash: DOTTED })
+  if (order === 0)
+    content.lines.push({ label: 'wanted', color: css('--good'), curve: quantity.wanted, width: 2.4, dash: DOTTED })
   content.lines = content.lines.filter(({ curve }) => curve.length > 0)
   if (order === 0 && over === undefined) {
     content.wanted = report.values
@@ -72,7 +91,8 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const title = own ? derivativeName(quantity, order, selected) : `d ${name}`
   const content: Content = { title, unit: derivativeUnit(quantity, order, selected), lines: [] }
   if (quantity.curves[order].length === 0) return { ...content, unit: '', message: unknown(name) }
-  if (!own) return { ...content, unit: '', message: selected.note || `How ${selected.name} acts on ${name} is not known.` }
+  if (!own)
+    return { ...content, unit: '', message: selected.note || `How ${selected.name} acts on ${name} is not known.` }
   const at = atAbscissa(state, subject)
   if (typeof at === 'string') return { ...content, message: at }
   const { seen } = at
@@ -95,7 +115,9 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   content.lines.push(...content.lines.splice(first, 1))
   const { differences } = own.sensitivity
   const left = peers.length - shown.length
-  const rest = [at.note, left > 0 ? `${shown.length} of ${peers.length}.` : ''].filter((words) => words !== '').join(' ')
+  const rest = [at.note, left > 0 ? `${shown.length} of ${peers.length}.` : '']
+    .filter((words) => words !== '')
+    .join(' ')
   if (!differences) return overOther(state, subject.over, { ...content, caption: rest })
   const curve = seen(differences.curves[order], selected.index, true)
   content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: withGaps(curve) })
@@ -108,7 +130,9 @@ export function sensitivityContent(state: State, subject: Subject): Content {
 /** Maximum among quantities of the same unit, the scale for rounding. */
 function largest({ report }: State, index: number, order: Order): number {
   const unit = report.quantities[index].units[order]
-  return Math.max(...report.quantities.filter(({ units }) => units[order] === unit).map(({ curves }) => peak(curves[order])))
+  return Math.max(
+    ...report.quantities.filter(({ units }) => units[order] === unit).map(({ curves }) => peak(curves[order])),
+  )
 }
 
 function unknown(title: string): string {
@@ -146,7 +170,10 @@ function atAbscissa({ senses: report }: State, { quantity, order, over }: Subjec
     const dx = differences ? of?.differences?.curves[0] : of?.curves[0]
     return dx ? atFixedAbscissa(curve, dx, along) : curve
   }
-  return { seen, note: alone && keeper ? `At the same ${x.name}, which ${keeper.name} keeps while other drivers stand.` : '' }
+  return {
+    seen,
+    note: alone && keeper ? `At the same ${x.name}, which ${keeper.name} keeps while other drivers stand.` : '',
+  }
 }
 
 /** Among several moving drivers, the one that moves the quantity most. */

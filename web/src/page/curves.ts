@@ -31,7 +31,12 @@ export class Curves {
 
   #add(shown: Shown, quantity?: number): Figure {
     const number = this.#made++
-    const figure = new Figure(this.state, { quantity, shown, testId: `plot-${number}`, leads: number === 0 }, this.#time, { onRemove: (gone) => this.#remove(gone), onAdd: () => this.#addNext(), tool: this.tool })
+    const figure = new Figure(
+      this.state,
+      { quantity, shown, testId: `plot-${number}`, leads: number === 0 },
+      this.#time,
+      { onRemove: (gone) => this.#remove(gone), onAdd: () => this.#addNext(), tool: this.tool },
+    )
     this.figures.push(figure)
     this.#list.append(figure.plot.element)
     return figure

@@ -20,7 +20,11 @@ export function exports(state: State, figures: Figure[], view: View | undefined)
   return [
     ...(view
       ? [
-          { name: 'View as PNG', testId: 'export-view-png', run: async () => save(await view.picture(SHARP), `${name} view.png`) },
+          {
+            name: 'View as PNG',
+            testId: 'export-view-png',
+            run: async () => save(await view.picture(SHARP), `${name} view.png`),
+          },
           { name: 'View as SVG', testId: 'export-view-svg', run: () => save(view.vectors(), `${name} view.svg`) },
           { name: 'Motion as glTF', testId: 'export-gltf', run: async () => save(await view.motion(), `${name}.glb`) },
         ]
@@ -28,11 +32,31 @@ export function exports(state: State, figures: Figure[], view: View | undefined)
     ...drawn.flatMap(({ plot }) => {
       const { title } = plot.content
       return [
-        { name: `${title} as PNG`, testId: 'export-plot-png', run: async () => save(await plotPng(plot.canvas!, title, { page: css('--page'), text: css('--ink') }), `${name} ${title}.png`) },
-        { name: `${title} as SVG`, testId: 'export-plot-svg', run: () => save(plotSvg(plot.content, report.times, report.units.time, paper()), `${name} ${title}.svg`) },
+        {
+          name: `${title} as PNG`,
+          testId: 'export-plot-png',
+          run: async () =>
+            save(
+              await plotPng(plot.canvas!, title, { page: css('--page'), text: css('--ink') }),
+              `${name} ${title}.png`,
+            ),
+        },
+        {
+          name: `${title} as SVG`,
+          testId: 'export-plot-svg',
+          run: () => save(plotSvg(plot.content, report.times, report.units.time, paper()), `${name} ${title}.svg`),
+        },
       ]
     }),
-    ...(drawn.length > 0 ? [{ name: 'Curves shown as CSV', testId: 'export-csv', run: () => save(csvOf(columns(state, drawn)), `${name} curves.csv`) }] : []),
+    ...(drawn.length > 0
+      ? [
+          {
+            name: 'Curves shown as CSV',
+            testId: 'export-csv',
+            run: () => save(csvOf(columns(state, drawn)), `${name} curves.csv`),
+          },
+        ]
+      : []),
     { name: 'Print or PDF', testId: 'export-print', run: () => print() },
   ]
 }
@@ -48,9 +72,14 @@ function columns({ report }: State, figures: Figure[]): Column[] {
   const columns = [
     { label: 'time', unit: report.units.time, curve: report.times },
     ...[...overs.values()].map(({ label, unit, curve }) => ({ label, unit, curve })),
-    ...contents.flatMap(({ title, unit, lines }) => lines.map(({ label, curve }) => ({ label: label === title ? label : `${title}: ${label}`, unit, curve }))),
+    ...contents.flatMap(({ title, unit, lines }) =>
+      lines.map(({ label, curve }) => ({ label: label === title ? label : `${title}: ${label}`, unit, curve })),
+    ),
   ]
   const seen = contents.map(({ over, part }) => part && stepsWithin(over?.curve ?? report.times, part))
   if (seen.some((steps) => !steps)) return columns
-  return columns.map((column) => ({ ...column, curve: column.curve.filter((_, k) => seen.some((steps) => steps!.has(k))) }))
+  return columns.map((column) => ({
+    ...column,
+    curve: column.curve.filter((_, k) => seen.some((steps) => steps!.has(k))),
+  }))
 }

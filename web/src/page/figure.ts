@@ -30,28 +30,80 @@ export class Figure {
     private readonly state: State,
     private readonly wish: Wish,
     time: Zoom,
-    { onRemove, onAdd, tool }: { onRemove: (figure: Figure) => void; onAdd: () => void; tool?: (figure: Figure) => HTMLElement | undefined },
+    {
+      onRemove,
+      onAdd,
+      tool,
+    }: { onRemove: (figure: Figure) => void; onAdd: () => void; tool?: (figure: Figure) => HTMLElement | undefined },
   ) {
     this.#quantity = wish.quantity
     this.#shown = wish.shown
     const { report } = state
     const first = wish.leads ? [] : [el('option', { value: '' }, 'selected quantity')]
     const quantity = select('quantity', 'Quantity', () => this.#pick(quantity.value), ...first, ...offered(state))
-    const over = select('over', 'Over', () => this.#choose({ over: over.value === '' ? undefined : Number(over.value) }), el('option', { value: '' }, 'over time'),
-      ...groups(report).flatMap(([, members]) => members.map(({ index, name }) => el('option', { value: index }, `over ${name}`))))
-    const order = select('order', 'Order', () => this.#choose({ order: Number(order.value) as Order }), ...ORDERS.map((name, k) => el('option', { value: k }, name)))
+    const over = select(
+      'over',
+      'Over',
+      () => this.#choose({ over: over.value === '' ? undefined : Number(over.value) }),
+      el('option', { value: '' }, 'over time'),
+      ...groups(report).flatMap(([, members]) =>
+        members.map(({ index, name }) => el('option', { value: index }, `over ${name}`)),
+      ),
+    )
+    const order = select(
+      'order',
+      'Order',
+      () => this.#choose({ order: Number(order.value) as Order }),
+      ...ORDERS.map((name, k) => el('option', { value: k }, name)),
+    )
     const able = report.variables.some(({ sensitivities }) => sensitivities.size > 0)
     const shown = el(
       'button',
-      { type: 'button', class: 'switch', 'data-testid': 'shown', title: 'Draw the sensitivities to the design variables', onclick: () => {
-        this.#shown = this.#shown === 'value' ? 'sensitivity' : 'value'
-        this.show()
-      } },
+      {
+        type: 'button',
+        class: 'switch',
+        'data-testid': 'shown',
+        title: 'Draw the sensitivities to the design variables',
+        onclick: () => {
+          this.#shown = this.#shown === 'value' ? 'sensitivity' : 'value'
+          this.show()
+        },
+      },
       'Sensitivity',
     )
-    const remove = el('button', { type: 'button', class: 'icon', 'data-testid': 'remove', title: 'Remove plot', 'aria-label': 'Remove plot', onclick: () => onRemove(this) }, '×')
-    const add = el('button', { type: 'button', class: 'icon', 'data-testid': 'add-curve', title: 'Add a curve', 'aria-label': 'Add a curve', onclick: onAdd }, '+')
-    const controls = el('div', { class: 'controls' }, quantity, over, order, able ? shown : undefined, wish.leads ? add : remove)
+    const remove = el(
+      'button',
+      {
+        type: 'button',
+        class: 'icon',
+        'data-testid': 'remove',
+        title: 'Remove plot',
+        'aria-label': 'Remove plot',
+        onclick: () => onRemove(this),
+      },
+      '×',
+    )
+    const add = el(
+      'button',
+      {
+        type: 'button',
+        class: 'icon',
+        'data-testid': 'add-curve',
+        title: 'Add a curve',
+        'aria-label': 'Add a curve',
+        onclick: onAdd,
+      },
+      '+',
+    )
+    const controls = el(
+      'div',
+      { class: 'controls' },
+      quantity,
+      over,
+      order,
+      able ? shown : undefined,
+      wish.leads ? add : remove,
+    )
     this.plot = new Plot(state, wish.testId, [controls], time)
     this.plot.element.classList.toggle('leads', wish.leads)
     pointing(state, this.plot.element, () => this.subject.quantity)
@@ -76,7 +128,9 @@ export class Figure {
   /** Subject of the figure. */
   get subject(): Subject {
     const { quantity, order, over } = this.state.choice
-    return this.#follows ? { quantity, order, over } : { quantity: this.#quantity!, order: this.#order, over: this.#over }
+    return this.#follows
+      ? { quantity, order, over }
+      : { quantity: this.#quantity!, order: this.#order, over: this.#over }
   }
 
   get #follows(): boolean {

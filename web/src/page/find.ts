@@ -15,8 +15,16 @@ const SHOWN = 12
 export function find(state: State): { element: HTMLElement; focus: () => void } {
   const { report } = state
   const entries: Entry[] = [
-    ...report.quantities.map(({ name, group, index }) => ({ name, about: group, choose: () => state.choose({ quantity: index }) })),
-    ...report.variables.map(({ name, index }) => ({ name, about: 'variable', choose: () => state.choose({ variable: index }) })),
+    ...report.quantities.map(({ name, group, index }) => ({
+      name,
+      about: group,
+      choose: () => state.choose({ quantity: index }),
+    })),
+    ...report.variables.map(({ name, index }) => ({
+      name,
+      about: 'variable',
+      choose: () => state.choose({ variable: index }),
+    })),
   ]
   let matches: Entry[] = []
   let active = 0
@@ -31,7 +39,7 @@ export function find(state: State): { element: HTMLElement; focus: () => void } 
     'aria-autocomplete': 'list',
     autocomplete: 'off',
     'data-testid': 'find',
-    oninput: () => (active = 0, show()),
+    oninput: () => ((active = 0), show()),
     onfocus: () => show(),
     onblur: () => close(),
     onkeydown: (event: KeyboardEvent) => {
@@ -57,13 +65,29 @@ export function find(state: State): { element: HTMLElement; focus: () => void } 
   }
   const show = () => {
     const words = input.value.toLowerCase().split(/\s+/).filter(Boolean)
-    matches = words.length === 0 ? [] : entries.filter(({ name }) => words.every((word) => name.toLowerCase().includes(word))).slice(0, SHOWN)
-    list.replaceChildren(...matches.map((entry, k) =>
-      // The field keeps the focus until the click is done.
-      el('li', { role: 'option', id: `match-${k}`, 'aria-selected': String(k === active), onpointerdown: (event: Event) => event.preventDefault(), onclick: () => take(entry) },
-        el('span', {}, entry.name), el('span', { class: 'muted' }, entry.about)),
-    ))
-    if (words.length > 0 && matches.length === 0) list.replaceChildren(el('li', { class: 'muted' }, 'nothing of that name'))
+    matches =
+      words.length === 0
+        ? []
+        : entries.filter(({ name }) => words.every((word) => name.toLowerCase().includes(word))).slice(0, SHOWN)
+    list.replaceChildren(
+      ...matches.map((entry, k) =>
+        // The field keeps the focus until the click is done.
+        el(
+          'li',
+          {
+            role: 'option',
+            id: `match-${k}`,
+            'aria-selected': String(k === active),
+            onpointerdown: (event: Event) => event.preventDefault(),
+            onclick: () => take(entry),
+          },
+          el('span', {}, entry.name),
+          el('span', { class: 'muted' }, entry.about),
+        ),
+      ),
+    )
+    if (words.length > 0 && matches.length === 0)
+      list.replaceChildren(el('li', { class: 'muted' }, 'nothing of that name'))
     list.hidden = words.length === 0
     input.setAttribute('aria-expanded', String(!list.hidden))
     if (matches.length > 0) input.setAttribute('aria-activedescendant', `match-${active}`)

@@ -27,7 +27,11 @@ const MARKS: [mark: string, meaning: string][] = [
 /** The keys and line styles of the page, in a dialog of their own. */
 export function help(): HTMLDialogElement {
   const pairs = (list: [string, string][], tag: 'kbd' | 'span') =>
-    el('dl', { class: 'pairs' }, ...list.flatMap(([key, meaning]) => [el('dt', {}, el(tag, {}, key)), el('dd', {}, meaning)]))
+    el(
+      'dl',
+      { class: 'pairs' },
+      ...list.flatMap(([key, meaning]) => [el('dt', {}, el(tag, {}, key)), el('dd', {}, meaning)]),
+    )
   const dialog = el(
     'dialog',
     { class: 'help', 'data-testid': 'keys', 'aria-label': 'Keys and lines' },

@@ -49,22 +49,63 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
   const keys = help()
   const scene = stage(state)
   const curves = hasQuantities ? new Curves(state, tools.figure) : undefined
-  const table: Tab[] = hasQuantities && hasVariables
-    ? [{ name: 'table', title: 'Table', content: el('div', { class: 'influence' }, rankingTable(state), heatMap(state)) }]
+  const table: Tab[] =
+    hasQuantities && hasVariables
+      ? [
+          {
+            name: 'table',
+            title: 'Table',
+            content: el('div', { class: 'influence' }, rankingTable(state), heatMap(state)),
+          },
+        ]
+      : []
+  const maps: Tab[] =
+    report.maps.length > 0
+      ? [
+          {
+            name: 'maps',
+            title: 'Maps',
+            content: el(
+              'div',
+              {},
+              ...report.maps.map((map) => driverMap(map, report.quantities[state.choice.quantity]?.name ?? '')),
+            ),
+          },
+        ]
+      : []
+  const sweep: Tab[] = report.sweep
+    ? [
+        {
+          name: 'designs',
+          title: report.sweep.what === 'design' ? 'Designs' : 'Residuals',
+          content: sweepPlot(report.sweep),
+        },
+      ]
     : []
-  const maps: Tab[] = report.maps.length > 0 ? [{ name: 'maps', title: 'Maps', content: el('div', {}, ...report.maps.map((map) => driverMap(map, report.quantities[state.choice.quantity]?.name ?? ''))) }] : []
-  const sweep: Tab[] = report.sweep ? [{ name: 'designs', title: report.sweep.what === 'design' ? 'Designs' : 'Residuals', content: sweepPlot(report.sweep) }] : []
   const loads: Tab[] = report.loads.length > 0 ? [{ name: 'loads', title: 'Forces', content: forcePaths(state) }] : []
   const sections: [name: string, element: HTMLElement | undefined][] = [
     ['variables', hasVariables ? variables(state) : undefined],
     ['curves', curves?.element],
-    ['tables', tabs('Tables and checks', [...sweep, ...maps, ...table, ...loads, { name: 'checks', title: 'Checks', content: checks(state) }])],
+    [
+      'tables',
+      tabs('Tables and checks', [
+        ...sweep,
+        ...maps,
+        ...table,
+        ...loads,
+        { name: 'checks', title: 'Checks', content: checks(state) },
+      ]),
+    ],
   ]
   const shown = sections.flatMap(([name, element]) => (element ? [{ name, element }] : []))
   for (const { name, element } of shown) element.classList.add(`area-${name}`)
   root.classList.toggle('no-variables', !hasVariables)
   root.classList.toggle('no-curves', !hasQuantities)
-  const head = bar(state, { find: search?.element, exports: () => [...(tools.exports?.() ?? []), ...exports(state, curves?.figures ?? [], scene.view)], help: () => keys.showModal() })
+  const head = bar(state, {
+    find: search?.element,
+    exports: () => [...(tools.exports?.() ?? []), ...exports(state, curves?.figures ?? [], scene.view)],
+    help: () => keys.showModal(),
+  })
   if (tools.bar) slot(head, tools.bar)
   root.append(
     head,
@@ -72,10 +113,19 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
     ...(report.values.length > 0 ? [cards(state)] : []),
     el('div', { class: 'scene' }, scene.element, transport(state)),
     ...shown.map(({ element }) => element),
-    navigation(shown.map(({ name, element }) => ({ name, element })), () => keys.showModal()),
+    navigation(
+      shown.map(({ name, element }) => ({ name, element })),
+      () => keys.showModal(),
+    ),
     keys,
   )
-  listenToKeys(state, { fit: scene.view && (() => scene.view?.fit()), look: scene.look, find: search?.focus, help: () => keys.showModal(), grips: () => tools.grips?.() })
+  listenToKeys(state, {
+    fit: scene.view && (() => scene.view?.fit()),
+    look: scene.look,
+    find: search?.focus,
+    help: () => keys.showModal(),
+    grips: () => tools.grips?.(),
+  })
   return { view: scene.view, bar: head }
 }
 
@@ -85,5 +135,10 @@ export function slot(head: HTMLElement, tools: HTMLElement): void {
 }
 
 function banner({ status }: Report): HTMLElement {
-  return el('p', { class: 'banner', role: 'status', 'data-testid': 'banner' }, el('strong', {}, 'This motion is incomplete. '), ...prose(status.message))
+  return el(
+    'p',
+    { class: 'banner', role: 'status', 'data-testid': 'banner' },
+    el('strong', {}, 'This motion is incomplete. '),
+    ...prose(status.message),
+  )
 }

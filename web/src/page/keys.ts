@@ -13,18 +13,28 @@ interface Targets {
 
 /** Keys that work wherever the focus is, but for controls to which they mean something else. */
 export function listenToKeys(state: State, targets: Targets): void {
-  document.addEventListener('keydown', (event) => {
-    const target = event.target as HTMLElement
-    if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return
-    if (target.closest('select, textarea, input:not([type=range]), [contenteditable=true], dialog, [role=menu]')) return
-    const action = actionOf(event, target, state, targets)
-    if (!action) return
-    event.preventDefault()
-    action()
-  }, { signal: state.ended })
+  document.addEventListener(
+    'keydown',
+    (event) => {
+      const target = event.target as HTMLElement
+      if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return
+      if (target.closest('select, textarea, input:not([type=range]), [contenteditable=true], dialog, [role=menu]'))
+        return
+      const action = actionOf(event, target, state, targets)
+      if (!action) return
+      event.preventDefault()
+      action()
+    },
+    { signal: state.ended },
+  )
 }
 
-function actionOf({ key }: KeyboardEvent, target: HTMLElement, state: State, targets: Targets): (() => void) | undefined {
+function actionOf(
+  { key }: KeyboardEvent,
+  target: HTMLElement,
+  state: State,
+  targets: Targets,
+): (() => void) | undefined {
   const digit = Number(key)
   if (key !== ' ' && Number.isInteger(digit) && digit >= 1) return targets.look && (() => targets.look!(digit - 1))
   switch (key) {

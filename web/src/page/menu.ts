@@ -9,13 +9,37 @@ export interface Item {
 
 /** A button that opens a list of actions; errors are shown in place of the list. */
 export function menu(title: string, testId: string, items: () => Item[]): HTMLElement {
-  const list = el('div', { class: 'menu', role: 'menu', 'aria-label': title, 'data-testid': `${testId}-menu`, hidden: true })
+  const list = el('div', {
+    class: 'menu',
+    role: 'menu',
+    'aria-label': title,
+    'data-testid': `${testId}-menu`,
+    hidden: true,
+  })
   const failure = el('p', { class: 'failure', role: 'alert', hidden: true })
-  const button = el('button', { type: 'button', 'aria-haspopup': 'menu', 'aria-expanded': 'false', 'data-testid': testId, onclick: () => (list.hidden ? open() : close()) }, `${title} ▾`)
+  const button = el(
+    'button',
+    {
+      type: 'button',
+      'aria-haspopup': 'menu',
+      'aria-expanded': 'false',
+      'data-testid': testId,
+      onclick: () => (list.hidden ? open() : close()),
+    },
+    `${title} ▾`,
+  )
   const element = el('div', { class: 'dropdown' }, button, list, failure)
   const open = () => {
     failure.hidden = true
-    list.replaceChildren(...items().map((item) => el('button', { type: 'button', role: 'menuitem', tabindex: -1, 'data-testid': item.testId, onclick: () => run(item) }, item.name)))
+    list.replaceChildren(
+      ...items().map((item) =>
+        el(
+          'button',
+          { type: 'button', role: 'menuitem', tabindex: -1, 'data-testid': item.testId, onclick: () => run(item) },
+          item.name,
+        ),
+      ),
+    )
     list.hidden = false
     button.setAttribute('aria-expanded', 'true')
     ;(list.firstElementChild as HTMLElement | null)?.focus()

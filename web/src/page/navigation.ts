@@ -13,6 +13,10 @@ export function navigation(sections: { name: string; element: HTMLElement }[], h
     buttons.forEach((button, index) => button.setAttribute('aria-pressed', String(index === chosen)))
   }
   show(0)
-  const asked = el('button', { type: 'button', class: 'help-button', 'aria-label': 'keys and lines', 'data-testid': 'nav-help', onclick: help }, '?')
+  const asked = el(
+    'button',
+    { type: 'button', class: 'help-button', 'aria-label': 'keys and lines', 'data-testid': 'nav-help', onclick: help },
+    '?',
+  )
   return el('nav', { class: 'navigation', 'aria-label': 'Sections' }, ...buttons, asked)
 }

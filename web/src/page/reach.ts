@@ -20,7 +20,11 @@ function sizeOf({ bodies }: Report): number {
   let square = 0
   for (let axis = 0; axis < 3; axis++) {
     const along = bodies.flatMap(({ skeleton, poses }) => skeleton.map((point) => point[axis] + (poses[axis] || 0)))
-    if (along.length > 0) square += along.reduce((low, x) => [Math.min(low[0], x), Math.max(low[1], x)], [Infinity, -Infinity]).reduce((low, high) => high - low) ** 2
+    if (along.length > 0)
+      square +=
+        along
+          .reduce((low, x) => [Math.min(low[0], x), Math.max(low[1], x)], [Infinity, -Infinity])
+          .reduce((low, high) => high - low) ** 2
   }
   return Math.sqrt(square)
 }

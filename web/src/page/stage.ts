@@ -17,7 +17,9 @@ export function stage(state: State): Stage {
     return { element: el('div', { class: 'view', 'data-testid': 'no-webgl' }, el('p', { class: 'message' }, message)) }
   }
   const view = new View(state)
-  const buttons = view.looks.map(({ name, title }, index) => el('button', { type: 'button', title, 'data-testid': `look-${name}`, onclick: () => look(index) }, name))
+  const buttons = view.looks.map(({ name, title }, index) =>
+    el('button', { type: 'button', title, 'data-testid': `look-${name}`, onclick: () => look(index) }, name),
+  )
   const look = (index: number) => {
     const chosen = view.looks[index]
     if (!chosen) return
@@ -25,8 +27,27 @@ export function stage(state: State): Stage {
     buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(k === index)))
   }
   buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(k === 0)))
-  const labels = el('button', { type: 'button', title: 'Names of hardpoints (L)', 'data-testid': 'labels', onclick: () => state.choose({ labels: !state.choice.labels }) }, 'labels')
-  const forces = el('button', { type: 'button', title: 'Forces as arrows (N)', 'data-testid': 'forces', hidden: state.report.loads.length === 0, onclick: () => state.choose({ forces: !state.choice.forces }) }, 'forces')
+  const labels = el(
+    'button',
+    {
+      type: 'button',
+      title: 'Names of hardpoints (L)',
+      'data-testid': 'labels',
+      onclick: () => state.choose({ labels: !state.choice.labels }),
+    },
+    'labels',
+  )
+  const forces = el(
+    'button',
+    {
+      type: 'button',
+      title: 'Forces as arrows (N)',
+      'data-testid': 'forces',
+      hidden: state.report.loads.length === 0,
+      onclick: () => state.choose({ forces: !state.choice.forces }),
+    },
+    'forces',
+  )
   const sync = () => {
     labels.setAttribute('aria-pressed', String(state.choice.labels))
     forces.setAttribute('aria-pressed', String(state.choice.forces))
@@ -35,7 +56,15 @@ export function stage(state: State): Stage {
   sync()
   const fit = el('button', { type: 'button', title: 'Fit (F)', 'data-testid': 'fit', onclick: () => view.fit() }, 'fit')
   view.element.append(
-    el('div', { class: 'looks', role: 'toolbar', 'aria-label': 'Standard views' }, ...buttons, fit, labels, forces, tracer(state)),
+    el(
+      'div',
+      { class: 'looks', role: 'toolbar', 'aria-label': 'Standard views' },
+      ...buttons,
+      fit,
+      labels,
+      forces,
+      tracer(state),
+    ),
     ghostKey(state),
   )
   return { element: view.element, view, look }
@@ -44,7 +73,12 @@ export function stage(state: State): Stage {
 /** Names the design that is drawn dashed. */
 function ghostKey(state: State): HTMLElement {
   const name = el('span')
-  const element = el('p', { class: 'ghost-key' }, el('span', { class: 'swatch dashed', style: '--swatch: var(--former)' }), name)
+  const element = el(
+    'p',
+    { class: 'ghost-key' },
+    el('span', { class: 'swatch dashed', style: '--swatch: var(--former)' }),
+    name,
+  )
   const sync = () => {
     element.hidden = !state.compares
     name.textContent = `${state.former?.name ?? 'original'}${state.isPredicted ? '; solid: predicted to first order' : ''}`
@@ -68,9 +102,15 @@ function tracer(state: State): HTMLElement {
       },
     },
     el('option', { value: '' }, 'no path'),
-    ...state.report.bodies.slice(1).map((body, index) =>
-      el('optgroup', { label: body.name }, ...body.labels.map((label, point) => el('option', { value: `${index + 1} ${point}` }, `path of ${label}`))),
-    ),
+    ...state.report.bodies
+      .slice(1)
+      .map((body, index) =>
+        el(
+          'optgroup',
+          { label: body.name },
+          ...body.labels.map((label, point) => el('option', { value: `${index + 1} ${point}` }, `path of ${label}`)),
+        ),
+      ),
   )
   return select
 }

@@ -30,7 +30,11 @@ export function tabs(label: string, list: Tab[]): HTMLElement {
     ),
   )
   const panels = list.map(({ name, content }) =>
-    el('div', { role: 'tabpanel', id: `panel-${name}`, 'aria-labelledby': `tab-${name}`, class: 'panel', tabindex: 0 }, content),
+    el(
+      'div',
+      { role: 'tabpanel', id: `panel-${name}`, 'aria-labelledby': `tab-${name}`, class: 'panel', tabindex: 0 },
+      content,
+    ),
   )
   const show = (chosen: number) => {
     buttons.forEach((button, index) => {
@@ -40,5 +44,10 @@ export function tabs(label: string, list: Tab[]): HTMLElement {
     panels.forEach((panel, index) => panel.classList.toggle('away', index !== chosen))
   }
   show(0)
-  return el('section', { class: 'tabs', 'aria-label': label }, el('div', { role: 'tablist', 'aria-label': label }, ...buttons), ...panels)
+  return el(
+    'section',
+    { class: 'tabs', 'aria-label': label },
+    el('div', { role: 'tablist', 'aria-label': label }, ...buttons),
+    ...panels,
+  )
 }

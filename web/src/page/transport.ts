@@ -13,7 +13,13 @@ export function transport(state: State): HTMLElement {
   const { report } = state
   const time = pretty(report.units.time)
   const still = state.lastStep === 0
-  const play = el('button', { type: 'button', class: 'play', 'data-testid': 'play', disabled: still, onclick: () => state.toggle() })
+  const play = el('button', {
+    type: 'button',
+    class: 'play',
+    'data-testid': 'play',
+    disabled: still,
+    onclick: () => state.toggle(),
+  })
   const slider = el('input', {
     type: 'range',
     min: 0,
@@ -40,7 +46,9 @@ export function transport(state: State): HTMLElement {
   )
 
   const show = () => {
-    play.replaceChildren(svg('svg', { viewBox: '0 0 12 12', 'aria-hidden': 'true' }, svg('path', { d: state.playing ? BARS : TRIANGLE })))
+    play.replaceChildren(
+      svg('svg', { viewBox: '0 0 12 12', 'aria-hidden': 'true' }, svg('path', { d: state.playing ? BARS : TRIANGLE })),
+    )
     play.setAttribute('aria-label', state.playing ? 'pause' : 'play')
     slider.value = String(Math.round(state.step))
     const moment = `${number(state.time, 4)} ${time}`

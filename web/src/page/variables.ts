@@ -26,8 +26,18 @@ export function variables(state: State): HTMLElement {
   const { report, choice } = state
   const list = el('ul', { 'aria-label': 'Design variables' })
   const about = el('span', { class: 'muted' })
-  const resetAll = el('button', { type: 'button', class: 'plain', 'data-testid': 'reset-all', onclick: () => state.reset() }, 'reset all')
-  const search = el('input', { type: 'search', placeholder: 'find a variable', 'aria-label': 'Find a variable', 'data-testid': 'variable-search', oninput: () => filter() })
+  const resetAll = el(
+    'button',
+    { type: 'button', class: 'plain', 'data-testid': 'reset-all', onclick: () => state.reset() },
+    'reset all',
+  )
+  const search = el('input', {
+    type: 'search',
+    placeholder: 'find a variable',
+    'aria-label': 'Find a variable',
+    'data-testid': 'variable-search',
+    oninput: () => filter(),
+  })
   search.hidden = report.variables.length <= MANY
   const note = el('p', { class: 'note', 'data-testid': 'variable-note', 'aria-live': 'polite' })
   const rows = report.variables.map((variable) => row(state, variable))
@@ -56,7 +66,8 @@ export function variables(state: State): HTMLElement {
     }
     // Under the hand that changes one of them, they keep their places.
     if (again) return
-    const rank = ({ variable }: Row) => place.get(variable.index) ?? rows.length + Number(variable.admissibility === 'cannot_follow')
+    const rank = ({ variable }: Row) =>
+      place.get(variable.index) ?? rows.length + Number(variable.admissibility === 'cannot_follow')
     order = [...rows].sort((a, b) => rank(a) - rank(b) || a.variable.index - b.variable.index)
     list.replaceChildren(...order.map(({ element }) => element))
     list.scrollTop = 0
@@ -67,13 +78,20 @@ export function variables(state: State): HTMLElement {
     for (const item of rows) item.sync()
     resetAll.hidden = !state.changed
     const variable = report.variables[choice.variable]
-    const preface = state.isPredicted ? 'Changes are predicted to first order. ' : state.sensed ? '' : 'Sensitivities are being updated. '
+    const preface = state.isPredicted
+      ? 'Changes are predicted to first order. '
+      : state.sensed
+        ? ''
+        : 'Sensitivities are being updated. '
     note.replaceChildren(...prose(preface + (variable?.note || variable?.description || '')))
     if (choice.variable === shown) return
     shown = choice.variable
     const { element } = rows[shown]
     // Not scrollIntoView, which would move the whole page on a phone.
-    if (element.offsetTop < list.scrollTop || element.offsetTop + element.offsetHeight > list.scrollTop + list.clientHeight) {
+    if (
+      element.offsetTop < list.scrollTop ||
+      element.offsetTop + element.offsetHeight > list.scrollTop + list.clientHeight
+    ) {
       list.scrollTop = element.offsetTop - list.clientHeight / 3
     }
   }
@@ -101,32 +119,74 @@ function row(state: State, variable: Variable): Row {
   let pending: number | undefined
   const change = (by: number) => {
     // A slider reports more often than a frame can be drawn.
-    if (pending === undefined) requestAnimationFrame(() => {
-      const last = pending!
-      pending = undefined
-      state.change(index, last)
-    })
+    if (pending === undefined)
+      requestAnimationFrame(() => {
+        const last = pending!
+        pending = undefined
+        state.change(index, last)
+      })
     pending = by
   }
-  const button = el('button', { type: 'button', class: 'name', name, title: variable.description || name, onclick: () => state.choose({ variable: index }) }, name)
-  const slider = el('input', { type: 'range', min: low, max: high, step, value: 0, 'data-testid': 'change', 'aria-label': `change of ${name}`, oninput: () => change(Number(slider.value)) })
-  const field = el('input', { type: 'number', step, value: 0, 'data-testid': 'change-value', 'aria-label': `change of ${name} in ${pretty(unit) || 'its unit'}`, onchange: () => state.change(index, limited(Number(field.value), variable)) })
-  const reset = el('button', { type: 'button', class: 'icon', title: `reset ${name}`, 'aria-label': `reset ${name}`, 'data-testid': 'reset', onclick: () => state.change(index, 0) }, '↺')
+  const button = el(
+    'button',
+    {
+      type: 'button',
+      class: 'name',
+      name,
+      title: variable.description || name,
+      onclick: () => state.choose({ variable: index }),
+    },
+    name,
+  )
+  const slider = el('input', {
+    type: 'range',
+    min: low,
+    max: high,
+    step,
+    value: 0,
+    'data-testid': 'change',
+    'aria-label': `change of ${name}`,
+    oninput: () => change(Number(slider.value)),
+  })
+  const field = el('input', {
+    type: 'number',
+    step,
+    value: 0,
+    'data-testid': 'change-value',
+    'aria-label': `change of ${name} in ${pretty(unit) || 'its unit'}`,
+    onchange: () => state.change(index, limited(Number(field.value), variable)),
+  })
+  const reset = el(
+    'button',
+    {
+      type: 'button',
+      class: 'icon',
+      title: `reset ${name}`,
+      'aria-label': `reset ${name}`,
+      'data-testid': 'reset',
+      onclick: () => state.change(index, 0),
+    },
+    '↺',
+  )
   const bar = el('span', { class: 'bar-of', 'aria-hidden': 'true' })
   const size = el('span', { class: 'size' })
   const effect = el('span', { class: 'effect', 'data-testid': 'effect' }, bar, size)
-  const controls = step > 0 ? [slider, el('span', { class: 'amount' }, field, el('span', { class: 'unit' }, pretty(unit)))] : []
+  const controls =
+    step > 0 ? [slider, el('span', { class: 'amount' }, field, el('span', { class: 'unit' }, pretty(unit)))] : []
   const element = el(
     'li',
     { class: `${admissibility} ${controls.length > 0 ? '' : 'fixed'}`, 'data-testid': `variable-${name}` },
     el('span', { class: 'who' }, button, able ? badge(variable) : undefined),
     ...controls,
-    able ? effect : el('span', { class: 'why', title: variable.note }, ...prose(variable.note || 'the mechanism cannot follow')),
+    able
+      ? effect
+      : el('span', { class: 'why', title: variable.note }, ...prose(variable.note || 'the mechanism cannot follow')),
     controls.length > 0 && reset,
   )
   // A press anywhere in the row selects it, in addition to the action of a button or field.
   element.addEventListener('pointerdown', (event) => {
-    if (!(event.target as HTMLElement).closest('button') && state.choice.variable !== index) state.choose({ variable: index })
+    if (!(event.target as HTMLElement).closest('button') && state.choice.variable !== index)
+      state.choose({ variable: index })
   })
   /** Shown rows; a choice changes two of many. */
   let shown = ''
@@ -143,7 +203,8 @@ function row(state: State, variable: Variable): Row {
       button.tabIndex = chosen ? 0 : -1
       slider.tabIndex = field.tabIndex = reset.tabIndex = chosen ? 0 : -1
       if (Number(slider.value) !== by) slider.value = String(by)
-      if (document.activeElement !== field || Number(field.value) !== by) field.value = String(Number(by.toFixed(Math.max(digits, 3))))
+      if (document.activeElement !== field || Number(field.value) !== by)
+        field.value = String(Number(by.toFixed(Math.max(digits, 3))))
       slider.setAttribute('aria-valuetext', figure(by, unit))
       reset.classList.toggle('away', by === 0)
       element.classList.toggle('changed', by !== 0)
@@ -153,7 +214,11 @@ function row(state: State, variable: Variable): Row {
       bar.style.setProperty('--share', String(found?.share ?? 0))
       bar.classList.toggle('negative', (found?.extreme ?? 0) < 0)
       const sign = (found?.extreme ?? 0) > 0 ? '+' : ''
-      size.textContent = !found ? 'not known' : found.share === 0 ? '≈ 0' : `${sign}${number(found.extreme, 3)} ${symbol}`
+      size.textContent = !found
+        ? 'not known'
+        : found.share === 0
+          ? '≈ 0'
+          : `${sign}${number(found.extreme, 3)} ${symbol}`
     },
     focus: () => button.focus(),
   }

@@ -19,7 +19,15 @@ export interface ArrowSize {
 }
 
 /** An arrow between two points, over everything; it has two heads for motion in both directions. */
-export function straightArrow(kit: Kit, from: Vector3, to: Vector3, { head, shaft }: ArrowSize, colour: string, layer: number, both = false): Group {
+export function straightArrow(
+  kit: Kit,
+  from: Vector3,
+  to: Vector3,
+  { head, shaft }: ArrowSize,
+  colour: string,
+  layer: number,
+  both = false,
+): Group {
   const along = to.clone().sub(from)
   const length = along.length()
   const tip = Math.min(head, HEAD_SHARE * length)
@@ -27,13 +35,29 @@ export function straightArrow(kit: Kit, from: Vector3, to: Vector3, { head, shaf
   const [foot, end] = [both ? 0.7 * tip : 0, length - 0.7 * tip]
   const group = new Group().add(cone(kit, new Vector3(0, length, 0), Y, tip, colour))
   if (both) group.add(cone(kit, new Vector3(), Y.clone().negate(), tip, colour))
-  if ('pixels' in shaft) group.add(kit.line([new Vector3(0, foot, 0), new Vector3(0, end, 0)], colour, shaft.pixels, { over: true }))
-  else group.add(place(over(kit, new CylinderGeometry(shaft.radius, shaft.radius, end - foot, 12), colour), new Vector3(0, (foot + end) / 2, 0)))
+  if ('pixels' in shaft)
+    group.add(kit.line([new Vector3(0, foot, 0), new Vector3(0, end, 0)], colour, shaft.pixels, { over: true }))
+  else
+    group.add(
+      place(
+        over(kit, new CylinderGeometry(shaft.radius, shaft.radius, end - foot, 12), colour),
+        new Vector3(0, (foot + end) / 2, 0),
+      ),
+    )
   return above(place(group, from, length > 0 ? along : Y), layer)
 }
 
 /** Three quarters of a ring about an axis, with a head that shows the right-handed sense of the turn. */
-export function ringArrow(kit: Kit, at: Vector3, axis: Vector3, ring: number, head: number, radius: number, colour: string, layer: number): Group {
+export function ringArrow(
+  kit: Kit,
+  at: Vector3,
+  axis: Vector3,
+  ring: number,
+  head: number,
+  radius: number,
+  colour: string,
+  layer: number,
+): Group {
   const sweep = 1.5 * Math.PI
   const arc = over(kit, new TorusGeometry(ring, radius, 8, 48, sweep - head / ring), colour)
   // The torus lies in xy; laid down, its axis is the y that `place` expects.
@@ -67,7 +91,11 @@ function onArc(radius: number, angle: number): Vector3 {
 }
 
 function cone(kit: Kit, tip: Vector3, along: Vector3, length: number, colour: string): Mesh {
-  return place(over(kit, new ConeGeometry(HEAD * length, length, 20), colour), tip.clone().addScaledVector(along, -length / 2), along)
+  return place(
+    over(kit, new ConeGeometry(HEAD * length, length, 20), colour),
+    tip.clone().addScaledVector(along, -length / 2),
+    along,
+  )
 }
 
 /** A mesh without light that nothing hides. */

@@ -43,7 +43,14 @@ export class Assembly {
       object.traverse((one) => {
         if (overlay) return one.layers.set(OVER)
         const { material, isMesh } = one as Mesh
-        if (!isMesh || Array.isArray(material) || material.transparent || !('wireframe' in material) || 'isLineSegments2' in one) return
+        if (
+          !isMesh ||
+          Array.isArray(material) ||
+          material.transparent ||
+          !('wireframe' in material) ||
+          'isLineSegments2' in one
+        )
+          return
         if (!byMaterial.has(material)) {
           byMaterial.set(material, ++number)
           this.numbers.push({ part, number })
@@ -92,12 +99,19 @@ export class Assembly {
   #bounded(): Vector3[] {
     const { mechanism, drawn } = this
     const world = this.groups.length - 1
-    const still = this.groups.map((_, k) => outermost(drawn.filter(({ body = world, follow }) => body === k && !follow).flatMap(({ object }) => bounds(object))))
+    const still = this.groups.map((_, k) =>
+      outermost(
+        drawn.filter(({ body = world, follow }) => body === k && !follow).flatMap(({ object }) => bounds(object)),
+      ),
+    )
     const followed = drawn.filter(({ follow }) => follow)
     const found = mechanism.moments.flatMap((step) => {
       const frame = mechanism.frame(step)
-      const into = (body: number | undefined, points: Vector3[]) => (body === undefined ? points : points.map((point) => frame.at(body, point)))
-      const carried = mechanism.report.bodies.flatMap((_, body) => (body > 0 || step === 0 ? into(body, still[body]) : []))
+      const into = (body: number | undefined, points: Vector3[]) =>
+        body === undefined ? points : points.map((point) => frame.at(body, point))
+      const carried = mechanism.report.bodies.flatMap((_, body) =>
+        body > 0 || step === 0 ? into(body, still[body]) : [],
+      )
       const following = followed.flatMap(({ body, object, follow }) => {
         follow!(frame)
         return object.visible ? into(body, bounds(object)) : []

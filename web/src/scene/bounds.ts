@@ -37,7 +37,10 @@ export function bounds(object: Object3D, within = new Matrix4()): Vector3[] {
   const { geometry } = object as Partial<Mesh>
   const own = geometry ? ofGeometry(geometry) : []
   const places = object instanceof InstancedMesh ? instances(object).map((one) => one.premultiply(here)) : [here]
-  return [...places.flatMap(placed), ...object.children.filter(({ visible }) => visible).flatMap((child) => bounds(child, here))]
+  return [
+    ...places.flatMap(placed),
+    ...object.children.filter(({ visible }) => visible).flatMap((child) => bounds(child, here)),
+  ]
 }
 
 function ofGeometry(geometry: BufferGeometry): Vector3[] {
@@ -46,7 +49,9 @@ function ofGeometry(geometry: BufferGeometry): Vector3[] {
   const { position, instanceStart, instanceEnd } = geometry.attributes
   // Of a wide line the positions are those of a stretch that is laid from place to place.
   const places = instanceStart ? [instanceStart, instanceEnd] : position ? [position] : []
-  const points = places.flatMap((one) => Array.from({ length: one.count }, (_, k) => new Vector3().fromBufferAttribute(one, k)))
+  const points = places.flatMap((one) =>
+    Array.from({ length: one.count }, (_, k) => new Vector3().fromBufferAttribute(one, k)),
+  )
   const found = outermost(points.filter(({ x, y, z }) => Number.isFinite(x + y + z)))
   known.set(geometry, found)
   return found

@@ -34,7 +34,9 @@ export function looksOf(mechanism: Mechanism): Look[] {
     const left = up.clone().cross(forward)
     const from = (ahead: number, aside: number, above: number) =>
       forward.clone().multiplyScalar(ahead).addScaledVector(left, aside).addScaledVector(up, above)
-    const wheels = report.wheels.map(({ centre }) => mechanism.worldAt(centre.body, new Vector3(...centre.at), 0).dot(left))
+    const wheels = report.wheels.map(({ centre }) =>
+      mechanism.worldAt(centre.body, new Vector3(...centre.at), 0).dot(left),
+    )
     // With one wheel from inboard, so that the wheel is behind its knuckle.
     const outboard = wheels.length === 1 ? Math.sign(wheels[0]) || 1 : 1
     const corner = wheels.length > 1 ? from(0.95, -0.62, 0.5) : from(0.85, -0.8 * outboard, 0.42)
@@ -54,7 +56,11 @@ export function looksOf(mechanism: Mechanism): Look[] {
   ]
 }
 
-const look = (name: string, title: string, direction: Vector3): Look => ({ name, title, direction: direction.normalize() })
+const look = (name: string, title: string, direction: Vector3): Look => ({
+  name,
+  title,
+  direction: direction.normalize(),
+})
 
 /** Parallel projection for planar mechanisms, where lengths should compare; perspective for spatial ones. */
 export function cameraFor({ plane, up, size }: Mechanism): Camera {
@@ -69,7 +75,15 @@ export function cameraFor({ plane, up, size }: Mechanism): Camera {
  * Puts the camera where all points fill the picture but for that many pixels at its top; the point in their middle, to
  * be turned about.
  */
-export function fit(camera: Camera, points: Vector3[], size: number, { direction }: Look, width: number, height: number, top = TOP): Vector3 {
+export function fit(
+  camera: Camera,
+  points: Vector3[],
+  size: number,
+  { direction }: Look,
+  width: number,
+  height: number,
+  top = TOP,
+): Vector3 {
   camera.position.copy(direction)
   camera.lookAt(0, 0, 0)
   camera.updateMatrixWorld()
@@ -97,7 +111,10 @@ export function fit(camera: Camera, points: Vector3[], size: number, { direction
     distance = middle + 4 * size
     centre = [(east - west) / 2, (north - south) / 2 + ((1 - ceiling) / 2) * half]
   }
-  const target = new Vector3().addScaledVector(right, centre[0]).addScaledVector(up, centre[1]).addScaledVector(back, middle)
+  const target = new Vector3()
+    .addScaledVector(right, centre[0])
+    .addScaledVector(up, centre[1])
+    .addScaledVector(back, middle)
   camera.position.copy(target).addScaledVector(back, distance - middle)
   shapeTo(camera, aspect)
   return target

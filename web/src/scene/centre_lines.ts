@@ -18,8 +18,13 @@ export function centreLines(mechanism: Mechanism, body: number): [Vector3, Vecto
     const [a, b] = farthest(points, (p, q) => p.distanceTo(q))
     return [[a, b]]
   }
-  const ring = corners.map((corner, k): [Vector3, Vector3] => [points[corner], points[corners[(k + 1) % corners.length]]])
-  const inner = points.flatMap((point, k): [Vector3, Vector3][] => (corners.includes(k) ? [] : [[point, points[nearest(flat, corners, flat[k])]]]))
+  const ring = corners.map((corner, k): [Vector3, Vector3] => [
+    points[corner],
+    points[corners[(k + 1) % corners.length]],
+  ])
+  const inner = points.flatMap((point, k): [Vector3, Vector3][] =>
+    corners.includes(k) ? [] : [[point, points[nearest(flat, corners, flat[k])]]],
+  )
   return [...ring, ...inner]
 }
 
@@ -52,4 +57,3 @@ export function differs(present: Mechanism, former: Mechanism, body: number, lea
     now.some((point, k) => present.worldAt(body, point, step).distanceTo(former.worldAt(body, was[k], step)) > least),
   )
 }
-

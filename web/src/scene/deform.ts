@@ -17,7 +17,8 @@ export function deformed(positions: Float32Array, from: Vector3[], to: Vector3[]
     const sum = [0, 0, 0]
     let weights = 0
     for (let i = 0; i < from.length; i++) {
-      const squared = (positions[k] - from[i].x) ** 2 + (positions[k + 1] - from[i].y) ** 2 + (positions[k + 2] - from[i].z) ** 2
+      const squared =
+        (positions[k] - from[i].x) ** 2 + (positions[k + 1] - from[i].y) ** 2 + (positions[k + 2] - from[i].z) ** 2
       const weight = 1 / Math.max(squared, AT * AT * size)
       weights += weight
       sum[0] += weight * ways[i].x

@@ -24,7 +24,11 @@ export class Basis {
   }
 
   from([x, y]: Flat, height = 0): Vector3 {
-    return this.origin.clone().addScaledVector(this.x, x).addScaledVector(this.y, y).addScaledVector(this.normal, height)
+    return this.origin
+      .clone()
+      .addScaledVector(this.x, x)
+      .addScaledVector(this.y, y)
+      .addScaledVector(this.normal, height)
   }
 
   matrix(): Matrix4 {

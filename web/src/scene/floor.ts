@@ -58,7 +58,14 @@ export class Floor {
     sun.shadow.mapSize.set(SHADOW_PICTURE, SHADOW_PICTURE)
     sun.shadow.radius = 3
     sun.shadow.bias = -0.0005
-    Object.assign(sun.shadow.camera, { left: -reach, bottom: -reach, right: reach, top: reach, near: 0.1 * size, far: 8 * size })
+    Object.assign(sun.shadow.camera, {
+      left: -reach,
+      bottom: -reach,
+      right: reach,
+      top: reach,
+      near: 0.1 * size,
+      far: 8 * size,
+    })
     const material = new ShadowMaterial({ opacity: light.shadow })
     const ground = new Mesh(new PlaneGeometry(12 * reach, 12 * reach), material)
     ground.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), normal)
@@ -82,16 +89,26 @@ export class Floor {
     const other = normal.clone().cross(main)
     const count = 2 * Math.ceil(((flat ? 3 : 1.1) * reach) / cell)
     const snap = (axis: Vector3) => Math.round(middle.dot(axis) / cell) * cell
-    const origin = normal.clone().multiplyScalar(middle.dot(normal) - 1e-3 * reach).addScaledVector(main, snap(main)).addScaledVector(other, snap(other))
+    const origin = normal
+      .clone()
+      .multiplyScalar(middle.dot(normal) - 1e-3 * reach)
+      .addScaledVector(main, snap(main))
+      .addScaledVector(other, snap(other))
     const view = new Color(palette.view)
     const line = new Color(palette.gridMain)
     const positions: number[] = []
     const colours: number[] = []
-    for (const [along, aside] of [[main, other], [other, main]]) {
+    for (const [along, aside] of [
+      [main, other],
+      [other, main],
+    ]) {
       for (let k = -count / 2; k <= count / 2; k++) {
         for (let i = -count / 2; i < count / 2; i++) {
           for (const end of [i, i + 1]) {
-            const at = origin.clone().addScaledVector(aside, k * cell).addScaledVector(along, end * cell)
+            const at = origin
+              .clone()
+              .addScaledVector(aside, k * cell)
+              .addScaledVector(along, end * cell)
             const share = flat ? FLAT_GRID : Math.max(0, 1 - at.distanceTo(middle) / (FADE * reach))
             positions.push(at.x, at.y, at.z)
             colours.push(...view.clone().lerp(line, share).toArray())

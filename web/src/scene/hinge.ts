@@ -19,14 +19,22 @@ const SQUARE = 0.05
  */
 export function foldAxis(mechanism: Mechanism, body: number): Vector3 | undefined {
   const axis = parallelHinges(mechanism, body)
-  const mates = axis ? mechanism.jointsOf(body).map(({ joint }) => (joint.body_i === body ? joint.body_j : joint.body_i)) : []
+  const mates = axis
+    ? mechanism.jointsOf(body).map(({ joint }) => (joint.body_i === body ? joint.body_j : joint.body_i))
+    : []
   return mates.some((mate) => parallelHinges(mechanism, mate)) ? axis : undefined
 }
 
 function parallelHinges(mechanism: Mechanism, body: number): Vector3 | undefined {
-  if (body === 0 || mechanism.plane || mechanism.vehicle || mechanism.large || mechanism.report.wheels.length > 0) return undefined
+  if (body === 0 || mechanism.plane || mechanism.vehicle || mechanism.large || mechanism.report.wheels.length > 0)
+    return undefined
   const held = mechanism.jointsOf(body)
-  if (held.length !== 2 || mechanism.shapePoints(body).length !== 2 || held.some(({ joint, axis }) => joint.kind !== 'revolute' || joint.hinge || !axis)) return undefined
+  if (
+    held.length !== 2 ||
+    mechanism.shapePoints(body).length !== 2 ||
+    held.some(({ joint, axis }) => joint.kind !== 'revolute' || joint.hinge || !axis)
+  )
+    return undefined
   const [first, second] = held.map(({ axis }) => axis!.clone().normalize())
   const along = held[1].at.clone().sub(held[0].at).normalize()
   return Math.abs(first.dot(second)) > PARALLEL && Math.abs(first.dot(along)) < SQUARE ? first : undefined
@@ -43,7 +51,9 @@ export const FOLD = { half: 3.4, inner: 1.5 }
  * joint there.
  */
 export function shaftAxis(mechanism: Mechanism, body: number): Vector3 | undefined {
-  const bearing = mechanism.jointsOf(body).find(({ joint }) => joint.kind === 'revolute' && (joint.body_i === 0 || joint.body_j === 0) && !joint.hinge)
+  const bearing = mechanism
+    .jointsOf(body)
+    .find(({ joint }) => joint.kind === 'revolute' && (joint.body_i === 0 || joint.body_j === 0) && !joint.hinge)
   if (!bearing?.axis || mechanism.placesOf(body).length !== 1) return undefined
   const place = hingePlaces(mechanism, bearing.joint)[0]
   return mechanism.same(place, new Vector3(...bearing.joint.at_i)) ? undefined : bearing.axis.clone().normalize()
@@ -69,7 +79,9 @@ export function hingePlaces(mechanism: Mechanism, joint: JointMark): Vector3[] {
   const at = new Vector3(...joint.at_i)
   if (mechanism.plane || !joint.axis || (joint.body_i !== 0 && joint.body_j !== 0)) return [at]
   const { body, at: own, axis } = carried(mechanism, joint)
-  const hidden = mechanism.jointsOf(body).some((other) => SHY.includes(other.joint.kind) && mechanism.same(other.at, own))
+  const hidden = mechanism
+    .jointsOf(body)
+    .some((other) => SHY.includes(other.joint.kind) && mechanism.same(other.at, own))
   if (!hidden) return [at]
   const along = mechanism.report.bodies[body].skeleton.map((point) => new Vector3(...point).sub(own).dot(axis))
   const reach = along.reduce((far, one) => (Math.abs(one) > Math.abs(far) ? one : far), 0)
@@ -80,7 +92,9 @@ export function hingePlaces(mechanism: Mechanism, joint: JointMark): Vector3[] {
 /** Centre of the other points of a body, in its frame; the point itself if there are none. */
 export function restOf(mechanism: Mechanism, body: number, at: Vector3): Vector3 {
   const others = mechanism.shapePoints(body).filter((point) => !mechanism.same(point, at))
-  return others.length > 0 ? others.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(others.length) : at.clone()
+  return others.length > 0
+    ? others.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(others.length)
+    : at.clone()
 }
 
 /** Unit vector in a body's frame from a point on it to its other points; `otherwise` if there are none. */

@@ -120,7 +120,9 @@ export class Kit {
     const along = to.clone().sub(from)
     const length = along.length()
     const straight = r1 === r2
-    const geometry = straight ? this.#unit('rod', () => new CylinderGeometry(1, 1, 1, 20)) : this.#keep(new CylinderGeometry(r2, r1, 1, 20))
+    const geometry = straight
+      ? this.#unit('rod', () => new CylinderGeometry(1, 1, 1, 20))
+      : this.#keep(new CylinderGeometry(r2, r1, 1, 20))
     const mesh = this.#mesh(geometry, colour, finish)
     if (straight) mesh.scale.set(r1, 1, r1)
     mesh.scale.y = length
@@ -129,7 +131,11 @@ export class Kit {
   }
 
   ball(at: Vector3, radius: number, colour: string, finish: Finish = {}): Mesh {
-    const mesh = this.#mesh(this.#unit('ball', () => new SphereGeometry(1, 20, 14)), colour, finish)
+    const mesh = this.#mesh(
+      this.#unit('ball', () => new SphereGeometry(1, 20, 14)),
+      colour,
+      finish,
+    )
     mesh.scale.setScalar(radius)
     mesh.position.copy(at)
     return mesh
@@ -137,26 +143,58 @@ export class Kit {
 
   /** A round plate or pin of height `height` about its middle. */
   disc(at: Vector3, axis: Vector3, radius: number, height: number, colour: string, finish: Finish = {}): Mesh {
-    const mesh = this.#mesh(this.#unit('disc', () => new CylinderGeometry(1, 1, 1, 36)), colour, finish)
+    const mesh = this.#mesh(
+      this.#unit('disc', () => new CylinderGeometry(1, 1, 1, 36)),
+      colour,
+      finish,
+    )
     mesh.scale.set(radius, height, radius)
     return place(mesh, at, axis)
   }
 
   /** A sleeve about its middle. */
-  tube(at: Vector3, axis: Vector3, outer: number, inner: number, height: number, colour: string, finish: Finish = {}): Mesh {
+  tube(
+    at: Vector3,
+    axis: Vector3,
+    outer: number,
+    inner: number,
+    height: number,
+    colour: string,
+    finish: Finish = {},
+  ): Mesh {
     const half = height / 2
-    return this.lathe(at, axis, [[inner, -half], [outer, -half], [outer, half], [inner, half], [inner, -half]], colour, { open: true, ...finish })
+    return this.lathe(
+      at,
+      axis,
+      [
+        [inner, -half],
+        [outer, -half],
+        [outer, half],
+        [inner, half],
+        [inner, -half],
+      ],
+      colour,
+      { open: true, ...finish },
+    )
   }
 
   /** A body of revolution about `axis` through `at`; the profile as radius and height along the axis. */
   lathe(at: Vector3, axis: Vector3, profile: Flat[], colour: string, finish: Finish = {}): Mesh {
-    const geometry = this.#keep(new LatheGeometry(profile.map(([r, h]) => new Vector2(r, h)), 48))
+    const geometry = this.#keep(
+      new LatheGeometry(
+        profile.map(([r, h]) => new Vector2(r, h)),
+        48,
+      ),
+    )
     return place(this.#mesh(geometry, colour, finish), at, axis)
   }
 
   /** The shadow of a mesh that casts none itself, because it is translucent. */
   shadowOf({ geometry, position, quaternion, scale }: Mesh): Mesh {
-    const material = this.#material('shadow', () => new MeshBasicMaterial({ colorWrite: false, depthWrite: false, transparent: true }))
+    const material = this.#material(
+      'shadow',
+      () => new MeshBasicMaterial({ colorWrite: false, depthWrite: false, transparent: true }),
+    )
     const caster = new Mesh(geometry, material)
     caster.position.copy(position)
     caster.quaternion.copy(quaternion)
@@ -167,15 +205,31 @@ export class Kit {
   }
 
   /** A box with its sides along x, y (made perpendicular to x) and their normal. */
-  brick(at: Vector3, x: Vector3, y: Vector3, sides: [number, number, number], colour: string, finish: Finish = { edges: 30 }): Mesh {
+  brick(
+    at: Vector3,
+    x: Vector3,
+    y: Vector3,
+    sides: [number, number, number],
+    colour: string,
+    finish: Finish = { edges: 30 },
+  ): Mesh {
     const unit = x.clone().normalize()
     const up = square(y, unit)
-    const geometry = new BoxGeometry(...sides).applyMatrix4(new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at))
+    const geometry = new BoxGeometry(...sides).applyMatrix4(
+      new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at),
+    )
     return this.mesh(geometry, colour, finish)
   }
 
   /** A plate of the given outline, its middle in the plane of the basis. */
-  slab(outline: Flat[], basis: Basis, thickness: number, colour: string, holes: Flat[][] = [], finish: Finish = {}): Mesh {
+  slab(
+    outline: Flat[],
+    basis: Basis,
+    thickness: number,
+    colour: string,
+    holes: Flat[][] = [],
+    finish: Finish = {},
+  ): Mesh {
     const shape = new Shape(outline.map(([x, y]) => new Vector2(x, y)))
     for (const hole of holes) shape.holes.push(new Path(hole.map(([x, y]) => new Vector2(x, y))))
     const geometry = new ExtrudeGeometry(shape, { depth: thickness, bevelEnabled: false })
@@ -185,7 +239,13 @@ export class Kit {
   /** Triangles given by their corners, three by three. */
   triangles(corners: Vector3[], colour: string, finish: Finish = {}): Mesh {
     const geometry = new BufferGeometry()
-    geometry.setAttribute('position', new Float32BufferAttribute(corners.flatMap((corner) => corner.toArray()), 3))
+    geometry.setAttribute(
+      'position',
+      new Float32BufferAttribute(
+        corners.flatMap((corner) => corner.toArray()),
+        3,
+      ),
+    )
     geometry.computeVertexNormals()
     return this.mesh(geometry, colour, finish)
   }
@@ -211,11 +271,18 @@ export class Kit {
     const along = b.clone().sub(a)
     const count = Math.max(3, Math.round(along.length() / (1.25 * r)))
     const step = along.divideScalar(count)
-    const away = outwards.clone().normalize().multiplyScalar(1.3 * r)
+    const away = outwards
+      .clone()
+      .normalize()
+      .multiplyScalar(1.3 * r)
     const strokes = Array.from({ length: count }, (_, k) => a.clone().addScaledVector(step, k + 1))
     return new Group().add(
       this.line([a, b], this.palette.hatch, 2),
-      this.lines(strokes.flatMap((foot) => [foot, foot.clone().addScaledVector(step, -0.9).add(away)]), this.palette.hatch, 1.2),
+      this.lines(
+        strokes.flatMap((foot) => [foot, foot.clone().addScaledVector(step, -0.9).add(away)]),
+        this.palette.hatch,
+        1.2,
+      ),
     )
   }
 
@@ -241,7 +308,16 @@ export class Kit {
     const up = square(y, unit)
     geometry.applyMatrix4(new Matrix4().makeBasis(unit, up, unit.clone().cross(up)).setPosition(at))
     const mesh = this.mesh(geometry, this.palette.ground)
-    mesh.material = this.#material('hatched', () => new MeshLambertMaterial({ map: this.#hatching(), polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }))
+    mesh.material = this.#material(
+      'hatched',
+      () =>
+        new MeshLambertMaterial({
+          map: this.#hatching(),
+          polygonOffset: true,
+          polygonOffsetFactor: 1,
+          polygonOffsetUnits: 1,
+        }),
+    )
     return mesh
   }
 
@@ -266,22 +342,27 @@ export class Kit {
   }
 
   #edge(): Material {
-    return this.#material('edge', () => new LineBasicMaterial({ color: this.palette.outline, transparent: true, opacity: EDGE }))
+    return this.#material(
+      'edge',
+      () => new LineBasicMaterial({ color: this.palette.outline, transparent: true, opacity: EDGE }),
+    )
   }
 
   #stroke(colour: string, width: number, { dashed = false, opacity = 1, over = false }: Stroke): LineMaterial {
-    return this.#material(`line ${colour} ${width} ${dashed} ${opacity} ${over}`, () =>
-      new LineMaterial({
-        color: colour,
-        linewidth: width,
-        dashed,
-        dashSize: DASH.on * this.unit,
-        gapSize: DASH.off * this.unit,
-        transparent: opacity < 1 || over,
-        opacity,
-        depthTest: !over,
-        depthWrite: !over,
-      }),
+    return this.#material(
+      `line ${colour} ${width} ${dashed} ${opacity} ${over}`,
+      () =>
+        new LineMaterial({
+          color: colour,
+          linewidth: width,
+          dashed,
+          dashSize: DASH.on * this.unit,
+          gapSize: DASH.off * this.unit,
+          transparent: opacity < 1 || over,
+          opacity,
+          depthTest: !over,
+          depthWrite: !over,
+        }),
     ) as LineMaterial
   }
 

@@ -34,13 +34,19 @@ export class LabelLayer {
   show(labels: Label[], camera: Camera, middle: Vector3, width: number, height: number): void {
     const onScreen = (place: Vector3) => {
       const { x, y, z } = place.clone().project(camera)
-      return { x: ((x + 1) * width) / 2, y: ((1 - y) * height) / 2, seen: Math.abs(z) <= 1 && Math.abs(x) <= 1 && Math.abs(y) <= 1 }
+      return {
+        x: ((x + 1) * width) / 2,
+        y: ((1 - y) * height) / 2,
+        seen: Math.abs(z) <= 1 && Math.abs(x) <= 1 && Math.abs(y) <= 1,
+      }
     }
     const spots = labels.flatMap(({ at, text }) => {
       const { x, y, seen } = onScreen(at)
       return seen ? [{ x, y, text }] : []
     })
-    this.placed = placeLabels(spots.slice(0, MOST), { width, height, top: TOP }, onScreen(middle), (text) => this.#wide(text))
+    this.placed = placeLabels(spots.slice(0, MOST), { width, height, top: TOP }, onScreen(middle), (text) =>
+      this.#wide(text),
+    )
     this.element.setAttribute('viewBox', `0 0 ${width} ${height}`)
     this.element.replaceChildren(
       ...this.placed.map(({ spot, x, y }) => svg('line', { x1: spot.x, y1: spot.y, x2: x, y2: y })),
@@ -80,13 +86,23 @@ export function hardpointLabels(mechanism: Mechanism, frame: Frame, only?: numbe
 }
 
 /** Value of the dimension line, at its middle. */
-export function distanceLabels({ report }: Mechanism, frame: Frame, index: number | undefined, value: (quantity: number) => number): Label[] {
+export function distanceLabels(
+  { report }: Mechanism,
+  frame: Frame,
+  index: number | undefined,
+  value: (quantity: number) => number,
+): Label[] {
   if (index === undefined) return []
   const { name, from, to } = report.distances[index]
   const quantity = report.quantities.findIndex((one) => one.name === name)
   const [a, b] = [from, to].map(({ body, at }) => frame.at(body, new Vector3(...at)))
   if (quantity < 0 || !Number.isFinite(a.distanceTo(b))) return []
-  return [{ at: a.lerp(b, 0.5), text: `${name} ${number(rounded(value(quantity)), DIGITS)} ${pretty(report.quantities[quantity].units[0])}` }]
+  return [
+    {
+      at: a.lerp(b, 0.5),
+      text: `${name} ${number(rounded(value(quantity)), DIGITS)} ${pretty(report.quantities[quantity].units[0])}`,
+    },
+  ]
 }
 
 /** Names for the hovered or selected item: a body with its hardpoints, or a joint at its location. */

@@ -38,12 +38,19 @@ const EDGE = 4
  * Places texts round the middle of the picture so that none covers another or its spot; one that finds no place is left
  * out. The order is the priority. `wide` measures a text.
  */
-export function placeLabels(spots: Spot[], room: Room, middle: { x: number; y: number }, wide = (text: string) => LETTER * text.length): Placed[] {
+export function placeLabels(
+  spots: Spot[],
+  room: Room,
+  middle: { x: number; y: number },
+  wide = (text: string) => LETTER * text.length,
+): Placed[] {
   const placed: Placed[] = []
   for (const spot of spots) {
     const width = wide(spot.text) + PADDING
     const outwards = Math.atan2(spot.y - middle.y, spot.x - middle.x)
-    const free = candidates(spot, width, outwards).find((one) => inside(one, room) && !placed.some((other) => overlap(one, other)))
+    const free = candidates(spot, width, outwards).find(
+      (one) => inside(one, room) && !placed.some((other) => overlap(one, other)),
+    )
     if (free) placed.push(free)
   }
   return placed

@@ -15,9 +15,14 @@ export function layers(lengths: number[], pins: { at: Vector3; bodies: number[] 
     else spots.push({ at: pin.at, bodies: new Set(pin.bodies) })
   }
   const layer = lengths.map(() => 0)
-  const order = lengths.map((_, body) => body).slice(1).sort((a, b) => lengths[b] - lengths[a])
+  const order = lengths
+    .map((_, body) => body)
+    .slice(1)
+    .sort((a, b) => lengths[b] - lengths[a])
   for (const body of order) {
-    const neighbours = [...new Set(spots.filter(({ bodies }) => bodies.has(body)).flatMap(({ bodies }) => [...bodies]))].filter((other) => other > 0 && other !== body)
+    const neighbours = [
+      ...new Set(spots.filter(({ bodies }) => bodies.has(body)).flatMap(({ bodies }) => [...bodies])),
+    ].filter((other) => other > 0 && other !== body)
     const used = neighbours.map((other) => layer[other])
     const short = neighbours.length > 0 && neighbours.every((other) => lengths[body] < SHORT * lengths[other])
     let lowest = short ? Math.max(...used) + 1 : 1

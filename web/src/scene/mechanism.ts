@@ -90,7 +90,8 @@ export class Mechanism {
     this.plane = base ? base.plane : planeOf(report, this.sweep, this.size)
     const { vehicle } = report
     this.vehicle = vehicle ? { forward: new Vector3(...vehicle.forward), up: new Vector3(...vehicle.up) } : undefined
-    this.up = this.plane && Math.abs(this.plane.z) > 0.5 ? new Vector3(0, 1, 0) : (this.vehicle?.up ?? new Vector3(0, 0, 1))
+    this.up =
+      this.plane && Math.abs(this.plane.z) > 0.5 ? new Vector3(0, 1, 0) : (this.vehicle?.up ?? new Vector3(0, 0, 1))
     this.large = report.bodies.length > MANY + 1
     this.carriers = base ? base.carriers : carriersOf(report)
     this.reader = base ? base.reader : this.plane || this.vehicle || this.large ? READER : this.#seenFrom()
@@ -155,7 +156,14 @@ export class Mechanism {
       if (joint.body_i !== body && joint.body_j !== body) return []
       const here = joint.body_i === body
       const axis = here ? joint.axis : (joint.axis_j ?? undefined)
-      return [{ joint, index, at: new Vector3(...(here ? joint.at_i : joint.at_j)), axis: axis ? new Vector3(...axis) : undefined }]
+      return [
+        {
+          joint,
+          index,
+          at: new Vector3(...(here ? joint.at_i : joint.at_j)),
+          axis: axis ? new Vector3(...axis) : undefined,
+        },
+      ]
     })
   }
 
@@ -189,7 +197,8 @@ export class Mechanism {
 
   /** Distance to the nearest other joint of both bodies of a joint. */
   roomOf({ body_i, body_j, at_i, at_j }: JointMark): number {
-    const near = (body: number, at: Vector3) => this.#places[body].filter((other) => !this.same(other, at)).map((other) => other.distanceTo(at))
+    const near = (body: number, at: Vector3) =>
+      this.#places[body].filter((other) => !this.same(other, at)).map((other) => other.distanceTo(at))
     return Math.min(...near(body_i, new Vector3(...at_i)), ...near(body_j, new Vector3(...at_j)), this.size)
   }
 
@@ -253,11 +262,21 @@ export class Mechanism {
   /** Direction from which all joints are distinguishable. */
   #seenFrom(): Vector3 {
     const { moments } = this
-    const judged = Array.from({ length: JUDGED }, (_, k) => moments[Math.floor((k * (moments.length - 1)) / (JUDGED - 1))])
-    const places = (step: number) => this.distinct(this.#places.flatMap((own, body) => own.map((place) => this.worldAt(body, place, step))))
+    const judged = Array.from(
+      { length: JUDGED },
+      (_, k) => moments[Math.floor((k * (moments.length - 1)) / (JUDGED - 1))],
+    )
+    const places = (step: number) =>
+      this.distinct(this.#places.flatMap((own, body) => own.map((place) => this.worldAt(body, place, step))))
     const solved = judged.map(places).filter((all) => all.every(({ x, y, z }) => Number.isFinite(x + y + z)))
-    const backs = this.report.couplers.flatMap((coupler) => (coupler.kind === 'bevel' ? (bevelsOf(new Train(this), coupler)?.gears ?? []) : []))
-    return readerOf(solved, this.size, backs.map(({ axis }) => axis))
+    const backs = this.report.couplers.flatMap((coupler) =>
+      coupler.kind === 'bevel' ? (bevelsOf(new Train(this), coupler)?.gears ?? []) : [],
+    )
+    return readerOf(
+      solved,
+      this.size,
+      backs.map(({ axis }) => axis),
+    )
   }
 
   /** From the lower quartile of the distances from a moving body's joints to its nearest other hardpoint. */
@@ -296,10 +315,13 @@ export class Mechanism {
 
 function carriersOf({ couplers, joints }: Report): Set<number> {
   const found = couplers.flatMap(({ terms }) => {
-    const [first, ...others] = terms.filter(({ turns }) => turns).map(({ joint }) => [joints[joint].body_i, joints[joint].body_j])
+    const [first, ...others] = terms
+      .filter(({ turns }) => turns)
+      .map(({ joint }) => [joints[joint].body_i, joints[joint].body_j])
     return others.length > 0 ? first.filter((body) => body > 0 && others.every((pair) => pair.includes(body))) : []
   })
   return new Set(found)
 }
 
-const ends = ({ place, axis, low, high }: Slide) => (low <= high ? [low, high].map((t) => place.clone().addScaledVector(axis, t)) : [])
+const ends = ({ place, axis, low, high }: Slide) =>
+  low <= high ? [low, high].map((t) => place.clone().addScaledVector(axis, t)) : []

@@ -37,7 +37,13 @@ export class Overview {
     this.#camera.up.copy(mechanism.up)
     this.#camera.near = 0.02 * mechanism.size
     this.#camera.far = 60 * mechanism.size
-    Object.assign(this.element.style, { position: 'absolute', insetInline: '0', top: '0', cursor: 'pointer', borderBottom: '1px solid var(--grid-main)' })
+    Object.assign(this.element.style, {
+      position: 'absolute',
+      insetInline: '0',
+      top: '0',
+      cursor: 'pointer',
+      borderBottom: '1px solid var(--grid-main)',
+    })
     this.element.addEventListener('pointerdown', ({ offsetX }) => {
       const x = (2 * offsetX) / this.element.clientWidth - 1
       go(new Vector3(x, 0, 0).unproject(this.#camera))
@@ -52,7 +58,9 @@ export class Overview {
   /** Points around a place that the view is to show. */
   part(points: Vector3[], place: Vector3, aspect: number): Vector3[] {
     const reach = (PART * this.#height * aspect) / 2
-    const [low, high] = [-1, 1].map((sign) => sign * points.reduce((most, point) => Math.max(most, sign * point.dot(this.#along)), -Infinity))
+    const [low, high] = [-1, 1].map(
+      (sign) => sign * points.reduce((most, point) => Math.max(most, sign * point.dot(this.#along)), -Infinity),
+    )
     const middle = Math.max(low + reach, Math.min(high - reach, place.dot(this.#along)))
     const near = points.filter((point) => Math.abs(point.dot(this.#along) - middle) <= reach)
     return near.length > 0 ? near : points

@@ -17,7 +17,8 @@ const BEHIND = 0.5
  * places of the joints at several times, `backs` the directions in which those wheels turn their backs.
  */
 export function readerOf(moments: Vector3[][], size: number, backs: Vector3[] = []): Vector3 {
-  const cost = (corner: Vector3) => (1 + crowding(moments, corner, size)) * (1 + BEHIND * backs.filter((back) => back.dot(corner) > 0).length)
+  const cost = (corner: Vector3) =>
+    (1 + crowding(moments, corner, size)) * (1 + BEHIND * backs.filter((back) => back.dot(corner) > 0).length)
   const usual = cost(READER)
   const costs = OTHERS.map(cost)
   const least = Math.min(...costs)
@@ -32,7 +33,8 @@ function crowding(moments: Vector3[][], direction: Vector3, size: number): numbe
   for (const places of moments) {
     const seen = places.map((place) => place.clone().addScaledVector(line, -place.dot(line)))
     const closeness = (a: Vector3, b: Vector3) => 1 / (1 + a.distanceToSquared(b) / near ** 2)
-    for (let k = 1; k < places.length; k++) for (let l = 0; l < k; l++) sum += closeness(seen[k], seen[l]) - closeness(places[k], places[l])
+    for (let k = 1; k < places.length; k++)
+      for (let l = 0; l < k; l++) sum += closeness(seen[k], seen[l]) - closeness(places[k], places[l])
   }
   return sum
 }

@@ -8,5 +8,9 @@ export function shaftJoints({ joints, couplers }: Report): Set<number> {
 
 /** Slides that a rack moves: a bar in a tube instead of a block on a rail. */
 export function rackJoints({ couplers }: Report): Set<number> {
-  return new Set(couplers.filter(({ kind }) => kind === 'rack').flatMap(({ terms }) => terms.filter(({ turns }) => !turns).map(({ joint }) => joint)))
+  return new Set(
+    couplers
+      .filter(({ kind }) => kind === 'rack')
+      .flatMap(({ terms }) => terms.filter(({ turns }) => !turns).map(({ joint }) => joint)),
+  )
 }

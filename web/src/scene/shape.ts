@@ -36,7 +36,10 @@ export function predictedReport(report: Report, changes: number[], size: number)
   })
   const arrowsAt = (body: number, at: Place): { arrow: Arrow; by: number }[] =>
     changed.flatMap(({ index, arrows }) =>
-      arrows.filter((arrow) => arrow.body === body && apart(arrow.at, at) <= SAME * size).slice(0, 1).map((arrow) => ({ arrow, by: changes[index] })),
+      arrows
+        .filter((arrow) => arrow.body === body && apart(arrow.at, at) <= SAME * size)
+        .slice(0, 1)
+        .map((arrow) => ({ arrow, by: changes[index] })),
     )
   const move: Move = (body, at) => arrowsAt(body, at).reduce((place, { arrow, by }) => added(place, arrow.v, by), at)
   const turn = (body: number, at: Place, axis: Place): Place => {
@@ -78,21 +81,32 @@ export function solved(report: Report, design: Design, size: number): Report {
     return design.skeletons[body]?.[k] ?? at
   }
   const redrawn = redraw(report, design.poses, move)
-  return { ...redrawn, loads: redrawn.loads.map((load, k) => ({ ...load, force: design.loads[k] ?? new Float32Array() })) }
+  return {
+    ...redrawn,
+    loads: redrawn.loads.map((load, k) => ({ ...load, force: design.loads[k] ?? new Float32Array() })),
+  }
 }
 
 function redraw(report: Report, poses: Curve[], move: Move): Report {
   const place = ({ body, at }: BodyPlace): BodyPlace => ({ body, at: move(body, at) })
   return {
     ...report,
-    bodies: report.bodies.map((body, b) => ({ ...body, poses: poses[b], skeleton: body.skeleton.map((point) => move(b, point)) })),
+    bodies: report.bodies.map((body, b) => ({
+      ...body,
+      poses: poses[b],
+      skeleton: body.skeleton.map((point) => move(b, point)),
+    })),
     joints: report.joints.map((joint) => ({ ...joint, at_j: move(joint.body_j, joint.at_j), ...onBodyI(joint, move) })),
     wheels: report.wheels.map((wheel) => ({
       ...wheel,
       centre: place(wheel.centre),
       kingpin: wheel.kingpin && [place(wheel.kingpin[0]), place(wheel.kingpin[1])],
     })),
-    distances: report.distances.map((distance) => ({ ...distance, from: place(distance.from), to: place(distance.to) })),
+    distances: report.distances.map((distance) => ({
+      ...distance,
+      from: place(distance.from),
+      to: place(distance.to),
+    })),
     loads: report.loads.map((load) => ({ ...load, at: place(load.at) })),
     drivers: report.drivers.map((driver) => ({ ...driver, point: driver.point && place(driver.point) })),
   }
@@ -108,7 +122,11 @@ function onBodyI({ body_i, at_i, axis, hinge }: JointMark, move: Move): Pick<Joi
   if (length === 0 || after.lengthSq() === 0 || !axis) return { at_i: move(body_i, at_i), axis, hinge: [c, d] }
   const share = minus(at_i, a).dot(before) / length
   const sense = Math.sign(before.dot(new Vector3(...axis))) || 1
-  return { at_i: added(c, after.toArray(), share), axis: after.normalize().multiplyScalar(sense).toArray(), hinge: [c, d] }
+  return {
+    at_i: added(c, after.toArray(), share),
+    axis: after.normalize().multiplyScalar(sense).toArray(),
+    hinge: [c, d],
+  }
 }
 
 function moved(poses: Curve, shifts: Curve, change: number): Curve {
@@ -124,4 +142,8 @@ function moved(poses: Curve, shifts: Curve, change: number): Curve {
 
 const apart = (a: Place, b: Place) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2])
 const minus = (a: Place, b: Place) => new Vector3(a[0] - b[0], a[1] - b[1], a[2] - b[2])
-const added = (a: Place, v: Place, share: number): Place => [a[0] + share * v[0], a[1] + share * v[1], a[2] + share * v[2]]
+const added = (a: Place, v: Place, share: number): Place => [
+  a[0] + share * v[0],
+  a[1] + share * v[1],
+  a[2] + share * v[2],
+]

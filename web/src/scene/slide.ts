@@ -28,7 +28,12 @@ const ONE_WAY = ['inplane', 'inline', 'pin_in_slot']
 export function slideOf(mechanism: Mechanism, joint: JointMark): Slide | undefined {
   if (!SLIDES.includes(joint.kind) || !joint.axis) return undefined
   // Seen along its line, a point on a line is a pin.
-  if (joint.kind === 'inline' && mechanism.plane && Math.abs(mechanism.alongAt(joint.body_i, new Vector3(...joint.axis), 0).dot(mechanism.plane)) > 0.9) return undefined
+  if (
+    joint.kind === 'inline' &&
+    mechanism.plane &&
+    Math.abs(mechanism.alongAt(joint.body_i, new Vector3(...joint.axis), 0).dot(mechanism.plane)) > 0.9
+  )
+    return undefined
   let slide = {
     rail: joint.body_i,
     block: joint.body_j,
@@ -38,7 +43,9 @@ export function slideOf(mechanism: Mechanism, joint: JointMark): Slide | undefin
   }
   if (joint.kind === 'inplane') {
     const normal = slide.axis
-    slide.axis = mechanism.plane ? mechanism.into(slide.rail, mechanism.plane).cross(normal).normalize() : across(normal)
+    slide.axis = mechanism.plane
+      ? mechanism.into(slide.rail, mechanism.plane).cross(normal).normalize()
+      : across(normal)
   } else if (joint.kind === 'pin_in_slot') {
     slide.axis = joint.axis2 ? new Vector3(...joint.axis2) : across(slide.axis)
   } else if (!ONE_WAY.includes(joint.kind)) {
@@ -50,7 +57,15 @@ export function slideOf(mechanism: Mechanism, joint: JointMark): Slide | undefin
   }
   const { rail, block } = slide
   const travelled = mechanism.moments
-    .map((step) => mechanism.into(rail, mechanism.worldAt(block, slide.blockPlace, step).sub(mechanism.worldAt(rail, slide.place, step)), step).dot(slide.axis))
+    .map((step) =>
+      mechanism
+        .into(
+          rail,
+          mechanism.worldAt(block, slide.blockPlace, step).sub(mechanism.worldAt(rail, slide.place, step)),
+          step,
+        )
+        .dot(slide.axis),
+    )
     .filter(Number.isFinite)
   return { ...slide, low: Math.min(...travelled, Infinity), high: Math.max(...travelled, -Infinity) }
 }

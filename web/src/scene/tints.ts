@@ -9,7 +9,9 @@ const MIRRORED = 0.05
 export function tints(mechanism: Mechanism): number[] {
   const { report, vehicle } = mechanism
   const tint: number[] = report.bodies.map(() => -1)
-  const places = report.bodies.map((body, b) => body.skeleton.map((point) => mechanism.worldAt(b, new Vector3(...point), 0)))
+  const places = report.bodies.map((body, b) =>
+    body.skeleton.map((point) => mechanism.worldAt(b, new Vector3(...point), 0)),
+  )
   const neighbours = report.bodies.map(() => new Set<number>())
   for (const { body_i, body_j } of report.joints) {
     if (body_i === 0 || body_j === 0) continue
@@ -18,7 +20,9 @@ export function tints(mechanism: Mechanism): number[] {
   }
   const left = vehicle && vehicle.up.clone().cross(vehicle.forward)
   for (let b = 1; b < tint.length; b++) {
-    const twin = left ? places.findIndex((other, o) => o > 0 && o < b && mirrored(places[b], other, left, MIRRORED * mechanism.size)) : -1
+    const twin = left
+      ? places.findIndex((other, o) => o > 0 && o < b && mirrored(places[b], other, left, MIRRORED * mechanism.size))
+      : -1
     if (twin > 0) {
       tint[b] = tint[twin]
       continue

@@ -91,7 +91,11 @@ export class Train {
   /** The angle from a direction to the middle of a tooth of a wheel, if another coupler has drawn it. */
   toothing(wheel: Wheel, teeth: number, radius: number, towards: Vector3): number | undefined {
     const known = this.#toothed.find(
-      (one) => one.body === wheel.body && one.teeth === teeth && Math.abs(one.radius - radius) < SAME * radius && one.centre.distanceTo(wheel.centre) < SAME * radius,
+      (one) =>
+        one.body === wheel.body &&
+        one.teeth === teeth &&
+        Math.abs(one.radius - radius) < SAME * radius &&
+        one.centre.distanceTo(wheel.centre) < SAME * radius,
     )
     if (!known) return undefined
     const from = towards.clone().normalize()

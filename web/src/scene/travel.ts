@@ -15,7 +15,12 @@ export function travelOf(driver: Driver): Travel | undefined {
   const curve = driver.travel
   const solved = curve.filter(Number.isFinite)
   if (solved.length === 0) return undefined
-  return { curve, low: solved.reduce((a, b) => Math.min(a, b)), high: solved.reduce((a, b) => Math.max(a, b)), onwards: solved[solved.length - 1] >= solved[0] }
+  return {
+    curve,
+    low: solved.reduce((a, b) => Math.min(a, b)),
+    high: solved.reduce((a, b) => Math.max(a, b)),
+    onwards: solved[solved.length - 1] >= solved[0],
+  }
 }
 
 /** Rotations within this of a whole turn are drawn as a whole turn, rad. */
@@ -35,7 +40,13 @@ export interface Arc {
  * The arc of a hinge's travel: at least `least` long, as narrow as that allows. Whole turns have one head, in the sense
  * of the turn.
  */
-export function arcOf(low: number, high: number, onwards: boolean, least: number, [narrow, wide]: [number, number]): Arc {
+export function arcOf(
+  low: number,
+  high: number,
+  onwards: boolean,
+  least: number,
+  [narrow, wide]: [number, number],
+): Arc {
   const swept = high - low
   if (swept > 2 * Math.PI - NEARLY) {
     return { radius: narrow, from: 0.5, to: 0.5 + WHOLE, heads: onwards ? 'last' : 'first' }

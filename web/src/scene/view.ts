@@ -101,7 +101,16 @@ export class View {
       () => this.#emphasise(),
       (selected) => state.choose({ selected }),
     )
-    this.element = el('div', { class: 'view' }, this.canvas, this.#labels.element, this.#paper, this.#lost, this.#pointer.tip, el('span', { class: 'scale' }, this.#arrows, this.#grid))
+    this.element = el(
+      'div',
+      { class: 'view' },
+      this.canvas,
+      this.#labels.element,
+      this.#paper,
+      this.#lost,
+      this.#pointer.tip,
+      el('span', { class: 'scale' }, this.#arrows, this.#grid),
+    )
     this.element.append(this.#triad.element)
     this.#overview = Overview.of(this.today, this.#look, (place) => this.#visit(place))
     if (this.#overview) this.element.append(this.#overview.element)
@@ -150,7 +159,11 @@ export class View {
   project(place: Vector3): { x: number; y: number; seen: boolean } {
     const { width, height } = this.#extent
     const { x, y, z } = place.clone().project(this.camera)
-    return { x: ((x + 1) * width) / 2, y: ((1 - y) * height) / 2, seen: Math.abs(z) <= 1 && Math.abs(x) <= 1 && Math.abs(y) <= 1 }
+    return {
+      x: ((x + 1) * width) / 2,
+      y: ((1 - y) * height) / 2,
+      seen: Math.abs(z) <= 1 && Math.abs(x) <= 1 && Math.abs(y) <= 1,
+    }
   }
 
   /** The line of sight through a point of the screen, px from the corner of the view. */
@@ -202,7 +215,9 @@ export class View {
     ]
     this.#overview?.resize(points, width, height)
     const seen = this.#overview?.part(points, this.#focus(), width / height) ?? points
-    this.#controls.target.copy(fit(this.camera, seen, this.today.size, this.#look, width, height, this.#overview?.strip(height)))
+    this.#controls.target.copy(
+      fit(this.camera, seen, this.today.size, this.#look, width, height, this.#overview?.strip(height)),
+    )
     this.#controls.update()
   }
 
@@ -212,7 +227,16 @@ export class View {
     const { view, ground, outline, label } = this.#palette
     const groups = [...this.#matter.groups, ...this.#marks.groups]
     const title = this.state.report.title
-    return viewSvg(groups, this.camera, { width, height, title, view, ground, outline, label, labels: this.#labels.placed })
+    return viewSvg(groups, this.camera, {
+      width,
+      height,
+      title,
+      view,
+      ground,
+      outline,
+      label,
+      labels: this.#labels.placed,
+    })
   }
 
   /** The whole motion as a binary glTF file. */
@@ -226,7 +250,8 @@ export class View {
     const { report, sweep } = this.today
     const joint = selected?.kind === 'joint' ? report.joints[selected.index] : undefined
     const arrow = report.variables[variable]?.arrows[0]
-    if (selected?.kind === 'body' && selected.index > 0) return this.today.worldAt(selected.index, this.today.shapePoints(selected.index)[0] ?? new Vector3(), 0)
+    if (selected?.kind === 'body' && selected.index > 0)
+      return this.today.worldAt(selected.index, this.today.shapePoints(selected.index)[0] ?? new Vector3(), 0)
     if (joint) return this.today.worldAt(joint.body_i, new Vector3(...joint.at_i), 0)
     if (arrow) return this.today.worldAt(arrow.body, new Vector3(...arrow.at), 0)
     return sweep[0] ?? new Vector3()
@@ -256,7 +281,14 @@ export class View {
   }
 
   #assembleMatter(): Assembly {
-    const assembly = new Assembly(present(this.today, this.state), this.#palette, this.state.choice, matter, this.#outlines, 0)
+    const assembly = new Assembly(
+      present(this.today, this.state),
+      this.#palette,
+      this.state.choice,
+      matter,
+      this.#outlines,
+      0,
+    )
     this.scene.add(...assembly.groups)
     return assembly
   }
@@ -265,9 +297,18 @@ export class View {
     const variable = this.today.report.variables[this.state.choice.variable]
     const change = variable && shownChange(this.today, variable)
     const forces = this.state.choice.forces && forceText(this.#matter.mechanism)
-    const said = [forces, change !== undefined && `Arrows: effect of ${changeText(change, variable)}`].filter((words) => words)
+    const said = [forces, change !== undefined && `Arrows: effect of ${changeText(change, variable)}`].filter(
+      (words) => words,
+    )
     this.#arrows.textContent = said.map((words) => `${words}, `).join('')
-    const assembly = new Assembly(this.#matter.mechanism, this.#palette, this.state.choice, marks, this.#outlines, MARK_NUMBERS)
+    const assembly = new Assembly(
+      this.#matter.mechanism,
+      this.#palette,
+      this.state.choice,
+      marks,
+      this.#outlines,
+      MARK_NUMBERS,
+    )
     this.scene.add(...assembly.groups)
     return assembly
   }
@@ -275,7 +316,11 @@ export class View {
   #lay(): Floor {
     const { up, report } = this.today
     const heights = [...this.#matter.reach, ...this.today.sweep].map((point) => point.dot(up))
-    const floor = new Floor(this.today, this.#palette, heights.length > 0 ? heights.reduce((a, b) => Math.min(a, b)) : 0)
+    const floor = new Floor(
+      this.today,
+      this.#palette,
+      heights.length > 0 ? heights.reduce((a, b) => Math.min(a, b)) : 0,
+    )
     this.scene.add(floor.object)
     this.#grid.textContent = `${report.wheels.length > 0 ? 'road, ' : ''}grid ${number(floor.cell)} ${report.units.length}`
     this.#outlines.colour(this.#palette)
@@ -329,7 +374,9 @@ export class View {
     const level = (part: Part): Emphasis =>
       samePart(part, selected) ? 'chosen' : samePart(part, this.#pointer.hovered) ? 'hovered' : 'none'
     const parts = [...this.#matter.numbers, ...this.#marks.numbers]
-    this.#outlines.emphasise(new Map(parts.map(({ part, number }) => [number, level(part)] as const).filter(([, to]) => to !== 'none')))
+    this.#outlines.emphasise(
+      new Map(parts.map(({ part, number }) => [number, level(part)] as const).filter(([, to]) => to !== 'none')),
+    )
     this.#draw()
   }
 
@@ -360,7 +407,8 @@ export class View {
       this.#renderer.shadowMap.needsUpdate = true
       this.#moved = false
     }
-    if (this.#matter.refine(pixelsPerLength(this.camera, this.#controls.target, height))) this.#renderer.shadowMap.needsUpdate = true
+    if (this.#matter.refine(pixelsPerLength(this.camera, this.#controls.target, height)))
+      this.#renderer.shadowMap.needsUpdate = true
     const { layers } = this.camera
     layers.set(0)
     this.#renderer.clear()
@@ -387,7 +435,9 @@ export class View {
     const { selected } = this.state.choice
     const { hovered } = this.#pointer
     const parts = [selected, samePart(selected, hovered) ? undefined : hovered].filter((part) => part !== undefined)
-    const labels = this.state.choice.labels ? hardpointLabels(this.mechanism, frame) : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
+    const labels = this.state.choice.labels
+      ? hardpointLabels(this.mechanism, frame)
+      : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
     const value = (quantity: number) => valueAt(this.state.curve(quantity, 0), this.state.step)
     labels.unshift(...distanceLabels(this.mechanism, frame, this.state.choice.distance, value))
     this.#labels.show(labels, this.camera, this.mechanism.centre, width, height)

@@ -44,10 +44,20 @@ export function targetButton(plot: Plot, drawing: () => Drawing, { text, replace
     })
     button.setAttribute('aria-pressed', 'true')
   }
-  const button = el('button', { type: 'button', 'aria-pressed': 'false', 'data-testid': 'draw-target', title: 'Draw the curve that is wanted: it becomes a metric of the model', onclick: () => {
-    if (!sketch) return begin()
-    sketch.close()
-    end()
-  } }, 'Draw target')
+  const button = el(
+    'button',
+    {
+      type: 'button',
+      'aria-pressed': 'false',
+      'data-testid': 'draw-target',
+      title: 'Draw the curve that is wanted: it becomes a metric of the model',
+      onclick: () => {
+        if (!sketch) return begin()
+        sketch.close()
+        end()
+      },
+    },
+    'Draw target',
+  )
   return button
 }

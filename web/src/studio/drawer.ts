@@ -17,7 +17,18 @@ export class Drawer {
 
   constructor(private readonly panes: Pane[]) {
     this.buttons = panes.map(({ name, title }, index) =>
-      el('button', { type: 'button', title, 'aria-expanded': 'false', 'data-testid': `open-${name.toLowerCase()}`, onclick: () => void this.show(this.#open === index ? undefined : index) }, name))
+      el(
+        'button',
+        {
+          type: 'button',
+          title,
+          'aria-expanded': 'false',
+          'data-testid': `open-${name.toLowerCase()}`,
+          onclick: () => void this.show(this.#open === index ? undefined : index),
+        },
+        name,
+      ),
+    )
     this.element.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape' || event.defaultPrevented || this.#open === undefined) return
       const button = this.buttons[this.#open]
@@ -37,7 +48,17 @@ export class Drawer {
     const content = await open()
     if (this.#open !== index) return
     this.element.setAttribute('aria-label', name)
-    const close = el('button', { type: 'button', class: 'icon', 'aria-label': `Close ${name}`, 'data-testid': 'drawer-close', onclick: () => void this.show(undefined) }, '×')
+    const close = el(
+      'button',
+      {
+        type: 'button',
+        class: 'icon',
+        'aria-label': `Close ${name}`,
+        'data-testid': 'drawer-close',
+        onclick: () => void this.show(undefined),
+      },
+      '×',
+    )
     this.element.replaceChildren(el('div', { class: 'drawer-head' }, el('h2', {}, name), close), content)
   }
 }

@@ -35,8 +35,23 @@ interface Hold {
 /** Hardpoints that can be taken hold of in the view, and the pane of the one that is chosen. */
 export class Grips {
   readonly element = el('div', { class: 'grips', hidden: true })
-  readonly pane = el('section', { class: 'grip-pane', hidden: true, 'aria-label': 'Hardpoint', 'data-testid': 'grip-pane' })
-  readonly button = el('button', { type: 'button', title: 'Move hardpoints (M)', 'data-testid': 'grips', 'aria-pressed': 'false', onclick: () => this.toggle() }, 'move')
+  readonly pane = el('section', {
+    class: 'grip-pane',
+    hidden: true,
+    'aria-label': 'Hardpoint',
+    'data-testid': 'grip-pane',
+  })
+  readonly button = el(
+    'button',
+    {
+      type: 'button',
+      title: 'Move hardpoints (M)',
+      'data-testid': 'grips',
+      'aria-pressed': 'false',
+      onclick: () => this.toggle(),
+    },
+    'move',
+  )
   #guide = svg('svg', { class: 'guide', 'aria-hidden': 'true' })
   #shown: Shown[]
   #chosen?: Shown
@@ -179,7 +194,12 @@ export class Grips {
     const way = followed(sight, hold.from, this.#way, hold.turn, this.#facing())
     if (!way) return
     const place = hold.drawn.clone().add(way.applyQuaternion(hold.turn.clone().invert()))
-    this.#put(hold.shown, place, event.ctrlKey || event.metaKey ? this.#snap || this.#coarse : this.#snap || this.#fine, hold.drawn)
+    this.#put(
+      hold.shown,
+      place,
+      event.ctrlKey || event.metaKey ? this.#snap || this.#coarse : this.#snap || this.#fine,
+      hold.drawn,
+    )
   }
 
   #let(): void {
@@ -279,16 +299,58 @@ export class Grips {
         onchange: () => this.#typed(k),
       }),
     )
-    const label = (text: string, field: HTMLElement, after = '') => el('label', {}, el('span', {}, text), field, el('span', { class: 'unit' }, after))
-    this.#ways = WAYS.map((way) => el('button', { type: 'button', 'data-testid': `way-${way}`, title: way === 'free' ? 'In the plane of the picture' : `Along ${[...way].join(' and ')}`, onclick: () => this.#go(way) }, way))
-    const snap = el('select', { 'aria-label': 'Snap', 'data-testid': 'snap', onchange: () => (this.#snap = Number(snap.value)) }, ...SNAPS.map((by) => el('option', { value: by }, by === 0 ? 'no snap' : `snap ${by} ${length}`)))
-    this.#mirrorField = this.#mirror && el('input', { type: 'checkbox', checked: true, 'data-testid': 'mirror', onchange: () => (this.#mirror!.on = this.#mirrorField!.checked) })
-    const reset = el('button', { type: 'button', class: 'plain', 'data-testid': 'grip-reset', onclick: () => this.#reset() }, 'reset')
+    const label = (text: string, field: HTMLElement, after = '') =>
+      el('label', {}, el('span', {}, text), field, el('span', { class: 'unit' }, after))
+    this.#ways = WAYS.map((way) =>
+      el(
+        'button',
+        {
+          type: 'button',
+          'data-testid': `way-${way}`,
+          title: way === 'free' ? 'In the plane of the picture' : `Along ${[...way].join(' and ')}`,
+          onclick: () => this.#go(way),
+        },
+        way,
+      ),
+    )
+    const snap = el(
+      'select',
+      { 'aria-label': 'Snap', 'data-testid': 'snap', onchange: () => (this.#snap = Number(snap.value)) },
+      ...SNAPS.map((by) => el('option', { value: by }, by === 0 ? 'no snap' : `snap ${by} ${length}`)),
+    )
+    this.#mirrorField =
+      this.#mirror &&
+      el('input', {
+        type: 'checkbox',
+        checked: true,
+        'data-testid': 'mirror',
+        onchange: () => (this.#mirror!.on = this.#mirrorField!.checked),
+      })
+    const reset = el(
+      'button',
+      { type: 'button', class: 'plain', 'data-testid': 'grip-reset', onclick: () => this.#reset() },
+      'reset',
+    )
     this.pane.append(
-      el('div', { class: 'head' }, this.#name, reset, el('button', { type: 'button', class: 'icon', 'aria-label': 'Close', onclick: () => this.choose(undefined) }, '×')),
+      el(
+        'div',
+        { class: 'head' },
+        this.#name,
+        reset,
+        el(
+          'button',
+          { type: 'button', class: 'icon', 'aria-label': 'Close', onclick: () => this.choose(undefined) },
+          '×',
+        ),
+      ),
       el('div', { class: 'coordinates' }, ...AXES.map((axis, k) => label(axis, this.#fields[k], length))),
       el('div', { class: 'ways', role: 'toolbar', 'aria-label': 'Way' }, ...this.#ways),
-      el('div', { class: 'ways' }, snap, this.#mirrorField && el('label', { class: 'mirror' }, this.#mirrorField, 'mirror image follows')),
+      el(
+        'div',
+        { class: 'ways' },
+        snap,
+        this.#mirrorField && el('label', { class: 'mirror' }, this.#mirrorField, 'mirror image follows'),
+      ),
       this.#why,
     )
   }
@@ -324,7 +386,8 @@ export class Grips {
     if (!chosen) return
     const place = placeOf(chosen.grip, this.state.settings)
     this.#fields.forEach((field, k) => {
-      if (all || !this.#typing || document.activeElement !== field) field.value = String(Number(place.getComponent(k).toPrecision(7)))
+      if (all || !this.#typing || document.activeElement !== field)
+        field.value = String(Number(place.getComponent(k).toPrecision(7)))
       field.classList.toggle('changed', Math.abs(place.getComponent(k) - chosen.grip.place[k]) > 1e-9 * this.#size)
     })
     if (this.#mirrorField) this.#mirrorField.disabled = !this.#mirror!.partner.has(chosen.grip.name)

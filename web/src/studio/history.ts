@@ -159,6 +159,12 @@ export class History {
 }
 
 function same(a: Step, b: Step): boolean {
-  const changes = ({ settings }: Step) => JSON.stringify(settings.filter(({ by }) => by !== 0).map(({ name, by }) => [name, by]).sort())
+  const changes = ({ settings }: Step) =>
+    JSON.stringify(
+      settings
+        .filter(({ by }) => by !== 0)
+        .map(({ name, by }) => [name, by])
+        .sort(),
+    )
   return a.text === b.text && changes(a) === changes(b)
 }

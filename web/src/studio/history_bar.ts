@@ -26,11 +26,31 @@ export function historyBar(history: History, { show, compare }: Shows): HTMLElem
     const step = by()
     if (step) show(step)
   }
-  const back = el('button', { type: 'button', class: 'icon', 'data-testid': 'undo', onclick: () => move(undo) }, icon(BACK))
-  const forth = el('button', { type: 'button', class: 'icon', 'data-testid': 'redo', onclick: () => move(redo) }, icon(FORTH))
-  const reset = el('button', { type: 'button', title: 'Back to the design as opened', 'data-testid': 'reset-design', onclick: () => show(history.reset()) }, 'Reset')
+  const back = el(
+    'button',
+    { type: 'button', class: 'icon', 'data-testid': 'undo', onclick: () => move(undo) },
+    icon(BACK),
+  )
+  const forth = el(
+    'button',
+    { type: 'button', class: 'icon', 'data-testid': 'redo', onclick: () => move(redo) },
+    icon(FORTH),
+  )
+  const reset = el(
+    'button',
+    {
+      type: 'button',
+      title: 'Back to the design as opened',
+      'data-testid': 'reset-design',
+      onclick: () => show(history.reset()),
+    },
+    'Reset',
+  )
   const sync = () => {
-    for (const [button, what, keys, of] of [[back, 'Undo', 'Ctrl+Z', history.undoable], [forth, 'Redo', 'Ctrl+Y', history.redoable]] as const) {
+    for (const [button, what, keys, of] of [
+      [back, 'Undo', 'Ctrl+Z', history.undoable],
+      [forth, 'Redo', 'Ctrl+Y', history.redoable],
+    ] as const) {
       button.disabled = of === undefined
       button.title = of === undefined ? `${what} (${keys})` : `${what}: ${of} (${keys})`
       button.setAttribute('aria-label', button.title)
@@ -41,11 +61,23 @@ export function historyBar(history: History, { show, compare }: Shows): HTMLElem
   sync()
   document.addEventListener('keydown', (event) => {
     const by = stepOf(event)
-    if (!by || event.defaultPrevented || (event.target as HTMLElement).closest('input:not([type=range]), textarea, [contenteditable=true], dialog')) return
+    if (
+      !by ||
+      event.defaultPrevented ||
+      (event.target as HTMLElement).closest('input:not([type=range]), textarea, [contenteditable=true], dialog')
+    )
+      return
     event.preventDefault()
     move(by === 'undo' ? undo : redo)
   })
-  return el('div', { class: 'history', role: 'group', 'aria-label': 'Designs' }, back, forth, reset, snapshots(history, { show, compare }))
+  return el(
+    'div',
+    { class: 'history', role: 'group', 'aria-label': 'Designs' },
+    back,
+    forth,
+    reset,
+    snapshots(history, { show, compare }),
+  )
 }
 
 /** Action of a key with Ctrl, or with the command key. */
@@ -59,11 +91,21 @@ function stepOf({ key, ctrlKey, metaKey, altKey, shiftKey }: KeyboardEvent): 'un
 /** A button that opens the designs with names: keep this one, take another, compare with it, rename and delete it. */
 function snapshots(history: History, { show, compare }: Shows): HTMLElement {
   let compared: Snapshot | undefined
-  const name = el('input', { type: 'text', placeholder: 'name of this design', 'aria-label': 'Name of this design', 'data-testid': 'snapshot-name' })
+  const name = el('input', {
+    type: 'text',
+    placeholder: 'name of this design',
+    'aria-label': 'Name of this design',
+    'data-testid': 'snapshot-name',
+  })
   const form = el('form', { class: 'keep' }, name, el('button', { 'data-testid': 'snapshot-keep' }, 'Keep'))
   const list = el('ul', { 'aria-label': 'Designs with names', 'data-testid': 'snapshots' })
   const panel = el('div', { class: 'menu designs', hidden: true }, form, list)
-  const button = el('button', { type: 'button', 'aria-expanded': 'false', 'data-testid': 'designs', onclick: () => open(!!panel.hidden) })
+  const button = el('button', {
+    type: 'button',
+    'aria-expanded': 'false',
+    'data-testid': 'designs',
+    onclick: () => open(!!panel.hidden),
+  })
   const element = el('div', { class: 'dropdown' }, button, panel)
   const open = (wanted: boolean) => {
     panel.hidden = !wanted
@@ -76,14 +118,32 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
     render()
   }
   const row = (snapshot: Snapshot): HTMLElement => {
-    const field = el('input', { type: 'text', value: snapshot.name, 'data-testid': 'snapshot-rename', onchange: () => {
-      history.rename(snapshot, field.value)
-      label()
-    } })
-    const action = (title: string, name: string, run: () => void) => el('button', { type: 'button', name: `${name} ${snapshot.id}`, title, 'data-testid': `snapshot-${name.toLowerCase()}`, onclick: run }, name)
+    const field = el('input', {
+      type: 'text',
+      value: snapshot.name,
+      'data-testid': 'snapshot-rename',
+      onchange: () => {
+        history.rename(snapshot, field.value)
+        label()
+      },
+    })
+    const action = (title: string, name: string, run: () => void) =>
+      el(
+        'button',
+        {
+          type: 'button',
+          name: `${name} ${snapshot.id}`,
+          title,
+          'data-testid': `snapshot-${name.toLowerCase()}`,
+          onclick: run,
+        },
+        name,
+      )
     const actions = [
       action('Open this design', 'Open', () => (show(history.take(snapshot)), open(false), button.focus())),
-      action('Compare the present design with it', 'Compare', () => choose(compared === snapshot ? undefined : snapshot)),
+      action('Compare the present design with it', 'Compare', () =>
+        choose(compared === snapshot ? undefined : snapshot),
+      ),
       action('Delete this design', 'Delete', () => {
         if (compared === snapshot) choose(undefined)
         history.forget(snapshot)

@@ -79,7 +79,9 @@ export function settingsFor(grip: MovableHardpoint, place: Vector3): { settings:
  * The axis across which hardpoints have mirror images, and whose image each is, by name; nothing where hardly any has
  * one.
  */
-export function mirrors(grips: readonly MovableHardpoint[]): { axis: number; partner: Map<string, MovableHardpoint> } | undefined {
+export function mirrors(
+  grips: readonly MovableHardpoint[],
+): { axis: number; partner: Map<string, MovableHardpoint> } | undefined {
   const size = Math.max(1e-9, ...grips.flatMap(({ place }) => place.map(Math.abs)))
   const near = MIRRORED * size
   const found = AXES.map((_, axis) => {

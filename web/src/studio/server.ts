@@ -102,7 +102,12 @@ export class Server {
   private readonly token: string
   /** Identity of this page, which ignores its own changes. */
   private readonly client = crypto.randomUUID()
-  private readonly listeners: { [K in keyof Events]: Set<(event: Events[K]) => void> } = { state: new Set(), changed: new Set(), study: new Set(), missed: new Set() }
+  private readonly listeners: { [K in keyof Events]: Set<(event: Events[K]) => void> } = {
+    state: new Set(),
+    changed: new Set(),
+    study: new Set(),
+    missed: new Set(),
+  }
   /** Identity of the server's run. */
   private run?: string
   private leaving = false
@@ -156,7 +161,10 @@ export class Server {
 
   /** Saves over the text that this one was made from; with `anyway` even if the model is invalid. */
   async save(text: string, anyway = false): Promise<Saved> {
-    const response = await this.request('PUT', this.target(this.file!, anyway), { body: text, headers: { 'if-match': `"${this.revision}"` } })
+    const response = await this.request('PUT', this.target(this.file!, anyway), {
+      body: text,
+      headers: { 'if-match': `"${this.revision}"` },
+    })
     const saved = await outcome(response)
     if (saved.outcome === 'saved') this.revision = saved.revision
     return saved
@@ -191,7 +199,12 @@ export class Server {
   }
 
   private async request(method: string, path: string, { headers, ...options }: RequestInit = {}): Promise<Response> {
-    const response = await fetch(path, { method, cache: 'no-store', headers: { 'x-hardpoint-token': this.token, ...headers }, ...options }).catch(() => undefined)
+    const response = await fetch(path, {
+      method,
+      cache: 'no-store',
+      headers: { 'x-hardpoint-token': this.token, ...headers },
+      ...options,
+    }).catch(() => undefined)
     this.become(response ? (response.status === 403 ? 'stranger' : 'there') : 'gone')
     if (!response) throw new NoAnswer('The server does not answer.')
     if (response.status === 403) throw new NoAnswer('Another server answers at this address.')
@@ -240,7 +253,8 @@ export class Server {
       if (this.run !== undefined) this.tell('missed', undefined)
       this.run = event.server
     }
-    if ((name === 'changed' || name === 'hello') && this.file !== null && event.revision !== this.revision) this.tell('changed', { revision: event.revision })
+    if ((name === 'changed' || name === 'hello') && this.file !== null && event.revision !== this.revision)
+      this.tell('changed', { revision: event.revision })
   }
 }
 
@@ -250,7 +264,9 @@ async function outcome(response: Response): Promise<Saved> {
   if (status === 422) return { outcome: 'invalid', ...(await response.json()) }
   if (status === 409) {
     const found = await response.json()
-    return 'revision' in found ? { outcome: 'changed', text: found.text, revision: found.revision } : { outcome: 'exists' }
+    return 'revision' in found
+      ? { outcome: 'changed', text: found.text, revision: found.revision }
+      : { outcome: 'exists' }
   }
   return { outcome: 'refused', why: await why(response) }
 }

@@ -16,8 +16,24 @@ const STUDIES: Record<What, string> = { optimize: 'Optimise', tolerance: 'Run to
 /** Controls that a server adds to the page's bar: save, other models, studies; and notices. */
 export function serverBar(server: Server, text: Text): HTMLElement {
   const notices = el('div', { class: 'notices', 'data-testid': 'notices' })
-  const save = el('button', { type: 'button', 'data-testid': 'save', title: 'Save the model in place (Ctrl+S)', disabled: true, onclick: () => desk.save() }, 'Save')
-  const element = el('div', { class: 'server', 'data-testid': 'server' }, save, menu('Server', 'server-menu', () => desk.items()), notices)
+  const save = el(
+    'button',
+    {
+      type: 'button',
+      'data-testid': 'save',
+      title: 'Save the model in place (Ctrl+S)',
+      disabled: true,
+      onclick: () => desk.save(),
+    },
+    'Save',
+  )
+  const element = el(
+    'div',
+    { class: 'server', 'data-testid': 'server' },
+    save,
+    menu('Server', 'server-menu', () => desk.items()),
+    notices,
+  )
   const desk = new Desk(server, text, save, notices)
   return element
 }
@@ -57,7 +73,11 @@ class Desk {
   }
 
   items(): Item[] {
-    const study = (what: What): Item => ({ name: `${STUDIES[what]} on this machine`, testId: `study-${what}`, run: () => this.study(what) })
+    const study = (what: What): Item => ({
+      name: `${STUDIES[what]} on this machine`,
+      testId: `study-${what}`,
+      run: () => this.study(what),
+    })
     return [
       { name: 'Open another model…', testId: 'models', run: () => this.choose() },
       { name: 'Save as…', testId: 'save-as', run: () => this.saveAs() },
@@ -91,8 +111,13 @@ class Desk {
       this.notes.show('saving', `Saved \`${this.server.file}\`.`, { passing: true })
     } else if (saved.outcome === 'changed') this.changed(saved.revision)
     else if (saved.outcome === 'invalid') {
-      this.notes.show('saving', `Not saved: the text is no valid model.`, { stop: true, detail: saved.text, actions: { 'Save anyway': () => void anyway() } })
-    } else if (saved.outcome === 'exists') this.notes.show('saving', 'Not saved: there is a model of that name already.', { stop: true })
+      this.notes.show('saving', `Not saved: the text is no valid model.`, {
+        stop: true,
+        detail: saved.text,
+        actions: { 'Save anyway': () => void anyway() },
+      })
+    } else if (saved.outcome === 'exists')
+      this.notes.show('saving', 'Not saved: there is a model of that name already.', { stop: true })
     else this.notes.show('saving', `Not saved: ${saved.why}.`, { stop: true })
   }
 
@@ -100,11 +125,17 @@ class Desk {
   private changed(revision: string | null): void {
     const { file } = this.server
     if (revision === null) {
-      this.notes.show('changed', `\`${file}\` is no longer on disk; what you have is kept in the page.`, { stop: true, actions: { 'Save as…': () => this.saveAs() } })
+      this.notes.show('changed', `\`${file}\` is no longer on disk; what you have is kept in the page.`, {
+        stop: true,
+        actions: { 'Save as…': () => this.saveAs() },
+      })
       return
     }
     this.notes.show('changed', `\`${file}\` was changed on disk.`, {
-      actions: { Reload: () => void this.asking(() => this.reload()), 'Keep mine': () => void this.asking(() => this.keep()) },
+      actions: {
+        Reload: () => void this.asking(() => this.reload()),
+        'Keep mine': () => void this.asking(() => this.keep()),
+      },
     })
   }
 
@@ -131,12 +162,37 @@ class Desk {
   private async choose(): Promise<void> {
     const { folder, models } = await this.server.models()
     const entry = ({ file, title, description, problems }: Entry) =>
-      el('li', {}, el('a', { href: this.server.link(file), 'aria-current': file === this.server.file ? 'page' : undefined }, el('b', {}, title), ' ', el('code', {}, file)), el('p', { class: 'muted' }, problems > 0 ? `${problems} ${problems === 1 ? 'problem' : 'problems'}` : (description ?? '')))
-    dialog('Models', el('p', { class: 'muted' }, folder), el('ul', { class: 'models', 'data-testid': 'model-list' }, ...models.map(entry)))
+      el(
+        'li',
+        {},
+        el(
+          'a',
+          { href: this.server.link(file), 'aria-current': file === this.server.file ? 'page' : undefined },
+          el('b', {}, title),
+          ' ',
+          el('code', {}, file),
+        ),
+        el(
+          'p',
+          { class: 'muted' },
+          problems > 0 ? `${problems} ${problems === 1 ? 'problem' : 'problems'}` : (description ?? ''),
+        ),
+      )
+    dialog(
+      'Models',
+      el('p', { class: 'muted' }, folder),
+      el('ul', { class: 'models', 'data-testid': 'model-list' }, ...models.map(entry)),
+    )
   }
 
   private saveAs(): void {
-    const name = el('input', { type: 'text', value: this.server.file ?? '', 'aria-label': 'file name', 'data-testid': 'new-name', spellcheck: 'false' })
+    const name = el('input', {
+      type: 'text',
+      value: this.server.file ?? '',
+      'aria-label': 'file name',
+      'data-testid': 'new-name',
+      spellcheck: 'false',
+    })
     const failure = el('p', { class: 'wrong', role: 'alert' })
     const submit = async (event: Event) => {
       event.preventDefault()
@@ -147,12 +203,24 @@ class Desk {
         if (saved.outcome === 'saved') {
           this.button.disabled = true
           location.assign(this.server.link(file))
-        } else failure.textContent = saved.outcome === 'exists' ? 'There is a model of that name already.' : saved.outcome === 'refused' ? saved.why : 'The text is no valid model.'
+        } else
+          failure.textContent =
+            saved.outcome === 'exists'
+              ? 'There is a model of that name already.'
+              : saved.outcome === 'refused'
+                ? saved.why
+                : 'The text is no valid model.'
       } catch (error) {
         failure.textContent = String(error instanceof Error ? error.message : error)
       }
     }
-    const form = el('form', { class: 'ask', onsubmit: submit }, name, el('button', { type: 'submit', 'data-testid': 'save-new' }, 'Save'), failure)
+    const form = el(
+      'form',
+      { class: 'ask', onsubmit: submit },
+      name,
+      el('button', { type: 'submit', 'data-testid': 'save-new' }, 'Save'),
+      failure,
+    )
     dialog('Save as', form)
     name.select()
   }
@@ -167,15 +235,31 @@ class Desk {
       if (state === 'running') {
         const { of = 0, done = 0, unit = '' } = progress ?? {}
         const line = of > 0 ? `${progress!.what} ${done} of ${of} ${unit}` : (lines.at(-1)?.trim() ?? 'begun')
-        notes.show(key, `${STUDIES[what]}: ${line}`, { part: of > 0 ? done / of : undefined, actions: { Cancel: () => void this.asking(() => server.cancel(study.id)) } })
+        notes.show(key, `${STUDIES[what]}: ${line}`, {
+          part: of > 0 ? done / of : undefined,
+          actions: { Cancel: () => void this.asking(() => server.cancel(study.id)) },
+        })
         return
       }
       this.running.delete(study.id)
       const found = study.text
-      const actions: Record<string, () => void> = found ? { 'Take the design': () => (this.text.replace(found), notes.drop(key)) } : {}
-      const links = (study.reports ?? []).map(({ case: name, link }): [string, string] => [name === null ? 'Report' : `Report: ${name}`, link])
-      const how = { done: message, cancelled: `ended early${message ? `; ${message}` : ''}`, failed: 'no result' }[state]
-      notes.show(key, `${STUDIES[what]}: ${how}`, { stop: state === 'failed', detail: state === 'failed' ? message : undefined, actions, links, closing: true })
+      const actions: Record<string, () => void> = found
+        ? { 'Take the design': () => (this.text.replace(found), notes.drop(key)) }
+        : {}
+      const links = (study.reports ?? []).map(({ case: name, link }): [string, string] => [
+        name === null ? 'Report' : `Report: ${name}`,
+        link,
+      ])
+      const how = { done: message, cancelled: `ended early${message ? `; ${message}` : ''}`, failed: 'no result' }[
+        state
+      ]
+      notes.show(key, `${STUDIES[what]}: ${how}`, {
+        stop: state === 'failed',
+        detail: state === 'failed' ? message : undefined,
+        actions,
+        links,
+        closing: true,
+      })
     }
     const follow = async (news: Partial<Study> & { line?: string }) => {
       if (news.line !== undefined) study.lines.push(news.line)
@@ -194,7 +278,8 @@ class Desk {
     for (const [id, follow] of this.running) {
       const study = await this.server.study(id).catch(() => null)
       if (study) follow(study)
-      else if (study === undefined) follow({ id, state: 'failed', message: 'The server was started anew meanwhile: the study is lost.' })
+      else if (study === undefined)
+        follow({ id, state: 'failed', message: 'The server was started anew meanwhile: the study is lost.' })
     }
   }
 
@@ -202,9 +287,16 @@ class Desk {
     const { server, notes } = this
     if (server.state === 'there') notes.drop('server')
     else if (server.state === 'gone') {
-      notes.show('server', 'The server does not answer; your changes are kept in the page. Restart it with', { stop: true, detail: server.command })
+      notes.show('server', 'The server does not answer; your changes are kept in the page. Restart it with', {
+        stop: true,
+        detail: server.command,
+      })
     } else {
-      notes.show('server', 'Another server answers at this address; your changes are kept in the page. Open the address that it has printed, or end it and start', { stop: true, detail: server.command })
+      notes.show(
+        'server',
+        'Another server answers at this address; your changes are kept in the page. Open the address that it has printed, or end it and start',
+        { stop: true, detail: server.command },
+      )
     }
   }
 
@@ -252,7 +344,14 @@ class Notes {
       el('p', {}, ...prose(what)),
       detail !== undefined && el('pre', {}, detail),
       part !== undefined && el('progress', { value: part, max: 1 }),
-      (buttons.length > 0 || anchors.length > 0 || closing) && el('p', { class: 'actions' }, ...anchors, ...buttons, closing && el('button', { type: 'button', onclick: () => this.drop(key) }, 'Close')),
+      (buttons.length > 0 || anchors.length > 0 || closing) &&
+        el(
+          'p',
+          { class: 'actions' },
+          ...anchors,
+          ...buttons,
+          closing && el('button', { type: 'button', onclick: () => this.drop(key) }, 'Close'),
+        ),
     )
     const before = this.notes.get(key)
     if (before) before.replaceWith(note)

@@ -67,8 +67,11 @@ export class Sketch implements Overlay {
     points: readonly Point[] = [],
   ) {
     this.#points = [...points]
-    const button = (title: string, testId: string, onclick: () => void) => el('button', { type: 'button', 'data-testid': testId, onclick }, title)
-    this.#bar = el('div', { class: 'sketch-bar', role: 'toolbar', 'aria-label': 'Target curve' },
+    const button = (title: string, testId: string, onclick: () => void) =>
+      el('button', { type: 'button', 'data-testid': testId, onclick }, title)
+    this.#bar = el(
+      'div',
+      { class: 'sketch-bar', role: 'toolbar', 'aria-label': 'Target curve' },
       this.#take,
       button('Clear', 'sketch-clear', () => this.#set([])),
       button('Extend axis', 'sketch-room', () => {
@@ -76,12 +79,19 @@ export class Sketch implements Overlay {
         this.#rescale()
       }),
       button('Cancel', 'sketch-cancel', () => this.#cancel()),
-      this.#reading)
-    for (const [event, run] of Object.entries({ pointerdown: this.#press, pointermove: this.#move, pointerup: this.#release, pointercancel: this.#drop })) {
+      this.#reading,
+    )
+    for (const [event, run] of Object.entries({
+      pointerdown: this.#press,
+      pointermove: this.#move,
+      pointerup: this.#release,
+      pointercancel: this.#drop,
+    })) {
       this.#element.addEventListener(event, (one) => run.call(this, one as PointerEvent))
     }
     // The plot below means something else by all of these.
-    for (const event of ['pointerdown', 'pointermove', 'pointerup', 'dblclick']) this.#element.addEventListener(event, (one) => one.stopPropagation())
+    for (const event of ['pointerdown', 'pointermove', 'pointerup', 'dblclick'])
+      this.#element.addEventListener(event, (one) => one.stopPropagation())
     this.#element.addEventListener('keydown', (event) => this.#key(event))
     this.#element.addEventListener('focus', () => this.drawn())
     this.#element.addEventListener('blur', () => this.drawn())
@@ -134,10 +144,17 @@ export class Sketch implements Overlay {
   #said(): string {
     const { over, unit } = this.over.content
     const read = ([x, y]: Point) => `${figure(x, over?.unit ?? 's')}: ${figure(y, unit)}`
-    const focus = this.#held === undefined ? (document.activeElement === this.#element ? this.#cross : undefined) : this.#points[this.#held]
+    const focus =
+      this.#held === undefined
+        ? document.activeElement === this.#element
+          ? this.#cross
+          : undefined
+        : this.#points[this.#held]
     const count = this.#points.length
     if (focus) return `${read(focus)}${count > 0 ? ` · ${count} point${count === 1 ? '' : 's'}` : ''}`
-    return count === 0 ? 'Draw the curve that is wanted' : `${count} point${count === 1 ? '' : 's'}; draw over a part to change it, or move a point`
+    return count === 0
+      ? 'Draw the curve that is wanted'
+      : `${count} point${count === 1 ? '' : 's'}; draw over a part to change it, or move a point`
   }
 
   #placed([x, y]: Point): Point {
@@ -205,7 +222,8 @@ export class Sketch implements Overlay {
     const room = this.#range()[0] * STEP
     const low = (this.#points[index - 1]?.[0] ?? -Infinity) + room
     const high = (this.#points[index + 1]?.[0] ?? Infinity) - room
-    if (low <= high) this.#set(this.#points.map((point, k): Point => (k === index ? [Math.min(Math.max(x, low), high), y] : point)))
+    if (low <= high)
+      this.#set(this.#points.map((point, k): Point => (k === index ? [Math.min(Math.max(x, low), high), y] : point)))
   }
 
   /** Sets a point, in place of one at that abscissa. */
@@ -267,7 +285,10 @@ export class Sketch implements Overlay {
     const { x: horizontal, y: vertical } = this.#plot!.scales
     const within = (value: number, { min, max }: uPlot.Scale) => Math.min(Math.max(value, min!), max!)
     const by = (count: number, range: number) => count * roundBelow(part * range)
-    this.#cross = [roundedIn(within(x + by(right, across), horizontal), across), roundedIn(within(y + by(up, high), vertical), high)]
+    this.#cross = [
+      roundedIn(within(x + by(right, across), horizontal), across),
+      roundedIn(within(y + by(up, high), vertical), high),
+    ]
   }
 
   /** In the middle, on the curve where there is one. */

@@ -1,5 +1,15 @@
 import { el, prose } from '../dom'
-import type { OptimizeOffer, OptimizeRequest, Running, SearchGoal, SearchVariable, Studies, StudyResult, ToleranceOffer, ToleranceRequest } from '../engine/engine'
+import type {
+  OptimizeOffer,
+  OptimizeRequest,
+  Running,
+  SearchGoal,
+  SearchVariable,
+  Studies,
+  StudyResult,
+  ToleranceOffer,
+  ToleranceRequest,
+} from '../engine/engine'
 import { figure, pretty } from '../format'
 import { factTable } from '../page/checks'
 import './studio.css'
@@ -79,20 +89,35 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     // The focused element was removed with the former content.
     if (focused) element.querySelector<HTMLElement>('.acts button:not(:disabled)')?.focus()
   }
-  const refused = (error: unknown) => el('p', { class: 'refused', role: 'alert', 'data-testid': `${testId}-refused` }, ...prose(error instanceof Error ? error.message : String(error)))
+  const refused = (error: unknown) =>
+    el(
+      'p',
+      { class: 'refused', role: 'alert', 'data-testid': `${testId}-refused` },
+      ...prose(error instanceof Error ? error.message : String(error)),
+    )
 
   const showForm = (made: Form<Request>, refusal?: HTMLElement) => {
     shown = 'form'
     const why = el('span', { class: 'muted', 'data-testid': `${testId}-why` })
     const run = el('button', { type: 'submit', class: 'first', 'data-testid': `${testId}-run` }, verb)
-    const again = el('button', { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: () => void load() }, 'Reload from model')
+    const again = el(
+      'button',
+      { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: () => void load() },
+      'Reload from model',
+    )
     const sync = () => {
       const request = made.request()
       run.disabled = typeof request === 'string'
       why.replaceChildren(...prose(typeof request === 'string' ? request : ''))
       again.hidden = read === host.text()
     }
-    const whole = el('form', { class: 'study', novalidate: true, oninput: () => ((touched = true), sync()) }, ...(refusal ? [refusal] : []), ...made.elements, el('div', { class: 'acts' }, run, again, why))
+    const whole = el(
+      'form',
+      { class: 'study', novalidate: true, oninput: () => ((touched = true), sync()) },
+      ...(refusal ? [refusal] : []),
+      ...made.elements,
+      el('div', { class: 'acts' }, run, again, why),
+    )
     whole.addEventListener('submit', (event) => {
       event.preventDefault()
       const request = made.request()
@@ -120,15 +145,30 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
   const work = async (made: Form<Request>, request: Request) => {
     shown = 'progress'
     const text = host.text()
-    const bar = el('progress', { 'aria-label': `Progress of ${name.toLowerCase()}`, 'data-testid': `${testId}-progress` })
+    const bar = el('progress', {
+      'aria-label': `Progress of ${name.toLowerCase()}`,
+      'data-testid': `${testId}-progress`,
+    })
     const log = el('pre', { class: 'log', 'data-testid': `${testId}-lines` })
-    const cancel = el('button', { type: 'button', 'data-testid': `${testId}-cancel`, onclick: () => {
-      cancel.disabled = true
-      cancel.textContent = 'Ending …'
-      running.cancel()
-    } }, 'Cancel')
+    const cancel = el(
+      'button',
+      {
+        type: 'button',
+        'data-testid': `${testId}-cancel`,
+        onclick: () => {
+          cancel.disabled = true
+          cancel.textContent = 'Ending …'
+          running.cancel()
+        },
+      },
+      'Cancel',
+    )
     const lines: string[] = []
-    show(bar, log, el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')))
+    show(
+      bar,
+      log,
+      el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')),
+    )
     let running: Running<StudyResult>
     try {
       running = start(text, request)
@@ -153,13 +193,35 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
       showForm(made)
       if (!touched) refresh()
     }
-    const take = el('button', { type: 'button', class: 'first', 'data-testid': `${testId}-take`, onclick: () => (host.take(result, text), away()) }, 'Apply design')
-    const discard = el('button', { type: 'button', 'data-testid': `${testId}-discard`, onclick: away }, found ? 'Discard' : 'Back')
+    const take = el(
+      'button',
+      {
+        type: 'button',
+        class: 'first',
+        'data-testid': `${testId}-take`,
+        onclick: () => (host.take(result, text), away()),
+      },
+      'Apply design',
+    )
+    const discard = el(
+      'button',
+      { type: 'button', 'data-testid': `${testId}-discard`, onclick: away },
+      found ? 'Discard' : 'Back',
+    )
     const outcome = el('p', { class: 'outcome', 'data-testid': `${testId}-outcome` }, ...prose(result.message))
-    const since = el('p', { class: 'outcome stale', 'data-testid': `${testId}-stale` }, 'The design has changed since: this is of the design as it was. Applying it discards later changes.')
+    const since = el(
+      'p',
+      { class: 'outcome stale', 'data-testid': `${testId}-stale` },
+      'The design has changed since: this is of the design as it was. Applying it discards later changes.',
+    )
     stale = () => (since.hidden = host.text() === text)
     stale()
-    show(outcome, since, el('div', { class: 'acts' }, ...(found ? [take] : []), discard), el('div', { class: 'checks' }, ...result.tables.map(factTable)))
+    show(
+      outcome,
+      since,
+      el('div', { class: 'acts' }, ...(found ? [take] : []), discard),
+      el('div', { class: 'checks' }, ...result.tables.map(factTable)),
+    )
     announced.textContent = result.message
   }
 
@@ -177,11 +239,43 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
   const most = whole('Iterations at most', iterations, 1, 100_000, 'optimise-iterations')
   return {
     elements: [
-      group('Variables', 'within what they may change', table(['variable', 'lowest', 'highest', ''], searched.map(({ row }) => row))),
+      group(
+        'Variables',
+        'within what they may change',
+        table(
+          ['variable', 'lowest', 'highest', ''],
+          searched.map(({ row }) => row),
+        ),
+      ),
       goals.length > 0
-        ? group('Goals', 'made as small as possible, or brought to their targets', table(['metric', 'now', 'weight', 'target'], wanted.map(({ row }) => row)))
-        : group('Goals', '', el('p', { class: 'muted' }, ...prose('The model has no metrics, such as a target curve that is drawn over a plot: add `[metrics]` to its text.'))),
-      ...(limits.length > 0 ? [group('Limits', 'kept as the text has them', el('ul', { class: 'limits' }, ...limits.map((limit) => el('li', {}, ...prose(limit)))))] : []),
+        ? group(
+            'Goals',
+            'made as small as possible, or brought to their targets',
+            table(
+              ['metric', 'now', 'weight', 'target'],
+              wanted.map(({ row }) => row),
+            ),
+          )
+        : group(
+            'Goals',
+            '',
+            el(
+              'p',
+              { class: 'muted' },
+              ...prose(
+                'The model has no metrics, such as a target curve that is drawn over a plot: add `[metrics]` to its text.',
+              ),
+            ),
+          ),
+      ...(limits.length > 0
+        ? [
+            group(
+              'Limits',
+              'kept as the text has them',
+              el('ul', { class: 'limits' }, ...limits.map((limit) => el('li', {}, ...prose(limit)))),
+            ),
+          ]
+        : []),
       el('div', { class: 'settings' }, from.element, most.element),
     ],
     request: () => {
@@ -194,7 +288,10 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
         starts: from.value(),
         iterations: most.value(),
       }
-      return [...asked.variables, ...asked.goals, asked.starts, asked.iterations].find((part) => typeof part === 'string') ?? (asked as OptimizeRequest)
+      return (
+        [...asked.variables, ...asked.goals, asked.starts, asked.iterations].find((part) => typeof part === 'string') ??
+        (asked as OptimizeRequest)
+      )
     },
   }
 }
@@ -210,7 +307,14 @@ function variableRow({ name, unit, bounds, chosen }: SearchVariable): Row<Optimi
   const [low, high] = [0, 1].map((end) => field(`${end ? 'highest' : 'lowest'} of ${name}`, bounds?.[end]))
   const choice = choose(name, chosen && bounds !== null, [low, high])
   return {
-    row: el('tr', { 'data-testid': `search-${name}` }, el('td', {}, choice.element), el('td', {}, low), el('td', {}, high), el('td', { class: 'unit' }, pretty(unit))),
+    row: el(
+      'tr',
+      { 'data-testid': `search-${name}` },
+      el('td', {}, choice.element),
+      el('td', {}, low),
+      el('td', {}, high),
+      el('td', { class: 'unit' }, pretty(unit)),
+    ),
     chosen: choice.chosen,
     value: () => {
       const ends: [number, number] = [low.valueAsNumber, high.valueAsNumber]
@@ -220,19 +324,40 @@ function variableRow({ name, unit, bounds, chosen }: SearchVariable): Row<Optimi
   }
 }
 
-function goalRow({ metric, unit, value, weight, target, curve, chosen }: SearchGoal): Row<OptimizeRequest['goals'][number]> {
+function goalRow({
+  metric,
+  unit,
+  value,
+  weight,
+  target,
+  curve,
+  chosen,
+}: SearchGoal): Row<OptimizeRequest['goals'][number]> {
   const counts = field(`weight of ${metric}`, weight)
   const wanted = field(`target of ${metric}`, target ?? undefined)
   wanted.placeholder = 'least'
   const choice = choose(metric, chosen, curve ? [counts] : [counts, wanted])
-  const aim = curve ? el('span', { class: 'muted' }, 'its curve') : el('span', {}, wanted, ' ', el('span', { class: 'unit' }, pretty(unit)))
+  const aim = curve
+    ? el('span', { class: 'muted' }, 'its curve')
+    : el('span', {}, wanted, ' ', el('span', { class: 'unit' }, pretty(unit)))
   return {
-    row: el('tr', { 'data-testid': `goal-${metric}` }, el('td', {}, choice.element), el('td', { class: 'figure' }, value === null ? '–' : figure(value, unit)), el('td', {}, counts), el('td', {}, aim)),
+    row: el(
+      'tr',
+      { 'data-testid': `goal-${metric}` },
+      el('td', {}, choice.element),
+      el('td', { class: 'figure' }, value === null ? '–' : figure(value, unit)),
+      el('td', {}, counts),
+      el('td', {}, aim),
+    ),
     chosen: choice.chosen,
     value: () => {
       if (!(counts.valueAsNumber > 0)) return `The weight of \`${metric}\` must be above zero.`
       if (wanted.validity.badInput) return `The target of \`${metric}\` is no number.`
-      return { metric, weight: counts.valueAsNumber, target: curve || wanted.value === '' ? null : wanted.valueAsNumber }
+      return {
+        metric,
+        weight: counts.valueAsNumber,
+        target: curve || wanted.value === '' ? null : wanted.valueAsNumber,
+      }
     },
   }
 }
@@ -240,13 +365,39 @@ function goalRow({ metric, unit, value, weight, target, curve, chosen }: SearchG
 function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): Form<ToleranceRequest> {
   const drawn = whole('Designs drawn', samples, 0, 10_000_000, 'tolerance-samples')
   const from = whole('Seed', seed, 1, 4_294_967_295, 'tolerance-seed')
-  const rows = tolerances.map(({ name, tolerance, unit, distribution }) => el('tr', {}, el('td', {}, name), el('td', {}, `±${figure(tolerance, unit)}`), el('td', { class: 'muted' }, distribution)))
+  const rows = tolerances.map(({ name, tolerance, unit, distribution }) =>
+    el(
+      'tr',
+      {},
+      el('td', {}, name),
+      el('td', {}, `±${figure(tolerance, unit)}`),
+      el('td', { class: 'muted' }, distribution),
+    ),
+  )
   return {
     elements: [
-      group('Tolerances', 'as the text has them', rows.length > 0
-        ? table(['variable', 'tolerance', 'distribution'], rows)
-        : el('p', { class: 'muted' }, ...prose('The model does not say how far its design variables may be off: add `tolerance = 0.1` to those in `[design]` or `[parameters]`.'))),
-      ...(metrics.length > 0 ? [el('p', { class: 'muted' }, ...prose(`Looked at: ${metrics.map((metric) => `\`${metric}\``).join(', ')}, and all curves.`))] : []),
+      group(
+        'Tolerances',
+        'as the text has them',
+        rows.length > 0
+          ? table(['variable', 'tolerance', 'distribution'], rows)
+          : el(
+              'p',
+              { class: 'muted' },
+              ...prose(
+                'The model does not say how far its design variables may be off: add `tolerance = 0.1` to those in `[design]` or `[parameters]`.',
+              ),
+            ),
+      ),
+      ...(metrics.length > 0
+        ? [
+            el(
+              'p',
+              { class: 'muted' },
+              ...prose(`Looked at: ${metrics.map((metric) => `\`${metric}\``).join(', ')}, and all curves.`),
+            ),
+          ]
+        : []),
       el('div', { class: 'settings' }, drawn.element, from.element),
     ],
     request: () => {
@@ -262,7 +413,16 @@ function group(title: string, about: string, content: HTMLElement): HTMLElement 
 }
 
 function table(header: string[], rows: HTMLElement[]): HTMLElement {
-  return el('div', { class: 'scroll' }, el('table', {}, el('thead', {}, el('tr', {}, ...header.map((cell) => el('th', { scope: 'col' }, cell)))), el('tbody', {}, ...rows)))
+  return el(
+    'div',
+    { class: 'scroll' },
+    el(
+      'table',
+      {},
+      el('thead', {}, el('tr', {}, ...header.map((cell) => el('th', { scope: 'col' }, cell)))),
+      el('tbody', {}, ...rows),
+    ),
+  )
 }
 
 /** A field for a number. */
@@ -271,7 +431,11 @@ function field(label: string, value: number | undefined): HTMLInputElement {
 }
 
 /** A box to choose something by, whose fields are of use only then. */
-function choose(name: string, chosen: boolean, fields: HTMLInputElement[]): { element: HTMLElement; chosen: () => boolean } {
+function choose(
+  name: string,
+  chosen: boolean,
+  fields: HTMLInputElement[],
+): { element: HTMLElement; chosen: () => boolean } {
   const box = el('input', { type: 'checkbox', checked: chosen, onchange: () => sync() })
   const sync = () => {
     for (const one of fields) one.disabled = !box.checked
@@ -281,8 +445,22 @@ function choose(name: string, chosen: boolean, fields: HTMLInputElement[]): { el
 }
 
 /** A field for a whole number. */
-function whole(title: string, value: number, least: number, most: number, testId: string): { element: HTMLElement; value: () => number | string } {
-  const input = el('input', { type: 'number', min: least, max: most, step: 1, value, required: true, 'data-testid': testId })
+function whole(
+  title: string,
+  value: number,
+  least: number,
+  most: number,
+  testId: string,
+): { element: HTMLElement; value: () => number | string } {
+  const input = el('input', {
+    type: 'number',
+    min: least,
+    max: most,
+    step: 1,
+    value,
+    required: true,
+    'data-testid': testId,
+  })
   return {
     element: el('label', {}, title, ' ', input),
     value: () => (input.checkValidity() ? input.valueAsNumber : `${title}: a whole number from ${least} to ${most}.`),

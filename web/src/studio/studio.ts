@@ -68,7 +68,10 @@ export class Studio {
     this.#checks = new Solver(module)
     this.#text = model.text
     this.history = new History({ text: model.text, settings: [], label: 'as opened' })
-    const bar = historyBar(this.history, { show: (step) => void this.#go(step), compare: (snapshot) => void this.#compare(snapshot) })
+    const bar = historyBar(this.history, {
+      show: (step) => void this.#go(step),
+      compare: (snapshot) => void this.#compare(snapshot),
+    })
     const host = {
       studies: new Workers(module, (text) => ({ ...this.model, text })),
       text: () => this.#text,
@@ -76,12 +79,26 @@ export class Studio {
     }
     this.#drawer = new Drawer([
       { name: 'Model', title: 'The text of the model', open: () => this.#openEditor() },
-      { name: 'Optimise', title: 'Optimise the design for your goals', open: studyPane(() => optimizePane(host), this) },
+      {
+        name: 'Optimise',
+        title: 'Optimise the design for your goals',
+        open: studyPane(() => optimizePane(host), this),
+      },
       { name: 'Tolerance', title: 'Tolerance analysis', open: studyPane(() => tolerancePane(host), this) },
     ])
     const server = connect(document)
-    const own = { text: () => this.#settled(), replace: (text: string) => void this.replace(text, 'from disk'), onChange: (listener: () => void) => this.onText(listener) }
-    this.#tools.append(bar, this.#cases, ...this.#drawer.buttons, ...(server?.file ? [serverBar(server, own)] : []), this.#status)
+    const own = {
+      text: () => this.#settled(),
+      replace: (text: string) => void this.replace(text, 'from disk'),
+      onChange: (listener: () => void) => this.onText(listener),
+    }
+    this.#tools.append(
+      bar,
+      this.#cases,
+      ...this.#drawer.buttons,
+      ...(server?.file ? [serverBar(server, own)] : []),
+      this.#status,
+    )
     document.body.append(this.#drawer.element)
     slot(made.bar, this.#tools)
     this.#attach()
@@ -109,7 +126,11 @@ export class Studio {
 
   /** Items for export in addition to those of the report. */
   readonly exports = (): Item[] => [
-    { name: 'Model as TOML', testId: 'export-toml', run: async () => save(new Blob([await this.#settled()], { type: 'application/toml' }), this.model.file) },
+    {
+      name: 'Model as TOML',
+      testId: 'export-toml',
+      run: async () => save(new Blob([await this.#settled()], { type: 'application/toml' }), this.model.file),
+    },
   ]
 
   /** Draws the curve that the quantity of a figure is to have. */
@@ -119,9 +140,16 @@ export class Studio {
     const drawn = () => {
       const { quantity, over } = figure.subject
       const several = (this.#opened?.cases.length ?? 0) > 1
-      return { of: quantities[quantity].name, over: over === undefined ? undefined : quantities[over].name, case: several ? (this.model.case ?? this.#opened?.cases[0]) : undefined }
+      return {
+        of: quantities[quantity].name,
+        over: over === undefined ? undefined : quantities[over].name,
+        case: several ? (this.model.case ?? this.#opened?.cases[0]) : undefined,
+      }
     }
-    return targetButton(figure.plot, drawn, { text: () => this.#text, replace: (text) => void this.replace(text, 'target') })
+    return targetButton(figure.plot, drawn, {
+      text: () => this.#text,
+      replace: (text) => void this.replace(text, 'target'),
+    })
   }
 
   /** Takes hold of hardpoints, or lets go. */
@@ -175,8 +203,16 @@ export class Studio {
 
   #offerCases(cases: string[]): void {
     if (cases.length < 2) return this.#cases.replaceChildren()
-    const select = el('select', { 'aria-label': 'Case', title: 'Case', 'data-testid': 'case', onchange: () => void this.#become({ ...this.model, text: this.#text, case: select.value }, []) },
-      ...cases.map((name) => el('option', { value: name, selected: name === (this.model.case ?? cases[0]) }, name)))
+    const select = el(
+      'select',
+      {
+        'aria-label': 'Case',
+        title: 'Case',
+        'data-testid': 'case',
+        onchange: () => void this.#become({ ...this.model, text: this.#text, case: select.value }, []),
+      },
+      ...cases.map((name) => el('option', { value: name, selected: name === (this.model.case ?? cases[0]) }, name)),
+    )
     this.#cases.replaceChildren(select)
   }
 
@@ -317,14 +353,21 @@ export class Studio {
     view?.dispose()
     keepMeshes(before.report, report)
     const state = new State(report)
-    state.choice.quantity = named(report.quantities, before.report.quantities[before.choice.quantity]) ?? state.choice.quantity
-    state.choice.variable = named(report.variables, before.report.variables[before.choice.variable]) ?? state.choice.variable
+    state.choice.quantity =
+      named(report.quantities, before.report.quantities[before.choice.quantity]) ?? state.choice.quantity
+    state.choice.variable =
+      named(report.variables, before.report.variables[before.choice.variable]) ?? state.choice.variable
     state.choice.order = before.choice.order
     state.choice.labels = before.choice.labels
     const time = before.time
     this.root.replaceChildren()
     this.state = state
-    this.made = page(this.root, state, { bar: this.#tools, exports: this.exports, grips: () => this.grips(), figure: (figure) => this.target(figure) })
+    this.made = page(this.root, state, {
+      bar: this.#tools,
+      exports: this.exports,
+      grips: () => this.grips(),
+      figure: (figure) => this.target(figure),
+    })
     state.goToTime(time)
     this.#grips = undefined
     this.#attach()
@@ -363,7 +406,10 @@ export class Studio {
   async #openEditor(): Promise<HTMLElement> {
     this.#editor ??= await openEditor({
       text: this.#text,
-      check: { check: async (text) => (await this.#checks.ask<CheckReply>({ ask: 'check', model: { ...this.model, text } })).json.messages },
+      check: {
+        check: async (text) =>
+          (await this.#checks.ask<CheckReply>({ ask: 'check', model: { ...this.model, text } })).json.messages,
+      },
       onValid: (text) => void this.replace(text, 'typed'),
     })
     return this.#editor.element
@@ -384,7 +430,11 @@ function studyPane(make: () => StudyPane, studio: Studio): () => Promise<HTMLEle
 }
 
 /** A part of the way from some changes to others. */
-export function between(from: readonly VariableSetting[], to: readonly VariableSetting[], part: number): VariableSetting[] {
+export function between(
+  from: readonly VariableSetting[],
+  to: readonly VariableSetting[],
+  part: number,
+): VariableSetting[] {
   const before = new Map(from.map(({ name, by }) => [name, by]))
   const after = new Map(to.map(({ name, by }) => [name, by]))
   const names = [...new Set([...before.keys(), ...after.keys()])]
@@ -408,7 +458,8 @@ function keepMeshes(before: Report, after: Report): void {
  * not.
  */
 function alike(a: Report, b: Report): boolean {
-  const same = (a: readonly { name: string }[], b: readonly { name: string }[]) => a.length === b.length && a.every(({ name }, k) => name === b[k].name)
+  const same = (a: readonly { name: string }[], b: readonly { name: string }[]) =>
+    a.length === b.length && a.every(({ name }, k) => name === b[k].name)
   return same(a.quantities, b.quantities) && same(a.variables, b.variables)
 }
 

@@ -40,18 +40,27 @@ function keysOf({ case: of, ...curve }: TargetCurve): [key: string, value: strin
 }
 
 /** Place and text of the metric, in the style of the others. */
-function place(text: string, entries: Entry[], name: string, keys: [key: string, value: string][]): { at: number; piece: string } {
+function place(
+  text: string,
+  entries: Entry[],
+  name: string,
+  keys: [key: string, value: string][],
+): { at: number; piece: string } {
   const inline = `{ ${keys.map((pair) => pair.join(' = ')).join(', ')} }`
   const headings = entries.filter(({ heading }) => heading)
   const table = `[metrics.${quoted(name)}]\n${keys.map((pair) => pair.join(' = ')).join('\n')}`
   const after = (entry: Entry) => endOfLines(text, entry.end)
 
   const first = headings[0]?.from ?? text.length
-  const atRoot = entries.filter(({ heading, depth, path, from }) => !heading && depth === 0 && path[0] === 'metrics' && from < first)
+  const atRoot = entries.filter(
+    ({ heading, depth, path, from }) => !heading && depth === 0 && path[0] === 'metrics' && from < first,
+  )
   const whole = atRoot.find(({ path }) => path.length === 1)
   if (whole && text[whole.end - 1] === '}') {
     // A table on one line ends there, and can go on nowhere else.
-    const empty = !entries.some(({ depth, path, from }) => depth === 1 && path[0] === 'metrics' && from > whole.from && from < whole.end)
+    const empty = !entries.some(
+      ({ depth, path, from }) => depth === 1 && path[0] === 'metrics' && from > whole.from && from < whole.end,
+    )
     const at = text.slice(0, whole.end - 1).trimEnd().length
     return { at, piece: `${empty ? ' ' : ', '}${quoted(name)} = ${inline}${at === whole.end - 1 ? ' ' : ''}` }
   }

@@ -1,5 +1,12 @@
 import type { OptimizeRequest, Running, Studies, StudyResult, ToleranceRequest } from '../engine/engine'
-import type { OptimizeOffer, Request, VariableSetting, StudyReply, ProgressReply, ToleranceOffer } from '../engine/protocol'
+import type {
+  OptimizeOffer,
+  Request,
+  VariableSetting,
+  StudyReply,
+  ProgressReply,
+  ToleranceOffer,
+} from '../engine/protocol'
 import { Solver } from '../engine/solver'
 import type { ModelText } from '../payload'
 
@@ -51,7 +58,12 @@ export class Workers implements Studies {
     return {
       onProgress: (listener) => listeners.push(({ done, total, line }) => listener(done, total, line)),
       cancel: () => {
-        ended({ tables: [], change: best, text: null, message: best ? 'Cancelled: this is the best design so far.' : 'Cancelled before anything was found.' })
+        ended({
+          tables: [],
+          change: best,
+          text: null,
+          message: best ? 'Cancelled: this is the best design so far.' : 'Cancelled before anything was found.',
+        })
         solver.stop()
       },
       result: Promise.race([cancelled, whole]).finally(() => solver.stop()),

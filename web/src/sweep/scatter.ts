@@ -38,9 +38,19 @@ class Scatter {
   constructor(private readonly sweep: Sweep) {
     const render = () => this.#render()
     const choice = (name: string, chosen: number) =>
-      el('select', { 'aria-label': `${name} axis`, 'data-testid': `sweep-${name}`, onchange: render }, ...sweep.axes.map((axis, k) => el('option', { value: k, selected: k === chosen }, axis.name)))
+      el(
+        'select',
+        { 'aria-label': `${name} axis`, 'data-testid': `sweep-${name}`, onchange: render },
+        ...sweep.axes.map((axis, k) => el('option', { value: k, selected: k === chosen }, axis.name)),
+      )
     this.#x = choice('x', this.#strongest())
-    this.#y = choice('y', Math.max(0, sweep.axes.findIndex(({ metric }) => metric)))
+    this.#y = choice(
+      'y',
+      Math.max(
+        0,
+        sweep.axes.findIndex(({ metric }) => metric),
+      ),
+    )
     this.#frame = el(
       'div',
       {
@@ -54,9 +64,25 @@ class Scatter {
       this.#picture,
     )
     const drawn = sweep.axes[0]?.values.length ?? 0
-    const note = drawn < sweep.designs ? `${number(drawn)} of ${number(sweep.designs, 10)} ${sweep.what}s are drawn: every ${sweep.step}th.` : `${number(drawn)} ${sweep.what}s.`
-    const axes = el('p', { class: 'choice' }, el('label', {}, 'Up ', this.#y), el('label', {}, 'to the right ', this.#x))
-    this.element = el('section', { class: 'sweep', 'data-testid': 'sweep' }, axes, this.#frame, this.#reading, el('p', { class: 'note' }, note), this.#bars)
+    const note =
+      drawn < sweep.designs
+        ? `${number(drawn)} of ${number(sweep.designs, 10)} ${sweep.what}s are drawn: every ${sweep.step}th.`
+        : `${number(drawn)} ${sweep.what}s.`
+    const axes = el(
+      'p',
+      { class: 'choice' },
+      el('label', {}, 'Up ', this.#y),
+      el('label', {}, 'to the right ', this.#x),
+    )
+    this.element = el(
+      'section',
+      { class: 'sweep', 'data-testid': 'sweep' },
+      axes,
+      this.#frame,
+      this.#reading,
+      el('p', { class: 'note' }, note),
+      this.#bars,
+    )
     render()
     new ResizeObserver(([entry]) => {
       const width = Math.round(entry.contentRect.width)
@@ -88,7 +114,9 @@ class Scatter {
     this.#axes = { x, y }
     this.#points = along(over.values, of.values)
     if (this.#chosen !== undefined && !this.#points.includes(this.#chosen)) this.#chosen = undefined
-    const dots = this.#points.map((k) => `M${x.at(over.values[k]).toFixed(1)},${y.at(of.values[k]).toFixed(1)}h0`).join('')
+    const dots = this.#points
+      .map((k) => `M${x.at(over.values[k]).toFixed(1)},${y.at(of.values[k]).toFixed(1)}h0`)
+      .join('')
     const box = { x: MARGIN.left, y: MARGIN.top, width: right - MARGIN.left, height: bottom - MARGIN.top }
     this.#picture.setAttribute('viewBox', `0 0 ${width} ${height}`)
     this.#picture.setAttribute('width', String(width))
@@ -110,12 +138,18 @@ class Scatter {
     const { x: over, y: of } = this.#shown()
     if (this.#chosen === undefined || !this.#axes) {
       const [known, all] = [this.#points.length, over.values.length]
-      this.#reading.textContent = known < all ? `${number(all - known)} of the ${this.sweep.what}s drawn have no ${of.name}.` : ''
+      this.#reading.textContent =
+        known < all ? `${number(all - known)} of the ${this.sweep.what}s drawn have no ${of.name}.` : ''
       return
     }
     const k = this.#chosen
-    this.#picture.append(svg('circle', { class: 'pointed', cx: this.#axes.x.at(over.values[k]), cy: this.#axes.y.at(of.values[k]), r: 6 }))
-    const all = this.sweep.axes.map(({ name, unit, values }) => `${name} ${Number.isFinite(values[k]) ? figure(Number(values[k].toPrecision(5)), unit) : 'no value'}`)
+    this.#picture.append(
+      svg('circle', { class: 'pointed', cx: this.#axes.x.at(over.values[k]), cy: this.#axes.y.at(of.values[k]), r: 6 }),
+    )
+    const all = this.sweep.axes.map(
+      ({ name, unit, values }) =>
+        `${name} ${Number.isFinite(values[k]) ? figure(Number(values[k].toPrecision(5)), unit) : 'no value'}`,
+    )
     this.#reading.textContent = `${this.sweep.what} ${k * this.sweep.step}: ${all.join(', ')}`
   }
 
@@ -124,14 +158,21 @@ class Scatter {
     const corner = this.#picture.getBoundingClientRect()
     const { x: over, y: of } = this.#shown()
     const { x, y } = this.#axes
-    this.#chosen = nearest(this.#points, (k) => [x.at(over.values[k]), y.at(of.values[k])], [event.clientX - corner.left, event.clientY - corner.top], REACH)
+    this.#chosen = nearest(
+      this.#points,
+      (k) => [x.at(over.values[k]), y.at(of.values[k])],
+      [event.clientX - corner.left, event.clientY - corner.top],
+      REACH,
+    )
     this.#mark()
   }
 
   #key(event: KeyboardEvent): void {
     const last = this.#points.length - 1
     const now = this.#chosen === undefined ? -1 : this.#points.indexOf(this.#chosen)
-    const next = ({ ArrowRight: now + 1, ArrowLeft: now < 0 ? last : now - 1, Home: 0, End: last } as Record<string, number>)[event.key]
+    const next = (
+      { ArrowRight: now + 1, ArrowLeft: now < 0 ? last : now - 1, Home: 0, End: last } as Record<string, number>
+    )[event.key]
     if (next === undefined || last < 0) return
     event.preventDefault()
     event.stopPropagation()
@@ -156,7 +197,11 @@ class Scatter {
       ),
       el('span', {}, `${first[0].toFixed(3)} alone, ${total[0].toFixed(3)} ± ${total[1].toFixed(3)} in all`),
     ])
-    const title = el('h3', { style: 'grid-column: 1 / -1' }, `Sobol indices of ${this.sweep.axes[of]?.name}: parts of its variance`)
+    const title = el(
+      'h3',
+      { style: 'grid-column: 1 / -1' },
+      `Sobol indices of ${this.sweep.axes[of]?.name}: parts of its variance`,
+    )
     this.#bars.replaceChildren(...(indices.length > 0 ? [title, ...rows] : []))
   }
 }

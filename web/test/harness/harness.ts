@@ -11,12 +11,24 @@ export async function harness(name: string): Promise<string> {
     configFile: false,
     logLevel: 'silent',
     plugins: [packed()],
-    build: { write: false, target: 'es2022', modulePreload: false, rolldownOptions: { input: join(import.meta.dirname, `${name}.ts`), output: { codeSplitting: false } } },
+    build: {
+      write: false,
+      target: 'es2022',
+      modulePreload: false,
+      rolldownOptions: { input: join(import.meta.dirname, `${name}.ts`), output: { codeSplitting: false } },
+    },
   })) as Rollup.RollupOutput
-  const parts = made.output.map((part) => (part.type === 'chunk' ? `<script type="module">${part.code.replaceAll('</script', '<\\/script')}</script>` : `<style>${part.source}</style>`))
+  const parts = made.output.map((part) =>
+    part.type === 'chunk'
+      ? `<script type="module">${part.code.replaceAll('</script', '<\\/script')}</script>`
+      : `<style>${part.source}</style>`,
+  )
   const folder = mkdtempSync(join(tmpdir(), 'hardpoint-harness-'))
   const path = join(folder, `${name}.html`)
-  writeFileSync(path, `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>${name}</title><body>${parts.reverse().join('\n')}</body></html>`)
+  writeFileSync(
+    path,
+    `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>${name}</title><body>${parts.reverse().join('\n')}</body></html>`,
+  )
   return pathToFileURL(path).href
 }
 

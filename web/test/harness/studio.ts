@@ -1,7 +1,14 @@
 import '../../src/style.css'
 import '../../src/scene/palette.css'
 import { el } from '../../src/dom'
-import type { OptimizeOffer, OptimizeRequest, Running, StudyResult, ToleranceOffer, ToleranceRequest } from '../../src/engine/engine'
+import type {
+  OptimizeOffer,
+  OptimizeRequest,
+  Running,
+  StudyResult,
+  ToleranceOffer,
+  ToleranceRequest,
+} from '../../src/engine/engine'
 import { Plot } from '../../src/plot'
 import { read } from '../../src/report'
 import { State } from '../../src/state'
@@ -45,12 +52,24 @@ function begin(text: string, request: Study['request']): Running<StudyResult> {
   let end!: Study['end']
   let fail!: (error: Error) => void
   const result = new Promise<StudyResult>((resolve, reject) => ((end = resolve), (fail = reject)))
-  const study: Study = { text, request, cancelled: false, tell: (...progress) => listeners.forEach((listener) => listener(...progress)), end, fail: (message) => fail(new Error(message)) }
+  const study: Study = {
+    text,
+    request,
+    cancelled: false,
+    tell: (...progress) => listeners.forEach((listener) => listener(...progress)),
+    end,
+    fail: (message) => fail(new Error(message)),
+  }
   window.studies.push(study)
   return { result, cancel: () => (study.cancelled = true), onProgress: (listener) => listeners.push(listener) }
 }
 
-const variable = (name: string, chosen: boolean): OptimizeOffer['variables'][number] => ({ name, unit: 'mm', bounds: chosen ? [-15, 15] : null, chosen })
+const variable = (name: string, chosen: boolean): OptimizeOffer['variables'][number] => ({
+  name,
+  unit: 'mm',
+  bounds: chosen ? [-15, 15] : null,
+  chosen,
+})
 const optimizeOffer: OptimizeOffer = {
   variables: [variable('outer_x', true), variable('outer_z', true), variable('rack_z', true), variable('top_x', false)],
   goals: [
@@ -62,7 +81,10 @@ const optimizeOffer: OptimizeOffer = {
   iterations: 100,
 }
 const toleranceOffer: ToleranceOffer = {
-  tolerances: [{ name: 'ball_joint', tolerance: 0.3, unit: 'mm', distribution: 'truncated' }, { name: 'lca_front_z', tolerance: 0.5, unit: 'mm', distribution: 'normal' }],
+  tolerances: [
+    { name: 'ball_joint', tolerance: 0.3, unit: 'mm', distribution: 'truncated' },
+    { name: 'lca_front_z', tolerance: 0.5, unit: 'mm', distribution: 'normal' },
+  ],
   metrics: ['toe_range', 'camber_range'],
   samples: 10_000,
   seed: 1,
@@ -71,7 +93,10 @@ const toleranceOffer: ToleranceOffer = {
 Object.assign(window, { shown: [], compared: [], studies: [], taken: [], model: 'name = "strut"' })
 const first: Step = { text: window.model, settings: [], label: 'opened' }
 window.designs = new History(first)
-const bar = historyBar(window.designs, { show: (step) => window.shown.push(step), compare: (snapshot) => window.compared.push(snapshot?.name) })
+const bar = historyBar(window.designs, {
+  show: (step) => window.shown.push(step),
+  compare: (snapshot) => window.compared.push(snapshot?.name),
+})
 
 const host = {
   studies: {
@@ -93,11 +118,36 @@ const times = Float32Array.from({ length: 101 }, (_, k) => k / 10)
 const state = new State(read({ ...EMPTY, times: [0] }, () => times))
 const plot = new Plot(state, 'plot')
 window.plot = plot
-window.show = () => plot.show({ title: 'toe', unit: 'deg', lines: [{ label: 'toe', color: '#0b61bd', curve: times.map((t) => Math.sin(t)) }] })
-const sketch = el('button', { type: 'button', id: 'sketch', onclick: () => new Sketch(plot, { done: (points) => (window.drawn = points), cancel: () => (window.drawn = 'cancelled') }) }, 'Draw a target')
-const target = targetButton(plot, () => ({ of: 'wheel.z', over: 'travel' }), { text: host.text, replace: (text) => (window.model = text) })
+window.show = () =>
+  plot.show({
+    title: 'toe',
+    unit: 'deg',
+    lines: [{ label: 'toe', color: '#0b61bd', curve: times.map((t) => Math.sin(t)) }],
+  })
+const sketch = el(
+  'button',
+  {
+    type: 'button',
+    id: 'sketch',
+    onclick: () =>
+      new Sketch(plot, { done: (points) => (window.drawn = points), cancel: () => (window.drawn = 'cancelled') }),
+  },
+  'Draw a target',
+)
+const target = targetButton(plot, () => ({ of: 'wheel.z', over: 'travel' }), {
+  text: host.text,
+  replace: (text) => (window.model = text),
+})
 document.body.append(
-  el('header', { class: 'topbar', style: 'flex-wrap: wrap' }, el('h1', {}, 'A strut'), el('span', { class: 'space' }), bar, sketch, target),
+  el(
+    'header',
+    { class: 'topbar', style: 'flex-wrap: wrap' },
+    el('h1', {}, 'A strut'),
+    el('span', { class: 'space' }),
+    bar,
+    sketch,
+    target,
+  ),
   el('div', { id: 'curves', style: 'height: 330px; display: flex; padding: 0 14px' }, plot.element),
   el('div', { class: 'panel' }, panes[0].element),
   el('div', { class: 'panel' }, panes[1].element),

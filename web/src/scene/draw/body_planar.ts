@@ -33,7 +33,8 @@ export function flatLink(mechanism: Mechanism, kit: Kit, body: number): Object3D
     const slide = mechanism.slideOf(k)
     return slide ? [{ joint, slide }] : []
   })
-  if (points.length === 1) return slides.some(({ slide }) => slide.block === body) ? [] : [slab(round([[...points[0], DISC * s]]))]
+  if (points.length === 1)
+    return slides.some(({ slide }) => slide.block === body) ? [] : [slab(round([[...points[0], DISC * s]]))]
 
   const holes = slides
     .filter(({ slide }) => slide.rail === body && slide.low <= slide.high)
@@ -48,7 +49,16 @@ export function flatLink(mechanism: Mechanism, kit: Kit, body: number): Object3D
   const length = apart(...ends)
   if (holes.length > 0 || corners.length < 3 || area(corners) <= NARROW * length * length) {
     const aside = holes.length > 0 || corners.length < 3 ? [] : points.filter((point) => !ends.includes(point))
-    const struts = aside.flatMap((point) => ends.map((end) => slab(round([[...point, 0.9 * radius], [...end, 0.7 * radius]]))))
+    const struts = aside.flatMap((point) =>
+      ends.map((end) =>
+        slab(
+          round([
+            [...point, 0.9 * radius],
+            [...end, 0.7 * radius],
+          ]),
+        ),
+      ),
+    )
     return [slab(round(ends.map(([x, y]) => [x, y, radius])), holes), ...struts]
   }
   const outline = round(corners.map(([x, y]) => [x, y, radius]))
@@ -58,8 +68,18 @@ export function flatLink(mechanism: Mechanism, kit: Kit, body: number): Object3D
   const struts = points
     .filter((point) => !corners.includes(point))
     .flatMap((point) => {
-      const nearest = corners.slice().sort((a, b) => apart(a, point) - apart(b, point)).slice(0, 2)
-      return nearest.map((corner) => slab(round([[...point, STRUT[0] * s], [...corner, STRUT[1] * s]])))
+      const nearest = corners
+        .slice()
+        .sort((a, b) => apart(a, point) - apart(b, point))
+        .slice(0, 2)
+      return nearest.map((corner) =>
+        slab(
+          round([
+            [...point, STRUT[0] * s],
+            [...corner, STRUT[1] * s],
+          ]),
+        ),
+      )
     })
   return [slab(outline, [window]), pane, ...struts]
 }
@@ -69,7 +89,9 @@ export function thinLink(mechanism: Mechanism, kit: Kit, body: number): Object3D
   const { basis, points } = layOut(mechanism, body)
   if (points.length < 2) return []
   const corners = hull(points)
-  const outline = round((corners.length > 2 ? corners : farthest(points, apart)).map(([x, y]) => [x, y, THIN * kit.unit]))
+  const outline = round(
+    (corners.length > 2 ? corners : farthest(points, apart)).map(([x, y]) => [x, y, THIN * kit.unit]),
+  )
   return [kit.slab(outline, basis, mechanism.thickness, kit.body(body))]
 }
 

@@ -46,7 +46,8 @@ export function spatialBody(mechanism: Mechanism, kit: Kit, body: number): Objec
   const widest = points.reduce((most, p) => (aside(p).length() > aside(most).length() ? p : most))
   if (aside(widest).length() < STRAIGHT * length) return straight(mechanism, kit, body, a, b)
   const normal = aside(widest).normalize()
-  if (points.every((p) => Math.abs(p.clone().sub(a).dot(normal)) < FLAT * length)) return plate(mechanism, kit, body, points, normal)
+  if (points.every((p) => Math.abs(p.clone().sub(a).dot(normal)) < FLAT * length))
+    return plate(mechanism, kit, body, points, normal)
   return solid(kit, body, points)
 }
 
@@ -59,8 +60,15 @@ function onShaft(mechanism: Mechanism, kit: Kit, body: number, points: Vector3[]
   const away = points.filter((point) => !mechanism.same(point, at))
   return away.flatMap((point) => {
     const foot = on(point)
-    const arm = foot.distanceTo(point) > s ? [kit.cylinder(foot, point, ROD.thin * s, ROD.thin * s, colour), kit.ball(point, ROD.thick * s, colour)] : []
-    return [kit.cylinder(at, foot, ROD.thick * s, ROD.thick * s, colour), kit.ball(foot, 1.5 * ROD.thick * s, colour), ...arm]
+    const arm =
+      foot.distanceTo(point) > s
+        ? [kit.cylinder(foot, point, ROD.thin * s, ROD.thin * s, colour), kit.ball(point, ROD.thick * s, colour)]
+        : []
+    return [
+      kit.cylinder(at, foot, ROD.thick * s, ROD.thick * s, colour),
+      kit.ball(foot, 1.5 * ROD.thick * s, colour),
+      ...arm,
+    ]
   })
 }
 
@@ -73,11 +81,22 @@ function folding(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: Ve
   const colour = kit.body(body)
   const unit = b.clone().sub(a).normalize()
   const middle = a.clone().lerp(b, 0.5)
-  const plate = kit.brick(middle, unit, axis, [Math.max(s, a.distanceTo(b) - 2 * FOLDED.clear * s), 2 * FOLD.half * s, FOLDED.thickness * s], colour)
+  const plate = kit.brick(
+    middle,
+    unit,
+    axis,
+    [Math.max(s, a.distanceTo(b) - 2 * FOLDED.clear * s), 2 * FOLD.half * s, FOLDED.thickness * s],
+    colour,
+  )
   const eyes = mechanism.jointsOf(body).flatMap(({ joint, at }) => {
     const inner = joint.body_i === 0 || joint.body_j === 0 || joint.body_i === body
     const outer = (FOLD.half + FOLD.inner) / 2
-    const spans = inner ? [[0, 2 * FOLD.inner]] : [[-outer, FOLD.half - FOLD.inner], [outer, FOLD.half - FOLD.inner]]
+    const spans = inner
+      ? [[0, 2 * FOLD.inner]]
+      : [
+          [-outer, FOLD.half - FOLD.inner],
+          [outer, FOLD.half - FOLD.inner],
+        ]
     const inwards = middle.clone().sub(at).normalize()
     return spans.flatMap(([aside, width]) => {
       const eye = at.clone().addScaledVector(axis, aside * s)
@@ -94,7 +113,9 @@ function folding(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: Ve
 function single(mechanism: Mechanism, kit: Kit, body: number, point: Vector3): Object3D[] {
   const { report } = mechanism
   const held = report.joints.flatMap((_, k) => (mechanism.slideOf(k)?.block === body ? [k] : []))
-  const coupled = report.couplers.some(({ terms }) => terms.some(({ joint }) => [report.joints[joint].body_i, report.joints[joint].body_j].includes(body)))
+  const coupled = report.couplers.some(({ terms }) =>
+    terms.some(({ joint }) => [report.joints[joint].body_i, report.joints[joint].body_j].includes(body)),
+  )
   if (held.length > 0 || coupled) return []
   const axis = axisAt(mechanism, body, point) ?? mechanism.into(body, mechanism.up)
   return [kit.disc(point, axis, POINT * kit.unit, 0.8 * POINT * kit.unit, kit.body(body))]
@@ -102,7 +123,9 @@ function single(mechanism: Mechanism, kit: Kit, body: number, point: Vector3): O
 
 /** Axis of the hinge at a place of a body. */
 function axisAt(mechanism: Mechanism, body: number, at: Vector3): Vector3 | undefined {
-  const hinges = mechanism.jointsOf(body).filter(({ joint }) => joint.kind === 'revolute' || joint.kind === 'cylindrical')
+  const hinges = mechanism
+    .jointsOf(body)
+    .filter(({ joint }) => joint.kind === 'revolute' || joint.kind === 'cylindrical')
   return hinges.find((hinge) => hinge.axis && mechanism.same(hinge.at, at))?.axis
 }
 
@@ -135,8 +158,17 @@ function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: V
     const thick = from.clone().lerp(to, t).normalize()
     const wide = thick.clone().cross(unit)
     const waist = width * s * (1 - BAR.waist * Math.sin(Math.PI * t))
-    return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) =>
-      low.clone().lerp(high, t).addScaledVector(wide, x * waist).addScaledVector(thick, y * BAR.thickness * s),
+    return [
+      [-1, -1],
+      [1, -1],
+      [1, 1],
+      [-1, 1],
+    ].map(([x, y]) =>
+      low
+        .clone()
+        .lerp(high, t)
+        .addScaledVector(wide, x * waist)
+        .addScaledVector(thick, y * BAR.thickness * s),
     )
   }
   const sections = Array.from({ length: BAR.sections + 1 }, (_, k) => section(k / BAR.sections))
@@ -148,13 +180,27 @@ function straight(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: V
   )
   const eye = (at: Vector3, axis: Vector3 | undefined) =>
     axis ? kit.disc(at, axis, BAR.eye * s, BAR.height * s, colour) : kit.ball(at, BAR.end * s, colour)
-  const edges = [0, 1, 2, 3].map((i) => kit.line(sections.map((corners) => corners[i]), kit.palette.outline, 0.9, { opacity: 0.45 }))
-  return [kit.triangles(faces, colour, { open: true, facets: true }), ...edges, eye(low, axisAt(mechanism, body, a)), eye(high, axisAt(mechanism, body, b))]
+  const edges = [0, 1, 2, 3].map((i) =>
+    kit.line(
+      sections.map((corners) => corners[i]),
+      kit.palette.outline,
+      0.9,
+      { opacity: 0.45 },
+    ),
+  )
+  return [
+    kit.triangles(faces, colour, { open: true, facets: true }),
+    ...edges,
+    eye(low, axisAt(mechanism, body, a)),
+    eye(high, axisAt(mechanism, body, b)),
+  ]
 }
 
 /** Middle of a link's eye on the hinge at a place: beside the other link's; between cheeks that are ground's. */
 function eyeOf(mechanism: Mechanism, body: number, at: Vector3, s: number): Vector3 {
-  const hinge = mechanism.jointsOf(body).find(({ joint, at: own }) => joint.kind === 'revolute' && mechanism.same(own, at))
+  const hinge = mechanism
+    .jointsOf(body)
+    .find(({ joint, at: own }) => joint.kind === 'revolute' && mechanism.same(own, at))
   if (!hinge?.axis || hinge.joint.body_i === 0 || hinge.joint.body_j === 0 || hinge.joint.hinge) return at
   const side = hinge.joint.body_i === body ? -1 : 1
   return at.clone().addScaledVector(hinge.axis.clone().normalize(), (side * BAR.height * s) / 2)
@@ -180,7 +226,10 @@ function plate(mechanism: Mechanism, kit: Kit, body: number, points: Vector3[], 
   const held = inner.flatMap((point) => {
     const nearest = [...corners].sort((p, q) => p.distanceTo(point) - q.distanceTo(point)).slice(0, 2)
     const lean = point.distanceTo(middle) < 2 * s ? [] : nearest
-    return [...lean.map((corner) => kit.cylinder(point, corner, 0.75 * s, 0.75 * s, colour)), kit.ball(point, PLATE.hinge * s, colour)]
+    return [
+      ...lean.map((corner) => kit.cylinder(point, corner, 0.75 * s, 0.75 * s, colour)),
+      kit.ball(point, PLATE.hinge * s, colour),
+    ]
   })
   const web = new ShapeGeometry(new Shape(outline.map(([x, y]) => new Vector2(x, y)))).applyMatrix4(basis.matrix())
   return [...pieces, ...held, kit.mesh(web, colour, { opacity: outline.length > 3 ? PLATE.platform : PLATE.web })]
@@ -204,7 +253,9 @@ function solid(kit: Kit, body: number, points: Vector3[]): Object3D[] {
   const ends = new EdgesGeometry(geometry, 1)
   const { position } = ends.attributes
   const corner = (k: number) => new Vector3().fromBufferAttribute(position, k)
-  const edges = Array.from({ length: position.count / 2 }, (_, k) => kit.cylinder(corner(2 * k), corner(2 * k + 1), HULL.edge * s, HULL.edge * s, colour))
+  const edges = Array.from({ length: position.count / 2 }, (_, k) =>
+    kit.cylinder(corner(2 * k), corner(2 * k + 1), HULL.edge * s, HULL.edge * s, colour),
+  )
   ends.dispose()
   return [
     kit.mesh(geometry, colour, { opacity: HULL.opacity, facets: true }),

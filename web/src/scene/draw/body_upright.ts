@@ -40,7 +40,14 @@ export function upright(mechanism: Mechanism, kit: Kit, body: number, wheel: Whe
 }
 
 /** Many joints: a frame through them all, seen along the spin axis, that the bearing sits in. */
-function frame(kit: Kit, points: Vector3[], root: Vector3, axis: Vector3, colour: string, arm: (from: Vector3, to: Vector3) => void): Object3D[] {
+function frame(
+  kit: Kit,
+  points: Vector3[],
+  root: Vector3,
+  axis: Vector3,
+  colour: string,
+  arm: (from: Vector3, to: Vector3) => void,
+): Object3D[] {
   const s = kit.unit
   const basis = new Basis(root, axis)
   const flat = points.map((point) => basis.to(point))

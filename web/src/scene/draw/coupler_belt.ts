@@ -48,7 +48,12 @@ function band(kit: Kit, basis: Basis, { points, normals }: BeltPath, width: numb
   const t = BAND.thickness * kit.unit
   const corners = points.map(([x, y], k): Vector3[] => {
     const [u, v] = normals[k]
-    return [[0, -1], [1, -1], [1, 1], [0, 1]].map(([out, side]) => basis.from([x + out * t * u, y + out * t * v], (side * width) / 2))
+    return [
+      [0, -1],
+      [1, -1],
+      [1, 1],
+      [0, 1],
+    ].map(([out, side]) => basis.from([x + out * t * u, y + out * t * v], (side * width) / 2))
   })
   const faces = corners.flatMap((here, k) => {
     const next = corners[(k + 1) % corners.length]

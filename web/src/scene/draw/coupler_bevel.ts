@@ -22,7 +22,15 @@ export const bevels: DrawCoupler = ({ mechanism, kit, train, coupler }) => {
     const into = (direction: Vector3) => mechanism.into(body, direction)
     const tip = mechanism.placeInto(body, pair.tip)
     const phase = k === 0 ? 0 : Math.PI / teeth[1]
-    const corners = bevelCorners(tip, { ...gear, axis: into(gear.axis) }, into(pair.line), teeth[k], height, phase, width)
+    const corners = bevelCorners(
+      tip,
+      { ...gear, axis: into(gear.axis) },
+      into(pair.line),
+      teeth[k],
+      height,
+      phase,
+      width,
+    )
     return { body, object: kit.triangles(corners, kit.body(body), { facets: true, edges: 50, open: true }) }
   })
 }

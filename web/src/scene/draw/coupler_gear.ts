@@ -37,20 +37,38 @@ export const gears: DrawCoupler = ({ mechanism, kit, train, coupler, index }) =>
   if (atA === undefined) train.tooth(a, n, radii[0], touchA, phaseA)
   if (atB === undefined) train.tooth(b, m, radii[1], touchB, phaseB)
   return [
-    { wheel: a, teeth: n, radius: radii[0], towards: touchA, phase: phaseA, ring: internal && sizes[0] > sizes[1], known: atA !== undefined },
-    { wheel: b, teeth: m, radius: radii[1], towards: touchB, phase: phaseB, ring: internal && sizes[1] > sizes[0], known: atB !== undefined },
-  ].filter(({ known }) => !known).map(({ wheel, teeth, radius, towards, phase, ring }) => {
-    const { body } = wheel
-    const into = (direction: Vector3) => mechanism.into(body, direction)
-    const centre = mechanism.placeInto(body, wheel.centre).add(mechanism.lift(body))
-    const basis = new Basis(centre, into(wheel.shaft.axis), into(towards))
-    const outline = gearOutline(teeth, radius, height, phase, ring)
-    const width = mechanism.plane ? mechanism.thickness : train.face
-    const pieces = ring
-      ? [kit.slab(round([[0, 0, radius * (1 + RING)]]), basis, width, kit.body(body), [outline], { edges: 50 })]
-      : [kit.slab(outline, basis, width, kit.body(body), holes(radius, kit.unit), { edges: 50 })]
-    return { body, object: new Group().add(...pieces, ...pitchCircles(kit, basis, radius, width)) }
-  })
+    {
+      wheel: a,
+      teeth: n,
+      radius: radii[0],
+      towards: touchA,
+      phase: phaseA,
+      ring: internal && sizes[0] > sizes[1],
+      known: atA !== undefined,
+    },
+    {
+      wheel: b,
+      teeth: m,
+      radius: radii[1],
+      towards: touchB,
+      phase: phaseB,
+      ring: internal && sizes[1] > sizes[0],
+      known: atB !== undefined,
+    },
+  ]
+    .filter(({ known }) => !known)
+    .map(({ wheel, teeth, radius, towards, phase, ring }) => {
+      const { body } = wheel
+      const into = (direction: Vector3) => mechanism.into(body, direction)
+      const centre = mechanism.placeInto(body, wheel.centre).add(mechanism.lift(body))
+      const basis = new Basis(centre, into(wheel.shaft.axis), into(towards))
+      const outline = gearOutline(teeth, radius, height, phase, ring)
+      const width = mechanism.plane ? mechanism.thickness : train.face
+      const pieces = ring
+        ? [kit.slab(round([[0, 0, radius * (1 + RING)]]), basis, width, kit.body(body), [outline], { edges: 50 })]
+        : [kit.slab(outline, basis, width, kit.body(body), holes(radius, kit.unit), { edges: 50 })]
+      return { body, object: new Group().add(...pieces, ...pitchCircles(kit, basis, radius, width)) }
+    })
 }
 
 /** Holes show that a large gear turns. */

@@ -24,7 +24,10 @@ export const rack: DrawCoupler = ({ mechanism, kit, train, coupler }) => {
   const radius = Math.abs(coupler.sizes[0] ?? ratio)
   const moving = mark.body_j > 0 ? mark.body_j : mark.body_i
   const way = mechanism.alongAt(mark.body_i, new Vector3(...mark.axis), 0).normalize()
-  const out = way.clone().cross(shaft.axis).multiplyScalar(Math.sign(ratio) || 1)
+  const out = way
+    .clone()
+    .cross(shaft.axis)
+    .multiplyScalar(Math.sign(ratio) || 1)
   if (!(radius > 0) || out.length() < 0.5) return []
   out.normalize()
   const fixed = mechanism.worldAt(mark.body_i, new Vector3(...mark.at_i), 0)
@@ -35,15 +38,25 @@ export const rack: DrawCoupler = ({ mechanism, kit, train, coupler }) => {
   const height = toothHeight(TEETH.pinion, radius)
   const width = mechanism.plane ? mechanism.thickness : train.face
 
-  const own = { at: mechanism.placeInto(shaft.body, centre).add(mechanism.lift(shaft.body)), axis: mechanism.into(shaft.body, shaft.axis) }
+  const own = {
+    at: mechanism.placeInto(shaft.body, centre).add(mechanism.lift(shaft.body)),
+    axis: mechanism.into(shaft.body, shaft.axis),
+  }
   const round = new Basis(own.at, own.axis, mechanism.into(shaft.body, out))
-  const pinion = kit.slab(gearOutline(TEETH.pinion, radius, height), round, width, kit.body(shaft.body), [], { edges: 50 })
+  const pinion = kit.slab(gearOutline(TEETH.pinion, radius, height), round, width, kit.body(shaft.body), [], {
+    edges: 50,
+  })
 
   // The rack's travel, counted from where it is at first.
   const place = new Vector3(...(moving === mark.body_j ? mark.at_j : mark.at_i))
   const start = mechanism.worldAt(moving, place, 0)
-  const travel = mechanism.moments.map((step) => mechanism.worldAt(moving, place, step).sub(start).dot(way)).filter(Number.isFinite)
-  const room = Math.max(TEETH.beyond * pitch, (TEETH.rack * pitch - (Math.max(0, ...travel) - Math.min(0, ...travel))) / 2)
+  const travel = mechanism.moments
+    .map((step) => mechanism.worldAt(moving, place, step).sub(start).dot(way))
+    .filter(Number.isFinite)
+  const room = Math.max(
+    TEETH.beyond * pitch,
+    (TEETH.rack * pitch - (Math.max(0, ...travel) - Math.min(0, ...travel))) / 2,
+  )
   const [from, to] = [-Math.max(0, ...travel) - room, -Math.min(0, ...travel) + room]
   const contact = centre.clone().addScaledVector(out, radius)
   const into = (direction: Vector3) => mechanism.into(moving, direction)
@@ -53,7 +66,8 @@ export const rack: DrawCoupler = ({ mechanism, kit, train, coupler }) => {
   const x = out.clone().negate().cross(shaft.axis)
   const forward = Math.sign(x.dot(way)) || 1
   const basis = new Basis(at(contact), into(shaft.axis), into(x))
-  const outline = forward > 0 ? rackOutline(pitch, from, to, height, depth) : rackOutline(pitch, -to, -from, height, depth)
+  const outline =
+    forward > 0 ? rackOutline(pitch, from, to, height, depth) : rackOutline(pitch, -to, -from, height, depth)
   const teeth = kit.slab(outline, basis, width, kit.body(moving), [], { edges: 50 })
 
   // The bar in its guide, and an arm from the rack's back to it where they are apart.
@@ -63,14 +77,25 @@ export const rack: DrawCoupler = ({ mechanism, kit, train, coupler }) => {
   const aside = gap.dot(out)
   const pieces: Object3D[] = [teeth]
   const reachOf = fixed.clone().sub(start).dot(way)
-  const ends = [Math.min(from + contact.clone().sub(start).dot(way), reachOf - Math.max(0, ...travel)) - BAR.beyond * kit.unit, Math.max(to + contact.clone().sub(start).dot(way), reachOf - Math.min(0, ...travel)) + BAR.beyond * kit.unit]
+  const ends = [
+    Math.min(from + contact.clone().sub(start).dot(way), reachOf - Math.max(0, ...travel)) - BAR.beyond * kit.unit,
+    Math.max(to + contact.clone().sub(start).dot(way), reachOf - Math.min(0, ...travel)) + BAR.beyond * kit.unit,
+  ]
   const [low, high] = ends.map((t) => at(start.clone().addScaledVector(way, t)))
   if (Math.abs(aside) > depth / 2) {
     pieces.push(kit.cylinder(low, high, BAR.radius * kit.unit, BAR.radius * kit.unit, kit.body(moving)))
     for (const share of [0.25, 0.75]) {
       const t = from + share * (to - from)
       const middle = back.clone().lerp(guide, 0.5).addScaledVector(way, t)
-      pieces.push(kit.brick(at(middle), into(gap), into(way), [gap.length(), ARM[0] * kit.unit, ARM[1] * kit.unit], kit.body(moving)))
+      pieces.push(
+        kit.brick(
+          at(middle),
+          into(gap),
+          into(way),
+          [gap.length(), ARM[0] * kit.unit, ARM[1] * kit.unit],
+          kit.body(moving),
+        ),
+      )
     }
   }
   return [

@@ -39,7 +39,13 @@ function shaftOn(mechanism: Mechanism, kit: Kit, shaft: Shaft): Drawn[] {
   const drawn: Drawn[] = [{ body, object: bar, part: bodyPart(mechanism, body) }]
   drawn.push({ body: frame, object: bearing(mechanism, kit, frame, at, axis), part: jointPart(mechanism, joint) })
   if (!driven) return drawn
-  const can = kit.cylinder(on(mount), on(mount + side * MOTOR.length * s), MOTOR.radius * s, MOTOR.radius * s, kit.palette.ground)
+  const can = kit.cylinder(
+    on(mount),
+    on(mount + side * MOTOR.length * s),
+    MOTOR.radius * s,
+    MOTOR.radius * s,
+    kit.palette.ground,
+  )
   const ring = kit.disc(on(mount + side * RING.from * s), axis, RING.radius * s, RING.height * s, kit.palette.driver)
   return [...drawn, { body: 0, object: new Group().add(can, ring), part: bodyPart(mechanism, 0) }]
 }
@@ -57,6 +63,12 @@ function bearing(mechanism: Mechanism, kit: Kit, frame: number, place: Vector3, 
   if (Math.abs(down.dot(axis)) > 0.6) down.copy(across(axis))
   down.addScaledVector(axis, -down.dot(axis)).normalize()
   const foot = at.clone().addScaledVector(down, FOOT.to * s)
-  const leg = kit.cylinder(at.clone().addScaledVector(down, FOOT.from * s), foot, FOOT.radius * s, FOOT.radius * s, kit.palette.ground)
+  const leg = kit.cylinder(
+    at.clone().addScaledVector(down, FOOT.from * s),
+    foot,
+    FOOT.radius * s,
+    FOOT.radius * s,
+    kit.palette.ground,
+  )
   return new Group().add(ring, leg, kit.footPlate(foot, down, axis, FOOT.plate * s))
 }

@@ -33,13 +33,29 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
   const size = { head: HEAD * kit.unit, shaft: { radius: SHAFT * kit.unit } }
   const straight = moving(mechanism, variable, change ?? 0).map(({ body, from, to }): Drawn => {
     const lift = mechanism.lift(body, mechanism.topLayer + 3)
-    return { body, object: straightArrow(kit, from.add(lift), to.add(lift), size, chosen, ABOVE.velocity), part, overlay: true }
+    return {
+      body,
+      object: straightArrow(kit, from.add(lift), to.add(lift), size, chosen, ABOVE.velocity),
+      part,
+      overlay: true,
+    }
   })
   const most = longest(variable.arrows.map(({ turn }) => turn))
   const turning = variable.arrows.filter(({ turn }) => rounded(Math.hypot(...turn), most) > 0)
   const rings = onePerPlace(mechanism, turning).map(({ body, at, turn }): Drawn => {
-    const place = turnedAt(mechanism, body, placeOf(mechanism, body, at)).add(mechanism.lift(body, mechanism.topLayer + 3))
-    const ring = ringArrow(kit, place, new Vector3(...turn), RING * kit.unit, HEAD * kit.unit, SHAFT * kit.unit, chosen, ABOVE.velocity)
+    const place = turnedAt(mechanism, body, placeOf(mechanism, body, at)).add(
+      mechanism.lift(body, mechanism.topLayer + 3),
+    )
+    const ring = ringArrow(
+      kit,
+      place,
+      new Vector3(...turn),
+      RING * kit.unit,
+      HEAD * kit.unit,
+      SHAFT * kit.unit,
+      chosen,
+      ABOVE.velocity,
+    )
     return { body, object: ring, part, overlay: true }
   })
   return [...straight, ...rings]
@@ -48,7 +64,9 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
 /** Change of a variable at which its arrows have the length of the displacements; undefined if no hardpoint moves. */
 export function shownChange(mechanism: Mechanism, { arrows }: Variable): number | undefined {
   const most = longest(arrows.map(({ v }) => v))
-  return most > STILL * mechanism.size * longest(arrows.map(({ turn }) => turn)) ? longestArrow(mechanism) / most : undefined
+  return most > STILL * mechanism.size * longest(arrows.map(({ turn }) => turn))
+    ? longestArrow(mechanism) / most
+    : undefined
 }
 
 /** A change with its unit, as short as it may be said. */
@@ -56,11 +74,18 @@ export const changeText = (change: number, { unit }: Variable) => `${number(chan
 
 /** Maximum length of arrows; in proportion to a long chain they would be too long. */
 function longestArrow({ base, box, size, unit }: Mechanism): number {
-  const [, height] = (base?.box ?? box).getSize(new Vector3()).toArray().sort((a, b) => b - a)
+  const [, height] = (base?.box ?? box)
+    .getSize(new Vector3())
+    .toArray()
+    .sort((a, b) => b - a)
   return Math.min(LONGEST.ofSize * size, Math.max(LONGEST.ofHeight * height, LONGEST.least * unit))
 }
 
-function moving(mechanism: Mechanism, { arrows }: Variable, change: number): { body: number; from: Vector3; to: Vector3 }[] {
+function moving(
+  mechanism: Mechanism,
+  { arrows }: Variable,
+  change: number,
+): { body: number; from: Vector3; to: Vector3 }[] {
   if (change === 0) return []
   const most = longest(arrows.map(({ v }) => v))
   const going = arrows.filter(({ v }) => rounded(Math.hypot(...v), most) > 0)
@@ -84,7 +109,9 @@ function turnedAt(mechanism: Mechanism, body: number, at: Vector3): Vector3 {
   const aside = mechanism.report.joints.flatMap((joint) => {
     const own = joint.body_i === body ? joint.at_i : joint.body_j === body ? joint.at_j : undefined
     if (!own || joint.kind !== 'revolute' || joint.hinge || !mechanism.same(new Vector3(...own), at)) return []
-    return hingePlaces(mechanism, joint).map((place) => mechanism.placeInto(body, mechanism.worldAt(joint.body_i, place, 0)))
+    return hingePlaces(mechanism, joint).map((place) =>
+      mechanism.placeInto(body, mechanism.worldAt(joint.body_i, place, 0)),
+    )
   })
   return aside[0]?.clone() ?? at
 }
@@ -97,9 +124,19 @@ function longest(vectors: [number, number, number][]): number {
 function onePerPlace(mechanism: Mechanism, arrows: Arrow[]): Arrow[] {
   const seen: { place: Vector3; v: Vector3; turn: Vector3 }[] = []
   return arrows.filter(({ body, at, v, turn }) => {
-    const one = { place: mechanism.worldAt(body, new Vector3(...at), 0), v: mechanism.alongAt(body, new Vector3(...v), 0), turn: mechanism.alongAt(body, new Vector3(...turn), 0) }
+    const one = {
+      place: mechanism.worldAt(body, new Vector3(...at), 0),
+      v: mechanism.alongAt(body, new Vector3(...v), 0),
+      turn: mechanism.alongAt(body, new Vector3(...turn), 0),
+    }
     const same = (a: Vector3, b: Vector3) => a.distanceTo(b) <= ONE * a.length()
-    if (seen.some(({ place, v, turn }) => place.distanceTo(one.place) < ONE * mechanism.size && same(v, one.v) && same(turn, one.turn))) return false
+    if (
+      seen.some(
+        ({ place, v, turn }) =>
+          place.distanceTo(one.place) < ONE * mechanism.size && same(v, one.v) && same(turn, one.turn),
+      )
+    )
+      return false
     seen.push(one)
     return true
   })

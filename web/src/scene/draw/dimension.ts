@@ -20,12 +20,35 @@ export const dimension: Draw = (mechanism, kit, { distance: index }) => {
   const { label: colour } = kit.palette
   const [a, b] = [from, to].map(({ at }) => new Vector3(...at))
   const ends = (frame: Frame) => [frame.at(from.body, a), frame.at(to.body, b)]
-  const longest = Math.max(...mechanism.moments.map((step) => span(ends(mechanism.frame(step)))).filter(Number.isFinite), s)
+  const longest = Math.max(
+    ...mechanism.moments.map((step) => span(ends(mechanism.frame(step)))).filter(Number.isFinite),
+    s,
+  )
   const y = new Vector3(0, 1, 0)
-  const line = above(kit.line([y.clone().multiplyScalar(-longest / 2), y.clone().multiplyScalar(longest / 2)], colour, LINE, { dashed: true, over: true }), ABOVE.dimension)
+  const line = above(
+    kit.line([y.clone().multiplyScalar(-longest / 2), y.clone().multiplyScalar(longest / 2)], colour, LINE, {
+      dashed: true,
+      over: true,
+    }),
+    ABOVE.dimension,
+  )
   // Its heads are at both ends, at any length.
-  const heads = [0, 1].map(() => straightArrow(kit, new Vector3(0, -2 * HEAD * s, 0), new Vector3(), { head: HEAD * s, shaft: { pixels: LINE } }, colour, ABOVE.dimension))
-  const feet = [0, 1].map(() => above(kit.line([new Vector3(), y.clone().multiplyScalar((BESIDE + OVER) * s)], colour, 1, { over: true }), ABOVE.dimension))
+  const heads = [0, 1].map(() =>
+    straightArrow(
+      kit,
+      new Vector3(0, -2 * HEAD * s, 0),
+      new Vector3(),
+      { head: HEAD * s, shaft: { pixels: LINE } },
+      colour,
+      ABOVE.dimension,
+    ),
+  )
+  const feet = [0, 1].map(() =>
+    above(
+      kit.line([new Vector3(), y.clone().multiplyScalar((BESIDE + OVER) * s)], colour, 1, { over: true }),
+      ABOVE.dimension,
+    ),
+  )
   const object = new Group().add(line, ...heads.map((head) => new Group().add(head)), ...feet)
   const follow = (frame: Frame) => {
     const [p, q] = ends(frame)

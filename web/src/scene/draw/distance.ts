@@ -10,6 +10,13 @@ export function distances(mechanism: Mechanism, kit: Kit): Drawn[] {
   return distances.flatMap(({ name, from, to, draw }, index): Drawn[] => {
     const grounded = (from.body === 0) !== (to.body === 0)
     const form = formOf(draw) ?? (grounded && wheels.length > 0 ? 'coilover' : undefined)
-    return form ? [{ ...member(mechanism, kit, form, from, to), part: { kind: 'distance', index, name, about: `measured distance, drawn as a ${form}` } }] : []
+    return form
+      ? [
+          {
+            ...member(mechanism, kit, form, from, to),
+            part: { kind: 'distance', index, name, about: `measured distance, drawn as a ${form}` },
+          },
+        ]
+      : []
   })
 }

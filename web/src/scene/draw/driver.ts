@@ -38,7 +38,9 @@ function arrowOf(mechanism: Mechanism, kit: Kit, driver: Driver, travel: Travel)
   if (driver.joint === null) return driver.point ? pointArrow(mechanism, kit, driver, travel) : undefined
   const joint = mechanism.report.joints[driver.joint]
   if (driver.turns) return joint.axis ? hingeArrow(mechanism, kit, joint, travel) : undefined
-  return mechanism.slideOf(driver.joint) ? slideArrow(mechanism, kit, joint, driver.joint) : legArrow(mechanism, kit, joint, travel)
+  return mechanism.slideOf(driver.joint)
+    ? slideArrow(mechanism, kit, joint, driver.joint)
+    : legArrow(mechanism, kit, joint, travel)
 }
 
 /** An arc about the hinge, in the frame of the body that carries it. */
@@ -92,7 +94,9 @@ function slideArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, index: num
 
 /** Perpendicular to an axis in the plane of the mechanism, or upwards. */
 function sideways(mechanism: Mechanism, body: number, axis: Vector3): Vector3 {
-  return mechanism.plane ? mechanism.into(body, mechanism.plane).cross(axis) : square(mechanism.into(body, mechanism.up), axis)
+  return mechanism.plane
+    ? mechanism.into(body, mechanism.plane).cross(axis)
+    : square(mechanism.into(body, mechanism.up), axis)
 }
 
 /** A double arrow along a leg, which moves with it. */
@@ -138,5 +142,13 @@ function pointArrow(mechanism: Mechanism, kit: Kit, driver: Driver, { curve, low
 
 function double(kit: Kit, foot: Vector3, along: Vector3, [low, high]: [number, number]): Group {
   const at = (t: number) => foot.clone().addScaledVector(along, t)
-  return straightArrow(kit, at(low), at(high), { head: HEAD * kit.unit, shaft: { pixels: LINE } }, kit.palette.driver, ABOVE.driver, true)
+  return straightArrow(
+    kit,
+    at(low),
+    at(high),
+    { head: HEAD * kit.unit, shaft: { pixels: LINE } },
+    kit.palette.driver,
+    ABOVE.driver,
+    true,
+  )
 }

@@ -62,7 +62,10 @@ function formerRod(kit: Kit, former: Mechanism, joint: JointMark): Pick<Drawn, '
 function apart(present: Mechanism, former: Mechanism, joint: number, step: number): number {
   const [now, was] = [present, former].map((mechanism) => {
     const { body_i, body_j, at_i, at_j } = mechanism.report.joints[joint]
-    return [mechanism.worldAt(body_i, new Vector3(...at_i), step), mechanism.worldAt(body_j, new Vector3(...at_j), step)]
+    return [
+      mechanism.worldAt(body_i, new Vector3(...at_i), step),
+      mechanism.worldAt(body_j, new Vector3(...at_j), step),
+    ]
   })
   return Math.max(now[0].distanceTo(was[0]), now[1].distanceTo(was[1]))
 }

@@ -36,9 +36,14 @@ const BALLS = ['spherical', 'universal', 'constant_velocity', 'distance', 'leg',
 export function ground(mechanism: Mechanism, kit: Kit): Drawn[] {
   const part = bodyPart(mechanism, 0)
   const kept: Foot[] = []
-  for (const foot of feet(mechanism)) if (!kept.some(({ at }) => at.distanceTo(foot.at) < 1e-3 * mechanism.size)) kept.push(foot)
+  for (const foot of feet(mechanism))
+    if (!kept.some(({ at }) => at.distanceTo(foot.at) < 1e-3 * mechanism.size)) kept.push(foot)
   return kept.map((foot) => {
-    const pieces = mechanism.plane ? planarFoot(mechanism, kit, foot) : foot.axis ? hingeFoot(mechanism, kit, foot) : ballFoot(mechanism, kit, foot)
+    const pieces = mechanism.plane
+      ? planarFoot(mechanism, kit, foot)
+      : foot.axis
+        ? hingeFoot(mechanism, kit, foot)
+        : ballFoot(mechanism, kit, foot)
     return { body: 0, object: new Group().add(...pieces), part, detail: foot.radius }
   })
 }
@@ -57,7 +62,8 @@ function feet(mechanism: Mechanism): Foot[] {
     const [body, place, own] = body_i === 0 ? [body_j, joint.at_i, joint.at_j] : [body_i, joint.at_j, joint.at_i]
     const at = mechanism.worldAt(0, new Vector3(...place), 0)
     const held = new Vector3(...own)
-    const axis = hinge && joint.axis ? mechanism.alongAt(joint.body_i, new Vector3(...joint.axis), 0).normalize() : undefined
+    const axis =
+      hinge && joint.axis ? mechanism.alongAt(joint.body_i, new Vector3(...joint.axis), 0).normalize() : undefined
     const radius = mechanism.radiusAt(body, held)
     const rod = kind === 'distance' || kind === 'leg'
     const spots = axis ? hingePlaces(mechanism, joint).map((point) => mechanism.worldAt(body_i, point, 0)) : [at]
@@ -65,20 +71,35 @@ function feet(mechanism: Mechanism): Foot[] {
       .shapePoints(body)
       .map((point) => mechanism.worldAt(body, point, 0))
       .filter((point) => !axis || point.clone().sub(at).cross(axis).length() > 2e-3 * mechanism.size)
-    const form = joint.hinge ? 'lug' as const : foldAxis(mechanism, body) ? 'fold' as const : undefined
-    return spots.map((spot) => ({ at: spot, axis, radius, form, clear: clearance(mechanism, body, spot), front: front(body), towards: rod ? mechanism.worldAt(body, held, 0) : mean(aside, spot) }))
+    const form = joint.hinge ? ('lug' as const) : foldAxis(mechanism, body) ? ('fold' as const) : undefined
+    return spots.map((spot) => ({
+      at: spot,
+      axis,
+      radius,
+      form,
+      clear: clearance(mechanism, body, spot),
+      front: front(body),
+      towards: rod ? mechanism.worldAt(body, held, 0) : mean(aside, spot),
+    }))
   })
-  const distances = report.wheels.length === 0 ? [] : report.distances.flatMap(({ from, to }): Foot[] => {
-    if (from.body !== 0 && to.body !== 0) return []
-    const [fixed, other] = from.body === 0 ? [from, to] : [to, from]
-    const [at, towards] = [fixed, other].map((place) => mechanism.worldAt(place.body, new Vector3(...place.at), 0))
-    return [{ at, towards, radius: mechanism.unit, front: false }]
-  })
+  const distances =
+    report.wheels.length === 0
+      ? []
+      : report.distances.flatMap(({ from, to }): Foot[] => {
+          if (from.body !== 0 && to.body !== 0) return []
+          const [fixed, other] = from.body === 0 ? [from, to] : [to, from]
+          const [at, towards] = [fixed, other].map((place) =>
+            mechanism.worldAt(place.body, new Vector3(...place.at), 0),
+          )
+          return [{ at, towards, radius: mechanism.unit, front: false }]
+        })
   return [...joints, ...distances]
 }
 
 const mean = (points: Vector3[], none: Vector3) =>
-  points.length > 0 ? points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(points.length) : none.clone()
+  points.length > 0
+    ? points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(points.length)
+    : none.clone()
 
 /** True if an axis is perpendicular to the plane: a slide along it is a pin there. */
 const square = (mechanism: Mechanism, { axis, body_i }: JointMark) =>
@@ -108,11 +129,17 @@ function clearance(mechanism: Mechanism, body: number, at: Vector3): Foot['clear
   const { mesh } = mechanism.report.bodies[body]
   if (!mesh) return undefined
   const stride = 3 * Math.max(1, Math.ceil(mesh.positions.length / 3 / VERTICES))
-  const vertices = Array.from({ length: Math.floor(mesh.positions.length / stride) }, (_, k) => new Vector3().fromArray(mesh.positions, k * stride))
+  const vertices = Array.from({ length: Math.floor(mesh.positions.length / stride) }, (_, k) =>
+    new Vector3().fromArray(mesh.positions, k * stride),
+  )
   return (down, half) => {
-    const reach = mechanism.moments.filter((_, k) => k % EVERY === 0).flatMap((step) =>
-      vertices.map((vertex) => mechanism.worldAt(body, vertex, step).sub(at)).map((from) => [from.dot(down), from.clone().cross(down).length()] as const),
-    )
+    const reach = mechanism.moments
+      .filter((_, k) => k % EVERY === 0)
+      .flatMap((step) =>
+        vertices
+          .map((vertex) => mechanism.worldAt(body, vertex, step).sub(at))
+          .map((from) => [from.dot(down), from.clone().cross(down).length()] as const),
+      )
     return reach.reduce((most, [along, aside]) => (aside < half && along > most ? along : most), 0)
   }
 }

@@ -18,13 +18,21 @@ export function fixedLink(mechanism: Mechanism, kit: Kit): Drawn[] {
   const places = mechanism.placesOf(0).flatMap((place) => acrossFold(mechanism, place))
   if (places.length < 2) return []
   const { ground } = kit.palette
-  const drawn = (...pieces: Parameters<Group['add']>): Drawn => ({ body: 0, object: new Group().add(...pieces), part: bodyPart(mechanism, 0) })
+  const drawn = (...pieces: Parameters<Group['add']>): Drawn => ({
+    body: 0,
+    object: new Group().add(...pieces),
+    part: bodyPart(mechanism, 0),
+  })
   if (places.length === 2) return [drawn(kit.line(places, ground, 2, { dashed: true }))]
   const [a, b] = [places[1].clone().sub(places[0]), places.slice(2).map((place) => place.clone().sub(places[0]))]
-  const widest = b.map((side) => a.clone().cross(side)).reduce((most, one) => (one.length() > most.length() ? one : most), new Vector3())
-  if (widest.length() < FLAT * mechanism.size * a.length()) return [drawn(kit.line(places, ground, 2, { dashed: true }))]
+  const widest = b
+    .map((side) => a.clone().cross(side))
+    .reduce((most, one) => (one.length() > most.length() ? one : most), new Vector3())
+  if (widest.length() < FLAT * mechanism.size * a.length())
+    return [drawn(kit.line(places, ground, 2, { dashed: true }))]
   const basis = new Basis(places[0], widest)
-  if (places.some((place) => Math.abs(place.clone().sub(places[0]).dot(basis.normal)) > FLAT * mechanism.size)) return []
+  if (places.some((place) => Math.abs(place.clone().sub(places[0]).dot(basis.normal)) > FLAT * mechanism.size))
+    return []
   const corners = hull(places.map((place) => basis.to(place)))
   const outline = round(corners.map(([x, y]) => [x, y, PLATE.round * kit.unit]))
   const edge = [...corners, corners[0]].map((corner) => basis.from(corner))
@@ -38,7 +46,11 @@ export function fixedLink(mechanism: Mechanism, kit: Kit): Drawn[] {
 
 /** The ends of a hinge at a place of ground that a plate folds about; of others the place alone. */
 function acrossFold(mechanism: Mechanism, place: Vector3): Vector3[] {
-  const fold = mechanism.jointsOf(0).find(({ joint, at }) => mechanism.same(at, place) && foldAxis(mechanism, joint.body_i || joint.body_j))
+  const fold = mechanism
+    .jointsOf(0)
+    .find(({ joint, at }) => mechanism.same(at, place) && foldAxis(mechanism, joint.body_i || joint.body_j))
   if (!fold?.axis) return [place]
-  return [-1, 1].map((side) => place.clone().addScaledVector(fold.axis!.clone().normalize(), side * FOLD.half * mechanism.unit))
+  return [-1, 1].map((side) =>
+    place.clone().addScaledVector(fold.axis!.clone().normalize(), side * FOLD.half * mechanism.unit),
+  )
 }

@@ -19,7 +19,12 @@ export function planarFoot(mechanism: Mechanism, kit: Kit, { at, radius, front }
   const height = front ? (topLayer + 1) * pitch : -0.4 * unit
   const basis = new Basis(at.clone().addScaledVector(plane!, height), plane!, up.clone().cross(plane!))
   const [h, w, head] = [TRIANGLE.height * r, TRIANGLE.width * r, TRIANGLE.head * r]
-  const outline: Flat[] = [[-head, 0], [-w, -h], [w, -h], [head, 0]]
+  const outline: Flat[] = [
+    [-head, 0],
+    [-w, -h],
+    [w, -h],
+    [head, 0],
+  ]
   const line = TRIANGLE.line * r
   return [
     kit.slab(outline, basis, TRIANGLE.thickness * unit, kit.palette.ground),

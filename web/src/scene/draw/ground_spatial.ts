@@ -30,7 +30,11 @@ export function hingeFoot(mechanism: Mechanism, kit: Kit, foot: Foot): Object3D[
   const axis = foot.axis!
   const down = downwards(mechanism, foot)
   const height = heightOf(foot, down, lug * DOWN * r, fold.plate * r)
-  const outline = round([[0, 0, CHEEK.eye * r], [-CHEEK.width * r, -height, 0], [CHEEK.width * r, -height, 0]])
+  const outline = round([
+    [0, 0, CHEEK.eye * r],
+    [-CHEEK.width * r, -height, 0],
+    [CHEEK.width * r, -height, 0],
+  ])
   const cheeks = [-1, 1].map((side) => {
     const middle = foot.at.clone().addScaledVector(axis, side * fold.aside * kit.unit)
     const basis = new Basis(middle, axis, down.clone().cross(axis).negate())

@@ -30,16 +30,33 @@ export const pointOnCurve: DrawJoint = (mechanism, kit, joint) => {
   const basis = new Basis(new Vector3(...joint.at_i).add(lift), normal)
   const points = curve.points.map((point): Flat => basis.to(new Vector3(...point)))
   const radius = rollerRadius(points, curve.closed, (curve.closed ? ROLLER.cam : ROLLER.groove) * kit.unit)
-  const carrier = curve.closed ? cam(mechanism, kit, joint, curve, basis, points, radius) : groove(mechanism, kit, joint, basis, points, radius)
+  const carrier = curve.closed
+    ? cam(mechanism, kit, joint, curve, basis, points, radius)
+    : groove(mechanism, kit, joint, basis, points, radius)
   const own = mechanism.into(body_j, mechanism.alongAt(body_i, normal, 0))
   // The roller runs in the layer of its curve.
   const place = new Vector3(...joint.at_j).add(mechanism.lift(body_j, mechanism.layerOf(body_i)))
   const t = mechanism.thickness
   const { steel } = kit.palette
-  return [carrier, piece(body_j, kit.disc(place, own, radius, HEIGHT.roller * t, steel), kit.disc(place, own, Math.min(PIN * kit.unit, 0.4 * radius), HEIGHT.pin * t, kit.body(body_j)))]
+  return [
+    carrier,
+    piece(
+      body_j,
+      kit.disc(place, own, radius, HEIGHT.roller * t, steel),
+      kit.disc(place, own, Math.min(PIN * kit.unit, 0.4 * radius), HEIGHT.pin * t, kit.body(body_j)),
+    ),
+  ]
 }
 
-function cam(mechanism: Mechanism, kit: Kit, joint: JointMark, curve: JointCurve, basis: Basis, points: Flat[], radius: number): Piece {
+function cam(
+  mechanism: Mechanism,
+  kit: Kit,
+  joint: JointMark,
+  curve: JointCurve,
+  basis: Basis,
+  points: Flat[],
+  radius: number,
+): Piece {
   const t = mechanism.thickness
   const body = joint.body_i
   const hinge = mechanism.jointsOf(body).find((other) => other.joint.kind === 'revolute')
@@ -60,16 +77,39 @@ function groove(mechanism: Mechanism, kit: Kit, joint: JointMark, basis: Basis, 
   const body = joint.body_i
   const half = GROOVE.play * radius
   const band = half + GROOVE.band * kit.unit
-  const places = body === 0 ? [] : mechanism.placesOf(body).map((at) => basis.to(at)).filter((at) => distance(points, at) > band)
+  const places =
+    body === 0
+      ? []
+      : mechanism
+          .placesOf(body)
+          .map((at) => basis.to(at))
+          .filter((at) => distance(points, at) > band)
   const struts = places.map((at) => {
-    const near = points.reduce((best, point) => (Math.hypot(point[0] - at[0], point[1] - at[1]) < Math.hypot(best[0] - at[0], best[1] - at[1]) ? point : best))
+    const near = points.reduce((best, point) =>
+      Math.hypot(point[0] - at[0], point[1] - at[1]) < Math.hypot(best[0] - at[0], best[1] - at[1]) ? point : best,
+    )
     const way = Math.hypot(near[0] - at[0], near[1] - at[1])
     // It ends within the band, short of the slot.
     const share = Math.max(0, (way - half - 0.75 * GROOVE.band * kit.unit) / way)
     const end: Flat = [at[0] + share * (near[0] - at[0]), at[1] + share * (near[1] - at[1])]
-    return kit.slab(round([[...at, STRUT[0] * kit.unit], [...end, 0.7 * STRUT[1] * kit.unit]]), basis, mechanism.thickness, kit.body(body))
+    return kit.slab(
+      round([
+        [...at, STRUT[0] * kit.unit],
+        [...end, 0.7 * STRUT[1] * kit.unit],
+      ]),
+      basis,
+      mechanism.thickness,
+      kit.body(body),
+    )
   })
-  const plate = kit.slab(grooveOutline(points, band), basis, mechanism.thickness, kit.body(body), [grooveOutline(points, half)], { edges: 50 })
+  const plate = kit.slab(
+    grooveOutline(points, band),
+    basis,
+    mechanism.thickness,
+    kit.body(body),
+    [grooveOutline(points, half)],
+    { edges: 50 },
+  )
   return piece(body, plate, ...struts)
 }
 

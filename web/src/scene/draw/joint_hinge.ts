@@ -29,7 +29,8 @@ export const hinge: DrawJoint = (mechanism, kit, joint, index) => {
     const { pitch, topLayer } = mechanism
     const normal = mechanism.into(body, mechanism.plane)
     const above = (layers: number) => at.clone().addScaledVector(normal, layers * pitch)
-    if (mechanism.large) return [piece(body, kit.disc(above(topLayer + 0.6), normal, SMALL * kit.unit, 0.2 * kit.unit, steel))]
+    if (mechanism.large)
+      return [piece(body, kit.disc(above(topLayer + 0.6), normal, SMALL * kit.unit, 0.2 * kit.unit, steel))]
     const bodies = [joint.body_i, joint.body_j]
     const [low, links] = bodies.map((one) => mechanism.layerOf(one)).sort((a, b) => a - b)
     // A cam has its foot in front of it.
@@ -45,19 +46,42 @@ export const hinge: DrawJoint = (mechanism, kit, joint, index) => {
   }
   if (mechanism.large) return [piece(body, kit.ball(at, SMALL * kit.unit, steel))]
   if (shaftJoints(mechanism.report).has(index)) return []
-  const places = hingePlaces(mechanism, joint).map((place) => mechanism.placeInto(body, mechanism.worldAt(joint.body_i, place, 0)))
+  const places = hingePlaces(mechanism, joint).map((place) =>
+    mechanism.placeInto(body, mechanism.worldAt(joint.body_i, place, 0)),
+  )
   const held = joint.body_j > 0 ? joint.body_j : joint.body_i
-  const bushes = joint.hinge ? places.map((place) => kit.disc(place, axis, BUSH[0] * r, BUSH[1] * r, kit.body(held))) : []
+  const bushes = joint.hinge
+    ? places.map((place) => kit.disc(place, axis, BUSH[0] * r, BUSH[1] * r, kit.body(held)))
+    : []
   const wide = [joint.body_i, joint.body_j].some((one) => foldAxis(mechanism, one))
   const pins = places.map((place) => kit.disc(place, axis, PIN[0] * r, wide ? WIDE * kit.unit : PIN[1] * r, steel))
-  return [piece(body, ...pins, ...axisLine(mechanism, kit, joint, places, axis, r), ...bushes, ...places.filter((place) => !joint.hinge && !mechanism.same(place, at)).map((place) => shaft(kit, at, place, r, kit.body(body))))]
+  return [
+    piece(
+      body,
+      ...pins,
+      ...axisLine(mechanism, kit, joint, places, axis, r),
+      ...bushes,
+      ...places
+        .filter((place) => !joint.hinge && !mechanism.same(place, at))
+        .map((place) => shaft(kit, at, place, r, kit.body(body))),
+    ),
+  ]
 }
 
 /** The axis itself, for hinges with different axes. */
-function axisLine({ vehicle, report }: Mechanism, kit: Kit, { hinge }: JointMark, places: Vector3[], axis: Vector3, r: number) {
+function axisLine(
+  { vehicle, report }: Mechanism,
+  kit: Kit,
+  { hinge }: JointMark,
+  places: Vector3[],
+  axis: Vector3,
+  r: number,
+) {
   if (hinge || vehicle || report.wheels.length > 0) return []
   const end = (place: Vector3, side: number) => place.clone().addScaledVector(axis, side * AXIS.reach * r)
-  return places.map((place) => kit.line([end(place, -1), end(place, 1)], kit.palette.label, AXIS.line, { dashed: true, opacity: 0.75 }))
+  return places.map((place) =>
+    kit.line([end(place, -1), end(place, 1)], kit.palette.label, AXIS.line, { dashed: true, opacity: 0.75 }),
+  )
 }
 
 /** From a joint in the bearing's place to the bearing and a little through it. */

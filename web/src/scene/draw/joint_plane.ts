@@ -19,7 +19,11 @@ export const onPlane: DrawJoint = (mechanism, kit, joint, index) => {
   const r = mechanism.radiusOf(joint)
   const normal = new Vector3(...(joint.axis ?? [0, 0, 1])).normalize()
   const place = new Vector3(...joint.at_j)
-  const basis = new Basis(new Vector3(...joint.at_i), normal, joint.axis2 && joint.kind === 'planar' ? new Vector3(...joint.axis2) : undefined)
+  const basis = new Basis(
+    new Vector3(...joint.at_i),
+    normal,
+    joint.axis2 && joint.kind === 'planar' ? new Vector3(...joint.axis2) : undefined,
+  )
   const spots = visited(mechanism, joint, place).map((spot) => basis.to(spot))
   const [x, y] = [0, 1].map((k) => spots.map((spot) => spot[k]))
   const edges = ([x, y] as const).map((values) => {
@@ -28,10 +32,22 @@ export const onPlane: DrawJoint = (mechanism, kit, joint, index) => {
     return [(low + high) / 2 - half, (low + high) / 2 + half]
   })
   const [[left, right], [bottom, top]] = edges
-  const outline: Flat[] = [[left, bottom], [right, bottom], [right, top], [left, top]]
-  const plate = kit.slab(outline, basis, PLATE.thickness * r, kit.body(joint.body_i), [], { opacity: PLATE.opacity, edges: 20 })
-  const own = joint.axis_j ? new Vector3(...joint.axis_j) : mechanism.into(joint.body_j, mechanism.alongAt(joint.body_i, normal, 0))
-  const rider = flat ? kit.disc(place, own, FOOT[0] * r, FOOT[1] * r, kit.body(joint.body_j)) : kit.ball(place, BALL * r, kit.palette.steel)
+  const outline: Flat[] = [
+    [left, bottom],
+    [right, bottom],
+    [right, top],
+    [left, top],
+  ]
+  const plate = kit.slab(outline, basis, PLATE.thickness * r, kit.body(joint.body_i), [], {
+    opacity: PLATE.opacity,
+    edges: 20,
+  })
+  const own = joint.axis_j
+    ? new Vector3(...joint.axis_j)
+    : mechanism.into(joint.body_j, mechanism.alongAt(joint.body_i, normal, 0))
+  const rider = flat
+    ? kit.disc(place, own, FOOT[0] * r, FOOT[1] * r, kit.body(joint.body_j))
+    : kit.ball(place, BALL * r, kit.palette.steel)
   const hatch = joint.body_i === 0 ? hatched(mechanism, kit, basis, outline, r) : []
   return [piece(joint.body_i, plate, ...hatch), piece(joint.body_j, rider)]
 }

@@ -20,11 +20,20 @@ const ABOVE = 0.95
 export const massless: DrawJoint = (mechanism, kit, joint) => {
   const form = formOf(joint.draw) ?? (joint.kind === 'leg' ? 'cylinder' : 'rod')
   const hinge = joint.kind === 'revolute_spherical' && joint.axis ? new Vector3(...joint.axis) : undefined
-  return [member(mechanism, kit, form, { body: joint.body_i, at: joint.at_i }, { body: joint.body_j, at: joint.at_j }, hinge)]
+  return [
+    member(mechanism, kit, form, { body: joint.body_i, at: joint.at_i }, { body: joint.body_j, at: joint.at_j }, hinge),
+  ]
 }
 
 /** `hinge`: axis of a hinge at the first end, in its body's frame. */
-export function member(mechanism: Mechanism, kit: Kit, form: Form, from: BodyPlace, to: BodyPlace, hinge?: Vector3): Piece {
+export function member(
+  mechanism: Mechanism,
+  kit: Kit,
+  form: Form,
+  from: BodyPlace,
+  to: BodyPlace,
+  hinge?: Vector3,
+): Piece {
   const { plane } = mechanism
   const [a, b] = orderedEnds(mechanism, form, from, to)
   const places = [a, b].map(({ at }) => new Vector3(...at))
@@ -35,8 +44,12 @@ export function member(mechanism: Mechanism, kit: Kit, form: Form, from: BodyPla
   const mean = lengths.reduce((sum, one) => sum + one, 0) / (lengths.length || 1)
   const barrel = Math.min(BARREL.ofMean * mean, Math.max(BARREL.ofLeast * least - kit.unit, 0.35 * mean))
   const { object, span } = strut(kit, form, lengths[0] ?? mean, barrel)
-  const ends = [0, 1].map((k) => (plane ? eye(kit) : hinge && k === 0 ? hingedEye(kit) : kit.ball(new Vector3(), BALL * kit.unit, kit.palette.steel)))
-  const lift = plane?.clone().multiplyScalar((Math.max(mechanism.layerOf(a.body), mechanism.layerOf(b.body)) + ABOVE) * mechanism.pitch)
+  const ends = [0, 1].map((k) =>
+    plane ? eye(kit) : hinge && k === 0 ? hingedEye(kit) : kit.ball(new Vector3(), BALL * kit.unit, kit.palette.steel),
+  )
+  const lift = plane
+    ?.clone()
+    .multiplyScalar((Math.max(mechanism.layerOf(a.body), mechanism.layerOf(b.body)) + ABOVE) * mechanism.pitch)
   const group = new Group().add(object, ...ends)
   return {
     object: group,

@@ -21,7 +21,12 @@ export const screw: DrawJoint = (mechanism, kit, joint) => {
   const at = new Vector3(...joint.at_i)
   const nutAt = new Vector3(...joint.at_j)
   const travel = mechanism.moments
-    .map((step) => mechanism.placeInto(joint.body_i, mechanism.worldAt(joint.body_j, nutAt, step), step).sub(at).dot(axis))
+    .map((step) =>
+      mechanism
+        .placeInto(joint.body_i, mechanism.worldAt(joint.body_j, nutAt, step), step)
+        .sub(at)
+        .dot(axis),
+    )
     .filter(Number.isFinite)
   const [low, high] = [Math.min(0, ...travel), Math.max(0, ...travel)]
   const room = Math.max((ROD.length * r - (high - low)) / 2, NUT[1] * r)
@@ -30,9 +35,19 @@ export const screw: DrawJoint = (mechanism, kit, joint) => {
   const turns = Math.max(1, Math.round(length / (THREAD.pitch * r)))
   const helix = new Helix(THREAD.radius * r, length, turns)
   const turn = new Quaternion().setFromUnitVectors(Y, axis)
-  const thread = Array.from({ length: turns * ROUND + 1 }, (_, k) => helix.getPoint(k / (turns * ROUND)).applyQuaternion(turn).add(from))
-  const nut = kit.mesh(new CylinderGeometry(NUT[0] * r, NUT[0] * r, NUT[1] * r, 6), kit.body(joint.body_j), { edges: 30, facets: true })
-  const own = joint.axis_j ? new Vector3(...joint.axis_j) : mechanism.into(joint.body_j, mechanism.alongAt(joint.body_i, axis, 0))
+  const thread = Array.from({ length: turns * ROUND + 1 }, (_, k) =>
+    helix
+      .getPoint(k / (turns * ROUND))
+      .applyQuaternion(turn)
+      .add(from),
+  )
+  const nut = kit.mesh(new CylinderGeometry(NUT[0] * r, NUT[0] * r, NUT[1] * r, 6), kit.body(joint.body_j), {
+    edges: 30,
+    facets: true,
+  })
+  const own = joint.axis_j
+    ? new Vector3(...joint.axis_j)
+    : mechanism.into(joint.body_j, mechanism.alongAt(joint.body_i, axis, 0))
   return [
     piece(
       joint.body_i,

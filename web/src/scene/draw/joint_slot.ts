@@ -18,11 +18,19 @@ export const pinInSlot: DrawJoint = (mechanism, kit, joint, index) => {
   if (!slide || slide.low > slide.high) return []
   const r = mechanism.radiusOf(joint)
   const basis = new Basis(slide.place, axis, slide.axis)
-  const ends: Flat[] = [[slide.low, 0], [slide.high, 0]]
+  const ends: Flat[] = [
+    [slide.low, 0],
+    [slide.high, 0],
+  ]
   const outline = (half: number) => round(ends.map(([x, y]) => [x, y, half * r]))
-  const own = joint.axis_j ? new Vector3(...joint.axis_j) : mechanism.into(slide.block, mechanism.alongAt(slide.rail, axis, 0))
+  const own = joint.axis_j
+    ? new Vector3(...joint.axis_j)
+    : mechanism.into(slide.block, mechanism.alongAt(slide.rail, axis, 0))
   return [
-    piece(slide.rail, kit.slab(outline(PLATE.half), basis, PLATE.thickness * r, kit.body(slide.rail), [outline(SLOT)], { edges: 50 })),
+    piece(
+      slide.rail,
+      kit.slab(outline(PLATE.half), basis, PLATE.thickness * r, kit.body(slide.rail), [outline(SLOT)], { edges: 50 }),
+    ),
     piece(slide.block, kit.disc(slide.blockPlace, own, PIN * r, LENGTH * r, kit.palette.steel)),
   ]
 }

@@ -24,7 +24,11 @@ export const spherical: DrawJoint = (mechanism, kit, joint) => {
     const on = joint.body_j
     const own = new Vector3(...joint.at_j)
     const up = mechanism.into(on, mechanism.plane)
-    const basis = new Basis(own.clone().addScaledVector(up, layers * mechanism.pitch + 1.6 * kit.unit), up, towardsRest(mechanism, on, own, mechanism.into(on, mechanism.up)))
+    const basis = new Basis(
+      own.clone().addScaledVector(up, layers * mechanism.pitch + 1.6 * kit.unit),
+      up,
+      towardsRest(mechanism, on, own, mechanism.into(on, mechanism.up)),
+    )
     const arc = Array.from({ length: 33 }, (_, k) => {
       const angle = FLAT.half * (k / 16 - 1)
       return basis.from([FLAT.arc * r * Math.cos(angle), FLAT.arc * r * Math.sin(angle)])
@@ -37,8 +41,12 @@ export const spherical: DrawJoint = (mechanism, kit, joint) => {
   const up = mechanism.into(on, mechanism.up)
   // The cup of ground is on the side of the ball opposite to the other body.
   const way = grounded
-    ? mechanism.into(on, mechanism.alongAt(body, towardsRest(mechanism, body, at, mechanism.into(body, mechanism.up)), 0)).negate()
+    ? mechanism
+        .into(on, mechanism.alongAt(body, towardsRest(mechanism, body, at, mechanism.into(body, mechanism.up)), 0))
+        .negate()
     : towardsRest(mechanism, on, own, up)
-  const cup = kit.mesh(new SphereGeometry(CUP * r, 24, 12, 0, 2 * Math.PI, 0, OPENING * Math.PI), kit.body(on), { open: true })
+  const cup = kit.mesh(new SphereGeometry(CUP * r, 24, 12, 0, 2 * Math.PI, 0, OPENING * Math.PI), kit.body(on), {
+    open: true,
+  })
   return [piece(body, kit.ball(at, BALL * r, steel)), piece(on, place(cup, own, way))]
 }

@@ -33,9 +33,11 @@ export const translational: DrawJoint = (mechanism, kit, joint, index) => {
   if (form && form !== 'rod' && !mechanism.plane) return [slidingStrut(mechanism, kit, joint, slide, form)]
   if (mechanism.plane) return inPlane(mechanism, kit, slide)
   const { rail, block, place, blockPlace } = slide
-  if (isBar(mechanism, slide, block, blockPlace) || rackJoints(mechanism.report).has(index)) return inTube(mechanism, kit, rail, place, slide.axis)
+  if (isBar(mechanism, slide, block, blockPlace) || rackJoints(mechanism.report).has(index))
+    return inTube(mechanism, kit, rail, place, slide.axis)
   // A slider on a body that is a bar is a sleeve round it.
-  if (rail > 0 && isBar(mechanism, slide, rail, place)) return inTube(mechanism, kit, block, blockPlace, mechanism.into(block, mechanism.alongAt(rail, slide.axis, 0)))
+  if (rail > 0 && isBar(mechanism, slide, rail, place))
+    return inTube(mechanism, kit, block, blockPlace, mechanism.into(block, mechanism.alongAt(rail, slide.axis, 0)))
   return onRail(mechanism, kit, slide)
 }
 
@@ -51,16 +53,31 @@ function inPlane(mechanism: Mechanism, kit: Kit, slide: Slide): Piece[] {
     return other !== undefined && other.rail === block && mechanism.same(other.place, blockPlace)
   })
   // A carriage is seen on both sides of the slot in it, and lies behind that.
-  const layer = carries ? mechanism.layerOf(block) - 0.6 : grounded ? mechanism.layerOf(block) : mechanism.layerOf(rail) + 0.3
+  const layer = carries
+    ? mechanism.layerOf(block) - 0.6
+    : grounded
+      ? mechanism.layerOf(block)
+      : mechanism.layerOf(rail) + 0.3
   const middle = blockPlace.clone().add(mechanism.lift(block, layer))
-  const body = kit.brick(middle, along, normal.clone().cross(along), [(carries ? CARRIAGE : length) * s, width * s, 1.05 * mechanism.thickness], kit.body(block))
-  return grounded ? [piece(0, ...hatchedRails(mechanism, kit, slide, LINE.aside, LINE.room + (carries ? 2 : 0))), piece(block, body)] : [piece(block, body)]
+  const body = kit.brick(
+    middle,
+    along,
+    normal.clone().cross(along),
+    [(carries ? CARRIAGE : length) * s, width * s, 1.05 * mechanism.thickness],
+    kit.body(block),
+  )
+  return grounded
+    ? [piece(0, ...hatchedRails(mechanism, kit, slide, LINE.aside, LINE.room + (carries ? 2 : 0))), piece(block, body)]
+    : [piece(block, body)]
 }
 
 /** True if a body lies along the slide at a place of it. */
 function isBar(mechanism: Mechanism, { rail, axis }: Slide, body: number, at: Vector3): boolean {
   const along = mechanism.into(body, mechanism.alongAt(rail, axis, 0))
-  return mechanism.shapePoints(body).filter((point) => point.clone().sub(at).cross(along).length() < 0.02 * mechanism.size).length > 1
+  return (
+    mechanism.shapePoints(body).filter((point) => point.clone().sub(at).cross(along).length() < 0.02 * mechanism.size)
+      .length > 1
+  )
 }
 
 function inTube(mechanism: Mechanism, kit: Kit, rail: number, place: Vector3, axis: Vector3): Piece[] {
@@ -71,7 +88,13 @@ function inTube(mechanism: Mechanism, kit: Kit, rail: number, place: Vector3, ax
     const down = below(mechanism, axis)
     const foot = place.clone().addScaledVector(down, FOOT.down * s)
     pieces.push(
-      kit.cylinder(place.clone().addScaledVector(down, TUBE.outer * s * 0.9), foot, FOOT.radius * s, FOOT.radius * s, kit.palette.ground),
+      kit.cylinder(
+        place.clone().addScaledVector(down, TUBE.outer * s * 0.9),
+        foot,
+        FOOT.radius * s,
+        FOOT.radius * s,
+        kit.palette.ground,
+      ),
       kit.footPlate(foot, down, axis, FOOT.plate * s),
     )
   }
@@ -90,25 +113,56 @@ function onRail(mechanism: Mechanism, kit: Kit, slide: Slide): Piece[] {
   const way =
     rail === 0
       ? [
-          kit.brick(middle.clone().addScaledVector(down, 1.9 * s), axis, down, [length, s, 2.2 * s], kit.palette.ground),
+          kit.brick(
+            middle.clone().addScaledVector(down, 1.9 * s),
+            axis,
+            down,
+            [length, s, 2.2 * s],
+            kit.palette.ground,
+          ),
           kit.hatched(middle.clone().addScaledVector(down, 2.6 * s), axis, down, [length, 0.5 * s, 5 * s]),
         ]
       : [-1, 1].map((sign) => {
           const aside = side.clone().multiplyScalar(sign * RAIL.aside * s)
-          return kit.cylinder(from.clone().add(aside), to.clone().add(aside), RAIL.bar * s, RAIL.bar * s, kit.body(rail))
+          return kit.cylinder(
+            from.clone().add(aside),
+            to.clone().add(aside),
+            RAIL.bar * s,
+            RAIL.bar * s,
+            kit.body(rail),
+          )
         })
   const own = (direction: Vector3) => mechanism.into(block, mechanism.alongAt(rail, direction, 0))
-  return [piece(rail, ...way), piece(block, kit.brick(blockPlace, own(axis), own(down), [BLOCK.length * s, BLOCK.height * s, BLOCK.width * s], kit.body(block)))]
+  return [
+    piece(rail, ...way),
+    piece(
+      block,
+      kit.brick(
+        blockPlace,
+        own(axis),
+        own(down),
+        [BLOCK.length * s, BLOCK.height * s, BLOCK.width * s],
+        kit.body(block),
+      ),
+    ),
+  ]
 }
 
 /** A member between the far ends of the two bodies. */
 function slidingStrut(mechanism: Mechanism, kit: Kit, joint: JointMark, slide: Slide, form: Form): Piece {
-  const [one, other] = farthest(mechanism, endsOf(mechanism, joint, slide.rail, slide), endsOf(mechanism, joint, slide.block, slide))
+  const [one, other] = farthest(
+    mechanism,
+    endsOf(mechanism, joint, slide.rail, slide),
+    endsOf(mechanism, joint, slide.block, slide),
+  )
   const high = ({ body, at }: End) => mechanism.worldAt(body, at, 0).dot(mechanism.up)
   const [upper, lower] = high(one) > high(other) ? [one, other] : [other, one]
   const length = mechanism.worldAt(upper.body, upper.at, 0).distanceTo(mechanism.worldAt(lower.body, lower.at, 0))
   const { object, span } = strut(kit, form, length)
-  return { object: new Group().add(object), follow: (frame) => span(frame.at(upper.body, upper.at), frame.at(lower.body, lower.at)) }
+  return {
+    object: new Group().add(object),
+    follow: (frame) => span(frame.at(upper.body, upper.at), frame.at(lower.body, lower.at)),
+  }
 }
 
 /** A hardpoint on the axis of a slide. */
@@ -127,9 +181,14 @@ function endsOf(mechanism: Mechanism, joint: JointMark, body: number, own: Slide
   const today = mechanism.base ?? mechanism
   const slide = today.slideOf(mechanism.report.joints.indexOf(joint)) ?? own
   const onBlock = body === slide.block
-  const [place, axis] = onBlock ? [slide.blockPlace, today.into(body, today.alongAt(slide.rail, slide.axis, 0))] : [slide.place, slide.axis]
-  const isOnAxis = (point: [number, number, number]) => new Vector3(...point).sub(place).cross(axis).length() < ON_AXIS * today.size
-  const onAxis = today.report.bodies[body].skeleton.flatMap((point, k) => (isOnAxis(point) ? [new Vector3(...mechanism.report.bodies[body].skeleton[k])] : []))
+  const [place, axis] = onBlock
+    ? [slide.blockPlace, today.into(body, today.alongAt(slide.rail, slide.axis, 0))]
+    : [slide.place, slide.axis]
+  const isOnAxis = (point: [number, number, number]) =>
+    new Vector3(...point).sub(place).cross(axis).length() < ON_AXIS * today.size
+  const onAxis = today.report.bodies[body].skeleton.flatMap((point, k) =>
+    isOnAxis(point) ? [new Vector3(...mechanism.report.bodies[body].skeleton[k])] : [],
+  )
   const others = mechanism.jointsOf(body).filter((other) => other.joint !== joint)
   const ends = onAxis.length > 0 ? onAxis : [onBlock ? own.blockPlace : own.place]
   return ends.map((at) => ({ body, at, held: others.some((other) => mechanism.same(other.at, at)) }))
@@ -147,6 +206,8 @@ function farthest(mechanism: Mechanism, some: End[], others: End[]): [End, End] 
 function below(mechanism: Mechanism, axis: Vector3): Vector3 {
   const down = mechanism.up.clone().negate()
   const ways = [0, 1, 2].flatMap((k) => [1, -1].map((sign) => new Vector3().setComponent(k, sign)))
-  const best = ways.filter((way) => Math.abs(way.dot(axis)) < 0.6).reduce((a, b) => (b.dot(down) > a.dot(down) + 1e-9 ? b : a))
+  const best = ways
+    .filter((way) => Math.abs(way.dot(axis)) < 0.6)
+    .reduce((a, b) => (b.dot(down) > a.dot(down) + 1e-9 ? b : a))
   return best.addScaledVector(axis, -best.dot(axis)).normalize()
 }

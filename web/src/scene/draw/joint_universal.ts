@@ -30,12 +30,23 @@ export const universal: DrawJoint = (mechanism, kit, joint) => {
     const on = (angle: number) => basis.from([FLAT.circle * r * Math.cos(angle), FLAT.circle * r * Math.sin(angle)])
     const circle = Array.from({ length: 49 }, (_, k) => on((k * Math.PI) / 24))
     const cross = [1, 5, 3, 7].map((eighth) => on((eighth * Math.PI) / 4))
-    return [piece(body, kit.disc(middle, normal, FLAT.circle * r, 1.2 * kit.unit, steel), kit.line(circle, outline, FLAT.line), kit.lines(cross, outline, FLAT.line))]
+    return [
+      piece(
+        body,
+        kit.disc(middle, normal, FLAT.circle * r, 1.2 * kit.unit, steel),
+        kit.line(circle, outline, FLAT.line),
+        kit.lines(cross, outline, FLAT.line),
+      ),
+    ]
   }
-  const onBlock = [joint.body_i, joint.body_j].some((body) => mechanism.report.joints.some((_, k) => mechanism.slideOf(k)?.block === body))
+  const onBlock = [joint.body_i, joint.body_j].some((body) =>
+    mechanism.report.joints.some((_, k) => mechanism.slideOf(k)?.block === body),
+  )
   const large = onBlock ? r : Math.max(r, Math.min(LARGE.units * kit.unit, LARGE.part * mechanism.roomOf(joint)))
   const first = joint.axis ? new Vector3(...joint.axis) : new Vector3(0, 0, 1)
-  const second = joint.axis2 ? new Vector3(...joint.axis2) : mechanism.into(joint.body_j, across(mechanism.alongAt(joint.body_i, first, 0)))
+  const second = joint.axis2
+    ? new Vector3(...joint.axis2)
+    : mechanism.into(joint.body_j, across(mechanism.alongAt(joint.body_i, first, 0)))
   const half = (body: number, middle: Vector3, axis: Vector3): Piece => {
     const pin = axis.clone().normalize()
     const end = (side: number, reach = PIN.half) => middle.clone().addScaledVector(pin, side * reach * large)

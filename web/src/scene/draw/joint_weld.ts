@@ -17,7 +17,18 @@ export const weld: DrawJoint = (mechanism, kit, joint) => {
     const place = at[1].clone().add(mechanism.lift(body, top + 0.6))
     const normal = mechanism.into(body, mechanism.plane)
     const side = 2 * SQUARE.half * r
-    return [piece(body, kit.brick(place, mechanism.into(body, mechanism.up), normal, [side, SQUARE.height * kit.unit, side], kit.palette.outline))]
+    return [
+      piece(
+        body,
+        kit.brick(
+          place,
+          mechanism.into(body, mechanism.up),
+          normal,
+          [side, SQUARE.height * kit.unit, side],
+          kit.palette.outline,
+        ),
+      ),
+    ]
   }
   const way = towardsRest(mechanism, joint.body_j, at[1], mechanism.into(joint.body_j, mechanism.up))
   const axes = [mechanism.into(joint.body_i, mechanism.alongAt(joint.body_j, way, 0)), way]

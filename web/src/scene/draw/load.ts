@@ -29,9 +29,19 @@ export const loads: Draw = (mechanism, kit, choice) => {
     const { at, joint } = load
     const on = report.bodies[at.body].name
     const about = `force on ${on}${load.is_part ? ', as far as it is known' : ''}: at most ${number(largestForce([load]), 3)} N`
-    const part = joint === null ? { kind: 'load' as const, index, name: load.name, about } : { kind: 'joint' as const, index: joint, name: load.name, about }
+    const part =
+      joint === null
+        ? { kind: 'load' as const, index, name: load.name, about }
+        : { kind: 'joint' as const, index: joint, name: load.name, about }
     const length = (step: number) => (forceAt(load.force, step).length() / most) * longest
-    const arrow = straightArrow(kit, new Vector3(), new Vector3(0, longest, 0), { head: HEAD * kit.unit, shaft: { radius: SHAFT * kit.unit } }, kit.palette.load, ABOVE.load)
+    const arrow = straightArrow(
+      kit,
+      new Vector3(),
+      new Vector3(0, longest, 0),
+      { head: HEAD * kit.unit, shaft: { radius: SHAFT * kit.unit } },
+      kit.palette.load,
+      ABOVE.load,
+    )
     const [head, shaft] = arrow.children
     const foot = new Vector3(...at.at).add(mechanism.lift(at.body, mechanism.topLayer + 3))
     const follow = (frame: Frame) => {
@@ -53,6 +63,8 @@ export const loads: Draw = (mechanism, kit, choice) => {
 
 /** Scale of the arrows: `longest force 1200 N`; undefined without any. */
 export function forceText({ base, report }: Mechanism): string {
-  const most = report.loads.some(({ force }: Load) => force.length > 0) ? largestForce((base?.report ?? report).loads) : 0
+  const most = report.loads.some(({ force }: Load) => force.length > 0)
+    ? largestForce((base?.report ?? report).loads)
+    : 0
   return most > 0 ? `arrows of forces to ${number(most, 3)} N` : ''
 }

@@ -25,6 +25,8 @@ export const meshes: Draw = (mechanism, kit) =>
 /** The file has the shape as loaded; a changed design has it gone with its hardpoints. */
 function asDesigned(mechanism: Mechanism, body: number, positions: Float32Array): Float32Array {
   if (!mechanism.base) return positions
-  const [from, to] = [mechanism.base, mechanism].map(({ report }) => report.bodies[body].skeleton.map((point) => new Vector3(...point)))
+  const [from, to] = [mechanism.base, mechanism].map(({ report }) =>
+    report.bodies[body].skeleton.map((point) => new Vector3(...point)),
+  )
   return from.length === to.length && from.length > 0 ? deformed(positions, from, to) : positions
 }

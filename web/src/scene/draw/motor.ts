@@ -22,14 +22,23 @@ export function motors(mechanism: Mechanism, kit: Kit): Drawn[] {
     const { body, at, axis } = carried(mechanism, mark)
     const out = mechanism.alongAt(body, axis, 0)
     // Away from the body on the hinge, otherwise from the viewer.
-    const beyond = at.clone().sub(restOf(mechanism, body, at)).dot(axis)
+    const beyond = at
+      .clone()
+      .sub(restOf(mechanism, body, at))
+      .dot(axis)
     const side = Math.abs(beyond) > kit.unit ? Math.sign(beyond) : -Math.sign(out.dot(mechanism.reader)) || 1
     out.multiplyScalar(side)
     const s = Math.min(kit.unit, 1.4 * mechanism.radiusOf(mark))
     const places = hingePlaces(mechanism, mark).map((place) => mechanism.worldAt(mark.body_i, place, 0))
     const pin = places.reduce((far, place) => (place.dot(out) > far.dot(out) ? place : far))
     const on = (t: number) => pin.clone().addScaledVector(out, t * s)
-    const can = kit.cylinder(on(CAN.from), on(CAN.from + CAN.length), CAN.radius * s, CAN.radius * s, kit.palette.ground)
+    const can = kit.cylinder(
+      on(CAN.from),
+      on(CAN.from + CAN.length),
+      CAN.radius * s,
+      CAN.radius * s,
+      kit.palette.ground,
+    )
     const ring = kit.disc(on(RING.at), out, RING.radius * s, RING.height * s, kit.palette.driver)
     return [{ body: 0, object: new Group().add(can, ring), part: bodyPart(mechanism, 0) }]
   })

@@ -12,7 +12,11 @@ export function hatchedRails(mechanism: Mechanism, kit: Kit, slide: Slide, aside
   const s = kit.unit
   const across = mechanism.plane!.clone().cross(slide.axis).normalize()
   const end = (t: number, side: number) =>
-    slide.place.clone().addScaledVector(slide.axis, t).addScaledVector(across, side * aside * s).addScaledVector(mechanism.plane!, -0.3 * s)
+    slide.place
+      .clone()
+      .addScaledVector(slide.axis, t)
+      .addScaledVector(across, side * aside * s)
+      .addScaledVector(mechanism.plane!, -0.3 * s)
   const [from, to] = [slide.low - room * s, slide.high + room * s]
   // The strokes lean alike when seen from outside.
   return [

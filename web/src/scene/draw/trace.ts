@@ -33,9 +33,11 @@ export const trace: Draw = (mechanism, kit, choice) => {
   if (was) {
     const formerPlace = new Vector3(...was.report.bodies[body].skeleton[point])
     const before = pieces(was.report.times.length, (step) => was.worldAt(body, formerPlace, step).add(lift))
-    for (const piece of before) group.add(above(kit.line(piece, former, FORMER, { dashed: true, over: true }), ABOVE.former))
+    for (const piece of before)
+      group.add(above(kit.line(piece, former, FORMER, { dashed: true, over: true }), ABOVE.former))
   }
-  for (const piece of pieces(mechanism.report.times.length, at)) group.add(above(kit.line(piece, colour, LINE, { over: true }), ABOVE.trace))
+  for (const piece of pieces(mechanism.report.times.length, at))
+    group.add(above(kit.line(piece, colour, LINE, { over: true }), ABOVE.trace))
   group.add(dots(kit, equalTimes(mechanism.report.times).map(at).filter(solved)))
 
   const present = above(over(kit, new SphereGeometry(PRESENT * kit.unit, 20, 14), colour), ABOVE.trace)

@@ -12,7 +12,11 @@ const LINE = 2.6
 export function wayEnds(mechanism: Mechanism, kit: Kit, from: Vector3, to: Vector3, r: number): Object3D[] {
   const along = to.clone().sub(from).normalize()
   const { plane } = mechanism
-  if (!plane) return [kit.footPlate(from, along.clone().negate(), undefined, PLATE * r), kit.footPlate(to, along, undefined, PLATE * r)]
+  if (!plane)
+    return [
+      kit.footPlate(from, along.clone().negate(), undefined, PLATE * r),
+      kit.footPlate(to, along, undefined, PLATE * r),
+    ]
   const aside = plane.clone().cross(along)
   return [from, to].map((end, k) => {
     const out = along.clone().multiplyScalar(k === 0 ? -1 : 1)

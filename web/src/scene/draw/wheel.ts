@@ -28,11 +28,27 @@ function tyre(kit: Kit, { centre, axis, radius }: WheelMark, up: Vector3): Group
   const { palette } = kit
   const half = HALF_WIDTH * radius
   const basis = new Basis(new Vector3(...centre.at), new Vector3(...axis), up)
-  const on = (r: number, angle: number, side: number) => basis.from([r * radius * Math.cos(angle), r * radius * Math.sin(angle)], side * half)
+  const on = (r: number, angle: number, side: number) =>
+    basis.from([r * radius * Math.cos(angle), r * radius * Math.sin(angle)], side * half)
   const rubber = kit.lathe(basis.origin, basis.normal, tyreSection(radius), palette.tyre, { opacity: palette.glass })
   const circles = CIRCLES.flatMap(({ radius: r, side, line, opacity }) =>
-    [-side, side].map((height) => kit.line(Array.from({ length: 97 }, (_, k) => on(r, (k * Math.PI) / 48, height)), palette.tyre, line, { opacity })),
+    [-side, side].map((height) =>
+      kit.line(
+        Array.from({ length: 97 }, (_, k) => on(r, (k * Math.PI) / 48, height)),
+        palette.tyre,
+        line,
+        { opacity },
+      ),
+    ),
   )
-  const spokes = Array.from({ length: SPOKES.count }, (_, k) => (2 * Math.PI * k) / SPOKES.count).flatMap((angle) => [on(SPOKES.from, angle, SPOKES.side), on(RIM, angle, SPOKES.side)])
-  return new Group().add(rubber, kit.shadowOf(rubber), ...circles, kit.lines(spokes, palette.tyre, SPOKES.line, { opacity: SPOKES.opacity }))
+  const spokes = Array.from({ length: SPOKES.count }, (_, k) => (2 * Math.PI * k) / SPOKES.count).flatMap((angle) => [
+    on(SPOKES.from, angle, SPOKES.side),
+    on(RIM, angle, SPOKES.side),
+  ])
+  return new Group().add(
+    rubber,
+    kit.shadowOf(rubber),
+    ...circles,
+    kit.lines(spokes, palette.tyre, SPOKES.line, { opacity: SPOKES.opacity }),
+  )
 }

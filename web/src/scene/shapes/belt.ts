@@ -33,6 +33,8 @@ export function beltPath(first: number, second: number, distance: number, crosse
   if (crossed) wrap(distance, second, Math.PI - leave, leave - Math.PI, -1)
   else wrap(distance, second, -leave, leave, 1)
   const straight = Math.sqrt(distance ** 2 - (first - other) ** 2)
-  const turned = crossed ? (first + second) * (2 * Math.PI - 2 * leave) : first * (2 * Math.PI - 2 * leave) + second * 2 * leave
+  const turned = crossed
+    ? (first + second) * (2 * Math.PI - 2 * leave)
+    : first * (2 * Math.PI - 2 * leave) + second * 2 * leave
   return { points, normals, length: 2 * straight + turned }
 }

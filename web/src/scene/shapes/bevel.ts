@@ -47,10 +47,16 @@ export function bevelPair(a: Shaft, b: Shaft): BevelPair | undefined {
   const line = u.clone().multiplyScalar(b.coefficient).addScaledVector(v, a.coefficient).normalize()
   if (!(line.lengthSq() > 0)) return undefined
   const [p, q] = [a.at.clone().sub(tip), b.at.clone().sub(tip)]
-  const larger = Math.abs(line.dot(u)) < Math.abs(line.dot(v)) ? [line.dot(u) * p.dot(u), line.dot(v) * q.dot(v)] : [line.dot(v) * q.dot(v), line.dot(u) * p.dot(u)]
+  const larger =
+    Math.abs(line.dot(u)) < Math.abs(line.dot(v))
+      ? [line.dot(u) * p.dot(u), line.dot(v) * q.dot(v)]
+      : [line.dot(v) * q.dot(v), line.dot(u) * p.dot(u)]
   // On the side of both joints, or else with the larger gear on its joint's side.
   if (larger[0] < 0 || (larger[0] === 0 && larger[1] < 0)) line.negate()
-  const shafts: [Vector3, Vector3][] = [[u, p], [v, q]]
+  const shafts: [Vector3, Vector3][] = [
+    [u, p],
+    [v, q],
+  ]
   const room = Math.min(...shafts.map(([, place]) => place.length()).filter((length) => length > 0))
   const limits = shafts.map(([axis, place]) => {
     const along = line.dot(axis)
@@ -61,7 +67,11 @@ export function bevelPair(a: Shaft, b: Shaft): BevelPair | undefined {
   if (!Number.isFinite(length) || length <= 0) return undefined
   const gear = (axis: Vector3): Bevel => {
     const along = line.dot(axis)
-    return { axis: axis.clone().multiplyScalar(Math.sign(along) || 1), radius: length * Math.sqrt(1 - along * along), distance: length * Math.abs(along) }
+    return {
+      axis: axis.clone().multiplyScalar(Math.sign(along) || 1),
+      radius: length * Math.sqrt(1 - along * along),
+      distance: length * Math.abs(along),
+    }
   }
   return { tip, line, length, gears: [gear(u), gear(v)] }
 }
@@ -79,7 +89,15 @@ export function bevelsOf(train: Train, { terms }: CouplerMark): BevelPair | unde
  * Triangles of a toothed cone, three by three: from its wide end `width` along the cone towards the tip, closed at both
  * ends. The middle of a tooth is at the angle `phase` from `towards`.
  */
-export function bevelCorners(tip: Vector3, { axis, radius, distance }: Bevel, towards: Vector3, teeth: number, height: number, phase: number, width: number): Vector3[] {
+export function bevelCorners(
+  tip: Vector3,
+  { axis, radius, distance }: Bevel,
+  towards: Vector3,
+  teeth: number,
+  height: number,
+  phase: number,
+  width: number,
+): Vector3[] {
   const outline = gearOutline(teeth, radius, height, phase)
   const wide = new Basis(tip.clone().addScaledVector(axis, distance), axis, towards)
   const share = Math.max(0.3, 1 - width / Math.hypot(radius, distance))
@@ -89,8 +107,18 @@ export function bevelCorners(tip: Vector3, { axis, radius, distance }: Bevel, to
   return rim.flatMap((corner, k) => {
     const next = (k + 1) % rim.length
     return [
-      corner, rim[next], toe[next], corner, toe[next], toe[k],
-      wide.origin, rim[next], corner, narrow.origin, toe[k], toe[next],
+      corner,
+      rim[next],
+      toe[next],
+      corner,
+      toe[next],
+      toe[k],
+      wide.origin,
+      rim[next],
+      corner,
+      narrow.origin,
+      toe[k],
+      toe[next],
     ].map((point) => point.clone())
   })
 }

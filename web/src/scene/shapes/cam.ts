@@ -10,7 +10,9 @@ export function leastCurvature(points: Flat[], closed: boolean): number {
     if (!closed && (k === 0 || k === count - 1)) return []
     const [before, after] = [points[(k + count - 1) % count], points[(k + 1) % count]]
     const [a, b, c] = [gap(before, here), gap(here, after), gap(before, after)]
-    const twiceArea = Math.abs((here[0] - before[0]) * (after[1] - before[1]) - (here[1] - before[1]) * (after[0] - before[0]))
+    const twiceArea = Math.abs(
+      (here[0] - before[0]) * (after[1] - before[1]) - (here[1] - before[1]) * (after[0] - before[0]),
+    )
     return twiceArea > 0 ? [(a * b * c) / (2 * twiceArea)] : []
   })
   return Math.min(...radii, Infinity)
@@ -59,8 +61,10 @@ function cap(centre: Flat, beside: Flat, radius: number): Flat[] {
 const gap = (a: Flat, b: Flat) => Math.hypot(a[0] - b[0], a[1] - b[1])
 
 function signedArea(points: Flat[]): number {
-  return points.reduce((sum, a, k) => {
-    const b = points[(k + 1) % points.length]
-    return sum + a[0] * b[1] - b[0] * a[1]
-  }, 0) / 2
+  return (
+    points.reduce((sum, a, k) => {
+      const b = points[(k + 1) % points.length]
+      return sum + a[0] * b[1] - b[0] * a[1]
+    }, 0) / 2
+  )
 }

@@ -19,7 +19,8 @@ export function drawnTeeth([a, b]: [number, number]): [number, number] {
   if (Number.isInteger(a) && Number.isInteger(b) && few >= FEWEST && few <= MOST && many <= MATE) return [a, b]
   const error = (n: number) => Math.abs((n * many) / few - Math.round((n * many) / few)) / ((n * many) / few)
   const counts = Array.from({ length: MOST - FEWEST + 1 }, (_, k) => FEWEST + k)
-  const fewer = counts.find((n) => error(n) < RATIO_ERROR) ?? counts.reduce((best, n) => (error(n) < error(best) ? n : best))
+  const fewer =
+    counts.find((n) => error(n) < RATIO_ERROR) ?? counts.reduce((best, n) => (error(n) < error(best) ? n : best))
   const more = Math.round((fewer * many) / few)
   return a < b ? [fewer, more] : [more, fewer]
 }
@@ -35,7 +36,12 @@ export function toothHeight(teeth: number, radius: number): number {
 export function gearOutline(teeth: number, radius: number, height: number, phase = 0, internal = false): Flat[] {
   const half = height / 2
   const [root, tip] = internal ? [radius + half, radius - half] : [radius - half, radius + half]
-  const corners: [number, number][] = [[-FOOT, root], [-TIP, tip], [TIP, tip], [FOOT, root]]
+  const corners: [number, number][] = [
+    [-FOOT, root],
+    [-TIP, tip],
+    [TIP, tip],
+    [FOOT, root],
+  ]
   return Array.from({ length: teeth }, (_, k) => k).flatMap((k) =>
     corners.map(([part, r]): Flat => {
       const angle = phase + ((k + part) * 2 * Math.PI) / teeth
@@ -56,5 +62,11 @@ export function rackOutline(pitch: number, from: number, to: number, height: num
     [x - FOOT * pitch, -height / 2],
   ]
   const [left, right] = [(first + 0) * pitch, (last + 1) * pitch]
-  return [[left, -depth], [right, -depth], [right, -height / 2], ...middles.reverse().flatMap(tooth), [left, -height / 2]]
+  return [
+    [left, -depth],
+    [right, -depth],
+    [right, -height / 2],
+    ...middles.reverse().flatMap(tooth),
+    [left, -height / 2],
+  ]
 }

@@ -7,7 +7,11 @@ export const RIM = 0.66
 /** Section of a tyre: radius and height along the axis, round the rubber from one bead to the other and back. */
 export function tyreSection(radius: number): Flat[] {
   const half = HALF_WIDTH * radius
-  const shoulder: Flat[] = [[0.86, 1.05], [0.95, 0.92], [1, 0.62]]
+  const shoulder: Flat[] = [
+    [0.86, 1.05],
+    [0.95, 0.92],
+    [1, 0.62],
+  ]
   const outer = shoulder.map(([r, w]): Flat => [r * radius, w * half])
   const inner = shoulder.map(([r, w]): Flat => [r * radius, -w * half]).reverse()
   const bead = RIM * radius
