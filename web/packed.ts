@@ -2,21 +2,22 @@ import { deflateSync } from 'fflate'
 import { dirname, resolve } from 'node:path'
 import { build, type Plugin, type Rollup } from 'vite'
 
-/** What is written behind the name of a module to have it packed. */
+/** Suffix of a module's name that has it packed. */
 const MARK = '?packed'
-/** A module of this name is one that was resolved. */
+/** Prefix of resolved names. */
 const RESOLVED = '\0packed:'
 
 /**
- * `import code from './part?packed'` gives a part of the page, with all that it imports, as text: a script that sets the global `PART`,
- * deflated, in base64. It costs the page nothing until it is run. Its style sheets are left out: who imports it imports them.
+ * `import code from './part?packed'` imports a part of the page, with all its imports, as text: a script that sets the
+ * global `PART`, deflated, in base64. It costs the page nothing until it is run. Style sheets are left out: the
+ * importer imports them.
  *
- * Deflated by a library in place of Node, whose own deflate gives other bytes on other machines.
+ * A library deflates it because Node's deflate writes different bytes on different machines.
  */
 export function packed(): Plugin {
   return {
     name: 'packed',
-    // Before what takes a name with a question mark for that of a file.
+    // Before plugins that read a name with a question mark as a file name.
     enforce: 'pre',
     resolveId: (source, importer) =>
       source.endsWith(MARK) && importer

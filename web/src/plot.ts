@@ -168,10 +168,8 @@ export class Plot {
     }
     this.area.setAttribute('role', 'application')
     this.area.tabIndex = 0
-    this.area.setAttribute(
-      'aria-label',
-      `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}: plus and minus zoom, 0 shows the whole`,
-    )
+    const axes = `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}`
+    this.area.setAttribute('aria-label', `${axes}: plus and minus zoom, 0 shows the whole`)
     const entries = content.lines.map((line) => this.#entry(line))
     keepFocus(this.#legend, () => this.#legend.replaceChildren(this.#moment, ...entries))
     const all = content.over ? faceted(content.over.curve, content) : data(this.state, content)

@@ -84,7 +84,7 @@ describe('forces of the press', () => {
     await expect.poll(() => scale.innerText()).toContain(ARROWS)
   })
 
-  test('follow the design: with more counterweight the bearing carries more, and the path before stays beside it', async () => {
+  test('follow the design: more counterweight increases the bearing force, and the original path stays', async () => {
     await page.getByTestId('load-which').selectOption({ label: 'A' })
     const before = Number(await row('A').nth(2).innerText())
     const field = page.getByTestId('variable-counterweight').getByTestId('change-value')

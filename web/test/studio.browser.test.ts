@@ -296,7 +296,7 @@ describe('a target that is drawn', () => {
     expect(b).toEqual([7.5, 0])
   })
 
-  test('stays where it is when the plot is drawn anew, has room beyond the curves, and is given up by Escape', async () => {
+  test('stays in place when the plot is redrawn, has room beyond the curves, and is cancelled by Escape', async () => {
     await stroke(0.2, 0.8, () => 0.5)
     const place = () => page.locator('.sketch .point').first().getAttribute('cy').then(Number)
     const before = await place()
@@ -320,7 +320,8 @@ test('a target that is drawn becomes a metric of the text', async () => {
   await press('Enter', 'ArrowRight', 'Enter')
   await page.getByTestId('sketch-take').click()
   expect(await page.evaluate(() => window.model)).toBe(
-    'name = "strut"\n\n[metrics.wheel_z_target]\nof = "wheel.z"\nover = "travel"\ntake = "rms"\nwindow = [5, 5.2]\ntarget = [[5, 0], [5.2, 0]]\n',
+    'name = "strut"\n\n[metrics.wheel_z_target]\nof = "wheel.z"\nover = "travel"\n' +
+      'take = "rms"\nwindow = [5, 5.2]\ntarget = [[5, 0], [5.2, 0]]\n',
   )
   expect(await button.evaluate((one) => one === document.activeElement)).toBe(true)
   await button.click()

@@ -53,8 +53,10 @@ class Polar {
 
   constructor(private readonly state: State) {
     const { loads, bodies } = state.report
-    const name = (load: Load, k: number) =>
-      `${load.name}${loads.some((other, j) => j !== k && other.name === load.name) ? ` on ${bodies[load.at.body].name}` : ''}`
+    const name = (load: Load, k: number) => {
+      const isUnique = loads.every((other, j) => j === k || other.name !== load.name)
+      return isUnique ? load.name : `${load.name} on ${bodies[load.at.body].name}`
+    }
     const group = (label: string, ofJoints: boolean) => {
       const members = loads.flatMap((load, k) =>
         (load.joint !== null) === ofJoints ? [el('option', { value: k }, name(load, k))] : [],
@@ -231,7 +233,9 @@ class Polar {
     const size = Math.hypot(...at)
     const when = largestAt(force)
     const parts = [
-      `${number(size, 4)} N at ${number(Number(angle.toFixed(1)), 4)}° from ${plane.names[0]} now; all of it ${number(world.length(), 4)} N, largest ${number(forceAt(force, when).length(), 4)} N at ${number(valueAt(report.times, when), 4)} s.`,
+      `${number(size, 4)} N at ${number(Number(angle.toFixed(1)), 4)}° from ${plane.names[0]} now;`,
+      `all of it ${number(world.length(), 4)} N,`,
+      `largest ${number(forceAt(force, when).length(), 4)} N at ${number(valueAt(report.times, when), 4)} s.`,
       load.is_part ? 'Redundant constraints leave a part of it open: what is drawn is what is known.' : '',
     ]
     this.#reading.textContent = parts.join(' ').trim()

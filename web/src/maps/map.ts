@@ -221,9 +221,11 @@ class DriverMap {
       at[0] <= first.places.at(-1)! &&
       at[1] >= second.places[0] &&
       at[1] <= second.places.at(-1)!
+    const place = ([x, y]: [number, number]) =>
+      `${first.name} ${figure(x, first.unit)}, ${second.name} ${figure(y, second.unit)}`
     const ends = extent([grid.values])
     this.#reading.textContent = inside
-      ? `${name}: ${Number.isFinite(value) ? figure(value, unit) : 'not reached'} at ${first.name} ${figure(at[0], first.unit)}, ${second.name} ${figure(at[1], second.unit)}`
+      ? `${name}: ${Number.isFinite(value) ? figure(value, unit) : 'not reached'} at ${place(at)}`
       : ends
         ? `${name}: ${number(ends[0])} to ${figure(ends[1], unit)}`
         : `${name}: no number anywhere`

@@ -322,7 +322,8 @@ export class View {
       heights.length > 0 ? heights.reduce((a, b) => Math.min(a, b)) : 0,
     )
     this.scene.add(floor.object)
-    this.#grid.textContent = `${report.wheels.length > 0 ? 'road, ' : ''}grid ${number(floor.cell)} ${report.units.length}`
+    const road = report.wheels.length > 0 ? 'road, ' : ''
+    this.#grid.textContent = `${road}grid ${number(floor.cell)} ${report.units.length}`
     this.#outlines.colour(this.#palette)
     this.#renderer.setClearColor(this.#palette.view)
     return floor

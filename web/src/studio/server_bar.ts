@@ -294,7 +294,8 @@ class Desk {
     } else {
       notes.show(
         'server',
-        'Another server answers at this address; your changes are kept in the page. Open the address that it has printed, or end it and start',
+        'Another server answers at this address; your changes are kept in the page. ' +
+          'Open the address that it has printed, or end it and start',
         { stop: true, detail: server.command },
       )
     }

@@ -49,7 +49,8 @@ export class Sketch implements Overlay {
       role: 'application',
       'data-testid': 'sketch',
       'aria-label':
-        'Draw a target: arrow keys move the cross, with Shift less far; Enter sets a point, Delete takes the nearest away, Page up and down go from point to point, Escape ends',
+        'Draw a target: arrow keys move the cross, with Shift in small steps; Enter sets a point, ' +
+        'Delete removes the nearest, Page up and Page down go from point to point, Escape ends',
     },
     this.#canvas,
   )

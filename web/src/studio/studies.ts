@@ -263,7 +263,7 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
               'p',
               { class: 'muted' },
               ...prose(
-                'The model has no metrics, such as a target curve that is drawn over a plot: add `[metrics]` to its text.',
+                'The model has no metrics. Add a `[metrics]` table to its text, or draw a target curve over a plot.',
               ),
             ),
           ),
@@ -385,7 +385,7 @@ function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): 
               'p',
               { class: 'muted' },
               ...prose(
-                'The model does not say how far its design variables may be off: add `tolerance = 0.1` to those in `[design]` or `[parameters]`.',
+                'No design variable has a tolerance. Add `tolerance = 0.1` to those in `[design]` or `[parameters]`.',
               ),
             ),
       ),

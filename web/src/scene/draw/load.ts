@@ -28,7 +28,8 @@ export const loads: Draw = (mechanism, kit, choice) => {
     if (load.force.length === 0) return []
     const { at, joint } = load
     const on = report.bodies[at.body].name
-    const about = `force on ${on}${load.is_part ? ', as far as it is known' : ''}: at most ${number(largestForce([load]), 3)} N`
+    const known = load.is_part ? ', determined part' : ''
+    const about = `force on ${on}${known}: at most ${number(largestForce([load]), 3)} N`
     const part =
       joint === null
         ? { kind: 'load' as const, index, name: load.name, about }
