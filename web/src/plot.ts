@@ -97,8 +97,8 @@ export class Plot {
       type: 'button',
       class: 'icon',
       'data-testid': 'closer',
-      title: 'Closer (+); drag along the axis, or with Shift, to choose what is seen',
-      'aria-label': 'see closer',
+      title: 'Zoom in (+); drag along the axis, or with Shift, to select a range',
+      'aria-label': 'zoom in',
       onclick: () => this.#scale(CLOSER),
     },
     svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: GLASS })),
@@ -109,8 +109,8 @@ export class Plot {
       type: 'button',
       class: 'icon',
       'data-testid': 'whole',
-      title: 'The whole (0)',
-      'aria-label': 'show the whole',
+      title: 'Reset zoom (0)',
+      'aria-label': 'reset zoom',
       onclick: () => this.#see(undefined),
     },
     'whole',
@@ -169,7 +169,7 @@ export class Plot {
     this.area.setAttribute('role', 'application')
     this.area.tabIndex = 0
     const axes = `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}`
-    this.area.setAttribute('aria-label', `${axes}: plus and minus zoom, 0 shows the whole`)
+    this.area.setAttribute('aria-label', `${axes}: plus and minus zoom, 0 resets the zoom`)
     const entries = content.lines.map((line) => this.#entry(line))
     keepFocus(this.#legend, () => this.#legend.replaceChildren(this.#moment, ...entries))
     const all = content.over ? faceted(content.over.curve, content) : data(this.state, content)

@@ -244,7 +244,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     await slide(page, CHANGE, await page.locator(CHANGE).getAttribute('max').then(Number))
     expect((await picture(page)).equals(before.view)).toBe(false)
     expect((await curve(page, 'plot-0')).sum).not.toBe(before.curve.sum)
-    expect(await page.locator('body').innerText()).toContain('foreseen')
+    expect(await page.locator('body').innerText()).toContain('predicted')
     await selected(page).getByTestId('reset').click()
     expect((await picture(page)).equals(before.view)).toBe(true)
     expect((await curve(page, 'plot-0')).sum).toBe(before.curve.sum)

@@ -158,10 +158,10 @@ describe('a study', () => {
   test('says why it cannot be requested, and what went wrong', async () => {
     const why = () => page.getByTestId('optimise-why').innerText()
     await page.getByTestId('search-top_x').getByRole('checkbox').check()
-    expect(await why()).toBe('top_x needs a lowest and a highest value.')
+    expect(await why()).toBe('top_x needs a lower and an upper bound.')
     await page.getByLabel('lowest of top_x').fill('3')
     await page.getByLabel('highest of top_x').fill('2')
-    expect(await why()).toBe('The lowest value of top_x is not below its highest.')
+    expect(await why()).toBe('The lower bound of top_x is not below its upper bound.')
     expect(await page.getByTestId('optimise-run').isDisabled()).toBe(true)
     await page.getByLabel('highest of top_x').fill('4')
     await page.getByTestId('optimise-run').click()

@@ -34,12 +34,12 @@ class Polar {
   readonly element: HTMLElement
   readonly #which: HTMLSelectElement
   readonly #on = el('select', {
-    'aria-label': 'body that sees the force',
+    'aria-label': 'reference body',
     'data-testid': 'load-body',
     onchange: () => this.#draw(),
   })
   readonly #along = el('select', {
-    'aria-label': 'direction of sight',
+    'aria-label': 'direction of view',
     'data-testid': 'load-along',
     onchange: () => this.#draw(),
   })
@@ -213,15 +213,15 @@ class Polar {
     if (!force?.length || !pose) {
       this.#now.replaceChildren()
       this.#reading.textContent = changed
-        ? 'Forces of this design are known once it is solved.'
-        : 'The force is not known here.'
+        ? 'Forces of this design are available once it is solved.'
+        : 'The force is not available here.'
       return
     }
     const world = forceAt(force, step).multiplyScalar(sign)
     const at = seenFrom(world, pose.turn, plane)
     if (!at.every(Number.isFinite)) {
       this.#now.replaceChildren()
-      this.#reading.textContent = 'Redundant constraints leave this force open: it has no number.'
+      this.#reading.textContent = 'Redundant constraints leave this force undetermined.'
       return
     }
     const [x, y] = this.#pixels(at)
@@ -234,9 +234,9 @@ class Polar {
     const when = largestAt(force)
     const parts = [
       `${number(size, 4)} N at ${number(Number(angle.toFixed(1)), 4)}° from ${plane.names[0]} now;`,
-      `all of it ${number(world.length(), 4)} N,`,
+      `magnitude ${number(world.length(), 4)} N,`,
       `largest ${number(forceAt(force, when).length(), 4)} N at ${number(valueAt(report.times, when), 4)} s.`,
-      load.is_part ? 'Redundant constraints leave a part of it open: what is drawn is what is known.' : '',
+      load.is_part ? 'Redundant constraints leave a part of it undetermined; only the determined part is shown.' : '',
     ]
     this.#reading.textContent = parts.join(' ').trim()
   }

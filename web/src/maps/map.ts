@@ -54,7 +54,7 @@ class DriverMap {
       ),
     )
     this.#by = el('select', {
-      'aria-label': 'its value, or its sensitivity by',
+      'aria-label': 'value or sensitivity',
       'data-testid': 'map-by',
       onchange: render,
     })
@@ -64,7 +64,7 @@ class DriverMap {
         class: 'picture',
         tabindex: 0,
         role: 'application',
-        'aria-label': `map ${map.name}: arrow keys read its positions`,
+        'aria-label': `map ${map.name}: arrow keys move between positions`,
         onpointermove: (event: PointerEvent) => this.#point(event),
         onpointerleave: () => this.#say(),
         onkeydown: (event: KeyboardEvent) => this.#key(event),
@@ -228,7 +228,7 @@ class DriverMap {
       ? `${name}: ${Number.isFinite(value) ? figure(value, unit) : 'not reached'} at ${place(at)}`
       : ends
         ? `${name}: ${number(ends[0])} to ${figure(ends[1], unit)}`
-        : `${name}: no number anywhere`
+        : `${name}: no values`
   }
 }
 

@@ -56,7 +56,7 @@ export class View {
   #lost = el(
     'p',
     { class: 'message', hidden: true },
-    'The graphics were lost; the view comes back when the browser gives them back.',
+    'The graphics context was lost. The view returns when the browser restores it.',
   )
   #palette = paletteOf()
   #matter: Assembly
@@ -276,7 +276,7 @@ export class View {
     const blob = await new Promise<Blob | null>((done) => this.canvas.toBlob(done, 'image/png'))
     this.#size(usual)
     this.#render()
-    if (!blob) throw new Error('the browser gave no picture of the view')
+    if (!blob) throw new Error('the browser returned no picture of the view')
     return blob
   }
 

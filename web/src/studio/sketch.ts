@@ -154,8 +154,8 @@ export class Sketch implements Overlay {
     const count = this.#points.length
     if (focus) return `${read(focus)}${count > 0 ? ` · ${count} point${count === 1 ? '' : 's'}` : ''}`
     return count === 0
-      ? 'Draw the curve that is wanted'
-      : `${count} point${count === 1 ? '' : 's'}; draw over a part to change it, or move a point`
+      ? 'Draw the desired curve'
+      : `${count} point${count === 1 ? '' : 's'}; draw over a section to change it, or drag a point`
   }
 
   #placed([x, y]: Point): Point {

@@ -67,5 +67,5 @@ export function forceText({ base, report }: Mechanism): string {
   const most = report.loads.some(({ force }: Load) => force.length > 0)
     ? largestForce((base?.report ?? report).loads)
     : 0
-  return most > 0 ? `arrows of forces to ${number(most, 3)} N` : ''
+  return most > 0 ? `force arrows: up to ${number(most, 3)} N` : ''
 }
