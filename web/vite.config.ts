@@ -21,7 +21,7 @@ export default defineConfig({
   test: {
     include: ['test/**/*.test.ts'],
     globalSetup: 'test/samples.ts',
-    // On two cores Vitest would by itself run one file after the other, each of which waits for its browser most of the time.
+    // Vitest's default on two cores is one file at a time, each waiting for its browser most of the time.
     maxWorkers: Math.max(2, availableParallelism()),
     testTimeout: TEST,
     hookTimeout: TEST,

@@ -97,7 +97,7 @@ export class Plot {
       type: 'button',
       class: 'icon',
       'data-testid': 'closer',
-      title: 'Zoom in (+); drag along the axis, or drag with Shift, to select a range',
+      title: 'Zoom in (+); drag along the axis, or with Shift, to select a range',
       'aria-label': 'zoom in',
       onclick: () => this.#scale(CLOSER),
     },
@@ -109,8 +109,8 @@ export class Plot {
       type: 'button',
       class: 'icon',
       'data-testid': 'whole',
-      title: 'Whole range (0)',
-      'aria-label': 'show the whole range',
+      title: 'Reset zoom (0)',
+      'aria-label': 'reset zoom',
       onclick: () => this.#see(undefined),
     },
     'whole',
@@ -168,10 +168,8 @@ export class Plot {
     }
     this.area.setAttribute('role', 'application')
     this.area.tabIndex = 0
-    this.area.setAttribute(
-      'aria-label',
-      `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}: plus and minus zoom, 0 shows the whole`,
-    )
+    const axes = `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}`
+    this.area.setAttribute('aria-label', `${axes}: plus and minus zoom, 0 resets the zoom`)
     const entries = content.lines.map((line) => this.#entry(line))
     keepFocus(this.#legend, () => this.#legend.replaceChildren(this.#moment, ...entries))
     const all = content.over ? faceted(content.over.curve, content) : data(this.state, content)

@@ -5,7 +5,7 @@ import { curve, picture, text } from './person'
 
 const { changed } = inject('samples')
 
-describe('a changed design beside the one as loaded', () => {
+describe('a changed design beside the original', () => {
   let browser: Browser
   let visited: Visit
   let page: Page
@@ -18,10 +18,10 @@ describe('a changed design beside the one as loaded', () => {
 
   const lines = () => text(page, 'plot-0')
 
-  test('is drawn solid, the one as loaded dashed, and both have a curve', async () => {
+  test('is drawn solid, the original dashed, and both have a curve', async () => {
     expect(await page.locator('.ghost-key').innerText()).toContain('original')
     expect(await lines()).toMatch(/changed/)
-    expect(await lines()).toMatch(/as loaded/)
+    expect(await lines()).toMatch(/original/)
   })
 
   test('has the changed variables in its rows', async () => {
@@ -40,10 +40,10 @@ describe('a changed design beside the one as loaded', () => {
     expect((await picture(page)).equals(before.view)).toBe(true)
   })
 
-  test('deflects to the design as loaded when all changes are taken back', async () => {
+  test('is the original again when all changes are reset', async () => {
     await page.getByTestId('reset-all').click()
     expect(await page.locator('.ghost-key').isVisible()).toBe(false)
-    expect(await lines()).not.toMatch(/as loaded/)
+    expect(await lines()).not.toMatch(/original/)
   })
 
   test('was requested nothing else, and reported nothing on the console', () => {

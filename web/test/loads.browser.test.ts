@@ -64,7 +64,7 @@ describe('forces of the press', () => {
     const [size, angle] = numbers(await reading())
     close(size, Math.hypot(x, y))
     expect(Math.abs(angle - (Math.atan2(y, x) * 180) / Math.PI)).toBeLessThan(0.06)
-    expect(await reading()).toContain('what is drawn is what is known')
+    expect(await reading()).toContain('only the determined part is shown')
     // The crank feels the opposite.
     await page.getByTestId('load-body').selectOption({ label: 'crank' })
     const [same, other] = numbers(await reading())
@@ -84,7 +84,7 @@ describe('forces of the press', () => {
     await expect.poll(() => scale.innerText()).toContain(ARROWS)
   })
 
-  test('follow the design: with more counterweight the bearing carries more, and the path before stays beside it', async () => {
+  test('follow the design: more counterweight increases the bearing force, and the original path stays', async () => {
     await page.getByTestId('load-which').selectOption({ label: 'A' })
     const before = Number(await row('A').nth(2).innerText())
     const field = page.getByTestId('variable-counterweight').getByTestId('change-value')

@@ -274,7 +274,7 @@ describe('paths', () => {
   })
 })
 
-describe('the former design', () => {
+describe('the reference design', () => {
   test('is drawn of bodies that differ only', () => {
     const today = new Mechanism(crank({ drivers: [] }))
     const longer = crank({ drivers: [] })

@@ -147,7 +147,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     await scrub(page, 0)
   })
 
-  test('drags along an axis: that part of the time is seen in all plots, and a double click shows all of it', async () => {
+  test('dragging along an axis shows that part of the time in all plots; a double click shows all of it', async () => {
     const axis = (await page.getByTestId('plot-1').locator('.abscissa').boundingBox())!
     const seen = async () => [(await curve(page, 'plot-0')).sum, (await curve(page, 'plot-1')).sum]
     const before = await seen()
@@ -179,7 +179,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     expect(await seen()).toEqual(before)
   })
 
-  test('sees a plot closer by its button and its keys, and with Shift by dragging in it; without, a drag is time', async () => {
+  test('a plot zooms by button, keys and Shift with a drag; a drag without Shift sets the time', async () => {
     const plot = page.getByTestId('plot-0')
     const sum = async () => (await curve(page, 'plot-0')).sum
     const before = await sum()

@@ -2,7 +2,7 @@ import { expect, test } from 'vitest'
 import { quiet } from '../src/curve'
 import { noise, rounded } from '../src/rounding'
 
-test('a number is rounding next to one a thousand million times as large, or below the least that a reader meets', () => {
+test('a number is rounding relative to 1e9 times its size, or below the smallest number shown', () => {
   expect([rounded(2e-9), rounded(-1e-9), rounded(-2e-6, 1000), rounded(1e-6, 1000)]).toEqual([2e-9, 0, -2e-6, 0])
   expect(rounded(NaN)).toBeNaN()
 })

@@ -86,11 +86,11 @@ test('the token is not in the address, and the page knows its model and its case
   await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('steer'))
 })
 
-test('what is found on this machine is taken, saved in place, and no news to the page', async () => {
+test('a result of this machine is applied and saved in place, and is no news to the page', async () => {
   const page = await open(await start())
   await page.getByTestId('server-menu').click()
   await page.getByTestId('study-optimize').click()
-  await page.getByRole('button', { name: 'Take the design' }).click()
+  await page.getByRole('button', { name: 'Apply design' }).click()
   await page.keyboard.press('Control+s')
   await page.getByText('Saved').waitFor()
   const saved = readFileSync(file, 'utf8')

@@ -181,7 +181,8 @@ describe('a target in the text', () => {
   ] as const
   const curve = { name: 'toe_error', of: 'toe', over: 'wheel_travel', points }
   const table =
-    '[metrics.toe_error]\nof = "toe"\nover = "wheel_travel"\ntake = "rms"\nwindow = [-40, 40]\ntarget = [[-40, 0.4], [40, 0]]'
+    '[metrics.toe_error]\nof = "toe"\nover = "wheel_travel"\ntake = "rms"\n' +
+    'window = [-40, 40]\ntarget = [[-40, 0.4], [40, 0]]'
   const inline =
     '{ of = "toe", over = "wheel_travel", take = "rms", window = [-40, 40], target = [[-40, 0.4], [40, 0]] }'
 
@@ -232,7 +233,8 @@ describe('a target in the text', () => {
   test('is over time, of a case, and of names in quotes where it has to be', () => {
     const made = targetToml('', { name: 'front toe', of: 'a"b', case: 'bump', points })
     expect(made.text).toBe(
-      '[metrics."front toe"]\ncase = "bump"\nof = "a\\"b"\ntake = "rms"\nwindow = [-40, 40]\ntarget = [[-40, 0.4], [40, 0]]\n',
+      '[metrics."front toe"]\ncase = "bump"\nof = "a\\"b"\ntake = "rms"\n' +
+        'window = [-40, 40]\ntarget = [[-40, 0.4], [40, 0]]\n',
     )
   })
 

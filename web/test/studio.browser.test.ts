@@ -158,10 +158,10 @@ describe('a study', () => {
   test('says why it cannot be requested, and what went wrong', async () => {
     const why = () => page.getByTestId('optimise-why').innerText()
     await page.getByTestId('search-top_x').getByRole('checkbox').check()
-    expect(await why()).toBe('top_x needs a lowest and a highest value.')
+    expect(await why()).toBe('top_x needs a lower and an upper bound.')
     await page.getByLabel('lowest of top_x').fill('3')
     await page.getByLabel('highest of top_x').fill('2')
-    expect(await why()).toBe('The lowest value of top_x is not below its highest.')
+    expect(await why()).toBe('The lower bound of top_x is not below its upper bound.')
     expect(await page.getByTestId('optimise-run').isDisabled()).toBe(true)
     await page.getByLabel('highest of top_x').fill('4')
     await page.getByTestId('optimise-run').click()
@@ -296,7 +296,7 @@ describe('a target that is drawn', () => {
     expect(b).toEqual([7.5, 0])
   })
 
-  test('stays where it is when the plot is drawn anew, has room beyond the curves, and is given up by Escape', async () => {
+  test('stays in place when the plot is redrawn, has room beyond the curves, and is cancelled by Escape', async () => {
     await stroke(0.2, 0.8, () => 0.5)
     const place = () => page.locator('.sketch .point').first().getAttribute('cy').then(Number)
     const before = await place()
@@ -320,7 +320,8 @@ test('a target that is drawn becomes a metric of the text', async () => {
   await press('Enter', 'ArrowRight', 'Enter')
   await page.getByTestId('sketch-take').click()
   expect(await page.evaluate(() => window.model)).toBe(
-    'name = "strut"\n\n[metrics.wheel_z_target]\nof = "wheel.z"\nover = "travel"\ntake = "rms"\nwindow = [5, 5.2]\ntarget = [[5, 0], [5.2, 0]]\n',
+    'name = "strut"\n\n[metrics.wheel_z_target]\nof = "wheel.z"\nover = "travel"\n' +
+      'take = "rms"\nwindow = [5, 5.2]\ntarget = [[5, 0], [5.2, 0]]\n',
   )
   expect(await button.evaluate((one) => one === document.activeElement)).toBe(true)
   await button.click()

@@ -64,7 +64,8 @@ describe('pieces of TOML', () => {
 
 test('an outline has the paths and ends of headings and keys', () => {
   const text =
-    'name = "x"\n\n[metrics.a]   # one\nof = "toe"\ntarget = [\n  [0, 1],\n]\n\n# about b\n[design]\nb = { move = "p", along = "x" }\n'
+    'name = "x"\n\n[metrics.a]   # one\nof = "toe"\ntarget = [\n  [0, 1],\n]\n\n' +
+    '# about b\n[design]\nb = { move = "p", along = "x" }\n'
   const entries = outline(text)
   expect(entries.map(({ path }) => path.join('/'))).toEqual([
     'name',

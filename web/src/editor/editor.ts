@@ -112,7 +112,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     { class: 'model-tools', role: 'toolbar', 'aria-label': 'Model text' },
     back,
     forth,
-    button('Comment', 'Comment lines, or take the comment away (Ctrl+/)', toggleComment),
+    button('Comment', 'Comment or uncomment lines (Ctrl+/)', toggleComment),
     button('Next', 'Next message (F8)', nextDiagnostic),
     el(
       'button',
@@ -170,7 +170,7 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
           { key: 'Escape', run: () => (view.setTabFocusMode(true), false) },
         ]),
         EditorView.contentAttributes.of({
-          'aria-label': 'Model, TOML. Escape, then Tab leaves the text.',
+          'aria-label': 'Model, TOML. Press Escape, then Tab to leave the text.',
           'data-testid': 'model-text',
           spellcheck: 'false',
         }),

@@ -147,7 +147,8 @@ function fatLines(line: LineSegments2, camera: Camera, picture: Picture): Stroke
     new Vector3(attribute.getX(k), attribute.getY(k), attribute.getZ(k)).applyMatrix4(line.matrixWorld)
   const { linewidth, opacity, dashed } = material
   const dashes = dashed ? ` stroke-dasharray="${round(4 * linewidth)} ${round(3 * linewidth)}"` : ''
-  const style = `fill="none" stroke="${hex(material.color)}" stroke-width="${round(linewidth)}" stroke-opacity="${round(opacity)}"${dashes}`
+  const width = `stroke-width="${round(linewidth)}"`
+  const style = `fill="none" stroke="${hex(material.color)}" ${width} stroke-opacity="${round(opacity)}"${dashes}`
   const layer = layerOf(line, material)
   const strokes: Stroke[] = []
   for (let k = 0; k < start.count; k++) {

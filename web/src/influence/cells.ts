@@ -83,7 +83,8 @@ export class Cells {
     const cell = this.at(quantity, variable)
     const name = derivativeName(quantity, this.order, variable)
     if (!cell) return `${name}: not known`
-    return `${name}: ${cell.share === 0 ? '≈ 0' : figure(cell.extreme, derivativeUnit(quantity, this.order, variable))}`
+    const unit = derivativeUnit(quantity, this.order, variable)
+    return `${name}: ${cell.share === 0 ? '≈ 0' : figure(cell.extreme, unit)}`
   }
 
   #column({ index }: Quantity): Map<number, Cell> {

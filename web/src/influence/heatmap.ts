@@ -91,7 +91,7 @@ class HeatMap {
       el(
         'p',
         { class: 'lead' },
-        'The value that is largest over time; colours compare variables of one unit within a column.',
+        'Extreme value over time; colours compare variables of the same unit within a column.',
       ),
       el(
         'div',

@@ -42,7 +42,7 @@ export function rankingTable(state: State): HTMLElement {
 
   const show = () => {
     const quantity = report.quantities[choice.quantity]
-    heading.textContent = quantity ? `What moves ${orderedName(quantity, choice.order)}` : ''
+    heading.textContent = quantity ? `Sensitivities of ${orderedName(quantity, choice.order)}` : ''
     const words = filter.value.toLowerCase()
     rows = ranked(state).filter(({ variable }) => variable.name.toLowerCase().includes(words))
     range = [0, 0]

@@ -34,12 +34,12 @@ class Polar {
   readonly element: HTMLElement
   readonly #which: HTMLSelectElement
   readonly #on = el('select', {
-    'aria-label': 'body that sees the force',
+    'aria-label': 'reference body',
     'data-testid': 'load-body',
     onchange: () => this.#draw(),
   })
   readonly #along = el('select', {
-    'aria-label': 'direction of sight',
+    'aria-label': 'direction of view',
     'data-testid': 'load-along',
     onchange: () => this.#draw(),
   })
@@ -53,8 +53,10 @@ class Polar {
 
   constructor(private readonly state: State) {
     const { loads, bodies } = state.report
-    const name = (load: Load, k: number) =>
-      `${load.name}${loads.some((other, j) => j !== k && other.name === load.name) ? ` on ${bodies[load.at.body].name}` : ''}`
+    const name = (load: Load, k: number) => {
+      const isUnique = loads.every((other, j) => j === k || other.name !== load.name)
+      return isUnique ? load.name : `${load.name} on ${bodies[load.at.body].name}`
+    }
     const group = (label: string, ofJoints: boolean) => {
       const members = loads.flatMap((load, k) =>
         (load.joint !== null) === ofJoints ? [el('option', { value: k }, name(load, k))] : [],
@@ -211,15 +213,15 @@ class Polar {
     if (!force?.length || !pose) {
       this.#now.replaceChildren()
       this.#reading.textContent = changed
-        ? 'Forces of this design are known once it is solved.'
-        : 'The force is not known here.'
+        ? 'Forces of this design are available once it is solved.'
+        : 'The force is not available here.'
       return
     }
     const world = forceAt(force, step).multiplyScalar(sign)
     const at = seenFrom(world, pose.turn, plane)
     if (!at.every(Number.isFinite)) {
       this.#now.replaceChildren()
-      this.#reading.textContent = 'Redundant constraints leave this force open: it has no number.'
+      this.#reading.textContent = 'Redundant constraints leave this force undetermined.'
       return
     }
     const [x, y] = this.#pixels(at)
@@ -231,8 +233,10 @@ class Polar {
     const size = Math.hypot(...at)
     const when = largestAt(force)
     const parts = [
-      `${number(size, 4)} N at ${number(Number(angle.toFixed(1)), 4)}° from ${plane.names[0]} now; all of it ${number(world.length(), 4)} N, largest ${number(forceAt(force, when).length(), 4)} N at ${number(valueAt(report.times, when), 4)} s.`,
-      load.is_part ? 'Redundant constraints leave a part of it open: what is drawn is what is known.' : '',
+      `${number(size, 4)} N at ${number(Number(angle.toFixed(1)), 4)}° from ${plane.names[0]} now;`,
+      `magnitude ${number(world.length(), 4)} N,`,
+      `largest ${number(forceAt(force, when).length(), 4)} N at ${number(valueAt(report.times, when), 4)} s.`,
+      load.is_part ? 'Redundant constraints leave a part of it undetermined; only the determined part is shown.' : '',
     ]
     this.#reading.textContent = parts.join(' ').trim()
   }

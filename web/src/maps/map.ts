@@ -54,7 +54,7 @@ class DriverMap {
       ),
     )
     this.#by = el('select', {
-      'aria-label': 'its value, or its sensitivity by',
+      'aria-label': 'value or sensitivity',
       'data-testid': 'map-by',
       onchange: render,
     })
@@ -64,7 +64,7 @@ class DriverMap {
         class: 'picture',
         tabindex: 0,
         role: 'application',
-        'aria-label': `map ${map.name}: arrow keys read its positions`,
+        'aria-label': `map ${map.name}: arrow keys move between positions`,
         onpointermove: (event: PointerEvent) => this.#point(event),
         onpointerleave: () => this.#say(),
         onkeydown: (event: KeyboardEvent) => this.#key(event),
@@ -221,12 +221,14 @@ class DriverMap {
       at[0] <= first.places.at(-1)! &&
       at[1] >= second.places[0] &&
       at[1] <= second.places.at(-1)!
+    const place = ([x, y]: [number, number]) =>
+      `${first.name} ${figure(x, first.unit)}, ${second.name} ${figure(y, second.unit)}`
     const ends = extent([grid.values])
     this.#reading.textContent = inside
-      ? `${name}: ${Number.isFinite(value) ? figure(value, unit) : 'not reached'} at ${first.name} ${figure(at[0], first.unit)}, ${second.name} ${figure(at[1], second.unit)}`
+      ? `${name}: ${Number.isFinite(value) ? figure(value, unit) : 'not reached'} at ${place(at)}`
       : ends
         ? `${name}: ${number(ends[0])} to ${figure(ends[1], unit)}`
-        : `${name}: no number anywhere`
+        : `${name}: no values`
   }
 }
 

@@ -38,7 +38,7 @@ function marginPlot(state: State): HTMLElement {
     const present = state.present?.margin
     if (present) {
       Object.assign(lines[0], { color: css('--former'), dash: [6, 4] })
-      lines.unshift({ label: 'present design', color: css('--trace'), curve: present })
+      lines.unshift({ label: 'current design', color: css('--trace'), curve: present })
     }
     plot.show({ title: 'distance from a singular position', unit: '', lines, caption: margin.note, logarithmic: true })
   }

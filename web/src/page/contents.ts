@@ -31,7 +31,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   if (own.length === 0) return { ...content, message: unknown(title) }
   const label = state.isPredicted
     ? 'predicted to first order'
-    : (present?.name ?? (state.compares ? 'present design' : title))
+    : (present?.name ?? (state.compares ? 'current design' : title))
   content.lines.push({ label, color: css('--trace'), curve: quiet(state.curve(index, order), scale), width: 2.4 })
   if (state.compares) {
     const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own
@@ -46,7 +46,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
   // Over another quantity, which has a tolerance itself, bands would have another meaning.
   if (over !== undefined && bands.length > 0)
-    content.caption = 'Bands are known over time only: select time as the abscissa to see them.'
+    content.caption = 'The tolerance band is known over time only: choose time to show it.'
   for (const band of over === undefined ? bands : []) {
     const curve = quiet(band.quantities[index]![order], scale)
     content.lines.push({ label: band.name, color: css('--former'), curve, width: 1.3, dash: DOTTED })
@@ -66,7 +66,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
       })
   })
   if (order === 0)
-    content.lines.push({ label: 'wanted', color: css('--good'), curve: quantity.wanted, width: 2.4, dash: DOTTED })
+    content.lines.push({ label: 'target', color: css('--good'), curve: quantity.wanted, width: 2.4, dash: DOTTED })
   content.lines = content.lines.filter(({ curve }) => curve.length > 0)
   if (order === 0 && over === undefined) {
     content.wanted = report.values
@@ -92,7 +92,11 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const content: Content = { title, unit: derivativeUnit(quantity, order, selected), lines: [] }
   if (quantity.curves[order].length === 0) return { ...content, unit: '', message: unknown(name) }
   if (!own)
-    return { ...content, unit: '', message: selected.note || `How ${selected.name} acts on ${name} is not known.` }
+    return {
+      ...content,
+      unit: '',
+      message: selected.note || `The sensitivity of ${name} to ${selected.name} is not known.`,
+    }
   const at = atAbscissa(state, subject)
   if (typeof at === 'string') return { ...content, message: at }
   const { seen } = at
@@ -115,7 +119,7 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   content.lines.push(...content.lines.splice(first, 1))
   const { differences } = own.sensitivity
   const left = peers.length - shown.length
-  const rest = [at.note, left > 0 ? `${shown.length} of ${peers.length}.` : '']
+  const rest = [at.note, left > 0 ? `strongest ${shown.length} of ${peers.length}.` : '']
     .filter((words) => words !== '')
     .join(' ')
   if (!differences) return overOther(state, subject.over, { ...content, caption: rest })
@@ -136,7 +140,7 @@ function largest({ report }: State, index: number, order: Order): number {
 }
 
 function unknown(title: string): string {
-  return `There is no ${title}: the motion is solved up to accelerations, and what goes by a driver up to its value.`
+  return `No ${title}: motions are solved up to accelerations, measures of a single driver up to their values.`
 }
 
 function overOther({ report }: State, over: number | undefined, content: Content): Content {
@@ -158,11 +162,11 @@ interface AtAbscissa {
 function atAbscissa({ senses: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
   if (over === undefined) return { seen: (curve) => curve, note: '' }
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
-  if (order > 0) return 'Over another quantity, sensitivities are those of values; choose the value, or time.'
+  if (order > 0) return 'Over another quantity, only sensitivities of values are available: choose the value, or time.'
   const keeper = moverOf(report, x.index)
   const alone = keeper?.alone[y.index]?.length ? slopeAlone(keeper.alone[y.index], keeper.alone[x.index]) : undefined
   if (!alone && [y, x].some(({ curves }) => curves[1].length === 0 || curves[2].length === 0)) {
-    return `How ${y.name} goes with ${x.name} is not known along the motion, for one of them has no rate; choose time.`
+    return `The slope of ${y.name} over ${x.name} is not known, because one of them has no rate: choose time.`
   }
   const along = alone ?? slope(y.curves, x.curves)
   const seen = (curve: Curve, variable: number, differences: boolean) => {
@@ -172,7 +176,7 @@ function atAbscissa({ senses: report }: State, { quantity, order, over }: Subjec
   }
   return {
     seen,
-    note: alone && keeper ? `At the same ${x.name}, which ${keeper.name} keeps while other drivers stand.` : '',
+    note: alone && keeper ? `At constant ${x.name}, held by ${keeper.name}; other drivers are fixed.` : '',
   }
 }
 

@@ -63,7 +63,7 @@ export class Figure {
         type: 'button',
         class: 'switch',
         'data-testid': 'shown',
-        title: 'Draw the sensitivities to the design variables',
+        title: 'Show the sensitivities to the design variables',
         onclick: () => {
           this.#shown = this.#shown === 'value' ? 'sensitivity' : 'value'
           this.show()
@@ -89,8 +89,8 @@ export class Figure {
         type: 'button',
         class: 'icon',
         'data-testid': 'add-curve',
-        title: 'Add a curve',
-        'aria-label': 'Add a curve',
+        title: 'Add a plot',
+        'aria-label': 'Add a plot',
         onclick: onAdd,
       },
       '+',

@@ -86,8 +86,7 @@ export function find(state: State): { element: HTMLElement; focus: () => void } 
         ),
       ),
     )
-    if (words.length > 0 && matches.length === 0)
-      list.replaceChildren(el('li', { class: 'muted' }, 'nothing of that name'))
+    if (words.length > 0 && matches.length === 0) list.replaceChildren(el('li', { class: 'muted' }, 'no matches'))
     list.hidden = words.length === 0
     input.setAttribute('aria-expanded', String(!list.hidden))
     if (matches.length > 0) input.setAttribute('aria-activedescendant', `match-${active}`)

@@ -2,26 +2,26 @@ import { el } from '../dom'
 
 const KEYS: [keys: string, meaning: string][] = [
   ['Space', 'play or pause'],
-  ['← →', 'one step back or forth'],
+  ['← →', 'previous or next step'],
   ['Home End', 'first or last step'],
-  ['F', 'fit the mechanism into the view'],
-  ['L', 'names of hardpoints'],
-  ['N', 'forces as arrows, of a model with masses or forces'],
+  ['F', 'fit the mechanism to the view'],
+  ['L', 'show names of hardpoints'],
+  ['N', 'show forces as arrows, if the model has masses or forces'],
   ['1 … 5', 'standard views, in the order of their buttons'],
-  ['↑ ↓', 'another row of a list, when it has the focus'],
-  ['+ − 0', 'in a plot: closer, further, the whole'],
-  ['Shift ← →', 'in a plot: what is before or after'],
-  ['drag', 'in a plot: the time; along its axis or with Shift: what is seen; double click: the whole'],
+  ['↑ ↓', 'previous or next row of the focused list'],
+  ['+ − 0', 'in a plot: zoom in, zoom out, reset'],
+  ['Shift ← →', 'in a plot: scroll along the axis'],
+  ['drag', 'in a plot: set the time; along its axis or with Shift: zoom; double click: reset'],
   ['/', 'find a quantity or a variable'],
   ['?', 'these keys'],
-  ['Escape', 'close what is open, select nothing in the view'],
+  ['Escape', 'close dialogs and menus, clear the selection'],
 ]
 
 const MARKS: [mark: string, meaning: string][] = [
-  ['solid', 'the present design'],
-  ['dashed', 'the design that it is compared with'],
-  ['dotted', 'predicted to first or second order, or an error bound'],
-  ['rings', 'finite differences of re-solved designs'],
+  ['solid', 'the current design'],
+  ['dashed', 'the reference design'],
+  ['dotted', 'prediction (first or second order), error bound, or target'],
+  ['rings', 'check by re-solving (finite differences)'],
 ]
 
 /** The keys and line styles of the page, in a dialog of their own. */

@@ -13,7 +13,7 @@ interface Stage {
 /** The mechanism in 3D with its standard views, or a plain message where there is no WebGL. */
 export function stage(state: State): Stage {
   if (!hasWebGL()) {
-    const message = 'This browser offers no WebGL, so the 3D view is left out. Curves and tables are complete.'
+    const message = 'The 3D view needs WebGL, which this browser does not provide. Curves and tables are complete.'
     return { element: el('div', { class: 'view', 'data-testid': 'no-webgl' }, el('p', { class: 'message' }, message)) }
   }
   const view = new View(state)

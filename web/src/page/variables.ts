@@ -180,7 +180,11 @@ function row(state: State, variable: Variable): Row {
     ...controls,
     able
       ? effect
-      : el('span', { class: 'why', title: variable.note }, ...prose(variable.note || 'the mechanism cannot follow')),
+      : el(
+          'span',
+          { class: 'why', title: variable.note },
+          ...prose(variable.note || 'not possible for this mechanism'),
+        ),
     controls.length > 0 && reset,
   )
   // A press anywhere in the row selects it, in addition to the action of a button or field.

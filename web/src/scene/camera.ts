@@ -27,7 +27,7 @@ export function looksOf(mechanism: Mechanism): Look[] {
   if (plane) {
     const right = up.clone().cross(plane)
     const tilt = plane.clone().addScaledVector(up, 0.45).addScaledVector(right, 0.55)
-    return [look('straight', 'seen straight on', plane.clone()), look('tilt', 'seen from the side and above', tilt)]
+    return [look('straight', 'normal to the plane', plane.clone()), look('tilt', 'seen from the side and above', tilt)]
   }
   if (vehicle) {
     const { forward } = vehicle

@@ -56,7 +56,7 @@ export class View {
   #lost = el(
     'p',
     { class: 'message', hidden: true },
-    'The graphics context was lost; the view returns when the browser restores it.',
+    'The graphics context was lost. The view returns when the browser restores it.',
   )
   #palette = paletteOf()
   #matter: Assembly
@@ -276,7 +276,7 @@ export class View {
     const blob = await new Promise<Blob | null>((done) => this.canvas.toBlob(done, 'image/png'))
     this.#size(usual)
     this.#render()
-    if (!blob) throw new Error('the browser gave no picture of the view')
+    if (!blob) throw new Error('the browser returned no picture of the view')
     return blob
   }
 
@@ -322,7 +322,8 @@ export class View {
       heights.length > 0 ? heights.reduce((a, b) => Math.min(a, b)) : 0,
     )
     this.scene.add(floor.object)
-    this.#grid.textContent = `${report.wheels.length > 0 ? 'road, ' : ''}grid ${number(floor.cell)} ${report.units.length}`
+    const road = report.wheels.length > 0 ? 'road, ' : ''
+    this.#grid.textContent = `${road}grid ${number(floor.cell)} ${report.units.length}`
     this.#outlines.colour(this.#palette)
     this.#renderer.setClearColor(this.#palette.view)
     return floor

@@ -50,14 +50,14 @@ export function targetButton(plot: Plot, drawing: () => Drawing, { text, replace
       type: 'button',
       'aria-pressed': 'false',
       'data-testid': 'draw-target',
-      title: 'Draw the curve that is wanted: it becomes a metric of the model',
+      title: 'Draw the desired curve; it becomes a metric of the model',
       onclick: () => {
         if (!sketch) return begin()
         sketch.close()
         end()
       },
     },
-    'Draw target',
+    'Draw target…',
   )
   return button
 }

@@ -45,12 +45,12 @@ export class Grips {
     'button',
     {
       type: 'button',
-      title: 'Move hardpoints (M)',
+      title: 'Drag hardpoints (M)',
       'data-testid': 'grips',
       'aria-pressed': 'false',
       onclick: () => this.toggle(),
     },
-    'move',
+    'Drag points',
   )
   #guide = svg('svg', { class: 'guide', 'aria-hidden': 'true' })
   #shown: Shown[]
@@ -307,7 +307,7 @@ export class Grips {
         {
           type: 'button',
           'data-testid': `way-${way}`,
-          title: way === 'free' ? 'In the plane of the picture' : `Along ${[...way].join(' and ')}`,
+          title: way === 'free' ? 'In the plane of the screen' : `Along ${[...way].join(' and ')}`,
           onclick: () => this.#go(way),
         },
         way,
@@ -344,12 +344,12 @@ export class Grips {
         ),
       ),
       el('div', { class: 'coordinates' }, ...AXES.map((axis, k) => label(axis, this.#fields[k], length))),
-      el('div', { class: 'ways', role: 'toolbar', 'aria-label': 'Way' }, ...this.#ways),
+      el('div', { class: 'ways', role: 'toolbar', 'aria-label': 'Direction' }, ...this.#ways),
       el(
         'div',
         { class: 'ways' },
         snap,
-        this.#mirrorField && el('label', { class: 'mirror' }, this.#mirrorField, 'mirror image follows'),
+        this.#mirrorField && el('label', { class: 'mirror' }, this.#mirrorField, 'mirror to the other side'),
       ),
       this.#why,
     )

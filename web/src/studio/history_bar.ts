@@ -40,7 +40,7 @@ export function historyBar(history: History, { show, compare }: Shows): HTMLElem
     'button',
     {
       type: 'button',
-      title: 'Back to the design as opened',
+      title: 'Back to the original design',
       'data-testid': 'reset-design',
       onclick: () => show(history.reset()),
     },
@@ -98,7 +98,7 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
     'data-testid': 'snapshot-name',
   })
   const form = el('form', { class: 'keep' }, name, el('button', { 'data-testid': 'snapshot-keep' }, 'Keep'))
-  const list = el('ul', { 'aria-label': 'Designs with names', 'data-testid': 'snapshots' })
+  const list = el('ul', { 'aria-label': 'Named designs', 'data-testid': 'snapshots' })
   const panel = el('div', { class: 'menu designs', hidden: true }, form, list)
   const button = el('button', {
     type: 'button',
@@ -141,7 +141,7 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
       )
     const actions = [
       action('Open this design', 'Open', () => (show(history.take(snapshot)), open(false), button.focus())),
-      action('Compare the present design with it', 'Compare', () =>
+      action('Compare the current design with it', 'Compare', () =>
         choose(compared === snapshot ? undefined : snapshot),
       ),
       action('Delete this design', 'Delete', () => {

@@ -111,13 +111,13 @@ class Desk {
       this.notes.show('saving', `Saved \`${this.server.file}\`.`, { passing: true })
     } else if (saved.outcome === 'changed') this.changed(saved.revision)
     else if (saved.outcome === 'invalid') {
-      this.notes.show('saving', `Not saved: the text is no valid model.`, {
+      this.notes.show('saving', 'Not saved: the text is not a valid model.', {
         stop: true,
         detail: saved.text,
         actions: { 'Save anyway': () => void anyway() },
       })
     } else if (saved.outcome === 'exists')
-      this.notes.show('saving', 'Not saved: there is a model of that name already.', { stop: true })
+      this.notes.show('saving', 'Not saved: a model of that name exists already.', { stop: true })
     else this.notes.show('saving', `Not saved: ${saved.why}.`, { stop: true })
   }
 
@@ -125,7 +125,7 @@ class Desk {
   private changed(revision: string | null): void {
     const { file } = this.server
     if (revision === null) {
-      this.notes.show('changed', `\`${file}\` is no longer on disk; what you have is kept in the page.`, {
+      this.notes.show('changed', `\`${file}\` is no longer on disk. Your text is kept in the page.`, {
         stop: true,
         actions: { 'Save as…': () => this.saveAs() },
       })
@@ -206,10 +206,10 @@ class Desk {
         } else
           failure.textContent =
             saved.outcome === 'exists'
-              ? 'There is a model of that name already.'
+              ? 'A model of that name exists already.'
               : saved.outcome === 'refused'
                 ? saved.why
-                : 'The text is no valid model.'
+                : 'The text is not a valid model.'
       } catch (error) {
         failure.textContent = String(error instanceof Error ? error.message : error)
       }
@@ -234,7 +234,7 @@ class Desk {
       const { state, progress, lines, message } = study
       if (state === 'running') {
         const { of = 0, done = 0, unit = '' } = progress ?? {}
-        const line = of > 0 ? `${progress!.what} ${done} of ${of} ${unit}` : (lines.at(-1)?.trim() ?? 'begun')
+        const line = of > 0 ? `${progress!.what} ${done} of ${of} ${unit}` : (lines.at(-1)?.trim() ?? 'started')
         notes.show(key, `${STUDIES[what]}: ${line}`, {
           part: of > 0 ? done / of : undefined,
           actions: { Cancel: () => void this.asking(() => server.cancel(study.id)) },
@@ -244,15 +244,13 @@ class Desk {
       this.running.delete(study.id)
       const found = study.text
       const actions: Record<string, () => void> = found
-        ? { 'Take the design': () => (this.text.replace(found), notes.drop(key)) }
+        ? { 'Apply design': () => (this.text.replace(found), notes.drop(key)) }
         : {}
       const links = (study.reports ?? []).map(({ case: name, link }): [string, string] => [
         name === null ? 'Report' : `Report: ${name}`,
         link,
       ])
-      const how = { done: message, cancelled: `ended early${message ? `; ${message}` : ''}`, failed: 'no result' }[
-        state
-      ]
+      const how = { done: message, cancelled: `cancelled${message ? `; ${message}` : ''}`, failed: 'no result' }[state]
       notes.show(key, `${STUDIES[what]}: ${how}`, {
         stop: state === 'failed',
         detail: state === 'failed' ? message : undefined,
@@ -279,7 +277,7 @@ class Desk {
       const study = await this.server.study(id).catch(() => null)
       if (study) follow(study)
       else if (study === undefined)
-        follow({ id, state: 'failed', message: 'The server was started anew meanwhile: the study is lost.' })
+        follow({ id, state: 'failed', message: 'The server was restarted; the study is lost.' })
     }
   }
 
@@ -287,14 +285,15 @@ class Desk {
     const { server, notes } = this
     if (server.state === 'there') notes.drop('server')
     else if (server.state === 'gone') {
-      notes.show('server', 'The server does not answer; your changes are kept in the page. Restart it with', {
+      notes.show('server', 'The server does not answer. Your changes are kept in the page. Restart it with', {
         stop: true,
         detail: server.command,
       })
     } else {
       notes.show(
         'server',
-        'Another server answers at this address; your changes are kept in the page. Open the address that it has printed, or end it and start',
+        'Another server answers at this address. Your changes are kept in the page. ' +
+          'Open the address that it printed, or stop it and run',
         { stop: true, detail: server.command },
       )
     }

@@ -49,7 +49,8 @@ export class Sketch implements Overlay {
       role: 'application',
       'data-testid': 'sketch',
       'aria-label':
-        'Draw a target: arrow keys move the cross, with Shift in smaller steps; Enter sets a point, Delete removes the nearest, Page Up and Page Down move from point to point, Escape ends',
+        'Draw a target: arrow keys move the cross, with Shift in small steps; Enter sets a point, ' +
+        'Delete removes the nearest, Page up and Page down go from point to point, Escape ends',
     },
     this.#canvas,
   )
@@ -153,8 +154,8 @@ export class Sketch implements Overlay {
     const count = this.#points.length
     if (focus) return `${read(focus)}${count > 0 ? ` · ${count} point${count === 1 ? '' : 's'}` : ''}`
     return count === 0
-      ? 'Draw the curve that is wanted'
-      : `${count} point${count === 1 ? '' : 's'}; draw over a part to change it, or move a point`
+      ? 'Draw the desired curve'
+      : `${count} point${count === 1 ? '' : 's'}; draw over a section to change it, or drag a point`
   }
 
   #placed([x, y]: Point): Point {

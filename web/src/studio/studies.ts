@@ -157,7 +157,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
         'data-testid': `${testId}-cancel`,
         onclick: () => {
           cancel.disabled = true
-          cancel.textContent = 'Ending …'
+          cancel.textContent = 'Cancelling…'
           running.cancel()
         },
       },
@@ -212,7 +212,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     const since = el(
       'p',
       { class: 'outcome stale', 'data-testid': `${testId}-stale` },
-      'The design has changed since: this is of the design as it was. Applying it discards later changes.',
+      'The design has changed since the study began. Applying the result discards later changes.',
     )
     stale = () => (since.hidden = host.text() === text)
     stale()
@@ -236,12 +236,12 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
   const searched = variables.map(variableRow)
   const wanted = goals.map(goalRow)
   const from = whole('Starts', starts, 1, 100_000, 'optimise-starts')
-  const most = whole('Iterations at most', iterations, 1, 100_000, 'optimise-iterations')
+  const most = whole('Maximum iterations', iterations, 1, 100_000, 'optimise-iterations')
   return {
     elements: [
       group(
         'Variables',
-        'within what they may change',
+        'within their bounds',
         table(
           ['variable', 'lowest', 'highest', ''],
           searched.map(({ row }) => row),
@@ -250,7 +250,7 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
       goals.length > 0
         ? group(
             'Goals',
-            'made as small as possible, or brought to their targets',
+            'minimised, or brought to their targets',
             table(
               ['metric', 'now', 'weight', 'target'],
               wanted.map(({ row }) => row),
@@ -263,7 +263,7 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
               'p',
               { class: 'muted' },
               ...prose(
-                'The model has no metrics, such as a target curve that is drawn over a plot: add `[metrics]` to its text.',
+                'The model has no metrics. Add a `[metrics]` table to its text, or draw a target curve over a plot.',
               ),
             ),
           ),
@@ -271,7 +271,7 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
         ? [
             group(
               'Limits',
-              'kept as the text has them',
+              'from the model',
               el('ul', { class: 'limits' }, ...limits.map((limit) => el('li', {}, ...prose(limit)))),
             ),
           ]
@@ -280,8 +280,8 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
     ],
     request: () => {
       const [chosen, aims] = [searched.filter(({ chosen }) => chosen()), wanted.filter(({ chosen }) => chosen())]
-      if (chosen.length === 0) return 'Choose a variable that may change.'
-      if (aims.length === 0) return goals.length > 0 ? 'Choose a goal.' : ''
+      if (chosen.length === 0) return 'Choose at least one variable.'
+      if (aims.length === 0) return goals.length > 0 ? 'Choose at least one goal.' : ''
       const asked = {
         variables: chosen.map(({ value }) => value()),
         goals: aims.map(({ value }) => value()),
@@ -318,8 +318,8 @@ function variableRow({ name, unit, bounds, chosen }: SearchVariable): Row<Optimi
     chosen: choice.chosen,
     value: () => {
       const ends: [number, number] = [low.valueAsNumber, high.valueAsNumber]
-      if (!ends.every(Number.isFinite)) return `\`${name}\` needs a lowest and a highest value.`
-      return ends[0] < ends[1] ? { name, bounds: ends } : `The lowest value of \`${name}\` is not below its highest.`
+      if (!ends.every(Number.isFinite)) return `\`${name}\` needs a lower and an upper bound.`
+      return ends[0] < ends[1] ? { name, bounds: ends } : `The lower bound of \`${name}\` is not below its upper bound.`
     },
   }
 }
@@ -335,7 +335,7 @@ function goalRow({
 }: SearchGoal): Row<OptimizeRequest['goals'][number]> {
   const counts = field(`weight of ${metric}`, weight)
   const wanted = field(`target of ${metric}`, target ?? undefined)
-  wanted.placeholder = 'least'
+  wanted.placeholder = 'minimum'
   const choice = choose(metric, chosen, curve ? [counts] : [counts, wanted])
   const aim = curve
     ? el('span', { class: 'muted' }, 'its curve')
@@ -352,7 +352,7 @@ function goalRow({
     chosen: choice.chosen,
     value: () => {
       if (!(counts.valueAsNumber > 0)) return `The weight of \`${metric}\` must be above zero.`
-      if (wanted.validity.badInput) return `The target of \`${metric}\` is no number.`
+      if (wanted.validity.badInput) return `The target of \`${metric}\` is not a number.`
       return {
         metric,
         weight: counts.valueAsNumber,
@@ -363,7 +363,7 @@ function goalRow({
 }
 
 function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): Form<ToleranceRequest> {
-  const drawn = whole('Designs drawn', samples, 0, 10_000_000, 'tolerance-samples')
+  const drawn = whole('Monte Carlo samples', samples, 0, 10_000_000, 'tolerance-samples')
   const from = whole('Seed', seed, 1, 4_294_967_295, 'tolerance-seed')
   const rows = tolerances.map(({ name, tolerance, unit, distribution }) =>
     el(
@@ -378,14 +378,14 @@ function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): 
     elements: [
       group(
         'Tolerances',
-        'as the text has them',
+        'from the model',
         rows.length > 0
           ? table(['variable', 'tolerance', 'distribution'], rows)
           : el(
               'p',
               { class: 'muted' },
               ...prose(
-                'The model does not say how far its design variables may be off: add `tolerance = 0.1` to those in `[design]` or `[parameters]`.',
+                'No design variable has a tolerance. Add `tolerance = 0.1` to those in `[design]` or `[parameters]`.',
               ),
             ),
       ),
@@ -394,7 +394,7 @@ function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): 
             el(
               'p',
               { class: 'muted' },
-              ...prose(`Looked at: ${metrics.map((metric) => `\`${metric}\``).join(', ')}, and all curves.`),
+              ...prose(`Evaluated: ${metrics.map((metric) => `\`${metric}\``).join(', ')}, and all curves.`),
             ),
           ]
         : []),

@@ -67,7 +67,7 @@ export class Studio {
     this.#sensing = new Solver(module)
     this.#checks = new Solver(module)
     this.#text = model.text
-    this.history = new History({ text: model.text, settings: [], label: 'as opened' })
+    this.history = new History({ text: model.text, settings: [], label: 'original' })
     const bar = historyBar(this.history, {
       show: (step) => void this.#go(step),
       compare: (snapshot) => void this.#compare(snapshot),
@@ -78,10 +78,10 @@ export class Studio {
       take: ({ change, text }: StudyResult, studied: string) => void this.#take(change, text, studied),
     }
     this.#drawer = new Drawer([
-      { name: 'Model', title: 'The text of the model', open: () => this.#openEditor() },
+      { name: 'Model', title: 'Edit the text of the model', open: () => this.#openEditor() },
       {
         name: 'Optimise',
-        title: 'Optimise the design for your goals',
+        title: 'Optimise the design for the goals of the model',
         open: studyPane(() => optimizePane(host), this),
       },
       { name: 'Tolerance', title: 'Tolerance analysis', open: studyPane(() => tolerancePane(host), this) },
@@ -187,7 +187,7 @@ export class Studio {
       state.choose({})
       if (state.changed) this.#solve()
     } catch (error) {
-      this.#say(`Showing linear predictions: the solver is not available: ${words(error)}`)
+      this.#say(`Showing linear predictions, because the solver is not available: ${words(error)}`)
       this.root.dataset.engine = 'failed'
     }
   }

@@ -62,7 +62,7 @@ export class Workers implements Studies {
           tables: [],
           change: best,
           text: null,
-          message: best ? 'Cancelled: this is the best design so far.' : 'Cancelled before anything was found.',
+          message: best ? 'Cancelled. This is the best design so far.' : 'Cancelled before a better design was found.',
         })
         solver.stop()
       },

@@ -57,7 +57,7 @@ class Scatter {
         class: 'picture',
         tabindex: 0,
         role: 'application',
-        'aria-label': `${sweep.what}s: left and right arrow read one after the other, in the order of the x axis`,
+        'aria-label': `${sweep.what}s: left and right arrow go through them in the order of the x axis`,
         onpointermove: (event: PointerEvent) => this.#point(event),
         onkeydown: (event: KeyboardEvent) => this.#key(event),
       },
@@ -66,14 +66,9 @@ class Scatter {
     const drawn = sweep.axes[0]?.values.length ?? 0
     const note =
       drawn < sweep.designs
-        ? `${number(drawn)} of ${number(sweep.designs, 10)} ${sweep.what}s are drawn: every ${sweep.step}th.`
+        ? `${number(drawn)} of ${number(sweep.designs, 10)} ${sweep.what}s are shown: every ${sweep.step}th.`
         : `${number(drawn)} ${sweep.what}s.`
-    const axes = el(
-      'p',
-      { class: 'choice' },
-      el('label', {}, 'Up ', this.#y),
-      el('label', {}, 'to the right ', this.#x),
-    )
+    const axes = el('p', { class: 'choice' }, el('label', {}, 'Y axis ', this.#y), el('label', {}, 'X axis ', this.#x))
     this.element = el(
       'section',
       { class: 'sweep', 'data-testid': 'sweep' },
@@ -139,7 +134,7 @@ class Scatter {
     if (this.#chosen === undefined || !this.#axes) {
       const [known, all] = [this.#points.length, over.values.length]
       this.#reading.textContent =
-        known < all ? `${number(all - known)} of the ${this.sweep.what}s drawn have no ${of.name}.` : ''
+        known < all ? `${number(all - known)} of the ${this.sweep.what}s shown have no ${of.name}.` : ''
       return
     }
     const k = this.#chosen
@@ -195,12 +190,12 @@ class Scatter {
         el('span', { class: 'total', style: `width: ${part(total[0])}` }),
         el('span', { class: 'error', style: `left: ${part(total[0] - total[1])}; width: ${part(2 * total[1])}` }),
       ),
-      el('span', {}, `${first[0].toFixed(3)} alone, ${total[0].toFixed(3)} ± ${total[1].toFixed(3)} in all`),
+      el('span', {}, `${first[0].toFixed(3)} alone, ${total[0].toFixed(3)} ± ${total[1].toFixed(3)} total`),
     ])
     const title = el(
       'h3',
       { style: 'grid-column: 1 / -1' },
-      `Sobol indices of ${this.sweep.axes[of]?.name}: parts of its variance`,
+      `Sobol indices of ${this.sweep.axes[of]?.name}: shares of its variance`,
     )
     this.#bars.replaceChildren(...(indices.length > 0 ? [title, ...rows] : []))
   }

@@ -24,11 +24,10 @@ export async function harness(name: string): Promise<string> {
       : `<style>${part.source}</style>`,
   )
   const folder = mkdtempSync(join(tmpdir(), 'hardpoint-harness-'))
+  const viewport = '<meta name="viewport" content="width=device-width, initial-scale=1">'
+  const head = `<!doctype html><html lang="en"><meta charset="utf-8">${viewport}`
   const path = join(folder, `${name}.html`)
-  writeFileSync(
-    path,
-    `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>${name}</title><body>${parts.reverse().join('\n')}</body></html>`,
-  )
+  writeFileSync(path, `${head}<title>${name}</title><body>${parts.reverse().join('\n')}</body></html>`)
   return pathToFileURL(path).href
 }
 

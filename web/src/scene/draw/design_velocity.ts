@@ -27,7 +27,7 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
   const variable = mechanism.report.variables[choice.variable]
   if (!variable) return []
   const change = shownChange(mechanism, variable)
-  const about = change === undefined ? 'design velocity' : `design velocity, drawn for ${changeText(change, variable)}`
+  const about = change === undefined ? 'design velocity' : `design velocity, scaled to ${changeText(change, variable)}`
   const part = { kind: 'mark' as const, index: variable.index, name: variable.name, about }
   const { chosen } = kit.palette
   const size = { head: HEAD * kit.unit, shaft: { radius: SHAFT * kit.unit } }

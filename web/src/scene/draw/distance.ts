@@ -14,7 +14,7 @@ export function distances(mechanism: Mechanism, kit: Kit): Drawn[] {
       ? [
           {
             ...member(mechanism, kit, form, from, to),
-            part: { kind: 'distance', index, name, about: `measured distance, drawn as a ${form}` },
+            part: { kind: 'distance', index, name, about: `measured distance, shown as a ${form}` },
           },
         ]
       : []

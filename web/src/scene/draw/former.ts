@@ -29,13 +29,15 @@ export const formerDesign: Draw = (mechanism, kit) => {
       object.visible = pose !== undefined
       if (pose) object.position.copy(pose.place), object.quaternion.copy(pose.turn)
     }
-    return [{ object, follow, part: { kind: 'mark', index: body, name, about: 'former design' }, overlay: true }]
+    return [{ object, follow, part: { kind: 'mark', index: body, name, about: 'reference design' }, overlay: true }]
   })
   const rods = former.report.joints.flatMap((joint, index): Drawn[] => {
     const rod = joint.kind === 'distance' || joint.kind === 'leg'
     if (!rod || !mechanism.moments.some((step) => apart(mechanism, former, index, step) > least)) return []
     const { object, follow } = formerRod(kit, former, joint)
-    return [{ object, follow, part: { kind: 'mark', index, name: joint.name, about: 'former design' }, overlay: true }]
+    return [
+      { object, follow, part: { kind: 'mark', index, name: joint.name, about: 'reference design' }, overlay: true },
+    ]
   })
   return [...bodies, ...rods]
 }

@@ -28,7 +28,8 @@ export const loads: Draw = (mechanism, kit, choice) => {
     if (load.force.length === 0) return []
     const { at, joint } = load
     const on = report.bodies[at.body].name
-    const about = `force on ${on}${load.is_part ? ', as far as it is known' : ''}: at most ${number(largestForce([load]), 3)} N`
+    const known = load.is_part ? ', determined part' : ''
+    const about = `force on ${on}${known}: at most ${number(largestForce([load]), 3)} N`
     const part =
       joint === null
         ? { kind: 'load' as const, index, name: load.name, about }
@@ -66,5 +67,5 @@ export function forceText({ base, report }: Mechanism): string {
   const most = report.loads.some(({ force }: Load) => force.length > 0)
     ? largestForce((base?.report ?? report).loads)
     : 0
-  return most > 0 ? `arrows of forces to ${number(most, 3)} N` : ''
+  return most > 0 ? `force arrows: up to ${number(most, 3)} N` : ''
 }
