@@ -271,11 +271,10 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
         let without_length =
             model.elements.iter().filter(|e| has_no_length(model, &found.motion, k, &e.kind));
         let without_length: Vec<String> = without_length.map(|e| e.name.clone()).collect();
-        let has_friction = model.elements.iter().any(|e| e.kind.rubs());
+        let with_friction = || model.elements.iter().enumerate().filter(|(_, e)| e.kind.has_friction(model));
+        let has_friction = with_friction().next().is_some();
         let names = |kinds: &dyn Fn(usize) -> bool| -> Vec<String> {
-            let of =
-                model.elements.iter().enumerate().filter(|(e, element)| element.kind.rubs() && kinds(*e));
-            of.map(|(_, element)| element.name.clone()).collect()
+            with_friction().filter(|(e, _)| kinds(*e)).map(|(_, element)| element.name.clone()).collect()
         };
         list.push(if found.motion.margins.get(k).is_some_and(|margin| margin.value == 0.0) {
             d.note("the mechanism is at a change point there, where its equilibrium is singular")
@@ -315,7 +314,8 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
 
 /// True if both ends of a spring or damper coincide at an output time.
 fn has_no_length(model: &Model, motion: &Motion, k: usize, kind: &ElementKind) -> bool {
-    let ElementKind::Spring { from, to, .. } = kind else { return false };
+    let Some(force) = kind.force(model) else { return false };
+    let ([Some(from), Some(to)], true) = (force.points, force.is_along_line) else { return false };
     let [p, q] = [from, to].map(|p| {
         let point = &model.points[p.0];
         let as_drawn = model.hardpoints[point.at.0].position;

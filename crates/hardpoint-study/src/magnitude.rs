@@ -24,7 +24,7 @@ impl Magnitude {
     /// Magnitude of a mechanism at rest.
     pub fn at_rest(model: &Model) -> Self {
         let mass = model.mass();
-        let given: f64 = model.elements.iter().map(|e| e.kind.push(model)).sum();
+        let given: f64 = model.elements.iter().map(|e| e.kind.given_force(model)).sum();
         let pushed = mass * model.gravity.norm() + given;
         Self { size: model.size(), orders: [1.0, 0.0, 0.0], mass, pushed }
     }

@@ -204,6 +204,7 @@ mod blocks;
 pub mod constraint;
 pub mod design;
 pub mod draft;
+mod element;
 pub mod expression;
 pub mod joint;
 pub mod law;

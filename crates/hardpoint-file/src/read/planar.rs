@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
+use hardpoint::draft::{ElementType, FieldKind, MeasureField};
 use hardpoint::joint;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
@@ -125,12 +126,10 @@ impl Reader<'_> {
             }
         });
         sections(model, "forces", &mut |force| {
-            if word(force, "type").as_deref() == Some("moment") {
-                square(force, "about");
-            }
-            if word(force, "type").as_deref() == Some("slide_friction") {
-                square(force, "ignored_direction");
-            }
+            let kind = word(force, "type").and_then(|kind| ElementType::ALL.iter().find(|t| t.name == kind));
+            // Forces act in the plane; all other directions are its normal.
+            let is_normal = |f: &&MeasureField| f.kind == FieldKind::Direction && f.key != "along";
+            kind.into_iter().flat_map(|t| t.fields).filter(is_normal).for_each(|f| square(force, f.key));
         });
         sections(model, "drivers", &mut |driver| {
             if driver.contains_key("body") {

@@ -816,8 +816,8 @@ fn names_with_words_of_both_sides_have_images_of_their_own() {
     let model = parse(&text(""), "words.toml").unwrap().model;
     let mass = |name: &str| {
         let element = model.elements.iter().find(|e| e.name == name).unwrap_or_else(|| panic!("{name}"));
-        let hardpoint::model::ElementKind::Rigid { mass, .. } = element.kind else { panic!("{name}") };
-        model.numbers[mass.0.0].value
+        let hardpoint::model::ElementKind::Rigid(rigid) = &element.kind else { panic!("{name}") };
+        model.numbers[rigid.mass.0.0].value
     };
     assert_eq!(model.elements.len(), 6);
     assert_eq!([mass("right_lug_right"), mass("right_lug_left"), mass("l_lug_right")], [1.0, 3.0, 5.0]);

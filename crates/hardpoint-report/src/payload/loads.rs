@@ -16,7 +16,7 @@ const ROUND_OFF: f64 = 1e-11;
 
 /// Number of forces on the page of a model.
 pub(super) fn count(model: &Model) -> usize {
-    if model.has_loads() { joints(model).len() + model.pushed().len() } else { 0 }
+    if model.has_loads() { joints(model).len() + model.points_of_application().len() } else { 0 }
 }
 
 /// Indices of the joints whose forces are shown.
@@ -40,7 +40,7 @@ impl Compose<'_> {
             let drawn = self.drawn(hardpoint::model::JointId(j));
             (joint.name.clone(), drawn, at, part_of(j))
         });
-        let pushed = self.model.pushed();
+        let pushed = self.model.points_of_application();
         let of_points = pushed
             .iter()
             .map(|&(e, point)| (self.model.elements[e.0].name.clone(), None, self.place(point), false));

@@ -8,6 +8,7 @@ use crate::draft::{
     NumberDraft, PointDraft, PointRef, VariableDraft,
 };
 use crate::law::Law;
+use crate::model::Solid;
 use crate::space::Vec3;
 
 /// Builder methods, one per kind of entry. Names may be used before they are declared;
@@ -125,27 +126,75 @@ impl Draft {
         self
     }
 
+    /// Adds a mass or force of any type, with all its options.
+    pub fn element(mut self, name: impl Into<String>, kind: ElementKindDraft) -> Self {
+        let list = if kind.has_mass() { &mut self.masses } else { &mut self.forces };
+        list.push(ElementDraft::new(name, kind));
+        self
+    }
+
     /// Adds a point mass, kg, at a location on a body.
     pub fn point_mass(
-        mut self,
+        self,
         name: impl Into<String>,
         body: impl Into<String>,
         at: impl Into<LocationDraft>,
         mass: impl Into<NumberDraft>,
     ) -> Self {
-        let kind = ElementKindDraft::Rigid {
-            centre: PointRef::On { body: body.into(), at: at.into() },
-            mass: mass.into(),
-            ixx: None,
-            iyy: None,
-            izz: None,
-            ixy: None,
-            iyz: None,
-            izx: None,
-            about: None,
-        };
-        self.masses.push(ElementDraft::new(name, kind));
-        self
+        self.element(name, rigid(PointRef::on(body, at), mass.into(), [None, None, None]))
+    }
+
+    /// Adds a rigid mass, kg, with its centre at a location on a body, and its moments of inertia, kg m^2, about the
+    /// global axes through the centre.
+    pub fn rigid(
+        self,
+        name: impl Into<String>,
+        body: impl Into<String>,
+        centre: impl Into<LocationDraft>,
+        mass: impl Into<NumberDraft>,
+        inertia: [impl Into<NumberDraft>; 3],
+    ) -> Self {
+        let inertia = inertia.map(|i| Some(i.into()));
+        self.element(name, rigid(PointRef::on(body, centre), mass.into(), inertia))
+    }
+
+    /// Adds a round bar between two locations on a body, with its diameter, m, and density, kg/m^3.
+    pub fn bar(
+        self,
+        name: impl Into<String>,
+        body: &str,
+        between: [impl Into<LocationDraft>; 2],
+        diameter: impl Into<NumberDraft>,
+        density: impl Into<NumberDraft>,
+    ) -> Self {
+        let [from, to] = between.map(|at| PointRef::on(body, at));
+        let (diameter, density) = (diameter.into(), density.into());
+        self.element(name, ElementKindDraft::Bar { from, to, diameter, bore: None, density })
+    }
+
+    /// Adds a block with its centre at a location on a body, with its edges along the global axes, m, and its density,
+    /// kg/m^3.
+    pub fn block(
+        self,
+        name: impl Into<String>,
+        body: impl Into<String>,
+        centre: impl Into<LocationDraft>,
+        edges: [impl Into<NumberDraft>; 3],
+        density: impl Into<NumberDraft>,
+    ) -> Self {
+        let ([x, y, z], density) = (edges.map(Into::into), density.into());
+        self.element(name, ElementKindDraft::Block { centre: PointRef::on(body, centre), x, y, z, density })
+    }
+
+    /// Adds the mass of a solid on a body, with its density, kg/m^3.
+    pub fn mesh(
+        self,
+        name: impl Into<String>,
+        body: impl Into<String>,
+        mesh: Solid,
+        density: impl Into<NumberDraft>,
+    ) -> Self {
+        self.element(name, ElementKindDraft::Mesh { body: body.into(), mesh, density: density.into() })
     }
 
     /// Sets the acceleration of gravity, m/s^2, global.
@@ -157,7 +206,7 @@ impl Draft {
     /// Adds a linear spring between locations on two bodies, with its stiffness in N/m. The spring has no force in the
     /// design configuration.
     pub fn spring(
-        mut self,
+        self,
         name: impl Into<String>,
         bodies: [impl Into<String>; 2],
         between: [impl Into<LocationDraft>; 2],
@@ -165,8 +214,8 @@ impl Draft {
     ) -> Self {
         let ([i, j], [from, to]) = (bodies, between);
         let kind = ElementKindDraft::Spring {
-            from: PointRef::On { body: i.into(), at: from.into() },
-            to: PointRef::On { body: j.into(), at: to.into() },
+            from: PointRef::on(i, from),
+            to: PointRef::on(j, to),
             stiffness: Some(stiffness.into()),
             cubic: None,
             compression: None,
@@ -176,34 +225,172 @@ impl Draft {
             preload: None,
             damping: None,
         };
-        self.forces.push(ElementDraft::new(name, kind));
-        self
+        self.element(name, kind)
+    }
+
+    /// Adds a spring along the only sliding coordinate of a joint, with its stiffness in N/m. The spring has no force
+    /// in the design configuration.
+    pub fn joint_spring(
+        self,
+        name: impl Into<String>,
+        joint: impl Into<String>,
+        stiffness: impl Into<NumberDraft>,
+    ) -> Self {
+        let kind = ElementKindDraft::JointSpring {
+            joint: joint.into(),
+            coordinate: None,
+            stiffness: stiffness.into(),
+            equilibrium: None,
+            damping: None,
+        };
+        self.element(name, kind)
+    }
+
+    /// Adds a spring about the axis of a joint with a single angle, with its stiffness in N m/rad. The spring has no
+    /// moment in the design configuration.
+    pub fn torsion_spring(
+        self,
+        name: impl Into<String>,
+        joint: impl Into<String>,
+        stiffness: impl Into<NumberDraft>,
+    ) -> Self {
+        let kind = ElementKindDraft::TorsionSpring {
+            joint: joint.into(),
+            coordinate: None,
+            stiffness: stiffness.into(),
+            equilibrium: None,
+            damping: None,
+        };
+        self.element(name, kind)
+    }
+
+    /// Adds Coulomb friction in a hinge or ball joint, with the coefficient of friction and the radius of the pin or
+    /// ball, m.
+    pub fn friction(
+        self,
+        name: impl Into<String>,
+        joint: impl Into<String>,
+        coefficient: impl Into<NumberDraft>,
+        radius: impl Into<NumberDraft>,
+    ) -> Self {
+        let kind = ElementKindDraft::Friction {
+            joint: joint.into(),
+            coefficient: coefficient.into(),
+            radius: radius.into(),
+            length: None,
+            viscous: None,
+            transition_velocity: None,
+        };
+        self.element(name, kind)
+    }
+
+    /// Adds Coulomb friction in a slide, with the coefficient of friction.
+    pub fn slide_friction(
+        self,
+        name: impl Into<String>,
+        joint: impl Into<String>,
+        coefficient: impl Into<NumberDraft>,
+    ) -> Self {
+        let kind = ElementKindDraft::SlideFriction {
+            joint: joint.into(),
+            coefficient: coefficient.into(),
+            length: None,
+            ignored_direction: None,
+            viscous: None,
+            transition_velocity: None,
+        };
+        self.element(name, kind)
     }
 
     /// Adds a constant force at a location on a body: N, along a global direction of any length.
     pub fn force(
-        mut self,
+        self,
         name: impl Into<String>,
         body: impl Into<String>,
         at: impl Into<LocationDraft>,
         force: impl Into<NumberDraft>,
         along: impl Into<Vec3>,
     ) -> Self {
-        let kind = ElementKindDraft::PointForce {
-            at: PointRef::On { body: body.into(), at: at.into() },
-            force: force.into(),
-            along: along.into(),
-            axes: None,
-            law: None,
+        let (at, force, along) = (PointRef::on(body, at), force.into(), along.into());
+        self.element(name, ElementKindDraft::PointForce { at, force, along, axes: None, law: None })
+    }
+
+    /// Adds a constant moment on a body: N m, about a global direction of any length.
+    pub fn moment(
+        self,
+        name: impl Into<String>,
+        body: impl Into<String>,
+        moment: impl Into<NumberDraft>,
+        about: impl Into<Vec3>,
+    ) -> Self {
+        let (body, moment, about) = (body.into(), moment.into(), about.into());
+        self.element(name, ElementKindDraft::BodyMoment { body, moment, about, axes: None, law: None })
+    }
+
+    /// Adds a constant force of the road on a wheel, N: outboard, forward and up.
+    pub fn wheel_force(
+        self,
+        name: impl Into<String>,
+        wheel: impl Into<String>,
+        force: [impl Into<NumberDraft>; 3],
+    ) -> Self {
+        let (wheel, [outboard, forward, up]) = (wheel.into(), force.map(|f| Some(f.into())));
+        self.element(name, ElementKindDraft::WheelForce { wheel, outboard, forward, up, law: None })
+    }
+
+    /// Adds a bushing between locations on two bodies, with its stiffnesses along the global axes, N/m.
+    pub fn bushing(
+        self,
+        name: impl Into<String>,
+        bodies: [impl Into<String>; 2],
+        between: [impl Into<LocationDraft>; 2],
+        stiffness: [impl Into<NumberDraft>; 3],
+    ) -> Self {
+        let ([i, j], [from, to], [x, y, z]) = (bodies, between, stiffness.map(Into::into));
+        let kind = ElementKindDraft::Bushing {
+            from: PointRef::on(i, from),
+            to: PointRef::on(j, to),
+            x,
+            y,
+            z,
+            about_x: None,
+            about_y: None,
+            about_z: None,
+            damping: None,
         };
-        self.forces.push(ElementDraft::new(name, kind));
-        self
+        self.element(name, kind)
+    }
+
+    /// Adds the compliance of a joint, with its stiffnesses along the joint's axes, N/m, z along its axis.
+    pub fn elastic_joint(
+        self,
+        name: impl Into<String>,
+        joint: impl Into<String>,
+        stiffness: [impl Into<NumberDraft>; 3],
+    ) -> Self {
+        let [x, y, z] = stiffness.map(|k| Some(k.into()));
+        let [about_x, about_y, about_z] = [None, None, None];
+        let joint = joint.into();
+        self.element(name, ElementKindDraft::ElasticJoint { joint, x, y, z, about_x, about_y, about_z })
     }
 
     /// Adds output times, s.
     pub fn times(mut self, times: impl IntoIterator<Item = f64>) -> Self {
         self.times.extend(times);
         self
+    }
+}
+
+/// Rigid mass with these moments of inertia.
+fn rigid(centre: PointRef, mass: NumberDraft, [ixx, iyy, izz]: [Option<NumberDraft>; 3]) -> ElementKindDraft {
+    let [ixy, iyz, izx] = [None, None, None];
+    ElementKindDraft::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about: None }
+}
+
+impl PointRef {
+    /// Returns a reference to the point of a body at a location.
+    pub fn on(body: impl Into<String>, at: impl Into<LocationDraft>) -> Self {
+        Self::On { body: body.into(), at: at.into() }
     }
 }
 

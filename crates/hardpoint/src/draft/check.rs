@@ -14,6 +14,7 @@ mod sweeping;
 mod tolerancing;
 mod wheels;
 
+pub(crate) use elements::{CheckElement, ElementCheck};
 pub use formulas::{ConstantError, Nominal};
 pub(super) use measures::MeasureCheck;
 

@@ -6,7 +6,7 @@ use crate::law::Law;
 use crate::model::{
     Angle, Axes, BodyId, CubicStiffness, Damping, Density, ElementKind, Force, Inertia, JointId, Length,
     Mass, Moment, Plain, PointId, Solid, SpringTable, Stiffness, TorsionalDamping, TorsionalStiffness,
-    WheelId, elements,
+    WheelId, element, elements, if_mass,
 };
 use crate::space::Vec3;
 
@@ -106,7 +106,7 @@ macro_rules! in_drafts {
                 match self {
                     $(Self::$variant { $($field),* } => {
                         $(let $field = <$type as Field>::resolve($field, stringify!($field), check);)*
-                        Some(ElementKind::$variant { $($field: $field?),* })
+                        Some(ElementKind::$variant(element::$variant { $($field: $field?),* }))
                     })*
                     Self::Unread => None,
                 }
@@ -115,7 +115,7 @@ macro_rules! in_drafts {
             /// True if it has mass.
             pub fn has_mass(&self) -> bool {
                 match self {
-                    $(Self::$variant { .. } => stringify!($table) == "masses",)*
+                    $(Self::$variant { .. } => if_mass!($table, true, false),)*
                     Self::Unread => false,
                 }
             }

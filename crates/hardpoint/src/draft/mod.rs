@@ -12,6 +12,7 @@ mod idle;
 mod measure;
 
 pub use change::{ChangeDraft, ShapeDraft};
+pub(crate) use check::{CheckElement, ElementCheck};
 pub use check::{ConstantError, Nominal};
 pub use element::{ElementDraft, ElementKindDraft, ElementType, NumberDraft};
 pub use error::{DraftError, DraftLocation, Section, did_you_mean, some_of};

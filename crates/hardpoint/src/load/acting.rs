@@ -3,12 +3,13 @@
 //!
 //! Signs and formulas of the elements are those of `docs/loads.md`.
 
-use crate::constraint::MarkerPair;
+use crate::constraint::{MarkerPair, Row};
 use crate::design::Geometry;
 use crate::measure::WheelAt;
+use crate::model::element::JointFriction;
 use crate::model::{
-    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, Inertia, Joint, JointId, Length, LoadMode, Model,
-    NumberId, PointId, Stiffness, TorsionalStiffness, Wheel, WheelId, about_centre,
+    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, Wheel,
+    WheelId, elements, if_mass,
 };
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
@@ -30,7 +31,7 @@ impl<T: Real> MovingBody<T> {
     }
 
     /// Velocity of the body point at `p`.
-    fn velocity(&self, p: Vec3<T>) -> Vec3<T> {
+    pub fn velocity(&self, p: Vec3<T>) -> Vec3<T> {
         self.v.at(p)
     }
 
@@ -56,7 +57,7 @@ pub(crate) struct AppliedLoads<'a, T> {
 }
 
 /// Mass properties at the current pose.
-pub(super) struct Solid<T> {
+pub(crate) struct Solid<T> {
     pub body: BodyId,
     pub mass: T,
     pub centre: Vec3<T>,
@@ -64,7 +65,7 @@ pub(super) struct Solid<T> {
 }
 
 /// Moments of inertia about the centre.
-pub(super) enum Spread<T> {
+pub(crate) enum Spread<T> {
     /// Axes, and the matrix along them.
     Matrix(Mat3<T>, Mat3<T>),
     /// Rotationally symmetric: the line, the moment about it, and the moment about any perpendicular axis.
@@ -82,6 +83,61 @@ impl<T: Real> Spread<T> {
     }
 }
 
+/// Formula of a type of masses.
+pub(crate) trait MassFormula {
+    /// Returns the mass properties at the current pose.
+    fn solid<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Solid<T>;
+}
+
+/// Formulas of a type of forces; `e` is the element.
+pub(crate) trait ForceFormula {
+    /// Subtracts the wrenches that it applies from those of the bodies, ground included.
+    fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, out: &mut [Wrench<T>]);
+
+    /// Returns its magnitude: the tension of a spring, the generalised force of a joint spring, or the size of a given
+    /// force.
+    fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> T;
+
+    /// Calls `each` with every deflection of the element and the stiffness against it; the derivatives of the poses
+    /// give those of the deflections.
+    fn deflections<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, each: impl FnMut(T, T));
+}
+
+macro_rules! in_loads {
+    ($($(#[$doc:meta])* $variant:ident $name:literal $table:ident { $($fields:tt)* })*) => {
+        #[allow(unused_variables, reason = "a question to masses does not look at forces, and vice versa")]
+        impl<T: Real> AppliedLoads<'_, T> {
+            /// Mass properties of an element at the current pose.
+            #[inline]
+            pub fn solid(&self, kind: &ElementKind) -> Option<Solid<T>> {
+                match kind { $(ElementKind::$variant(it) => if_mass!($table, Some(it.solid(self)), None)),* }
+            }
+
+            /// Subtracts the wrenches that a force applies.
+            fn apply(&self, e: ElementId, out: &mut [Wrench<T>]) {
+                match &self.model.elements[e.0].kind {
+                    $(ElementKind::$variant(it) => if_mass!($table, (), it.apply(self, e, out))),*
+                }
+            }
+
+            /// Magnitude of a force.
+            pub fn size(&self, e: ElementId) -> T {
+                match &self.model.elements[e.0].kind {
+                    $(ElementKind::$variant(it) => if_mass!($table, T::zero(), it.size(self, e))),*
+                }
+            }
+
+            /// Calls `each` with every deflection of an element and the stiffness against it.
+            pub fn deflections(&self, e: ElementId, each: impl FnMut(T, T)) {
+                match &self.model.elements[e.0].kind {
+                    $(ElementKind::$variant(it) => if_mass!($table, (), it.deflections(self, e, each))),*
+                }
+            }
+        }
+    };
+}
+elements!(in_loads);
+
 impl<T: Real> AppliedLoads<'_, T> {
     /// Computes per body, ground included, F = f - g: the wrench that its joints must apply.
     pub fn needed(&self, out: &mut [Wrench<T>]) {
@@ -91,16 +147,16 @@ impl<T: Real> AppliedLoads<'_, T> {
         }
     }
 
-    fn number(&self, n: NumberId) -> T {
+    pub fn number(&self, n: NumberId) -> T {
         self.geometry.numbers[n.0]
     }
 
     /// An optional number; zero by default.
-    fn or_zero(&self, n: Option<NumberId>) -> T {
+    pub fn or_zero(&self, n: Option<NumberId>) -> T {
         n.map_or_else(T::zero, |n| self.number(n))
     }
 
-    fn body(&self, point: PointId) -> usize {
+    pub fn body(&self, point: PointId) -> usize {
         self.model.points[point.0].body.0
     }
 
@@ -109,24 +165,15 @@ impl<T: Real> AppliedLoads<'_, T> {
         self.bodies[self.body(point)].pose.point(self.geometry.points[point.0])
     }
 
-    /// Length at which the tension of a spring is its preload.
-    fn free_length(&self, from: PointId, to: PointId, given: Option<Length>) -> T {
-        match given {
-            Some(free) => self.number(free.0),
-            // L_o of the design configuration, which depends on the design
-            None => (self.design_position(to) - self.design_position(from)).norm(),
-        }
-    }
-
     /// Distance between the ends of a spring; NaN if they coincide, since the direction is then undefined.
-    fn apart(&self, d: Vec3<T>) -> T {
+    pub fn apart(&self, d: Vec3<T>) -> T {
         let length = d.norm();
         let limit = T::constant(ENDS_MEET * self.geometry.size);
         if length.exceeds(limit) { length } else { T::constant(f64::NAN) }
     }
 
     /// Position of a point in the design configuration of this design.
-    fn design_position(&self, point: PointId) -> Vec3<T> {
+    pub fn design_position(&self, point: PointId) -> Vec3<T> {
         let frame: Pose<T> = self.model.bodies[self.body(point)].frame.spread();
         frame.point(self.geometry.points[point.0])
     }
@@ -134,64 +181,6 @@ impl<T: Real> AppliedLoads<'_, T> {
     /// Global axes of the design configuration, rotated with a body.
     pub fn turned(&self, body: usize) -> Mat3<T> {
         self.bodies[body].pose.rot * self.model.bodies[body].frame.rot.transpose().spread()
-    }
-
-    /// Mass properties of an element at the current pose.
-    pub fn solid(&self, kind: &ElementKind) -> Option<Solid<T>> {
-        let zero = T::zero();
-        let body = kind.mass_on(self.model)?;
-        Some(match kind {
-            ElementKind::Rigid { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about } => {
-                let of = |n: &Option<Inertia>| n.map(|n| self.number(n.0));
-                let given = [[ixx, iyy, izz].map(of), [ixy, iyz, izx].map(of)];
-                let mass = self.number(mass.0);
-                let [[a, b, c], [d, e, f]] = match about {
-                    Some(about) => about_centre(
-                        mass,
-                        self.design_position(*centre) - self.design_position(*about),
-                        given,
-                    ),
-                    None => given.map(|list| list.map(|n| n.unwrap_or(zero))),
-                };
-                let cols = [Vec3::new(a, -d, -f), Vec3::new(-d, b, -e), Vec3::new(-f, -e, c)];
-                let inertia = Spread::Matrix(self.turned(body.0), Mat3 { cols });
-                Solid { body, mass, centre: self.point(*centre), inertia }
-            }
-            ElementKind::Mesh { mesh, density, .. } => {
-                let density = self.number(density.0);
-                let (pose, frame) = (self.bodies[body.0].pose, self.model.bodies[body.0].frame);
-                let place = if mesh.in_body { mesh.centre } else { frame.inverse().point(mesh.centre) };
-                let axes = if mesh.in_body { pose.rot } else { self.turned(body.0) };
-                let cols = mesh.inertia().map(|col| col.spread() * density);
-                let inertia = Spread::Matrix(axes, Mat3 { cols });
-                let centre = pose.point(place.spread());
-                Solid { body, mass: density * T::constant(mesh.volume), centre, inertia }
-            }
-            ElementKind::Bar { from, to, diameter, bore, density } => {
-                let [p, q] = [*from, *to].map(|p| self.point(p));
-                let (outer, bore) = (self.number(diameter.0), self.or_zero(bore.map(|b| b.0)));
-                let d = q - p;
-                let length = d.norm();
-                let (outer, bore) = (outer * outer, bore * bore);
-                // m = rho pi/4 (D^2 - d^2) L,   I_a = m (D^2 + d^2)/8,   I_t = I_a/2 + m L^2/12
-                let area = (outer - bore) * T::constant(std::f64::consts::FRAC_PI_4);
-                let mass = self.number(density.0) * area * length;
-                let axial = mass * (outer + bore) * T::constant(0.125);
-                let across = axial * T::constant(0.5) + mass * length * length * T::constant(1.0 / 12.0);
-                let inertia = Spread::Line(d * (T::one() / length), axial, across);
-                Solid { body, mass, centre: (p + q) * T::constant(0.5), inertia }
-            }
-            ElementKind::Block { centre, x, y, z, density } => {
-                let [x, y, z] = [x, y, z].map(|n| self.number(n.0));
-                let mass = self.number(density.0) * x * y * z;
-                let twelfth = mass * T::constant(1.0 / 12.0);
-                let [a, b, c] = [y * y + z * z, z * z + x * x, x * x + y * y].map(|square| square * twelfth);
-                let cols = [Vec3::new(a, zero, zero), Vec3::new(zero, b, zero), Vec3::new(zero, zero, c)];
-                let inertia = Spread::Matrix(self.turned(body.0), Mat3 { cols });
-                Solid { body, mass, centre: self.point(*centre), inertia }
-            }
-            _ => return None,
-        })
     }
 
     /// Adds the contribution of an element to `f - g` of the bodies: its inertial wrench, or minus its applied wrench.
@@ -213,142 +202,39 @@ impl<T: Real> AppliedLoads<'_, T> {
             }
             return;
         }
-        match kind {
-            ElementKind::Spring { from, to, .. } => {
-                let (p, q) = (self.point(*from), self.point(*to));
-                let d = q - p;
-                // s pulls both ends along the line between them                                                 (44)
-                let pull = d * (self.size(e) / self.apart(d));
-                out[self.body(*to)] += Wrench::force(pull, q);
-                out[self.body(*from)] -= Wrench::force(pull, q);
-            }
-            ElementKind::JointSpring { .. }
-            | ElementKind::TorsionSpring { .. }
-            | ElementKind::Friction { .. }
-            | ElementKind::SlideFriction { .. } => {
-                let Some((joint, l)) = self.unit(e) else { return };
-                let tau = if kind.rubs() { self.friction[e.0] } else { self.size(e) };
-                // g_j = tau l, g_i = -tau l: tau works on the coordinate                                        (44)
-                let push = l.times_plus(tau, Wrench::zero());
-                let [i, j] = self.model.joints[joint].bodies;
-                out[j.0] -= push;
-                out[i.0] += push;
-            }
-            ElementKind::PointForce { at, along, axes, .. } => {
-                let body = self.body(*at);
-                let push = self.along(*along, *axes, body) * self.size(e);
-                out[body] -= Wrench::force(push, self.point(*at));
-            }
-            ElementKind::WheelForce { wheel, .. } => {
-                let (contact, push) = self.road(e, *wheel);
-                out[self.model.wheels[wheel.0].body.0] -= Wrench::force(push, contact);
-            }
-            ElementKind::BodyMoment { body, about, axes, .. } => {
-                let turn = self.along(*about, *axes, body.0) * self.size(e);
-                out[body.0] -= Wrench::moment(turn);
-            }
-            ElementKind::Bushing { from, to, .. } => {
-                let push = self.bushing(kind);
-                out[self.body(*to)] -= push;
-                out[self.body(*from)] += push;
-            }
-            ElementKind::Rigid { .. }
-            | ElementKind::Bar { .. }
-            | ElementKind::Block { .. }
-            | ElementKind::Mesh { .. }
-            | ElementKind::ElasticJoint { .. } => {}
-        }
+        self.apply(e, out);
     }
 
     /// A direction in global axes at the current pose.
-    fn along(&self, direction: Vec3, axes: Option<Axes>, body: usize) -> Vec3<T> {
+    pub fn along(&self, direction: Vec3, axes: Option<Axes>, body: usize) -> Vec3<T> {
         match axes.unwrap_or_default() {
             Axes::Global | Axes::Joint => direction.spread(),
             Axes::Body => self.turned(body) * direction.spread(),
         }
     }
 
-    /// The joint whose coordinate an element acts on, its markers, and the row that measures the coordinate.
-    fn row_of(&self, kind: &ElementKind) -> Option<(usize, MarkerPair<T>, crate::constraint::Row)> {
-        let (joint, coordinate) = kind.coordinate(self.model)?;
+    /// Markers of a joint, and the row that measures its coordinate.
+    fn row_of(&self, (joint, coordinate): (JointId, usize)) -> (MarkerPair<T>, Row) {
         let j = &self.model.joints[joint.0];
         let [m_i, m_j] = self.geometry.markers[joint.0];
         let [i, j_pose] = j.bodies.map(|b| self.bodies[b.0].pose);
         let axes = Mat3::IDENTITY.spread();
         let ends = MarkerPair { i: i.compose(m_i), j: j_pose.compose(m_j), axes };
-        Some((joint.0, ends, j.kind.coordinates[coordinate].row))
+        (ends, j.kind.coordinates[coordinate].row)
     }
 
-    /// Magnitude of a force: the tension of a spring, the generalised force of a joint spring, or the size of a given
-    /// force.
-    pub fn size(&self, e: ElementId) -> T {
-        let kind = &self.model.elements[e.0].kind;
-        match kind {
-            ElementKind::Spring { from, to, preload, damping, .. } => {
-                let (p, q) = (self.point(*from), self.point(*to));
-                let d = q - p;
-                // s = p + k (L - L_o) + k_3 (L - L_o)^3 + f T(L - L_o) + c L.
-                let mut tension = self.pull(kind, d.norm())[0] + self.or_zero(preload.map(|n| n.0));
-                if let Some(damping) = damping {
-                    let velocity =
-                        self.bodies[self.body(*to)].velocity(q) - self.bodies[self.body(*from)].velocity(p);
-                    tension += self.number(damping.0) * (d.dot(velocity) / self.apart(d));
-                }
-                tension
-            }
-            ElementKind::JointSpring { stiffness, equilibrium, damping, .. } => {
-                self.on_coordinate(e, stiffness.0, equilibrium.map(|n| n.0), damping.map(|n| n.0))
-            }
-            ElementKind::TorsionSpring { stiffness, equilibrium, damping, .. } => {
-                self.on_coordinate(e, stiffness.0, equilibrium.map(|n| n.0), damping.map(|n| n.0))
-            }
-            ElementKind::Friction { .. } | ElementKind::SlideFriction { .. } => match self.ball(kind) {
-                Some((_, turn)) => self.friction[e.0] * magnitude(self.heading(kind, turn), STILL),
-                None => self.friction[e.0],
-            },
-            // A zero force has no derivative.
-            ElementKind::WheelForce { wheel, .. } => self.road(e, *wheel).1.norm(),
-            ElementKind::PointForce { force, .. } => self.number(force.0) * self.laws[e.0],
-            ElementKind::BodyMoment { moment, .. } => self.number(moment.0) * self.laws[e.0],
-            ElementKind::Bushing { .. } => self.bushing(kind).f.norm(),
-            ElementKind::Rigid { .. }
-            | ElementKind::Bar { .. }
-            | ElementKind::Block { .. }
-            | ElementKind::Mesh { .. }
-            | ElementKind::ElasticJoint { .. } => T::zero(),
-        }
+    /// Unit wrench on body j that does work on a coordinate.
+    pub fn unit(&self, at: (JointId, usize)) -> Wrench<T> {
+        let (ends, row) = self.row_of(at);
+        row.wrench(&ends)
     }
 
-    /// Tension of a spring from its deflection, and its derivative by the length.
-    fn pull(&self, kind: &ElementKind, length: T) -> [T; 2] {
-        let ElementKind::Spring { from, to, stiffness, cubic, scale, free_length, .. } = kind else {
-            return [T::zero(); 2];
-        };
-        let way = length - self.free_length(*from, *to, *free_length);
-        let stiffness = self.or_zero(stiffness.map(|n| n.0));
-        let (mut pull, mut slope) = (stiffness * way, stiffness);
-        if let Some(cubic) = cubic {
-            let cubic = self.number(cubic.0) * way * way;
-            // ds/dL = k + 3 k_3 (L - L_o)^2 + f T'(L - L_o)
-            (pull, slope) = (pull + cubic * way, slope + cubic * T::constant(3.0));
-        }
-        if let Some(table) = kind.table() {
-            let scale = scale.map_or_else(T::one, |n| self.number(n.0));
-            let [force, by_way] = table.at(way);
-            (pull, slope) = (pull + scale * force, slope + scale * by_way);
-        }
-        [pull, slope]
-    }
-
-    /// Point at which the road acts on a wheel, and the force.
-    fn road(&self, e: ElementId, wheel: WheelId) -> (Vec3<T>, Vec3<T>) {
-        let ElementKind::WheelForce { outboard, forward, up, .. } = &self.model.elements[e.0].kind else {
-            return (Vec3::zero(), Vec3::zero());
-        };
-        let now = self.wheel(wheel);
-        let [o, f, z] = [outboard, forward, up].map(|n| self.or_zero(n.map(|n| n.0)));
-        let push = now.outboard() * o + now.forward() * f + Vec3::AXES[2].spread() * z;
-        (now.contact(), push * self.laws[e.0])
+    /// Adds tau times a unit wrench between the bodies of a joint: g_j = tau l, g_i = -tau l.                    (44)
+    pub fn apply_between(&self, joint: JointId, l: Wrench<T>, tau: T, out: &mut [Wrench<T>]) {
+        let push = l.times_plus(tau, Wrench::zero());
+        let [i, j] = self.model.joints[joint.0].bodies;
+        out[j.0] -= push;
+        out[i.0] += push;
     }
 
     /// A wheel at the current pose.
@@ -366,64 +252,69 @@ impl<T: Real> AppliedLoads<'_, T> {
         }
     }
 
-    /// Joint of the friction in a ball joint, and the angular velocity of its second body relative to the first.
-    fn ball(&self, kind: &ElementKind) -> Option<(JointId, Vec3<T>)> {
-        let ElementKind::Friction { joint, .. } = kind else { return None };
-        let Joint { kind: of, bodies, .. } = &self.model.joints[joint.0];
-        let [i, j] = bodies.map(|b| self.bodies[b.0].v.w);
-        of.coordinates.is_empty().then(|| (*joint, j - i))
+    /// Friction of a friction element.
+    fn friction_of(&self, e: ElementId) -> Option<JointFriction> {
+        self.model.elements[e.0].kind.friction(self.model)
+    }
+
+    /// Angular velocity of the second body of a joint relative to the first.
+    fn turn(&self, joint: JointId) -> Vec3<T> {
+        let [i, j] = self.model.joints[joint.0].bodies.map(|b| self.bodies[b.0].v.w);
+        j - i
     }
 
     /// Direction of rotation in a ball joint, regularised at low speed: `omega / sqrt(omega^2 + w_0^2)`.
-    fn heading(&self, kind: &ElementKind, turn: Vec3<T>) -> Vec3<T> {
-        turn * (T::one() / magnitude_with(turn, self.transition_velocity(kind)))
+    fn heading(&self, friction: &JointFriction) -> Vec3<T> {
+        let turn = self.turn(friction.joint);
+        turn * (T::one() / magnitude_with(turn, self.transition_velocity(friction)))
     }
 
-    /// Unit wrench of an element, which does work on its coordinate or on the rotation of a ball joint; with its joint.
-    pub fn unit(&self, e: ElementId) -> Option<(usize, Wrench<T>)> {
-        let kind = &self.model.elements[e.0].kind;
-        if let Some((joint, turn)) = self.ball(kind) {
-            return Some((joint.0, Wrench::moment(self.heading(kind, turn))));
+    /// Unit wrench of friction, which does work on its coordinate or on the rotation of a ball joint; with its joint.
+    pub fn friction_unit(&self, e: ElementId) -> Option<(JointId, Wrench<T>)> {
+        let friction = self.friction_of(e)?;
+        let unit = match friction.coordinate {
+            Some(coordinate) => self.unit((friction.joint, coordinate)),
+            None => Wrench::moment(self.heading(&friction)),
+        };
+        Some((friction.joint, unit))
+    }
+
+    /// Moment or force of a friction element.
+    pub fn friction_size(&self, e: ElementId) -> T {
+        match self.friction_of(e) {
+            Some(friction) if friction.coordinate.is_none() => {
+                self.friction[e.0] * magnitude(self.heading(&friction), STILL)
+            }
+            Some(_) | None => self.friction[e.0],
         }
-        let (joint, ends, row) = self.row_of(kind)?;
-        Some((joint, row.wrench(&ends)))
+    }
+
+    /// Adds the friction of a friction element.
+    pub fn apply_friction(&self, e: ElementId, out: &mut [Wrench<T>]) {
+        if let Some((joint, l)) = self.friction_unit(e) {
+            self.apply_between(joint, l, self.friction[e.0], out);
+        }
     }
 
     /// Transition velocity of a friction element, rad/s or m/s.
-    fn transition_velocity(&self, kind: &ElementKind) -> T {
-        let given = match kind {
-            ElementKind::Friction { transition_velocity, .. } => {
-                (transition_velocity.map(|n| n.0), TRANSITION_VELOCITY)
-            }
-            ElementKind::SlideFriction { transition_velocity, .. } => {
-                (transition_velocity.map(|n| n.0), SLIDE_TRANSITION_VELOCITY)
-            }
-            _ => (None, TRANSITION_VELOCITY),
-        };
-        given.0.map_or_else(|| T::constant(given.1), |n| self.number(n))
+    fn transition_velocity(&self, friction: &JointFriction) -> T {
+        let default = T::constant(friction.default_transition_velocity);
+        friction.transition_velocity.map_or(default, |n| self.number(n))
     }
 
     /// Friction coefficient per normal force, against the motion, and the viscous part: `mu r s` and `c w` of a hinge,
     /// `mu s` and `c v` of a slide, with s from -1 to 1, 0 at rest; of a ball joint, whose unit vector contains s,
     /// `mu r` and `c sqrt(omega^2 + w_0^2)`.
     pub fn grip(&self, e: ElementId) -> [T; 2] {
-        let kind = &self.model.elements[e.0].kind;
-        let (coefficient, radius, viscous) = match kind {
-            ElementKind::Friction { coefficient, radius, viscous, .. } => {
-                (coefficient, Some(radius), viscous.map(|n| n.0))
-            }
-            ElementKind::SlideFriction { coefficient, viscous, .. } => {
-                (coefficient, None, viscous.map(|n| n.0))
-            }
-            _ => return [T::zero(); 2],
+        let Some(friction) = self.friction_of(e) else { return [T::zero(); 2] };
+        let grip = self.number(friction.coefficient);
+        let grip = friction.radius.map_or(grip, |radius| grip * self.number(radius));
+        let transition_velocity = self.transition_velocity(&friction);
+        let viscous = self.or_zero(friction.viscous);
+        let Some(coordinate) = friction.coordinate else {
+            return [grip, viscous * magnitude_with(self.turn(friction.joint), transition_velocity)];
         };
-        let grip = self.number(coefficient.0);
-        let grip = radius.map_or(grip, |radius| grip * self.number(radius.0));
-        let (transition_velocity, viscous) = (self.transition_velocity(kind), self.or_zero(viscous));
-        if let Some((_, turn)) = self.ball(kind) {
-            return [grip, viscous * magnitude_with(turn, transition_velocity)];
-        }
-        let Some([_, rate]) = self.coordinate(e) else { return [T::zero(); 2] };
+        let [_, rate] = self.coordinate(e, (friction.joint, coordinate));
         // s = w / sqrt(w^2 + w_0^2)
         let s = rate / (rate * rate + transition_velocity * transition_velocity).sqrt();
         [grip * s, viscous * rate]
@@ -433,21 +324,17 @@ impl<T: Real> AppliedLoads<'_, T> {
     /// or the forces at both ends of a bearing with a length; the whole force for a ball joint. Returns them and their
     /// number.
     pub fn normal_forces(&self, e: ElementId, wrench: Wrench<T>) -> ([Vec3<T>; 2], usize) {
-        let kind = &self.model.elements[e.0].kind;
-        let (joint, length, normal) = match kind {
-            ElementKind::Friction { joint, length, .. } => (*joint, length, None),
-            ElementKind::SlideFriction { joint, length, ignored_direction, .. } => {
-                (*joint, length, *ignored_direction)
-            }
-            _ => return ([Vec3::zero(); 2], 0),
+        let Some(JointFriction { joint, coordinate, length, ignored_direction, .. }) = self.friction_of(e)
+        else {
+            return ([Vec3::zero(); 2], 0);
         };
-        if self.ball(kind).is_some() {
+        if coordinate.is_none() {
             return ([wrench.f, Vec3::zero()], 1);
         }
         let body = self.model.joints[joint.0].bodies[1];
         let marker = self.bodies[body.0].pose.compose(self.geometry.markers[joint.0][1]);
         let z = marker.rot.cols[2];
-        let across = |v: Vec3<T>| match normal {
+        let across = |v: Vec3<T>| match ignored_direction {
             None => v - z * z.dot(v),
             Some(normal) => {
                 // Along p = n x z alone
@@ -459,88 +346,31 @@ impl<T: Real> AppliedLoads<'_, T> {
         let Some(length) = length else { return ([force, Vec3::zero()], 1) };
         // P = F/2 +- z x M / L, with M about the joint's location
         let moment = wrench.m - marker.r.cross(wrench.f);
-        let couple = across(z.cross(moment)) * (T::one() / self.number(length.0));
+        let couple = across(z.cross(moment)) * (T::one() / self.number(length));
         let half = force * T::constant(0.5);
         ([half + couple, half - couple], 2)
     }
 
     /// tau = -k (chi - chi_o) - c chi.,  chi measured from the design configuration.
-    fn on_coordinate(
+    pub fn on_coordinate(
         &self,
-        e: ElementId,
+        [value, rate]: [T; 2],
         stiffness: NumberId,
         equilibrium: Option<NumberId>,
         damping: Option<NumberId>,
     ) -> T {
-        let Some([value, rate]) = self.coordinate(e) else { return T::zero() };
         let force = -(self.number(stiffness) * (value - self.or_zero(equilibrium)));
         damping.map_or(force, |damping| force - self.number(damping) * rate)
     }
 
-    /// Calls `each` with the stiffness and the deflection of every compliant direction of an element; the derivatives
-    /// of the poses give those of the deflections.
-    pub fn deflections(&self, e: ElementId, mut each: impl FnMut(T, T)) {
-        let kind = &self.model.elements[e.0].kind;
-        match kind {
-            ElementKind::Spring { from, to, .. } => {
-                let length = self.apart(self.point(*to) - self.point(*from));
-                each(length, self.pull(kind, length)[1]);
-            }
-            ElementKind::JointSpring { stiffness: Stiffness(n), .. }
-            | ElementKind::TorsionSpring { stiffness: TorsionalStiffness(n), .. } => {
-                if let Some([value, _]) = self.coordinate(e) {
-                    each(value, self.number(*n));
-                }
-            }
-            ElementKind::Bushing { from, to, x, y, z, about_x, about_y, about_z, .. } => {
-                let (p, q) = (self.point(*from), self.point(*to));
-                let axes = self.turned(self.body(*from));
-                let way = axes.transpose_mul(q - p);
-                let turn = rotation_vector(axes.transpose() * self.turned(self.body(*to)));
-                let slides = [x, y, z].map(|n| self.number(n.0));
-                let turns = [about_x, about_y, about_z].map(|n| self.or_zero(n.map(|n| n.0)));
-                for k in 0..3 {
-                    each(way[k], slides[k]);
-                    each(turn[k], turns[k]);
-                }
-            }
-            _ => {}
-        }
-    }
-
     /// Coordinate that an element acts on, measured from the design configuration, and its rate.
-    pub fn coordinate(&self, e: ElementId) -> Option<[T; 2]> {
-        let (joint, ends, row) = self.row_of(&self.model.elements[e.0].kind)?;
+    pub fn coordinate(&self, e: ElementId, at: (JointId, usize)) -> [T; 2] {
+        let ((ends, row), joint) = (self.row_of(at), at.0.0);
         let kept = self.geometry.kept[joint].by(row);
         let [i, j] = self.model.joints[joint].bodies.map(|b| self.bodies[b.0].v);
         let value = row.value(&ends, self.near[e.0] + kept) - kept;
         // chi. = l . (V_j - V_i)
-        Some([value, row.wrench(&ends).on(j - i)])
-    }
-
-    /// Wrench of a bushing on body j.
-    fn bushing(&self, kind: &ElementKind) -> Wrench<T> {
-        let ElementKind::Bushing { from, to, x, y, z, about_x, about_y, about_z, damping } = kind else {
-            return Wrench::zero();
-        };
-        let (i, j) = (self.body(*from), self.body(*to));
-        let (p, q, axes) = (self.point(*from), self.point(*to), self.turned(i));
-        let way = axes.transpose_mul(q - p);
-        let [x, y, z] = [x, y, z].map(|n| self.number(n.0));
-        // F = -Q K Q^T (P_j - P_i) - c v,  v of P_j as seen from i                                             (44)
-        let mut force = -(axes * Vec3::new(x * way.x, y * way.y, z * way.z));
-        if let Some(damping) = damping {
-            let slip = self.bodies[j].velocity(q) - self.bodies[i].velocity(q);
-            force -= slip * self.number(damping.0);
-        }
-        let mut push = Wrench::force(force, q);
-        let about = [about_x, about_y, about_z];
-        if about.iter().any(|n| n.is_some()) {
-            let turned = rotation_vector(axes.transpose() * self.turned(j));
-            let [x, y, z] = about.map(|n| self.or_zero(n.map(|n| n.0)));
-            push += Wrench::moment(-(axes * Vec3::new(x * turned.x, y * turned.y, z * turned.z)));
-        }
-        push
+        [value, row.wrench(&ends).on(j - i)]
     }
 
     /// Kinetic energy of a body, or of all.
@@ -560,10 +390,6 @@ impl<T: Real> AppliedLoads<'_, T> {
     }
 }
 
-/// Default transition velocity of friction, rad/s; of slides, m/s.
-const TRANSITION_VELOCITY: f64 = 0.01;
-const SLIDE_TRANSITION_VELOCITY: f64 = 0.001;
-
 /// Regularisation of the size of a force, N, so that it has a derivative at zero.
 const NO_FORCE: f64 = 1e-9;
 /// Regularisation of the length of a direction.
@@ -582,25 +408,4 @@ fn magnitude_with<T: Real>(v: Vec3<T>, a: T) -> T {
 /// Regularised size of a force.
 pub(super) fn force_size<T: Real>(force: Vec3<T>) -> T {
     magnitude(force, NO_FORCE)
-}
-
-/// Square of the sine below which the series of the angle is accurate to round-off.
-const SMALL: f64 = 1e-6;
-
-/// Rotation vector of a rotation by less than half a turn: its axis times its angle, rad.
-fn rotation_vector<T: Real>(rot: Mat3<T>) -> Vec3<T> {
-    let [x, y, z] = rot.cols;
-    let half = T::constant(0.5);
-    // sin(theta) n and cos(theta)
-    let sine = Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x) * half;
-    let square = sine.dot(sine);
-    if square.decisive() < SMALL {
-        // theta / sin(theta) = 1 + s^2/6 + 3 s^4/40
-        let more = square * T::constant(3.0 / 40.0) + T::constant(1.0 / 6.0);
-        sine * (square * more + T::one())
-    } else {
-        let cosine = (x.x + y.y + z.z - T::one()) * half;
-        let size = sine.norm();
-        sine * (size.atan2(cosine) / size)
-    }
 }

@@ -8,9 +8,8 @@
 use crate::design::{BodyFixed, DesignMap, Geometry};
 use crate::linalg::Elimination;
 use crate::measure::{Instant, StepValues, bodies_asked_for};
-use crate::model::{
-    DriverId, ElementId, ElementKind, GROUND, MeasureKind, Model, NumberId, VariableId, WheelId,
-};
+use crate::model::element::Compliance;
+use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, NumberId, VariableId, WheelId};
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{PairDirection, Seconds};
@@ -74,11 +73,10 @@ impl<'a> Compliances<'a> {
         }
         let (mut ways, mut directions) = (Vec::new(), Vec::new());
         for element in &model.elements {
-            let ElementKind::ElasticJoint { joint, x, y, z, about_x, about_y, about_z } = element.kind else {
-                continue;
+            let (joint, [slides, turns]) = match element.kind.force(model).map(|force| force.compliance) {
+                Some(Compliance::Joint(joint, stiffnesses)) => (joint, stiffnesses),
+                Some(Compliance::None | Compliance::Element) | None => continue,
             };
-            let slides = [x, y, z].map(|n| n.map(|n| n.0));
-            let turns = [about_x, about_y, about_z].map(|n| n.map(|n| n.0));
             for (axis, (slide, turn)) in Vec3::AXES.into_iter().zip(slides.into_iter().zip(turns)) {
                 let twists = [Twist { w: Vec3::ZERO, v: axis }, Twist { w: axis, v: Vec3::ZERO }];
                 for (stiffness, twist) in [slide, turn].into_iter().zip(twists) {
@@ -107,7 +105,8 @@ impl<'a> Compliances<'a> {
             Changed { fixed: design_map.fixed(&values), geometry: design_map.geometry(&values) }
         };
         let mut bodies = bodies_asked_for(model);
-        bodies.extend(model.elements.iter().flat_map(|e| e.kind.bodies(model)).map(|b| b.0));
+        let forces = model.elements.iter().filter_map(|e| e.kind.force(model));
+        bodies.extend(forces.flat_map(|force| force.bodies).map(|b| b.0));
         bodies.sort_unstable();
         bodies.dedup();
         bodies.retain(|b| *b != GROUND.0);

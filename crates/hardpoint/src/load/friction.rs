@@ -5,7 +5,7 @@
 //! (`mu r s` of a hinge) and d the viscous part. Newton's method solves these equations, one per friction element.
 
 use crate::linalg::Elimination;
-use crate::model::{ElementId, ElementKind, JointId, Model};
+use crate::model::{ElementId, JointId, Model};
 use crate::number::Dual;
 use crate::space::{Real, Vec3, Wrench};
 
@@ -52,11 +52,7 @@ struct FrictionElement {
 
 impl FrictionElement {
     fn of(model: &Model, element: ElementId) -> Option<Self> {
-        let (ElementKind::Friction { joint, .. } | ElementKind::SlideFriction { joint, .. }) =
-            model.elements[element.0].kind
-        else {
-            return None;
-        };
+        let joint = model.elements[element.0].kind.friction(model)?.joint;
         let (normal_forces, per_moment) = (([Vec3::ZERO; 2], 0), Vec::new());
         Some(Self {
             element,

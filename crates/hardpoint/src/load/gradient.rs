@@ -12,7 +12,7 @@
 //! | [`VirtualMotion::turning`] | | `sum F . Y'` by the twists of the frames that unit twists and wrenches turn with |
 
 use crate::design::Geometry;
-use crate::model::{BodyId, DriverId, ElementId, MeasureKind, Model};
+use crate::model::{DriverId, ElementId, MeasureKind, Model};
 use crate::motion::kinematics::State;
 use crate::number::Dual;
 use crate::sensitivity::{Adjoint, Load, Support};
@@ -53,11 +53,12 @@ impl LoadGradients {
         let model = solver.model;
         let bodies = model.bodies.len();
         let mut felt = vec![Vec::new(); bodies];
-        for (e, element) in model.elements.iter().enumerate().filter(|(_, e)| !e.kind.has_mass()) {
-            let mut on: Vec<BodyId> = element.kind.bodies(model);
-            on.sort_unstable();
-            on.dedup();
-            on.iter().for_each(|b| felt[b.0].push(ElementId(e)));
+        for (e, element) in model.elements.iter().enumerate() {
+            let Some([i, j]) = element.kind.force(model).map(|force| force.bodies) else { continue };
+            felt[i.0].push(ElementId(e));
+            if i != j {
+                felt[j.0].push(ElementId(e));
+            }
         }
         let moving: Vec<usize> = (1..bodies).collect();
         Self {

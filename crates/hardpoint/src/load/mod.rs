@@ -31,6 +31,7 @@ mod solver;
 mod turns;
 mod virtual_motion;
 
+pub(crate) use acting::{AppliedLoads, ForceFormula, MassFormula, Solid, Spread};
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
 pub(crate) use program::{RecordedLoads, hindrance};

@@ -8,7 +8,7 @@ use hardpoint_tape::Number;
 
 use crate::design::DesignMap;
 use crate::measure::{RecordedValue, RecordedValues};
-use crate::model::{ElementId, ElementKind, MeasureKind, Model};
+use crate::model::{ElementId, MeasureKind, Model};
 use crate::motion::kinematics::State;
 use crate::motion::step_program::RecordedStep;
 use crate::number::{Dual, record as recording};
@@ -33,11 +33,11 @@ pub(crate) fn hindrance(model: &Model, topology: &Topology) -> Option<&'static s
     if (model.bodies.len() + model.elements.len()) * (1 + model.variables.len()) > MOST_PAIRS {
         return Some("the program of its loads would be too long");
     }
-    let kinds = || model.elements.iter().map(|e| &e.kind);
-    if kinds().any(ElementKind::rubs) {
+    let forces = || model.elements.iter().filter_map(|e| e.kind.force(model));
+    if forces().any(|force| force.friction.is_some()) {
         return Some("joints have friction, which is solved iteratively");
     }
-    if !kinds().all(ElementKind::is_arithmetic) {
+    if !forces().all(|force| force.is_arithmetic) {
         return Some("a spring has a table, or a bushing a torsional stiffness");
     }
     let counted = (0..model.elements.len())
@@ -80,7 +80,7 @@ impl<'a> RecordedLoads<'a> {
         let along = |v| recording::strictly(|| geometry_along(design_map, values, v));
         let mut bodies = Equilibrium::new(model, topology);
         bodies.stand(state, |d| drivers[d][1]);
-        let with_law = (0..model.elements.len()).filter(|e| model.elements[*e].kind.law().is_some());
+        let with_law = (0..model.elements.len()).filter(|e| model.elements[*e].kind.law(model).is_some());
         with_law.zip(*laws).for_each(|(e, law)| bodies.now.laws[e] = *law);
         for e in 0..model.elements.len() {
             if let Turns::Coordinate(c) = Turns::of(model, topology, ElementId(e)) {

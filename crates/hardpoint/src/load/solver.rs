@@ -89,7 +89,7 @@ impl<'a> LoadSolver<'a> {
         let model = self.model;
         self.bodies.stand(state, |d| one.parts.law_of(d).at(t).d());
         for (law, element) in self.bodies.now.laws.iter_mut().zip(&model.elements) {
-            *law = element.kind.law().map_or(1.0, |law| law.at(t).value());
+            *law = element.kind.law(model).map_or(1.0, |law| law.at(t).value());
         }
         self.follow_turns(&state.q, one.turns.as_ref().map_or(&[], |turns| &turns.values));
         self.bodies.now.friction.fill(0.0);
@@ -122,10 +122,10 @@ impl<'a> LoadSolver<'a> {
     fn rub(&mut self, topology: &Topology, state: &mut State<f64>) {
         let Self { model, geometry, bodies, friction, stresses, .. } = self;
         let acting = bodies.now.acting(model, geometry);
-        let units: Vec<_> = friction.elements().map(|e| acting.unit(e)).collect();
-        let response = |unit: Option<(usize, Wrench)>| {
+        let units: Vec<_> = friction.elements().map(|e| acting.friction_unit(e)).collect();
+        let response = |unit: Option<(JointId, Wrench)>| {
             let Some((joint, l)) = unit else { return Vec::new() };
-            let [i, j] = model.joints[joint].bodies;
+            let [i, j] = model.joints[joint.0].bodies;
             bodies.response(topology, state, [(j.0, l), (i.0, Wrench::zero() - l)])
         };
         let responses: Vec<_> = units.into_iter().map(response).collect();

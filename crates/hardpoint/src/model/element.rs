@@ -1,8 +1,8 @@
 //! Sources of a mechanism's loads: masses, springs, given forces.
 
-use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::{BodyId, Dimension, JointId, Model, PointId, Solid, SpringTable, WheelId};
+use crate::number::Real;
 use crate::space::Vec3;
 
 /// A mass or an applied force.
@@ -115,8 +115,8 @@ numbers! {
 /// it, so that the line between the ends would have lost three of its digits or all.
 pub const ENDS_MEET: f64 = 1e-9;
 
-/// The types of elements: their fields, as written and as they mean in a model. With a formula in `load/element.rs` a
-/// type is complete.
+/// The types of elements: their fields, as written and as they mean in a model. With its file in `element/`, which has
+/// its properties, check and formula, a type is complete.
 macro_rules! elements {
     ($declare:ident) => {
         $declare! {
@@ -360,6 +360,93 @@ macro_rules! elements {
 }
 pub(crate) use elements;
 
+/// The first expression for a type of `masses`, the second for one of `forces`.
+macro_rules! if_mass {
+    (masses, $mass:expr, $force:expr) => {
+        $mass
+    };
+    (forces, $mass:expr, $force:expr) => {
+        $force
+    };
+}
+pub(crate) use if_mass;
+
+/// Properties of a mass.
+pub(crate) trait MassProperties {
+    /// Returns the body that it belongs to.
+    fn body(&self, model: &Model) -> BodyId;
+
+    /// Returns its mass, kg, from the values of numbers and the distance of two points, m.
+    fn mass<T: Real>(&self, number: impl Fn(NumberId) -> T, distance: impl Fn(PointId, PointId) -> T) -> T;
+}
+
+/// Properties of a force.
+pub(crate) trait ForceProperties {
+    /// Returns what the program uses besides the formulas.
+    fn properties(&self, model: &Model) -> Properties<'_>;
+
+    /// Returns the magnitude of the force in the design configuration, N, if the element defines one; otherwise zero.
+    fn given_force(&self, model: &Model) -> f64;
+}
+
+/// Properties of a force besides its formulas. Every type defines all of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Properties<'a> {
+    /// Bodies that it acts on. If it acts on a single body, the first is ground.
+    pub bodies: [BodyId; 2],
+    /// Points at which it acts.
+    pub points: [Option<PointId>; 2],
+    /// True if it acts along the line between two points.
+    pub is_along_line: bool,
+    /// Dimension of its magnitude.
+    pub dimension: Dimension,
+    /// The joint and its coordinate that it acts on.
+    pub coordinate: Option<(JointId, usize)>,
+    /// The law that it is multiplied by.
+    pub law: Option<&'a Law>,
+    /// True if its formula is arithmetic on where bodies are, which can be recorded: it looks up no table, and has no
+    /// branch.
+    pub is_arithmetic: bool,
+    /// Compliance under load.
+    pub compliance: Compliance,
+    /// Coulomb friction.
+    pub friction: Option<JointFriction>,
+}
+
+/// Compliance of a force element.
+#[derive(Clone, Copy, Debug)]
+pub enum Compliance {
+    /// It does not deflect under load.
+    None,
+    /// It deflects: its force depends on the position.
+    Element,
+    /// Its joint deflects, with these stiffnesses along and about the joint's axes; rigid without one.
+    Joint(JointId, [[Option<NumberId>; 3]; 2]),
+}
+
+/// Coulomb friction in a joint, and viscous friction besides.
+#[derive(Clone, Copy, Debug)]
+pub struct JointFriction {
+    /// The joint.
+    pub joint: JointId,
+    /// Coordinate that the friction acts on; none in a ball joint.
+    pub coordinate: Option<usize>,
+    /// The coefficient of friction.
+    pub coefficient: NumberId,
+    /// Radius of the pin or ball, if the friction is a moment.
+    pub radius: Option<NumberId>,
+    /// Length of the bearing or guide.
+    pub length: Option<NumberId>,
+    /// Direction in which normal forces are ignored.
+    pub ignored_direction: Option<Vec3>,
+    /// Viscous friction.
+    pub viscous: Option<NumberId>,
+    /// Transition velocity.
+    pub transition_velocity: Option<NumberId>,
+    /// Transition velocity by default, rad/s or m/s.
+    pub default_transition_velocity: f64,
+}
+
 /// Element types with references resolved to ids.
 macro_rules! in_models {
     ($(
@@ -370,166 +457,102 @@ macro_rules! in_models {
         /// Kind of an element. The formulas are in `docs/loads.md`.
         #[derive(Clone, Debug, PartialEq)]
         pub enum ElementKind {
-            $($(#[doc = $doc])* $variant { $($(#[doc = $field_doc])* $field: $type,)* },)*
+            $($(#[doc = $doc])* $variant($variant),)*
+        }
+
+        $(
+            $(#[doc = $doc])*
+            #[derive(Clone, Debug, PartialEq)]
+            pub struct $variant {
+                $($(#[doc = $field_doc])* pub $field: $type,)*
+            }
+        )*
+
+        #[allow(unused_variables, reason = "a question to masses does not look at forces, and vice versa")]
+        impl ElementKind {
+            /// Name of its type in model files.
+            pub fn type_name(&self) -> &'static str {
+                match self { $(Self::$variant(_) => $name),* }
+            }
+
+            /// True if it has mass; all others are forces.
+            pub fn has_mass(&self) -> bool {
+                match self { $(Self::$variant(_) => if_mass!($table, true, false)),* }
+            }
+
+            /// Returns the body that a mass belongs to.
+            pub fn mass_on(&self, model: &Model) -> Option<BodyId> {
+                match self { $(Self::$variant(e) => if_mass!($table, Some(e.body(model)), None)),* }
+            }
+
+            /// Mass in the design configuration, kg.
+            fn mass(&self, model: &Model) -> f64 {
+                let number = |n: NumberId| model.numbers[n.0].value;
+                let position = |p: PointId| model.position(model.points[p.0].at);
+                let distance = |p, q| (position(q) - position(p)).norm();
+                match self { $(Self::$variant(e) => if_mass!($table, e.mass(number, distance), 0.0)),* }
+            }
+
+            /// Properties of a force; `None` for a mass.
+            #[inline]
+            pub fn force(&self, model: &Model) -> Option<Properties<'_>> {
+                match self { $(Self::$variant(e) => if_mass!($table, None, Some(e.properties(model)))),* }
+            }
+
+            /// Magnitude of the force in the design configuration, N, if the element defines one: a given force or a
+            /// preload.
+            pub fn given_force(&self, model: &Model) -> f64 {
+                match self { $(Self::$variant(e) => if_mass!($table, 0.0, e.given_force(model))),* }
+            }
         }
     };
 }
 elements!(in_models);
 
 impl ElementKind {
-    /// True if it has mass; all others are forces.
-    pub fn has_mass(&self) -> bool {
-        matches!(self, Self::Rigid { .. } | Self::Bar { .. } | Self::Block { .. } | Self::Mesh { .. })
+    /// Coulomb friction of the element, if it is a friction element: its force depends on joint reactions, which it
+    /// changes.
+    #[inline]
+    pub fn friction(&self, model: &Model) -> Option<JointFriction> {
+        self.force(model)?.friction
     }
 
-    /// True if it is a friction element: its force depends on joint reactions, which it changes.
-    pub fn rubs(&self) -> bool {
-        matches!(self, Self::Friction { .. } | Self::SlideFriction { .. })
-    }
-
-    /// True if its formulas are arithmetic on where bodies are, which can be recorded. A table is looked up: which of
-    /// its pieces counts is another one as the spring moves. The turn of a bushing is a series as long as it is small.
-    pub fn is_arithmetic(&self) -> bool {
-        match self {
-            Self::Spring { .. } => self.table().is_none(),
-            Self::Bushing { about_x, about_y, about_z, .. } => {
-                [about_x, about_y, about_z].iter().all(|n| n.is_none())
-            }
-            _ => true,
-        }
-    }
-
-    /// Table, if it is a spring that has one: of tension over deflection.
-    pub(crate) fn table(&self) -> Option<&SpringTable> {
-        match self {
-            Self::Spring { compression, extension, .. } => extension.as_ref().or(compression.as_ref()),
-            _ => None,
-        }
+    /// True if it is a friction element.
+    pub fn has_friction(&self, model: &Model) -> bool {
+        self.friction(model).is_some()
     }
 
     /// The law that a given force or moment is multiplied by.
-    pub(crate) fn law(&self) -> Option<&Law> {
-        match self {
-            Self::PointForce { law, .. } | Self::BodyMoment { law, .. } | Self::WheelForce { law, .. } => {
-                law.as_ref()
-            }
-            _ => None,
-        }
-    }
-
-    /// The bodies that it needs to know of.
-    pub(crate) fn bodies(&self, model: &Model) -> Vec<BodyId> {
-        let of = |points: &[PointId]| points.iter().map(|p| model.points[p.0].body).collect();
-        match self {
-            Self::Rigid { centre, .. } | Self::Block { centre, .. } => of(&[*centre]),
-            Self::Bar { from, to, .. } | Self::Spring { from, to, .. } | Self::Bushing { from, to, .. } => {
-                of(&[*from, *to])
-            }
-            Self::PointForce { at, .. } => of(&[*at]),
-            Self::BodyMoment { body, .. } | Self::Mesh { body, .. } => vec![*body],
-            Self::WheelForce { wheel, .. } => vec![model.wheels[wheel.0].body],
-            Self::JointSpring { joint, .. }
-            | Self::TorsionSpring { joint, .. }
-            | Self::Friction { joint, .. }
-            | Self::SlideFriction { joint, .. }
-            | Self::ElasticJoint { joint, .. } => model.joints[joint.0].bodies.to_vec(),
-        }
-    }
-
-    /// The body that a mass belongs to.
-    pub fn mass_on(&self, model: &Model) -> Option<BodyId> {
-        match self {
-            Self::Rigid { centre, .. } | Self::Block { centre, .. } => Some(model.points[centre.0].body),
-            Self::Bar { from, .. } => Some(model.points[from.0].body),
-            Self::Mesh { body, .. } => Some(*body),
-            _ => None,
-        }
-    }
-
-    /// Dimension of the element's force.
-    pub(crate) fn dimension(&self) -> Dimension {
-        match self {
-            Self::TorsionSpring { .. } | Self::BodyMoment { .. } | Self::Friction { .. } => Dimension::MOMENT,
-            _ => Dimension::FORCE,
-        }
+    #[inline]
+    pub(crate) fn law(&self, model: &Model) -> Option<&Law> {
+        self.force(model)?.law
     }
 
     /// The joint whose coordinate it acts on.
+    #[inline]
     pub(crate) fn coordinate(&self, model: &Model) -> Option<(JointId, usize)> {
-        let of = |joint: JointId, quantity| {
-            let kind = model.joints[joint.0].kind;
-            Some((joint, kind.coordinates.iter().position(|c| c.quantity == quantity)?))
-        };
-        match *self {
-            Self::JointSpring { joint, coordinate, .. } | Self::TorsionSpring { joint, coordinate, .. } => {
-                Some((joint, coordinate))
-            }
-            // A ball turns by no coordinate.
-            Self::Friction { joint, .. } => of(joint, Quantity::Angle),
-            Self::SlideFriction { joint, .. } => of(joint, Quantity::Length),
-            _ => None,
-        }
-    }
-}
-
-impl ElementKind {
-    /// Magnitude of the force in the design configuration, N, if the element defines one: a given force or a preload.
-    pub fn push(&self, model: &Model) -> f64 {
-        let of = |n: NumberId| model.numbers[n.0].value.abs();
-        match self {
-            Self::PointForce { force, .. } => of(force.0),
-            Self::BodyMoment { moment, .. } => of(moment.0) / model.size(),
-            Self::Spring { preload: Some(preload), .. } => of(preload.0),
-            Self::WheelForce { outboard, forward, up, .. } => {
-                [outboard, forward, up].into_iter().flatten().map(|n| of(n.0)).fold(0.0, f64::max)
-            }
-            Self::Spring { .. } => {
-                let most =
-                    |table: &SpringTable| table.points().iter().map(|p| p[1].abs()).fold(0.0, f64::max);
-                self.table().map_or(0.0, most)
-            }
-            _ => 0.0,
-        }
+        self.force(model)?.coordinate
     }
 }
 
 impl Model {
     /// Points at which forces act: both ends of a spring or bushing, the point of a given force, the centre of a wheel.
-    pub fn pushed(&self) -> Vec<(ElementId, PointId)> {
-        let points = |kind: &ElementKind| match kind {
-            ElementKind::Spring { from, to, .. } | ElementKind::Bushing { from, to, .. } => vec![*from, *to],
-            ElementKind::PointForce { at, .. } => vec![*at],
-            // Its contact point wanders.
-            ElementKind::WheelForce { wheel, .. } => vec![self.wheels[wheel.0].centre],
-            _ => Vec::new(),
-        };
+    pub fn points_of_application(&self) -> Vec<(ElementId, PointId)> {
         let of = |(e, element): (usize, &Element)| {
-            points(&element.kind).into_iter().map(move |p| (ElementId(e), p))
+            let points = element.kind.force(self).map_or([None; 2], |force| force.points);
+            points.into_iter().flatten().map(move |p| (ElementId(e), p))
         };
         self.elements.iter().enumerate().flat_map(of).collect()
     }
 
     /// The laws that forces depend on, in the order of the elements that have one.
     pub(crate) fn laws_of_forces(&self) -> impl Iterator<Item = &Law> {
-        self.elements.iter().filter_map(|e| e.kind.law())
+        self.elements.iter().filter_map(|e| e.kind.law(self))
     }
 
     /// The mass of all bodies in the design configuration, kg.
     pub fn mass(&self) -> f64 {
-        let of = |n: NumberId| self.numbers[n.0].value;
-        let mass = |kind: &ElementKind| match kind {
-            ElementKind::Rigid { mass, .. } => of(mass.0),
-            ElementKind::Bar { from, to, diameter, bore, density } => {
-                let [a, b] = [from, to].map(|p| self.position(self.points[p.0].at));
-                let bore = bore.map_or(0.0, |b| of(b.0));
-                let area = std::f64::consts::FRAC_PI_4 * (of(diameter.0).powi(2) - bore * bore);
-                of(density.0) * area * (b - a).norm()
-            }
-            ElementKind::Block { x, y, z, density, .. } => of(x.0) * of(y.0) * of(z.0) * of(density.0),
-            ElementKind::Mesh { mesh, density, .. } => mesh.volume * of(density.0),
-            _ => 0.0,
-        };
-        self.elements.iter().map(|e| mass(&e.kind)).sum()
+        self.elements.iter().map(|e| e.kind.mass(self)).sum()
     }
 
     /// True if anything of it has mass, or pushes: without, there are no loads.

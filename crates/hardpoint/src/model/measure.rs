@@ -228,7 +228,7 @@ macro_rules! measures {
         /// The force's name.
         force: String => ElementId,
     } |m, w|
-        m.elements[force.0].kind.dimension(),
+        m.elements[force.0].kind.force(m).map_or(Dimension::FORCE, |force| force.dimension),
         moving(1),
         format!("force of `{}`", w.model.elements[force.0].name);
 

@@ -7,7 +7,7 @@ mod case;
 pub mod change;
 mod coupler;
 mod curve;
-pub(crate) mod element;
+pub mod element;
 mod formula;
 mod measure;
 mod measured;
@@ -30,7 +30,7 @@ pub use element::{
     ElementUnit, Force, Inertia, Length, Mass, Moment, NumberId, Plain, Stiffness, TorsionalDamping,
     TorsionalStiffness,
 };
-pub(crate) use element::{each_number, elements};
+pub(crate) use element::{each_number, elements, if_mass};
 pub use formula::{Formula, NamedNumber, Source, Target};
 pub(crate) use measure::measures;
 pub use measure::{

@@ -47,7 +47,7 @@ pub struct Loads {
     pub joints: Vec<JointLoad>,
     /// `drivers[k * n + d]`: load of driver d of n at time k.
     pub drivers: Vec<DriverLoad>,
-    /// `pushes[k * n + i]`: applied force at point i of n of [`Model::pushed`](crate::model::Model::pushed) on its body
+    /// `pushes[k * n + i]`: applied force at point i of n of [`Model::points_of_application`](crate::model::Model::points_of_application) on its body
     /// at time k, global, N.
     pub pushes: Vec<Vec3>,
     /// Friction elements whose friction is undetermined at some time because redundant constraints share their normal
@@ -72,7 +72,7 @@ impl Loads {
         &self.drivers[k * n..(k + 1) * n]
     }
 
-    /// Applied forces at all points of [`Model::pushed`](crate::model::Model::pushed) at output time k, global, N.
+    /// Applied forces at all points of [`Model::points_of_application`](crate::model::Model::points_of_application) at output time k, global, N.
     pub fn pushes_at(&self, k: usize) -> &[Vec3] {
         let n = self.pushes.len() / self.times.len().max(1);
         &self.pushes[k * n..(k + 1) * n]
@@ -87,7 +87,7 @@ impl Analysis<'_> {
         let mut solver = LoadSolver::new(self.design_map(), self.topology(), &design.values, false).judging();
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let (mut result, mut times) = (Loads::default(), model.times.iter());
-        let pushed = model.pushed();
+        let pushed = model.points_of_application();
         result.stop = walk.each(|one| {
             let Some(&t) = times.next() else { return };
             solver.step(one, t);

@@ -542,3 +542,45 @@ fn undetermined_normal_forces_are_reported() {
     assert!(values(&analysis.run(), "hand").iter().all(|x| x.is_nan()));
     assert_eq!(analysis.loads(&[]).shared_friction, [model.element("squeaks").unwrap()]);
 }
+
+#[test]
+fn the_builder_adds_every_type_of_mass_and_force() {
+    let no_wheel_forces = [0.0; 3].map(|f: f64| Some(f.into()));
+    let mut draft = strut_on_its_wheel(no_wheel_forces);
+    draft.forces.clear();
+    let solid = box_of(Vec3::new(0.2, 0.5, 0.1), [0.1, 0.2, 0.3]);
+    let [a, b] = [[0.1, 0.5, 0.3], [0.2, 0.6, 0.4]];
+    let draft = draft
+        .bodies(["arm", "block"])
+        .revolute("pin", ["ground", "arm"], a, [1.0, 0.0, 0.0])
+        .translational("slide", ["ground", "block"], b, [0.0, 0.0, 1.0])
+        .driver("turn", "pin", Law::constant(0.0))
+        .driver("move", "slide", Law::constant(0.0))
+        .point_mass("point mass", "arm", a, 2.0)
+        .rigid("rigid", "arm", b, 2.0, [0.1, 0.2, 0.15])
+        .bar("bar", "arm", [a, b], 0.02, 7850.0)
+        .block("block", "block", b, [0.1, 0.2, 0.3], 2700.0)
+        .mesh("mesh", "arm", solid, 1000.0)
+        .spring("spring", ["ground", "arm"], [a, b], 1e4)
+        .joint_spring("joint spring", "slide", 1e4)
+        .torsion_spring("torsion spring", "pin", 10.0)
+        .friction("friction", "pin", 0.1, 0.01)
+        .slide_friction("slide friction", "slide", 0.1)
+        .force("force", "block", b, 100.0, [0.0, 1.0, 0.0])
+        .moment("moment", "arm", 5.0, [1.0, 0.0, 0.0])
+        .wheel_force("road", "fl", [100.0, 200.0, 4000.0])
+        .bushing("bushing", ["arm", "block"], [a, b], [1e5, 2e5, 3e5])
+        .elastic_joint("elastic", "pin", [1e6, 2e6, 3e6]);
+    let model = Model::from_draft(&draft).unwrap();
+    for kind in ElementType::ALL {
+        let element = model.elements.iter().find(|e| e.kind.type_name() == kind.name);
+        let element = element.unwrap_or_else(|| panic!("the builder has no method for `{}`", kind.name));
+        assert_eq!(element.kind.has_mass(), kind.table == "masses");
+        assert_eq!(element.kind.force(&model).is_none(), element.kind.mass_on(&model).is_some());
+    }
+    let block = model.element("block").unwrap();
+    let mass = Model { elements: vec![model.elements[block.0].clone()], ..model.clone() }.mass();
+    assert!((mass - 0.1 * 0.2 * 0.3 * 2700.0).abs() < SAME * mass, "{mass}");
+    let road = model.element("road").unwrap();
+    assert_eq!(model.elements[road.0].kind.given_force(&model), 4000.0);
+}

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 /// The rooms of the core, in the order of the walk: each may use those before it only. What somebody wrote (`draft`)
 /// knows the model that it means, and so comes after it; results are kept in `blocks`.
-const ROOMS: [&str; 17] = [
+const ROOMS: [&str; 18] = [
     "number",
     "linalg",
     "space",
@@ -21,6 +21,7 @@ const ROOMS: [&str; 17] = [
     "sensitivity",
     "measure",
     "load",
+    "element",
     "run",
 ];
 
@@ -108,6 +109,92 @@ fn no_room_of_the_core_uses_a_later_one() {
         }
     }
     assert!(looked_at > 40, "only {looked_at} files found under {}", src.display());
+}
+
+/// Maximum number of wildcards over the types of measures, per room of the core or crate: they only fall. There are
+/// none over the types of elements.
+const MEASURE_WILDCARDS: &[(&str, usize)] = &[
+    ("design", 1),
+    ("draft", 7),
+    ("hardpoint-report", 3),
+    ("load", 9),
+    ("measure", 10),
+    ("model", 4),
+    ("run", 2),
+];
+
+/// Number of wildcards over an enum: matches with an arm `_`, and patterns for some variants only (`let`, `matches!`).
+fn wildcards(text: &str, of: &str) -> usize {
+    let text = text.split("#[cfg(test)]\nmod ").next().unwrap();
+    let lines: Vec<&str> = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect();
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let (mut is_own, mut count) = (false, 0);
+    for (k, line) in lines.iter().enumerate() {
+        if line.starts_with("impl") {
+            is_own = line.trim_end_matches([' ', '{']).ends_with(&format!(" {of}"));
+        }
+        let names_variant =
+            |pattern: &str| pattern.contains(&format!("{of}::")) || is_own && pattern.contains("Self::");
+        if ["_ =>", "_ if "].iter().any(|arm| line.trim_start().starts_with(arm)) {
+            // The other arms of this match have the same indentation, and its head less.
+            let arms = lines[..k].iter().rev().take_while(|l| l.is_empty() || indent(l) >= indent(line));
+            let mut arms = arms.filter(|l| indent(l) == indent(line));
+            count += usize::from(arms.any(|l| names_variant(l.split("=>").next().unwrap())));
+        } else if let Some((_, pattern)) = line.split_once("matches!(") {
+            let more = lines[k + 1..].iter().take_while(|l| pattern.is_empty() && indent(l) > indent(line));
+            count += usize::from(names_variant(pattern) || more.into_iter().any(|l| names_variant(l)));
+        } else if let Some((_, pattern)) = line.split_once("let ") {
+            count += usize::from(names_variant(pattern.split(" = ").next().unwrap()));
+        }
+    }
+    count
+}
+
+#[test]
+fn matches_over_elements_and_measures_name_every_type() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let crates = std::fs::read_dir(root.join("crates")).unwrap().map(|entry| entry.unwrap().path());
+    let mut found = std::collections::BTreeMap::<String, [usize; 2]>::new();
+    for folder in crates.chain([root.join("python")]) {
+        let (src, name) = (folder.join("src"), folder.file_name().unwrap().to_str().unwrap());
+        for (path, text) in sources(&src) {
+            let first = path.strip_prefix(&src).unwrap().iter().next().unwrap().to_str().unwrap();
+            let room = if name == "hardpoint" { first.trim_end_matches(".rs") } else { name };
+            let count = |of: [&str; 2]| of.map(|of| wildcards(&text, of)).iter().sum::<usize>();
+            let [elements, measures] = found.entry(room.to_owned()).or_default();
+            *elements += count(["ElementKind", "ElementKindDraft"]);
+            *measures += count(["MeasureKind", "MeasureKindDraft"]);
+        }
+    }
+    assert!(found.len() > 20, "only {} rooms found", found.len());
+    for (room, [elements, measures]) in found {
+        let most = MEASURE_WILDCARDS.iter().find(|(name, _)| *name == room).map_or(0, |(_, most)| *most);
+        assert_eq!(elements, 0, "{room}: use a property of the types in place of a wildcard over elements");
+        assert!(measures <= most, "{room}: {measures} wildcards over measures, at most {most} are allowed");
+    }
+}
+
+#[test]
+fn wildcards_over_types_are_counted() {
+    let text = "impl Model {
+    fn dimension(&self) {
+        match kind {
+            MeasureKind::Angle { .. } => 1,
+            _ => 0,
+        }
+        let MeasureKind::Angle { .. } = kind else { return };
+        matches!(
+            kind,
+            MeasureKind::Angle { .. }
+        )
+    }
+}
+";
+    assert_eq!(wildcards(text, "MeasureKind"), 3);
+    assert_eq!(wildcards(text, "ElementKind"), 0);
+    assert_eq!(wildcards(&text.replace("            _ => 0,\n", ""), "MeasureKind"), 2);
+    let own = text.replace("Model", "MeasureKind").replace("MeasureKind::", "Self::");
+    assert_eq!(wildcards(&own, "MeasureKind"), 3);
 }
 
 #[test]

@@ -6,10 +6,11 @@ use crate::draft::{
     RayDraft, Section,
 };
 use crate::expression::Expression;
+use crate::model::element::Compliance;
 use crate::model::{
-    AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, Element, ElementId,
-    ElementKind, JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle,
-    OutputSource, PointId, Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure,
+    AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, Element, ElementId, JointId,
+    KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle, OutputSource, PointId, Ray,
+    ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure,
 };
 use crate::space::Vec3;
 
@@ -58,14 +59,9 @@ impl Checker<'_> {
                 format!("measure `{}` is a load, but the model has no masses and no forces", m.name);
             self.fault("HP0250", here.key("type"), message).help("add `[masses]`, `[gravity]` or `[forces]`");
         }
-        let deflects = |e: &Element| {
-            let rigid = matches!(
-                e.kind,
-                ElementKind::PointForce { .. }
-                    | ElementKind::BodyMoment { .. }
-                    | ElementKind::WheelForce { .. }
-            );
-            !e.kind.has_mass() && !rigid && !e.kind.rubs()
+        let deflects = |e: &Element| match e.kind.force(&self.model).map(|force| force.compliance) {
+            Some(Compliance::Element | Compliance::Joint(..)) => true,
+            Some(Compliance::None) | None => false,
         };
         let rigid = !self.model.elements.iter().any(deflects);
         if matches!(kind, MeasureKind::Compliance { .. })

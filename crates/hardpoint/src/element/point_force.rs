@@ -1,0 +1,51 @@
+//! Given force on a point.
+
+use crate::draft::{CheckElement, ElementCheck};
+use crate::load::{AppliedLoads, ForceFormula};
+use crate::model::element::{Compliance, ForceProperties, PointForce, Properties};
+use crate::model::{Dimension, ElementId, GROUND, Model};
+use crate::space::{Real, Wrench};
+
+impl ForceProperties for PointForce {
+    #[inline]
+    fn properties(&self, model: &Model) -> Properties<'_> {
+        Properties {
+            bodies: [GROUND, model.points[self.at.0].body],
+            points: [Some(self.at), None],
+            is_along_line: false,
+            dimension: Dimension::FORCE,
+            coordinate: None,
+            law: self.law.as_ref(),
+            is_arithmetic: true,
+            compliance: Compliance::None,
+            friction: None,
+        }
+    }
+
+    fn given_force(&self, model: &Model) -> f64 {
+        model.numbers[self.force.0.0].value.abs()
+    }
+}
+
+impl CheckElement for PointForce {
+    fn check(&self, c: &mut ElementCheck<'_, '_>) {
+        if c.body_of(self.at) == GROUND {
+            let message = format!("`{}` acts on ground, which does not move", c.name);
+            c.fault("HP0251", "at", message).help("apply it to a point of another body");
+        }
+    }
+}
+
+impl ForceFormula for PointForce {
+    fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, out: &mut [Wrench<T>]) {
+        let body = at.body(self.at);
+        let push = at.along(self.along, self.axes, body) * self.size(at, e);
+        out[body] -= Wrench::force(push, at.point(self.at));
+    }
+
+    fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> T {
+        at.number(self.force.0) * at.laws[e.0]
+    }
+
+    fn deflections<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId, _: impl FnMut(T, T)) {}
+}

@@ -1,0 +1,53 @@
+//! Spring and damper about a joint's axis.
+
+use crate::draft::{CheckElement, ElementCheck};
+use crate::joint::Quantity;
+use crate::load::{AppliedLoads, ForceFormula};
+use crate::model::element::{Compliance, ForceProperties, Properties, TorsionSpring};
+use crate::model::{Dimension, ElementId, Model};
+use crate::space::{Real, Wrench};
+
+impl ForceProperties for TorsionSpring {
+    #[inline]
+    fn properties(&self, model: &Model) -> Properties<'_> {
+        Properties {
+            bodies: model.joints[self.joint.0].bodies,
+            points: [None; 2],
+            is_along_line: false,
+            dimension: Dimension::MOMENT,
+            coordinate: Some((self.joint, self.coordinate)),
+            law: None,
+            is_arithmetic: true,
+            compliance: Compliance::Element,
+            friction: None,
+        }
+    }
+
+    fn given_force(&self, _: &Model) -> f64 {
+        0.0
+    }
+}
+
+impl CheckElement for TorsionSpring {
+    fn check(&self, c: &mut ElementCheck<'_, '_>) {
+        c.check_coordinate((self.joint, self.coordinate), Quantity::Angle, "joint_spring");
+    }
+}
+
+impl ForceFormula for TorsionSpring {
+    fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, out: &mut [Wrench<T>]) {
+        // tau works on the coordinate
+        at.apply_between(self.joint, at.unit((self.joint, self.coordinate)), self.size(at, e), out);
+    }
+
+    fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> T {
+        let Self { joint, coordinate, stiffness, equilibrium, damping } = self;
+        let now = at.coordinate(e, (*joint, *coordinate));
+        at.on_coordinate(now, stiffness.0, equilibrium.map(|n| n.0), damping.map(|n| n.0))
+    }
+
+    fn deflections<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, mut each: impl FnMut(T, T)) {
+        let [value, _] = at.coordinate(e, (self.joint, self.coordinate));
+        each(value, at.number(self.stiffness.0));
+    }
+}
