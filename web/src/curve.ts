@@ -102,8 +102,8 @@ export function atFixedAbscissa(dy: Curve, dx: Curve, slope: Curve): Curve {
 export function nearestStep(curve: Curve, value: number, step: number): number {
   let best = 0
   const range = peak(curve) || 1
-  const apart = (k: number) => Math.abs(curve[k] - value) + (1e-3 * range * Math.abs(k - step)) / curve.length
-  for (let k = 1; k < curve.length; k++) if (apart(k) < apart(best)) best = k
+  const distance = (k: number) => Math.abs(curve[k] - value) + (1e-3 * range * Math.abs(k - step)) / curve.length
+  for (let k = 1; k < curve.length; k++) if (distance(k) < distance(best)) best = k
   return best
 }
 

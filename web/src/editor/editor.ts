@@ -37,7 +37,7 @@ import type { Checker, Diagnostic } from '../engine/engine'
 import { changes } from './changes'
 import { type Schema, suggest } from './complete'
 import { toml } from './language'
-import { counted, mark, placeOf, said } from './messages'
+import { counted, mark, placeOf, messageElements } from './messages'
 import { theme } from './theme'
 
 /** Milliseconds without a change after which a text is checked. */
@@ -70,7 +70,7 @@ export interface Editor {
    */
   setText(text: string, sameStep?: boolean): void
   /** Adds what solving the text reported to what checking it reported; until it changes. */
-  tell(messages: Diagnostic[]): void
+  showMessages(messages: Diagnostic[]): void
   /** Puts the cursor at a line and column, both from 1, the column in characters, and shows it. */
   reveal(line: number, column: number): void
   focus(): void
@@ -219,10 +219,10 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     const valid = !checked.some(isError)
     const other = valid && text !== shown
     if (valid) shown = text
-    tell()
+    render()
     if (other) onValid(text)
   }
-  const tell = () => {
+  const render = () => {
     const messages = [...checked, ...solved]
     view.dispatch(
       setDiagnostics(
@@ -242,12 +242,12 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
   }
   const entry = (message: Diagnostic) => {
     const { line, column } = message
-    if (line === null) return el('div', {}, ...said(message))
+    if (line === null) return el('div', {}, ...messageElements(message))
     return el(
       'button',
       { type: 'button', class: 'plain', onclick: () => reveal(line, column ?? 1) },
       el('span', { class: 'line' }, `line ${line}`),
-      el('span', {}, ...said(message)),
+      el('span', {}, ...messageElements(message)),
     )
   }
   const reveal = (line: number, column: number) => {
@@ -278,9 +278,9 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
       if (made.length > 0) view.dispatch({ changes: made, annotations: outside.of({ sameStep }) })
       shown = present()
     },
-    tell: (messages) => {
+    showMessages: (messages) => {
       solved = messages
-      tell()
+      render()
     },
     reveal,
     focus: () => view.focus(),

@@ -12,7 +12,7 @@ import {
   Vector3,
 } from 'three'
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js'
-import type { Placed } from '../scene/labels'
+import type { LabelBox } from '../scene/labels'
 import { escaped, round, svgFile, tag } from './markup'
 
 /** Options of a picture of the view. */
@@ -25,7 +25,7 @@ interface Picture {
   ground: string
   outline: string
   label: string
-  labels?: Placed[]
+  labels?: LabelBox[]
 }
 
 /**

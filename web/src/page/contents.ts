@@ -29,11 +29,11 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   const scale = largest(state, index, order)
   const own = quantity.curves[order]
   if (own.length === 0) return { ...content, message: unknown(title) }
-  const label = state.foreseen
+  const label = state.isPredicted
     ? 'predicted to first order'
-    : (present?.name ?? (state.compares ? 'current design' : title))
+    : (present?.name ?? (state.isCompared ? 'current design' : title))
   content.lines.push({ label, color: css('--trace'), curve: quiet(state.curve(index, order), scale), width: 2.4 })
-  if (state.compares) {
+  if (state.isCompared) {
     const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own
     content.lines.push({
       label: former?.name ?? 'original',
@@ -51,10 +51,10 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
     const curve = quiet(band.quantities[index]![order], scale)
     content.lines.push({ label: band.name, color: css('--former'), curve, width: 1.3, dash: DOTTED })
   }
-  const foreseen = present
+  const predictions = present
     ? report.designs.filter(({ kind }) => kind.endsWith('_order')).filter((design) => design !== former)
     : []
-  foreseen.forEach((design, k) => {
+  predictions.forEach((design, k) => {
     const curve = design.quantities[index]?.[order]
     if (curve?.length)
       content.lines.push({
@@ -81,7 +81,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
  * it.
  */
 export function sensitivityContent(state: State, subject: Subject): Content {
-  const { senses: report, choice } = state
+  const { sensitivityReport: report, choice } = state
   const { order } = subject
   const quantity = report.quantities[subject.quantity]
   const selected = report.variables[choice.variable]
@@ -159,7 +159,7 @@ interface AtAbscissa {
  * How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. Where
  * several drivers move, the one that moves the abscissa most keeps it, and the others stand. /
  */
-function atAbscissa({ senses: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
+function atAbscissa({ sensitivityReport: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
   if (over === undefined) return { seen: (curve) => curve, note: '' }
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
   if (order > 0) return 'Over another quantity, only sensitivities of values are available: choose the value, or time.'

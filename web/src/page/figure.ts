@@ -6,13 +6,13 @@ import type { Zoom } from '../zoom'
 import { sensitivityContent, valueContent, type Subject } from './contents'
 import { pointing } from './pointing'
 
-export type Shown = 'value' | 'sensitivity'
+export type FigureKind = 'value' | 'sensitivity'
 
 /** Options of a figure. */
-interface Wish {
+interface FigureOptions {
   /** Fixed quantity; the selected one where there is none. */
   quantity?: number
-  shown: Shown
+  shown: FigureKind
   testId: string
   /** The first figure chooses what is selected; others may follow it, and be taken away. */
   leads: boolean
@@ -24,11 +24,11 @@ export class Figure {
   #quantity?: number
   #order: Order = 0
   #over?: number
-  #shown: Shown
+  #shown: FigureKind
 
   constructor(
     private readonly state: State,
-    private readonly wish: Wish,
+    private readonly options: FigureOptions,
     time: Zoom,
     {
       onRemove,
@@ -36,10 +36,10 @@ export class Figure {
       tool,
     }: { onRemove: (figure: Figure) => void; onAdd: () => void; tool?: (figure: Figure) => HTMLElement | undefined },
   ) {
-    this.#quantity = wish.quantity
-    this.#shown = wish.shown
+    this.#quantity = options.quantity
+    this.#shown = options.shown
     const { report } = state
-    const first = wish.leads ? [] : [el('option', { value: '' }, 'selected quantity')]
+    const first = options.leads ? [] : [el('option', { value: '' }, 'selected quantity')]
     const quantity = select('quantity', 'Quantity', () => this.#pick(quantity.value), ...first, ...offered(state))
     const over = select(
       'over',
@@ -102,21 +102,21 @@ export class Figure {
       over,
       order,
       able ? shown : undefined,
-      wish.leads ? add : remove,
+      options.leads ? add : remove,
     )
-    this.plot = new Plot(state, wish.testId, [controls], time)
-    this.plot.element.classList.toggle('leads', wish.leads)
+    this.plot = new Plot(state, options.testId, [controls], time)
+    this.plot.element.classList.toggle('leads', options.leads)
     pointing(state, this.plot.element, () => this.subject.quantity)
     let extra: HTMLElement | undefined
     this.show = () => {
       const subject = this.subject
       // What the studio adds is there as soon as the studio is.
       if (!extra && (extra = tool?.(this))) controls.lastElementChild!.before(extra)
-      quantity.value = this.#follows && !wish.leads ? '' : String(subject.quantity)
+      quantity.value = this.#follows && !options.leads ? '' : String(subject.quantity)
       over.value = subject.over === undefined ? '' : String(subject.over)
       order.value = String(subject.order)
       // The field beside it names the quantity already.
-      this.plot.element.classList.toggle('untitled', !this.#follows || wish.leads ? this.#shown === 'value' : false)
+      this.plot.element.classList.toggle('untitled', !this.#follows || options.leads ? this.#shown === 'value' : false)
       shown.setAttribute('aria-pressed', String(this.#shown === 'sensitivity'))
       this.plot.show(this.#shown === 'value' ? valueContent(state, subject) : sensitivityContent(state, subject))
     }
@@ -138,7 +138,7 @@ export class Figure {
   }
 
   #pick(value: string): void {
-    if (this.wish.leads) return this.state.choose({ quantity: Number(value) })
+    if (this.options.leads) return this.state.choose({ quantity: Number(value) })
     const { order, over } = this.subject
     this.#quantity = value === '' ? undefined : Number(value)
     this.#order = order

@@ -35,13 +35,13 @@ export interface Tools {
 }
 
 /** Parts of the page, for later additions. */
-export interface Made {
+export interface PageParts {
   view?: View
   bar: HTMLElement
 }
 
 /** Builds the page: bar, values, view and time, curves, variables, and tables behind tabs. */
-export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
+export function page(root: HTMLElement, state: State, tools: Tools = {}): PageParts {
   const { report } = state
   const hasQuantities = report.quantities.length > 0
   const hasVariables = report.variables.length > 0

@@ -50,14 +50,14 @@ export function variables(state: State): HTMLElement {
     }
   }
   let ranked = ''
-  let senses = state.senses
+  let sensitivityReport = state.sensitivityReport
   const arrange = () => {
     const key = `${choice.quantity} ${choice.order}`
     const again = key === ranked
-    if (again && senses === state.senses) return
-    ;[ranked, senses] = [key, state.senses]
+    if (again && sensitivityReport === state.sensitivityReport) return
+    ;[ranked, sensitivityReport] = [key, state.sensitivityReport]
     const quantity = report.quantities[choice.quantity]
-    const all = quantity ? effects(state.senses, choice.quantity, choice.order) : []
+    const all = quantity ? effects(state.sensitivityReport, choice.quantity, choice.order) : []
     about.textContent = quantity ? `by effect on ${orderedName(quantity, choice.order)}` : ''
     const place = new Map(all.map(({ variable }, rank) => [variable.index, rank]))
     for (const item of rows) {
@@ -78,12 +78,12 @@ export function variables(state: State): HTMLElement {
     for (const item of rows) item.sync()
     resetAll.hidden = !state.changed
     const variable = report.variables[choice.variable]
-    const foreseen = state.foreseen
+    const status = state.isPredicted
       ? 'Changes are predicted to first order. '
-      : state.sensed
+      : state.hasCurrentSensitivities
         ? ''
         : 'Sensitivities are being updated. '
-    note.replaceChildren(...prose(foreseen + (variable?.note || variable?.description || '')))
+    note.replaceChildren(...prose(status + (variable?.note || variable?.description || '')))
     if (choice.variable === shown) return
     shown = choice.variable
     const { element } = rows[shown]

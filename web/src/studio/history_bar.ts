@@ -3,7 +3,7 @@ import type { History, Snapshot, Step } from './history'
 import './studio.css'
 
 /** Actions of the page for the bar. */
-export interface Shows {
+export interface HistoryActions {
   /** Shows another design. */
   show: (step: Step) => void
   /** Compares with a design that was given a name, or with none of them any more. */
@@ -18,7 +18,7 @@ const FORTH = 'M12.5 6.5h-6a3.5 3.5 0 0 0 0 7h3M9.5 3.5l3 3l-3 3'
  * Buttons for undo, redo, reset and the designs that were given a name; and their keys, wherever the focus is but in a
  * text.
  */
-export function historyBar(history: History, { show, compare }: Shows): HTMLElement {
+export function historyBar(history: History, { show, compare }: HistoryActions): HTMLElement {
   const icon = (path: string) => svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: path }))
   const undo = () => history.undo()
   const redo = () => history.redo()
@@ -89,7 +89,7 @@ function stepOf({ key, ctrlKey, metaKey, altKey, shiftKey }: KeyboardEvent): 'un
 }
 
 /** A button that opens the designs with names: keep this one, take another, compare with it, rename and delete it. */
-function snapshots(history: History, { show, compare }: Shows): HTMLElement {
+function snapshots(history: History, { show, compare }: HistoryActions): HTMLElement {
   let compared: Snapshot | undefined
   const name = el('input', {
     type: 'text',
@@ -140,13 +140,13 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
         name,
       )
     const actions = [
-      action('Open this design', 'Open', () => (show(history.take(snapshot)), open(false), button.focus())),
+      action('Open this design', 'Open', () => (show(history.restore(snapshot)), open(false), button.focus())),
       action('Compare the current design with it', 'Compare', () =>
         choose(compared === snapshot ? undefined : snapshot),
       ),
       action('Delete this design', 'Delete', () => {
         if (compared === snapshot) choose(undefined)
-        history.forget(snapshot)
+        history.remove(snapshot)
         name.focus()
       }),
     ]
@@ -172,7 +172,7 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
   }
   form.addEventListener('submit', (event) => {
     event.preventDefault()
-    history.keep(name.value)
+    history.save(name.value)
     name.value = ''
   })
   element.addEventListener('keydown', (event) => {

@@ -5,8 +5,8 @@ import type { MovableHardpoint, VariableSetting } from '../engine/protocol'
  * Along what a hardpoint is moved: in the plane of the picture, along an axis of the model, or in a plane of two of
  * them.
  */
-export type Way = 'free' | 'x' | 'y' | 'z' | 'xy' | 'yz' | 'zx'
-export const WAYS: readonly Way[] = ['free', 'x', 'y', 'z', 'xy', 'yz', 'zx']
+export type DragDirection = 'free' | 'x' | 'y' | 'z' | 'xy' | 'yz' | 'zx'
+export const DRAG_DIRECTIONS: readonly DragDirection[] = ['free', 'x', 'y', 'z', 'xy', 'yz', 'zx']
 export const AXES = ['x', 'y', 'z'] as const
 
 /** A line of sight that is less than this far from an axis or plane, as a sine, does not say where it meets it. */
@@ -15,7 +15,7 @@ const GRAZING = 0.02
 const MIRRORED = 1e-6
 
 /** Unit vectors of a way in the drawing; none for the plane of the picture. */
-function directions(way: Way): Vector3[] {
+function directions(way: DragDirection): Vector3[] {
   return way === 'free' ? [] : [...way].map((axis) => new Vector3().setComponent(AXES.indexOf(axis as 'x'), 1))
 }
 
@@ -23,7 +23,13 @@ function directions(way: Way): Vector3[] {
  * How far a place of the world goes so that it follows the line of sight on its way; `turn` takes directions of the
  * drawing into the world, `facing` is towards the eye. Nothing where the line of sight hardly says. /
  */
-export function followed(ray: Ray, place: Vector3, way: Way, turn: Quaternion, facing: Vector3): Vector3 | undefined {
+export function followed(
+  ray: Ray,
+  place: Vector3,
+  way: DragDirection,
+  turn: Quaternion,
+  facing: Vector3,
+): Vector3 | undefined {
   const along = directions(way).map((axis) => axis.applyQuaternion(turn))
   if (along.length === 1) {
     // The point of the axis that is nearest to the line of sight.

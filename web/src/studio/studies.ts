@@ -23,7 +23,7 @@ export interface StudyHost {
   /** The text of the present design. */
   text: () => string
   /** Shows the design that a study found; its changes count from the text that was studied. */
-  take: (result: StudyResult, studied: string) => void
+  apply: (result: StudyResult, studied: string) => void
 }
 
 /** A study with its form, its progress and its result. */
@@ -149,7 +149,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
       'aria-label': `Progress of ${name.toLowerCase()}`,
       'data-testid': `${testId}-progress`,
     })
-    const told = el('pre', { class: 'told', 'data-testid': `${testId}-lines` })
+    const log = el('pre', { class: 'log', 'data-testid': `${testId}-lines` })
     const cancel = el(
       'button',
       {
@@ -166,7 +166,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     const lines: string[] = []
     show(
       bar,
-      told,
+      log,
       el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')),
     )
     let running: Running<StudyResult>
@@ -177,7 +177,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
         else Object.assign(bar, { max: Math.max(total, 1), value: done })
         if (line === '' || line === lines.at(-1)) return
         lines.push(line)
-        told.textContent = lines.slice(-LINES).join('\n')
+        log.textContent = lines.slice(-LINES).join('\n')
       })
       showResult(made, await running.result, text)
     } catch (error) {
@@ -199,7 +199,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
         type: 'button',
         class: 'first',
         'data-testid': `${testId}-take`,
-        onclick: () => (host.take(result, text), away()),
+        onclick: () => (host.apply(result, text), away()),
       },
       'Apply design',
     )

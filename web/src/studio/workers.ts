@@ -46,15 +46,15 @@ export class Workers implements Studies {
   /** An engine that is at work hears nothing: to cancel ends it, and what it reported last is the best so far. */
   #run(request: Request): Running<StudyResult> {
     const solver = new Solver(this.module)
-    const listeners: ((told: ProgressReply) => void)[] = []
+    const listeners: ((progress: ProgressReply) => void)[] = []
     let best: VariableSetting[] | null = null
     let ended: (result: StudyResult) => void
     const cancelled = new Promise<StudyResult>((done) => (ended = done))
-    const told = (news: ProgressReply) => {
+    const onProgress = (news: ProgressReply) => {
       best = news.change ?? best
       for (const listener of listeners) listener(news)
     }
-    const whole = solver.ask<StudyReply>(request, told).then(({ json }) => json)
+    const whole = solver.ask<StudyReply>(request, onProgress).then(({ json }) => json)
     return {
       onProgress: (listener) => listeners.push(({ done, total, line }) => listener(done, total, line)),
       cancel: () => {
