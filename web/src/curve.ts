@@ -67,9 +67,9 @@ const TURNING = 0.25
 const WITH_IT = 0.1
 
 /**
- * How much `y` changes per change of `x` along the motion, from the rates and accelerations of both: where `x` turns
- * back, and its rate with that of `y` is nothing, from the accelerations. NaN where neither indicates; and where `x` is
- * about to turn while `y` goes on: there `y` does not follow `x`, and what it is at a certain `x` says nothing. /
+ * Slope dy/dx along the motion: ratio of the rates, or of the accelerations where `x` reverses and both rates vanish.
+ * NaN where neither is defined, and close to a reversal of `x` that `y` does not share: there `y` is not a function of
+ * `x`.
  */
 export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Curve, Curve]): Curve {
   const [fastest, steepest, liveliest] = [peak(x[1]), peak(x[2]), peak(y[1])]
@@ -85,8 +85,8 @@ export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Cur
 }
 
 /**
- * How much `y` changes per change of `x` while a driver moves alone, from what both do then; NaN where the driver does
- * next to nothing to `x`. /
+ * Slope dy/dx while one driver moves alone, from the changes of both per unit of the driver; NaN where the driver
+ * hardly moves `x`.
  */
 export function slopeAlone(y: Curve, x: Curve): Curve {
   const least = peak(x) * TURNS

@@ -14,7 +14,7 @@ export interface Effect {
 /**
  * Variables with a sensitivity of the quantity, largest effect first: by their typical changes where all of them have
  * one, else by peak over time within each unit, units in the order of their first variable. Those without effect come
- * last. /
+ * last.
  */
 export function effects(report: Report, quantity: number, order: Order): Effect[] {
   const found: Effect[] = []

@@ -66,7 +66,7 @@ export interface Overlay {
 /**
  * Curves over time or over another quantity, with a legend above that reads the values under the pointer, or at the
  * moment shown; dragging moves the time. Dragging along the horizontal axis, or with Shift, shows that part of the
- * abscissa: of time in all plots that share a `Zoom`, of another quantity in this one. /
+ * abscissa: of time in all plots that share a `Zoom`, of another quantity in this one.
  */
 export class Plot {
   readonly element: HTMLElement
@@ -347,7 +347,7 @@ export class Plot {
     return shiftKey && share ? () => this.content.part && this.#see(moved(this.content.part, share)) : undefined
   }
 
-  /** Number of times as much of the abscissa, round the moment shown where it is seen. */
+  /** Scales the visible range of the abscissa, about the moment shown where it is visible. */
   #scale(factor: number): void {
     const part = this.content.part ?? this.#all()
     const [low, high] = part

@@ -31,9 +31,9 @@ describe('a changed design beside the original', () => {
   test('can be compared with what was predicted: the dashed curve and the dashed mechanism follow', async () => {
     const before = { view: await picture(page), curve: await curve(page, 'plot-0') }
     const options = page.getByTestId('compare').locator('option')
-    const foreseen = (await options.allInnerTexts()).findIndex((name) => name.includes('first order'))
-    expect(foreseen).toBeGreaterThan(0)
-    await page.getByTestId('compare').selectOption({ index: foreseen })
+    const predicted = (await options.allInnerTexts()).findIndex((name) => name.includes('first order'))
+    expect(predicted).toBeGreaterThan(0)
+    await page.getByTestId('compare').selectOption({ index: predicted })
     expect((await curve(page, 'plot-0')).sum).not.toBe(before.curve.sum)
     expect(await page.locator('.ghost-key').innerText()).toContain('first order')
     await page.getByTestId('compare').selectOption({ index: 0 })

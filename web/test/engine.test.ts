@@ -21,9 +21,9 @@ const files = readdirSync(MODELS)
   .filter((file) => file.endsWith('.toml'))
   .sort()
 
-async function engine(tell: (told: ProgressReply) => void = () => {}): Promise<Ask> {
+async function engine(onProgress: (progress: ProgressReply) => void = () => {}): Promise<Ask> {
   const binary = readFileSync(join(ROOT, 'crates/hardpoint-report/page/engine.wasm'))
-  return instantiate(await WebAssembly.compile(new Uint8Array(binary)), tell)
+  return instantiate(await WebAssembly.compile(new Uint8Array(binary)), onProgress)
 }
 
 /** The native engine's answers to the same requests. */
@@ -104,8 +104,8 @@ test.each(files)('%s is understood and solved as the command does', async (file)
 })
 
 test('a search indicates of its iterations and finds what the native one finds', async () => {
-  const told: ProgressReply[] = []
-  const ask = await engine((news) => told.push(news))
+  const reports: ProgressReply[] = []
+  const ask = await engine((news) => reports.push(news))
   const strut = model('studies/strut_toe.toml')
   const offer = answer<OptimizeOffer>(ask({ ask: 'optimize_offer', model: strut })).json
   const chosen = <T extends { chosen: boolean }>(list: T[]) => list.filter(({ chosen }) => chosen)
@@ -117,8 +117,8 @@ test('a search indicates of its iterations and finds what the native one finds',
   }
   const request: Request = { ask: 'optimize', model: strut, asked }
   const [found, wanted] = [ask(request), native([request])[0]].map((block) => answer<StudyReply>(block).json)
-  expect(told.length).toBeGreaterThan(2)
-  expect(told.at(-1)!.change!.length).toBeGreaterThan(0)
+  expect(reports.length).toBeGreaterThan(2)
+  expect(reports.at(-1)!.change!.length).toBeGreaterThan(0)
   // Two machines walk there by other last digits: the ends agree as far as the search goes.
   near(
     found.change!.map(({ by }) => by),

@@ -96,8 +96,8 @@ test('reset and a design with a name are steps that can be undone', () => {
 
 test('designs are named, renamed and forgotten', () => {
   const history = new History(first())
-  let told = 0
-  history.onChange(() => told++)
+  let changes = 0
+  history.onChange(() => changes++)
   const [one, two] = [history.save(), history.save()]
   expect(history.snapshots.map(({ name }) => name)).toEqual(['design 1', 'design 2'])
   history.rename(one, '')
@@ -105,5 +105,5 @@ test('designs are named, renamed and forgotten', () => {
   history.remove(one)
   expect(history.snapshots.map(({ name }) => name)).toEqual(['soft'])
   expect(history.save().name).toBe('design 1')
-  expect(told).toBe(6)
+  expect(changes).toBe(6)
 })

@@ -1,7 +1,7 @@
 /**
  * Time limits, in milliseconds. No result may depend on how fast or how busy the machine is: a limit is there only so
  * that what hangs ends, and names itself, while the rest is still reported. Each is many times what the slowest takes
- * on a quiet machine. /
+ * on a quiet machine.
  */
 
 /**

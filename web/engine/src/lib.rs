@@ -1,8 +1,8 @@
 //! The engine for a page: three functions around one block of memory that goes in and one that comes out.
 //!
-//! The page asks for room ([`room`]), writes its request there, calls [`answer`], and reads that many bytes at [`answered`]. While a study is
-//! under way it is reported how far it is by its own function `tell(place, length)`: JSON. Should the engine ever panic, it says so by
-//! `panicked(place, length)`, and ends.
+//! The page requests memory ([`room`]), writes its request there, calls [`answer`], and reads that many bytes at
+//! [`answered`]. During a study the engine reports progress as JSON by the page's function `tell(place, length)`. If
+//! the engine panics, it calls `panicked(place, length)` and ends.
 
 #![allow(
     unsafe_code,
@@ -22,9 +22,9 @@ thread_local! {
 
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {
-    /// Number of bytes at a place say how far a study is.
+    /// Reports the progress of a study, as JSON.
     safe fn tell(place: *const u8, length: usize);
-    /// Number of bytes at a place say why the engine ends here.
+    /// Reports a panic, after which the engine ends.
     safe fn panicked(place: *const u8, length: usize);
 }
 
@@ -38,7 +38,7 @@ pub extern "C" fn room(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request; how many bytes the answer has.
+/// Answers the request, and returns the length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> usize {
     std::panic::set_hook(Box::new(|what| {
@@ -46,8 +46,8 @@ pub extern "C" fn answer() -> usize {
         panicked(what.as_ptr(), what.len());
     }));
     let request = REQUEST.take();
-    let mut on = |told: &ProgressReply| {
-        if let Ok(json) = serde_json::to_vec(told) {
+    let mut on = |progress: &ProgressReply| {
+        if let Ok(json) = serde_json::to_vec(progress) {
             tell(json.as_ptr(), json.len());
         }
         ControlFlow::Continue(())
@@ -58,7 +58,7 @@ pub extern "C" fn answer() -> usize {
     length
 }
 
-/// Where the answer is.
+/// Address of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn answered() -> *const u8 {
     ANSWER.with_borrow(|answer| answer.as_ptr())

@@ -6,8 +6,8 @@ export interface Change {
 }
 
 /**
- * What makes one text of another, both in lines: as little as is between what both begin and end with, line by line
- * where both have the same number of lines in between. A line break counts one. /
+ * Edits that turn one text into another, both in lines: the part between their common beginning and end, line by line
+ * where both have the same number of lines there. A line break counts one.
  */
 export function changes(before: readonly string[], after: readonly string[]): Change[] {
   const least = Math.min(before.length, after.length)

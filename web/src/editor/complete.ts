@@ -1,6 +1,6 @@
 import { namesIn, outline, quoted, cursorContext, text } from './toml'
 
-/** As much of a JSON schema as is asked here. */
+/** The keywords of JSON Schema that are used here. */
 export interface Schema {
   description?: string
   $ref?: string

@@ -66,7 +66,7 @@ export interface Editor {
   /**
    * Puts another text in its place, valid and shown by the page already, by the smallest change: the cursor, what is
    * seen and the steps of undo stay. It is one step, or part of the one before where that came from outside too
-   * (`sameStep`), as in a drag. /
+   * (`sameStep`), as in a drag.
    */
   setText(text: string, sameStep?: boolean): void
   /** Adds what solving the text reported to what checking it reported; until it changes. */

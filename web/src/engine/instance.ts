@@ -12,7 +12,10 @@ interface Exports {
 export type Ask = (request: Request) => ArrayBuffer
 
 /** An engine of its own; `onProgress` receives the progress of a study. */
-export async function instantiate(module: WebAssembly.Module, onProgress: (progress: ProgressReply) => void): Promise<Ask> {
+export async function instantiate(
+  module: WebAssembly.Module,
+  onProgress: (progress: ProgressReply) => void,
+): Promise<Ask> {
   let why = ''
   const text = (place: number, length: number) =>
     new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))

@@ -25,7 +25,7 @@ const METRES: Record<string, number> = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254, f
 
 /**
  * The whole motion as a binary glTF file: one node per body under its name, one animation. Arrows and other marks are
- * left out. Everything drawn is put in its place for every output time, and left at the time `step`. /
+ * left out. Everything drawn is put in its place for every output time, and left at the time `step`.
  */
 export async function motionGltf(mechanism: Mechanism, drawn: Drawable[], step: number): Promise<Blob> {
   const { scene, clip } = motionScene(mechanism, drawn, step)

@@ -62,8 +62,8 @@ interface Stroke {
 }
 
 /**
- * What is drawn, as vectors: faces from the farthest to the nearest (painter's order), their outlines and folds, and
- * lines. Faces that cross one another are not cut; shadows and textures are left out. /
+ * The view as vector graphics: faces from the farthest to the nearest (painter's order), their outlines and folds, and
+ * lines. Faces that cross one another are not cut; shadows and textures are left out.
  */
 export function viewSvg(roots: Object3D[], camera: Camera, picture: Picture): Blob {
   const { width, height, view, label, labels = [] } = picture

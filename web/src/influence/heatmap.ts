@@ -343,7 +343,7 @@ class HeatMap {
   }
 }
 
-/** As much of a text as there is room for. */
+/** Text truncated to the available width. */
 function fitted(pen: CanvasRenderingContext2D, text: string, room: number): string {
   if (pen.measureText(text).width <= room) return text
   let [fits, long] = [0, text.length]

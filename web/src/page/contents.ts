@@ -156,8 +156,8 @@ interface AtAbscissa {
 }
 
 /**
- * How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. Where
- * several drivers move, the one that moves the abscissa most keeps it, and the others stand. /
+ * Conversion of the quantity's sensitivities to a fixed abscissa, if there is one; a message where it is not possible.
+ * Where several drivers move, the one that moves the abscissa most holds it, and the others are fixed.
  */
 function atAbscissa({ sensitivityReport: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
   if (over === undefined) return { seen: (curve) => curve, note: '' }

@@ -6,7 +6,7 @@ const AT = 1e-9
 /**
  * The vertices of a mesh after its body's hardpoints went from one place to another: each depends on the mean of the
  * hardpoints' ways, weighted with the inverse square of the distance (Shepard 1968). Hardpoints that stay hold what is
- * near them. /
+ * near them.
  */
 export function deformed(positions: Float32Array, from: Vector3[], to: Vector3[]): Float32Array {
   const ways = from.map((point, k) => to[k].clone().sub(point))

@@ -36,7 +36,7 @@ const EDGE = 4
 
 /**
  * Places texts round the middle of the picture so that none covers another or its spot; one that finds no place is left
- * out. The order is the priority. `wide` measures a text. /
+ * out. The order is the priority. `wide` measures a text.
  */
 export function placeLabels(
   spots: Spot[],

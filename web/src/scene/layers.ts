@@ -5,7 +5,7 @@ const SHORT = 0.6
 
 /**
  * In which layer each body of a planar mechanism lies. Longest first; each takes the lowest layer that no body sharing
- * a joint's place has. /
+ * a joint's place has.
  */
 export function layers(lengths: number[], pins: { at: Vector3; bodies: number[] }[], tolerance: number): number[] {
   const spots: { at: Vector3; bodies: Set<number> }[] = []

@@ -36,7 +36,7 @@ type Place = readonly [number, number, number]
 
 /**
  * A report as it is drawn: sizes, places, colours and layers, worked out once. A changed design takes sizes, colours
- * and layers from the one that it is a change of, so that only what differs is seen to differ. /
+ * and layers from the one that it is a change of, so that only what differs is seen to differ.
  */
 export class Mechanism {
   /** Steps at which the motion is sampled, where its extent matters. */

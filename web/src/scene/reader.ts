@@ -14,7 +14,7 @@ const BEHIND = 0.5
 
 /**
  * The corner from which joints cover one another least, and wheels with teeth on one face show it; `moments` has the
- * places of the joints at several times, `backs` the directions in which those wheels turn their backs. /
+ * places of the joints at several times, `backs` the directions in which those wheels turn their backs.
  */
 export function readerOf(moments: Vector3[][], size: number, backs: Vector3[] = []): Vector3 {
   const cost = (corner: Vector3) =>

@@ -25,7 +25,7 @@ export function travelOf(driver: Driver): Travel | undefined {
 
 /** A whole turn less this is drawn as a whole turn, rad. */
 const NEARLY = 0.2
-/** Angle that is drawn for a whole turn, so that there is a beginning and an end, rad. */
+/** Angle drawn for a whole turn, so that both ends are visible, rad. */
 const WHOLE = 4.9
 
 /** An arc as it is drawn: from one angle to another, with a head where it ends, or at both ends. */

@@ -67,7 +67,7 @@ export class History {
 
   /**
    * Goes on to a design. What the same `hand` does without a pause, such as all of a drag, is one step; `rest` ends it.
-   * A step that comes back to where it began is none. /
+   * A step that comes back to where it began is none.
    */
   go(step: Step, gesture?: string): void {
     const isContinued = gesture !== undefined && gesture === this.#gesture

@@ -14,14 +14,15 @@ const GRAZING = 0.02
 /** Two hardpoints are mirror images to this part of the size of the mechanism. */
 const MIRRORED = 1e-6
 
-/** Unit vectors of a way in the drawing; none for the plane of the picture. */
+/** Unit vectors of a drag direction in the design configuration; none for the plane of the screen. */
 function directions(way: DragDirection): Vector3[] {
   return way === 'free' ? [] : [...way].map((axis) => new Vector3().setComponent(AXES.indexOf(axis as 'x'), 1))
 }
 
 /**
- * How far a place of the world goes so that it follows the line of sight on its way; `turn` takes directions of the
- * drawing into the world, `facing` is towards the eye. Nothing where the line of sight hardly says. /
+ * Displacement of a point, in the world, that follows the line of sight in a drag direction; `turn` rotates directions
+ * of the design configuration into the world, `facing` points to the eye. Undefined where the line of sight is nearly
+ * parallel to the axis or plane.
  */
 export function followed(
   ray: Ray,

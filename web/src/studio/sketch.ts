@@ -14,7 +14,7 @@ const CLICK = 4
 /** Step of an arrow key relative to the visible range, in round numbers: without and with Shift. */
 const STRIDE = 1 / 40
 const STEP = 1 / 200
-/** Times as much of the ordinate, round its middle, to draw beyond the curves. */
+/** Factor on the range of the ordinate, about its middle, to draw beyond the curves. */
 const ROOM = 1.6
 
 /** Actions on a drawn curve. */
@@ -28,7 +28,7 @@ export interface SketchActions {
 /**
  * A curve drawn over a plot, with mouse, pen, touch or keys: freehand, one value at each abscissa, in a handful of
  * points that can be moved. What is drawn over a part takes its place. It is in use from when it is made until it is
- * done, cancelled or `close`d. /
+ * done, cancelled or `close`d.
  */
 export class Sketch implements Overlay {
   /** Drawn points, in the shown units. */

@@ -28,7 +28,7 @@ const REST = 200
 
 /**
  * The page as a studio: designs are solved by the engine as the reader makes them. What is shown is the model's text
- * that was opened or typed and the changes made since; both go into the text that is shown, exported and saved. /
+ * that was opened or typed and the changes made since; both go into the text that is shown, exported and saved.
  */
 export class Studio {
   readonly history: History

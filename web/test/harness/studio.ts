@@ -56,7 +56,7 @@ function begin(text: string, request: Study['request']): Running<StudyResult> {
     text,
     request,
     cancelled: false,
-    tell: (...told) => listeners.forEach((listener) => listener(...told)),
+    tell: (...progress) => listeners.forEach((listener) => listener(...progress)),
     end,
     fail: (message) => fail(new Error(message)),
   }

@@ -1,5 +1,5 @@
-//! A clock for the engine in a page, in place of the crate of the same name, which brings a machinery of imports from JavaScript that
-//! the page would have to serve (`Cargo.toml`, `[patch]`). Whoever asks for a limit in time finds that none has passed.
+//! A clock for the engine in a page, in place of the crate of the same name, whose imports from JavaScript the page
+//! would have to serve (`Cargo.toml`, `[patch]`). No time ever passes, so no time limit is reached.
 
 pub use std::time::Duration;
 

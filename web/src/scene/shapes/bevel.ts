@@ -87,7 +87,7 @@ export function bevelsOf(train: Train, { terms }: CouplerMark): BevelPair | unde
 
 /**
  * Triangles of a toothed cone, three by three: from its wide end `width` along the cone towards the tip, closed at both
- * ends. The middle of a tooth is at the angle `phase` from `towards`. /
+ * ends. The middle of a tooth is at the angle `phase` from `towards`.
  */
 export function bevelCorners(
   tip: Vector3,
