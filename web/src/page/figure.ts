@@ -71,39 +71,10 @@ export class Figure {
       },
       'Sensitivity',
     )
-    const remove = el(
-      'button',
-      {
-        type: 'button',
-        class: 'icon',
-        'data-testid': 'remove',
-        title: 'Remove plot',
-        'aria-label': 'Remove plot',
-        onclick: () => onRemove(this),
-      },
-      '×',
-    )
-    const add = el(
-      'button',
-      {
-        type: 'button',
-        class: 'icon',
-        'data-testid': 'add-curve',
-        title: 'Add a plot',
-        'aria-label': 'Add a plot',
-        onclick: onAdd,
-      },
-      '+',
-    )
-    const controls = el(
-      'div',
-      { class: 'controls' },
-      quantity,
-      over,
-      order,
-      able ? shown : undefined,
-      options.leads ? add : remove,
-    )
+    const last = options.leads
+      ? icon('add-curve', 'Add a plot', '+', onAdd)
+      : icon('remove', 'Remove plot', '×', () => onRemove(this))
+    const controls = el('div', { class: 'controls' }, quantity, over, order, able ? shown : undefined, last)
     this.plot = new Plot(state, options.testId, [controls], time)
     this.plot.element.classList.toggle('leads', options.leads)
     pointing(state, this.plot.element, () => this.subject.quantity)
@@ -162,5 +133,13 @@ function offered(state: State): HTMLElement[] {
   const plural = (group: string) => (group === 'body' ? 'bodies' : `${group}s`)
   return groups(state.report).map(([name, members]) =>
     el('optgroup', { label: plural(name) }, ...members.map(({ index, name }) => el('option', { value: index }, name))),
+  )
+}
+
+function icon(testId: string, title: string, sign: string, onclick: () => void): HTMLElement {
+  return el(
+    'button',
+    { type: 'button', class: 'icon', 'data-testid': testId, title, 'aria-label': title, onclick },
+    sign,
   )
 }

@@ -298,6 +298,12 @@ export class Grips {
   #refusal = el('p', { class: 'refusal', role: 'status', 'data-testid': 'refusal' })
   #mirrorField?: HTMLInputElement
 
+  #directionButton(way: DragDirection): HTMLButtonElement {
+    const title = way === 'free' ? 'In the plane of the screen' : `Along ${[...way].join(' and ')}`
+    const onclick = () => this.#setDirection(way)
+    return el('button', { type: 'button', 'data-testid': `way-${way}`, title, onclick }, way)
+  }
+
   #makePane(): void {
     const { length } = this.state.report.units
     this.#fields = AXES.map((axis, k) =>
@@ -312,18 +318,7 @@ export class Grips {
     )
     const label = (text: string, field: HTMLElement, after = '') =>
       el('label', {}, el('span', {}, text), field, el('span', { class: 'unit' }, after))
-    this.#directionButtons = DRAG_DIRECTIONS.map((way) =>
-      el(
-        'button',
-        {
-          type: 'button',
-          'data-testid': `way-${way}`,
-          title: way === 'free' ? 'In the plane of the screen' : `Along ${[...way].join(' and ')}`,
-          onclick: () => this.#setDirection(way),
-        },
-        way,
-      ),
-    )
+    this.#directionButtons = DRAG_DIRECTIONS.map((way) => this.#directionButton(way))
     const snap = el(
       'select',
       { 'aria-label': 'Snap', 'data-testid': 'snap', onchange: () => (this.#snap = Number(snap.value)) },

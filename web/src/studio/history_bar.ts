@@ -88,7 +88,7 @@ function stepOf({ key, ctrlKey, metaKey, altKey, shiftKey }: KeyboardEvent): 'un
   return letter === 'y' && !shiftKey ? 'redo' : undefined
 }
 
-/** A button that opens the designs with names: keep this one, take another, compare with it, rename and delete it. */
+/** A button that opens the named designs: save the current one; open, compare, rename and delete others. */
 function snapshots(history: History, { show, compare }: HistoryActions): HTMLElement {
   let compared: Snapshot | undefined
   const name = el('input', {
@@ -117,48 +117,17 @@ function snapshots(history: History, { show, compare }: HistoryActions): HTMLEle
     compare(snapshot)
     render()
   }
-  const row = (snapshot: Snapshot): HTMLElement => {
-    const field = el('input', {
-      type: 'text',
-      value: snapshot.name,
-      'data-testid': 'snapshot-rename',
-      onchange: () => {
-        history.rename(snapshot, field.value)
-        label()
-      },
-    })
-    const action = (title: string, name: string, run: () => void) =>
-      el(
-        'button',
-        {
-          type: 'button',
-          name: `${name} ${snapshot.id}`,
-          title,
-          'data-testid': `snapshot-${name.toLowerCase()}`,
-          onclick: run,
-        },
-        name,
-      )
-    const actions = [
-      action('Open this design', 'Open', () => (show(history.restore(snapshot)), open(false), button.focus())),
-      action('Compare the current design with it', 'Compare', () =>
-        choose(compared === snapshot ? undefined : snapshot),
-      ),
-      action('Delete this design', 'Delete', () => {
+  const row = (snapshot: Snapshot): HTMLElement =>
+    snapshotRow(snapshot, compared === snapshot, {
+      rename: (text) => history.rename(snapshot, text),
+      open: () => (show(history.restore(snapshot)), open(false), button.focus()),
+      compare: () => choose(compared === snapshot ? undefined : snapshot),
+      remove: () => {
         if (compared === snapshot) choose(undefined)
         history.remove(snapshot)
         name.focus()
-      }),
-    ]
-    actions[1].setAttribute('aria-pressed', String(compared === snapshot))
-    const label = () => {
-      field.value = snapshot.name
-      field.setAttribute('aria-label', `Name of ${snapshot.name}`)
-      for (const one of actions) one.setAttribute('aria-label', `${one.title}: ${snapshot.name}`)
-    }
-    label()
-    return el('li', {}, field, ...actions)
-  }
+      },
+    })
   let shown = ''
   const render = () => {
     const key = [compared?.id, ...history.snapshots.map(({ id }) => id)].join()
@@ -192,4 +161,50 @@ function snapshots(history: History, { show, compare }: HistoryActions): HTMLEle
   shown = '-'
   render()
   return element
+}
+
+interface RowActions {
+  rename: (text: string) => void
+  open: () => void
+  compare: () => void
+  remove: () => void
+}
+
+/** A named design with its field and its buttons. */
+function snapshotRow(
+  snapshot: Snapshot,
+  isCompared: boolean,
+  { rename, open, compare, remove }: RowActions,
+): HTMLElement {
+  const field = el('input', {
+    type: 'text',
+    value: snapshot.name,
+    'data-testid': 'snapshot-rename',
+    onchange: () => (rename(field.value), label()),
+  })
+  const action = (title: string, name: string, run: () => void) =>
+    el(
+      'button',
+      {
+        type: 'button',
+        name: `${name} ${snapshot.id}`,
+        title,
+        'data-testid': `snapshot-${name.toLowerCase()}`,
+        onclick: run,
+      },
+      name,
+    )
+  const actions = [
+    action('Open this design', 'Open', open),
+    action('Compare the current design with it', 'Compare', compare),
+    action('Delete this design', 'Delete', remove),
+  ]
+  actions[1].setAttribute('aria-pressed', String(isCompared))
+  const label = () => {
+    field.value = snapshot.name
+    field.setAttribute('aria-label', `Name of ${snapshot.name}`)
+    for (const one of actions) one.setAttribute('aria-label', `${one.title}: ${snapshot.name}`)
+  }
+  label()
+  return el('li', {}, field, ...actions)
 }

@@ -145,40 +145,12 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
   const work = async (made: Form<Request>, request: Request) => {
     shown = 'progress'
     const text = host.text()
-    const bar = el('progress', {
-      'aria-label': `Progress of ${name.toLowerCase()}`,
-      'data-testid': `${testId}-progress`,
-    })
-    const log = el('pre', { class: 'log', 'data-testid': `${testId}-lines` })
-    const cancel = el(
-      'button',
-      {
-        type: 'button',
-        'data-testid': `${testId}-cancel`,
-        onclick: () => {
-          cancel.disabled = true
-          cancel.textContent = 'Cancelling…'
-          running.cancel()
-        },
-      },
-      'Cancel',
-    )
-    const lines: string[] = []
-    show(
-      bar,
-      log,
-      el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')),
-    )
+    const view = progressView(name, () => running.cancel())
+    show(...view.elements)
     let running: Running<StudyResult>
     try {
       running = start(text, request)
-      running.onProgress((done, total, line) => {
-        if (total === null) bar.removeAttribute('value')
-        else Object.assign(bar, { max: Math.max(total, 1), value: done })
-        if (line === '' || line === lines.at(-1)) return
-        lines.push(line)
-        log.textContent = lines.slice(-LINES).join('\n')
-      })
+      running.onProgress(view.update)
       showResult(made, await running.result, text)
     } catch (error) {
       showForm(made, refused(error))
@@ -193,7 +165,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
       showForm(made)
       if (!touched) refresh()
     }
-    const take = el(
+    const apply = el(
       'button',
       {
         type: 'button',
@@ -219,7 +191,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     show(
       outcome,
       since,
-      el('div', { class: 'acts' }, ...(found ? [take] : []), discard),
+      el('div', { class: 'acts' }, ...(found ? [apply] : []), discard),
       el('div', { class: 'checks' }, ...result.tables.map(factTable)),
     )
     announced.textContent = result.message
@@ -230,6 +202,41 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     else stale()
   }
   return { element, refresh }
+}
+
+/** Progress of a running study: a bar, its last lines, and a button that cancels it. */
+function progressView(name: string, onCancel: () => void) {
+  const testId = name.toLowerCase()
+  const bar = el('progress', { 'aria-label': `Progress of ${testId}`, 'data-testid': `${testId}-progress` })
+  const log = el('pre', { class: 'log', 'data-testid': `${testId}-lines` })
+  const cancel = el(
+    'button',
+    {
+      type: 'button',
+      'data-testid': `${testId}-cancel`,
+      onclick: () => {
+        cancel.disabled = true
+        cancel.textContent = 'Cancelling…'
+        onCancel()
+      },
+    },
+    'Cancel',
+  )
+  const lines: string[] = []
+  return {
+    elements: [
+      bar,
+      log,
+      el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')),
+    ],
+    update: (done: number, total: number | null, line: string) => {
+      if (total === null) bar.removeAttribute('value')
+      else Object.assign(bar, { max: Math.max(total, 1), value: done })
+      if (line === '' || line === lines.at(-1)) return
+      lines.push(line)
+      log.textContent = lines.slice(-LINES).join('\n')
+    },
+  }
 }
 
 function optimizeForm({ variables, goals, limits, starts, iterations }: OptimizeOffer): Form<OptimizeRequest> {
