@@ -98,34 +98,15 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
 
   const showForm = (made: Form<Request>, refusal?: HTMLElement) => {
     shown = 'form'
-    const why = el('span', { class: 'muted', 'data-testid': `${testId}-why` })
-    const run = el('button', { type: 'submit', class: 'first', 'data-testid': `${testId}-run` }, verb)
-    const again = el(
-      'button',
-      { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: () => void load() },
-      'Reload from model',
-    )
-    const sync = () => {
-      const request = made.request()
-      run.disabled = typeof request === 'string'
-      why.replaceChildren(...prose(typeof request === 'string' ? request : ''))
-      again.hidden = read === host.text()
-    }
-    const whole = el(
-      'form',
-      { class: 'study', novalidate: true, oninput: () => ((touched = true), sync()) },
-      ...(refusal ? [refusal] : []),
-      ...made.elements,
-      el('div', { class: 'acts' }, run, again, why),
-    )
-    whole.addEventListener('submit', (event) => {
-      event.preventDefault()
-      const request = made.request()
-      if (typeof request !== 'string') void work(made, request)
+    const view = formView(name, verb, made, refusal, {
+      isStale: () => read !== host.text(),
+      changed: () => (touched = true),
+      reload: () => void load(),
+      run: (request) => void work(made, request),
     })
-    stale = sync
-    sync()
-    show(whole)
+    stale = view.sync
+    stale()
+    show(view.element)
   }
   let stale = () => {}
 
@@ -160,40 +141,14 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
 
   const showResult = (made: Form<Request>, result: StudyResult, text: string) => {
     shown = 'result'
-    const found = result.change !== null || result.text !== null
-    const away = () => {
+    const leave = () => {
       showForm(made)
       if (!touched) refresh()
     }
-    const apply = el(
-      'button',
-      {
-        type: 'button',
-        class: 'first',
-        'data-testid': `${testId}-take`,
-        onclick: () => (host.apply(result, text), away()),
-      },
-      'Apply design',
-    )
-    const discard = el(
-      'button',
-      { type: 'button', 'data-testid': `${testId}-discard`, onclick: away },
-      found ? 'Discard' : 'Back',
-    )
-    const outcome = el('p', { class: 'outcome', 'data-testid': `${testId}-outcome` }, ...prose(result.message))
-    const since = el(
-      'p',
-      { class: 'outcome stale', 'data-testid': `${testId}-stale` },
-      'The design has changed since the study began. Applying the result discards later changes.',
-    )
-    stale = () => (since.hidden = host.text() === text)
+    const view = resultView(name, result, { apply: () => (host.apply(result, text), leave()), leave })
+    stale = () => (view.since.hidden = host.text() === text)
     stale()
-    show(
-      outcome,
-      since,
-      el('div', { class: 'acts' }, ...(found ? [apply] : []), discard),
-      el('div', { class: 'checks' }, ...result.tables.map(factTable)),
-    )
+    show(...view.elements)
     announced.textContent = result.message
   }
 
@@ -202,6 +157,76 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     else stale()
   }
   return { element, refresh }
+}
+
+interface FormActions<Request> {
+  /** True if the text is another than the one that the form was made from. */
+  isStale: () => boolean
+  changed: () => void
+  reload: () => void
+  run: (request: Request) => void
+}
+
+/** Form of a study with the button that begins it; `sync` shows whether it can begin and whether its text is stale. */
+function formView<Request>(
+  name: string,
+  verb: string,
+  made: Form<Request>,
+  refusal: HTMLElement | undefined,
+  { isStale, changed, reload, run }: FormActions<Request>,
+) {
+  const testId = name.toLowerCase()
+  const why = el('span', { class: 'muted', 'data-testid': `${testId}-why` })
+  const begin = el('button', { type: 'submit', class: 'first', 'data-testid': `${testId}-run` }, verb)
+  const again = el(
+    'button',
+    { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: reload },
+    'Reload from model',
+  )
+  const sync = () => {
+    const request = made.request()
+    begin.disabled = typeof request === 'string'
+    why.replaceChildren(...prose(typeof request === 'string' ? request : ''))
+    again.hidden = !isStale()
+  }
+  const element = el(
+    'form',
+    { class: 'study', novalidate: true, oninput: () => (changed(), sync()) },
+    ...(refusal ? [refusal] : []),
+    ...made.elements,
+    el('div', { class: 'acts' }, begin, again, why),
+  )
+  element.addEventListener('submit', (event) => {
+    event.preventDefault()
+    const request = made.request()
+    if (typeof request !== 'string') run(request)
+  })
+  return { element, sync }
+}
+
+/** Outcome of a study with the buttons that apply it or leave it; `since` warns of later changes. */
+function resultView(name: string, result: StudyResult, { apply, leave }: { apply: () => void; leave: () => void }) {
+  const testId = name.toLowerCase()
+  const hasDesign = result.change !== null || result.text !== null
+  const take = el(
+    'button',
+    { type: 'button', class: 'first', 'data-testid': `${testId}-take`, onclick: apply },
+    'Apply design',
+  )
+  const discard = el(
+    'button',
+    { type: 'button', 'data-testid': `${testId}-discard`, onclick: leave },
+    hasDesign ? 'Discard' : 'Back',
+  )
+  const since = el(
+    'p',
+    { class: 'outcome stale', 'data-testid': `${testId}-stale` },
+    'The design has changed since the study began. Applying the result discards later changes.',
+  )
+  const outcome = el('p', { class: 'outcome', 'data-testid': `${testId}-outcome` }, ...prose(result.message))
+  const acts = el('div', { class: 'acts' }, ...(hasDesign ? [take] : []), discard)
+  const tables = el('div', { class: 'checks' }, ...result.tables.map(factTable))
+  return { elements: [outcome, since, acts, tables], since }
 }
 
 /** Progress of a running study: a bar, its last lines, and a button that cancels it. */
