@@ -66,9 +66,9 @@ const TURNING = 0.25
 const WITH_IT = 0.1
 
 /**
- * Slope `dy/dx` along the motion, from the rates of both; at a turn of `x`, where both rates are zero, from the
- * accelerations. NaN if neither determines it, or if `x` is about to turn while `y` does not: `y` is then not a
- * function of `x`.
+ * Slope dy/dx along the motion: ratio of the rates, or of the accelerations where `x` reverses and both rates vanish.
+ * NaN where neither is defined, and close to a reversal of `x` that `y` does not share: there `y` is not a function of
+ * `x`.
  */
 export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Curve, Curve]): Curve {
   const [fastest, steepest, liveliest] = [peak(x[1]), peak(x[2]), peak(y[1])]
@@ -84,7 +84,8 @@ export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Cur
 }
 
 /**
- * Slope `dy/dx` while one driver moves alone, from the rates of both; NaN if the driver hardly moves `x`.
+ * Slope dy/dx while one driver moves alone, from the changes of both per unit of the driver; NaN where the driver
+ * hardly moves `x`.
  */
 export function slopeAlone(y: Curve, x: Curve): Curve {
   const least = peak(x) * TURNS
@@ -100,8 +101,8 @@ export function atFixedAbscissa(dy: Curve, dx: Curve, slope: Curve): Curve {
 export function nearestStep(curve: Curve, value: number, step: number): number {
   let best = 0
   const range = peak(curve) || 1
-  const apart = (k: number) => Math.abs(curve[k] - value) + (1e-3 * range * Math.abs(k - step)) / curve.length
-  for (let k = 1; k < curve.length; k++) if (apart(k) < apart(best)) best = k
+  const distance = (k: number) => Math.abs(curve[k] - value) + (1e-3 * range * Math.abs(k - step)) / curve.length
+  for (let k = 1; k < curve.length; k++) if (distance(k) < distance(best)) best = k
   return best
 }
 

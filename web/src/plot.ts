@@ -347,7 +347,7 @@ export class Plot {
     return shiftKey && share ? () => this.content.part && this.#see(moved(this.content.part, share)) : undefined
   }
 
-  /** Scales the visible range of the abscissa by a factor, about the current time if that is visible. */
+  /** Scales the visible range of the abscissa, about the moment shown where it is visible. */
   #scale(factor: number): void {
     const part = this.content.part ?? this.#all()
     const [low, high] = part

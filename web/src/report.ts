@@ -234,7 +234,7 @@ export function derivativeUnit(quantity: Quantity, order: Order, variable: { uni
   return per(quantity.units[order], variable.unit)
 }
 
-interface Ranked {
+interface RankedVariable {
   variable: Variable
   sensitivity: Sensitivity
   peak: number
@@ -243,8 +243,8 @@ interface Ranked {
 }
 
 /** Variables with a sensitivity of the quantity, largest first within each unit. */
-export function ranking(report: Report, quantity: Quantity, order: Order): Map<string, Ranked[]> {
-  const byUnit = new Map<string, Ranked[]>()
+export function ranking(report: Report, quantity: Quantity, order: Order): Map<string, RankedVariable[]> {
+  const byUnit = new Map<string, RankedVariable[]>()
   for (const variable of report.variables) {
     const sensitivity = variable.sensitivities.get(quantity.index)
     // Of body origins, velocities and accelerations may be left out.

@@ -2,7 +2,7 @@ import { valueAt, stepAt, type Curve } from './curve'
 import { effects, firstQuantity } from './effect'
 import type { VariableSetting } from './engine/protocol'
 import type { Design, Order, Report } from './report'
-import type { Part } from './scene/drawn'
+import type { Part } from './scene/drawable'
 
 export interface Choice {
   quantity: number
@@ -44,7 +44,7 @@ export class State {
   /** Reason why the design is not the requested one. */
   refusal = ''
   /** Designs that were kept to be compared with. */
-  readonly kept: Design[] = []
+  readonly comparisons: Design[] = []
   /** Fractional index into the times. */
   step = 0
   playing = false
@@ -56,7 +56,7 @@ export class State {
   #onChange: (() => void)[] = []
   #pointed?: number
   #solved?: Design
-  #sensed?: { report: Report; settings: string }
+  #sensitivities?: { report: Report; settings: string }
   #edition = 0
   #ending = new AbortController()
 
@@ -92,7 +92,7 @@ export class State {
 
   /** Designs that the present one can be compared with: those of the report, then those that were kept. */
   get designs(): readonly Design[] {
-    return [...this.report.designs, ...this.kept]
+    return [...this.report.designs, ...this.comparisons]
   }
 
   /** Changed variables, by name. */
@@ -108,14 +108,14 @@ export class State {
     return `${this.#edition} ${this.choice.compared}`
   }
 
-  /** The report whose sensitivities are shown: that of the present design once it is solved. */
-  get senses(): Report {
-    return this.#sensed?.report ?? this.report
+  /** The report whose sensitivities are shown: that of the present design, as soon as it is there. */
+  get sensitivityReport(): Report {
+    return this.#sensitivities?.report ?? this.report
   }
 
   /** True if the sensitivities shown are those of the present design. */
-  get sensed(): boolean {
-    return (this.#sensed?.settings ?? '[]') === JSON.stringify(this.settings)
+  get hasCurrentSensitivities(): boolean {
+    return (this.#sensitivities?.settings ?? '[]') === JSON.stringify(this.settings)
   }
 
   /** The solved changed design; undefined if it is predicted, or if there are no changes. */
@@ -133,7 +133,7 @@ export class State {
   }
 
   /** True if the present design differs from the one that it is compared with. */
-  get compares(): boolean {
+  get isCompared(): boolean {
     return this.former ? this.former !== this.present : this.present !== undefined || this.changed
   }
 
@@ -227,12 +227,12 @@ export class State {
 
   /** Changes coordinates and variables by name; others stay. */
   adjust(settings: VariableSetting[]): void {
-    this.#put(settings)
+    this.#apply(settings)
     this.#changed()
   }
 
   /** Makes the design that has these changes and no others. */
-  become(settings: VariableSetting[]): void {
+  setDesign(settings: VariableSetting[]): void {
     this.#clear()
     this.adjust(settings)
   }
@@ -247,7 +247,7 @@ export class State {
   solved(design: Design | undefined, settings: VariableSetting[], refusal: string, last: boolean): void {
     if (last) {
       this.#clear()
-      this.#put(settings)
+      this.#apply(settings)
     }
     this.#solved = settings.length > 0 ? design : undefined
     this.refusal = refusal
@@ -256,14 +256,14 @@ export class State {
   }
 
   /** The report of the present design, with its own sensitivities. */
-  sense(report: Report | undefined, settings: VariableSetting[]): void {
-    this.#sensed = report && { report, settings: JSON.stringify(settings) }
+  setSensitivities(report: Report | undefined, settings: VariableSetting[]): void {
+    this.#sensitivities = report && { report, settings: JSON.stringify(settings) }
     this.choose({})
   }
 
   /** Keeps a design to be compared with. */
-  keep(design: Design): void {
-    this.kept.push(design)
+  addComparison(design: Design): void {
+    this.comparisons.push(design)
     this.choose({})
   }
 
@@ -272,7 +272,7 @@ export class State {
     this.moves.clear()
   }
 
-  #put(settings: VariableSetting[]): void {
+  #apply(settings: VariableSetting[]): void {
     for (const { name, by } of settings) {
       const variable = this.report.variables.find((variable) => variable.name === name)
       if (variable) this.changes[variable.index] = by

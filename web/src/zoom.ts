@@ -50,7 +50,7 @@ export function within([low, high]: Part, whole: Part): Part | undefined {
   return [from, from + width]
 }
 
-/** The range, or the smallest visible range about its middle. */
+/** The part itself, or the largest visible range about its middle. */
 export function atLeast([low, high]: Part, whole: Part): Part {
   const half = Math.max(high - low, LEAST * (whole[1] - whole[0])) / 2
   const middle = (low + high) / 2

@@ -3,7 +3,7 @@ import { describe, expect, inject, test, vi } from 'vitest'
 import { Assembly } from '../src/scene/assembly'
 import { cameraFor, fit, looksOf } from '../src/scene/camera'
 import { marks, matter } from '../src/scene/draw'
-import type { Drawn, Part } from '../src/scene/drawn'
+import type { Drawable, Part } from '../src/scene/drawable'
 import { Kit } from '../src/scene/kit'
 import { Mechanism } from '../src/scene/mechanism'
 import { Outlines } from '../src/scene/outlines'
@@ -23,7 +23,7 @@ const brush = new Proxy({}, { get: () => () => undefined })
 vi.stubGlobal('document', { createElement: () => ({ getContext: () => brush }) })
 
 /** Everything that is drawn of a model as it opens. */
-async function drawing(address: string): Promise<{ mechanism: Mechanism; kit: Kit; drawn: Drawn[] }> {
+async function drawing(address: string): Promise<{ mechanism: Mechanism; kit: Kit; drawn: Drawable[] }> {
   const report = await reportOf(address)
   const mechanism = new Mechanism(report)
   const kit = new Kit(mechanism, LIGHT)

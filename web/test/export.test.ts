@@ -21,7 +21,7 @@ import { plotSvg } from '../src/export/plot_svg'
 import { fileName } from '../src/export/save'
 import { viewSvg } from '../src/export/view_svg'
 import type { Content } from '../src/plot'
-import type { Drawn } from '../src/scene/drawn'
+import type { Drawable } from '../src/scene/drawable'
 import { Mechanism } from '../src/scene/mechanism'
 import { crank } from './mechanisms'
 
@@ -195,7 +195,7 @@ describe('glTF of the motion', () => {
   const block = () => new Mesh(new BoxGeometry(1, 1, 1), new MeshLambertMaterial({ color: '#57b893' }))
   const rod = block()
   rod.add(new Line2(new LineGeometry().setFromPoints([new Vector3(), new Vector3(1, 0, 0)])))
-  const drawn: Drawn[] = [
+  const drawn: Drawable[] = [
     { body: 1, object: block(), part: { kind: 'body', index: 1, name: 'crank', about: '' } },
     {
       object: rod,

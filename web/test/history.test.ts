@@ -34,7 +34,7 @@ test('a new step takes the place of those that were undone', () => {
 test('a whole drag is one step, the next drag another', () => {
   const history = new History(first())
   for (const by of [1, 2, 3]) history.go(step(by), 'drag')
-  history.rest()
+  history.endGesture()
   for (const by of [4, 5]) history.go(step(by), 'drag')
   expect(history.undo()).toEqual(step(3))
   expect(history.undo()).toEqual(first())
@@ -54,7 +54,7 @@ test('a drag that comes back is no step, nor is a step to where one is', () => {
   history.go(step(1))
   for (const by of [2, 1]) history.go(step(by), 'drag')
   expect(history.undoable).toBe('by 1')
-  history.rest()
+  history.endGesture()
   history.go(step(1, 'again'))
   expect(history.undo()).toEqual(first())
   history.go({ text: 'model', settings: [{ name: 'rack_z', by: 0 }], label: 'as it was' })
@@ -85,25 +85,25 @@ test('the earliest steps are forgotten, but for the first', () => {
 test('reset and a design with a name are steps that can be undone', () => {
   const history = new History(first())
   history.go(step(1))
-  const kept = history.keep('  stiff ')
+  const kept = history.save('  stiff ')
   expect(kept.name).toBe('stiff')
   history.go(step(2))
   expect(history.reset().settings).toEqual([])
   expect(history.undo()).toEqual(step(2))
-  expect(history.take(kept)).toEqual({ ...step(1), label: 'stiff' })
+  expect(history.restore(kept)).toEqual({ ...step(1), label: 'stiff' })
   expect(history.undo()).toEqual(step(2))
 })
 
 test('designs are named, renamed and forgotten', () => {
   const history = new History(first())
-  let calls = 0
-  history.onChange(() => calls++)
-  const [one, two] = [history.keep(), history.keep()]
+  let changes = 0
+  history.onChange(() => changes++)
+  const [one, two] = [history.save(), history.save()]
   expect(history.snapshots.map(({ name }) => name)).toEqual(['design 1', 'design 2'])
   history.rename(one, '')
   history.rename(two, 'soft')
-  history.forget(one)
+  history.remove(one)
   expect(history.snapshots.map(({ name }) => name)).toEqual(['soft'])
-  expect(history.keep().name).toBe('design 1')
-  expect(calls).toBe(6)
+  expect(history.save().name).toBe('design 1')
+  expect(changes).toBe(6)
 })

@@ -2,7 +2,7 @@ import { Box3, Group, Matrix4, Vector3 } from 'three'
 import { describe, expect, test } from 'vitest'
 import { number } from '../src/format'
 import type { Report } from '../src/report'
-import type { Drawn } from '../src/scene/drawn'
+import type { Drawable } from '../src/scene/drawable'
 import { centreLines } from '../src/scene/centre_lines'
 import { deformed } from '../src/scene/deform'
 import { marks, matter } from '../src/scene/draw'
@@ -17,12 +17,12 @@ import { arcOf, atLeast } from '../src/scene/travel'
 import { type Choice, State } from '../src/state'
 import { CHOICE, crank, PALETTE } from './mechanisms'
 
-function drawn(mechanism: Mechanism, choice: Partial<Choice> = {}): Drawn[] {
+function drawn(mechanism: Mechanism, choice: Partial<Choice> = {}): Drawable[] {
   return marks.flatMap((draw) => draw(mechanism, new Kit(mechanism, PALETTE), { ...CHOICE, ...choice }))
 }
 
 /** The box round an object that is in a body's frame or the world, at a step. */
-function boxOf(mechanism: Mechanism, { body, object, follow }: Drawn, step = 0): Box3 {
+function boxOf(mechanism: Mechanism, { body, object, follow }: Drawable, step = 0): Box3 {
   follow?.(mechanism.frame(step))
   const group = new Group().add(object)
   const pose = body === undefined ? undefined : mechanism.poseAt(body, step)
@@ -236,7 +236,7 @@ describe('design velocities', () => {
     const { y } = boxOf(mechanism, arrow).max
     expect(y).toBeCloseTo(Math.max(0.75 * 250, 9 * mechanism.unit), 3)
     expect(y).toBeLessThan(0.11 * mechanism.size)
-    expect(arrow.part.about).toContain(`drawn for ${number(y / 2, 2)} mm`)
+    expect(arrow.part.about).toContain(`scaled to ${number(y / 2, 2)} mm`)
   })
 
   test('of a turn are rings; of none, nothing', () => {

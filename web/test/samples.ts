@@ -98,7 +98,7 @@ async function command(program: string, words: string[]): Promise<void> {
   await promisify(execFile)(program, words, { timeout: TEST, killSignal: 'SIGKILL', maxBuffer: Infinity })
 }
 
-/** Runs all of this work, one task per core at a time. */
+/** Runs all tasks, one per core at a time. */
 async function sideBySide(work: (() => Promise<void>)[]): Promise<void> {
   const left = work[Symbol.iterator]()
   const one = async () => {

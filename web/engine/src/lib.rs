@@ -1,8 +1,8 @@
 //! The engine of a page: three functions, with one block of memory for the request and one for the answer.
 //!
-//! The page reserves memory ([`room`]), writes its request there, calls [`answer`], which returns the length of the
-//! answer, and reads it at [`answered`]. During a study the engine reports progress as JSON to the page's function
-//! `tell(place, length)`. If the engine panics, it calls `panicked(place, length)` with the message, and ends.
+//! The page requests memory ([`room`]), writes its request there, calls [`answer`], and reads that many bytes at
+//! [`answered`]. During a study the engine reports progress as JSON by the page's function `tell(place, length)`. If
+//! the engine panics, it calls `panicked(place, length)` and ends.
 
 #![allow(
     unsafe_code,
@@ -22,9 +22,9 @@ thread_local! {
 
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {
-    /// Receives the progress of a study: `length` bytes at `place`.
+    /// Reports the progress of a study, as JSON.
     safe fn tell(place: *const u8, length: usize);
-    /// Receives the message of a panic: `length` bytes at `place`.
+    /// Reports a panic, after which the engine ends.
     safe fn panicked(place: *const u8, length: usize);
 }
 
@@ -38,7 +38,7 @@ pub extern "C" fn room(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request; returns the length of the answer in bytes.
+/// Answers the request, and returns the length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> usize {
     std::panic::set_hook(Box::new(|what| {

@@ -6,8 +6,8 @@ export interface Change {
 }
 
 /**
- * Changes from one text to another, both in lines: the part between their common beginning and end, line by line if
- * both have the same number of lines there. A line break counts as one character.
+ * Edits that turn one text into another, both in lines: the part between their common beginning and end, line by line
+ * where both have the same number of lines there. A line break counts one.
  */
 export function changes(before: readonly string[], after: readonly string[]): Change[] {
   const least = Math.min(before.length, after.length)

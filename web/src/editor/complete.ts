@@ -1,6 +1,6 @@
-import { namesIn, outline, quoted, standing, text } from './toml'
+import { namesIn, outline, quoted, cursorContext, text } from './toml'
 
-/** The parts of a JSON schema that are used here. */
+/** The keywords of JSON Schema that are used here. */
 export interface Schema {
   description?: string
   $ref?: string
@@ -85,7 +85,7 @@ export function suggest(
   at: number,
   schema?: Schema,
 ): { from: number; suggestions: Suggestion[] } | undefined {
-  const here = standing(source.slice(0, at))
+  const here = cursorContext(source.slice(0, at))
   if (!here) return undefined
   const { table, key, begun, quoted: inQuotes, heading } = here
   const from = at - begun.length
@@ -97,7 +97,7 @@ export function suggest(
     return { from: from + head.length, suggestions: keysOf(schema, schema, (one) => one) }
   }
   if (!key) {
-    const nodes = schema ? walk(schema, table) : []
+    const nodes = schema ? schemasAt(schema, table) : []
     const present = new Set(
       entries
         .filter(({ path }) => path.length === table.length + 1 && table.every((part, k) => path[k] === part))
@@ -118,7 +118,7 @@ export function suggest(
     })),
   )
   const words = schema
-    ? walk(schema, key)
+    ? schemasAt(schema, key)
         .flatMap((node) => valuesOf(node, schema))
         .map((word) => ({ ...word, insert: write(word.label) }))
     : []
@@ -154,7 +154,7 @@ function elements(node: Schema, root: Schema): Schema[] {
 }
 
 /** Schemas of the value at a path. */
-function walk(root: Schema, path: string[]): Schema[] {
+function schemasAt(root: Schema, path: string[]): Schema[] {
   let nodes = [root]
   for (const part of path) {
     nodes = nodes

@@ -20,7 +20,7 @@ import {
 import { bracketMatching, indentUnit } from '@codemirror/language'
 import { lintGutter, nextDiagnostic, previousDiagnostic, setDiagnostics } from '@codemirror/lint'
 import { highlightSelectionMatches, openSearchPanel, search, searchKeymap } from '@codemirror/search'
-import { Annotation, EditorState, type Transaction } from '@codemirror/state'
+import { Annotation, EditorState, type Extension, type Transaction } from '@codemirror/state'
 import {
   drawSelection,
   dropCursor,
@@ -37,7 +37,7 @@ import type { Checker, Diagnostic } from '../engine/engine'
 import { changes } from './changes'
 import { type Schema, suggest } from './complete'
 import { toml } from './language'
-import { counted, mark, placeOf, said } from './messages'
+import { counted, mark, placeOf, messageElements } from './messages'
 import { theme } from './theme'
 
 /** Milliseconds without a change after which a text is checked. */
@@ -69,8 +69,8 @@ export interface Editor {
    * (`sameStep`), as in a drag.
    */
   setText(text: string, sameStep?: boolean): void
-  /** Adds diagnostics of the solution to those of the check, until the text changes. */
-  tell(messages: Diagnostic[]): void
+  /** Adds what solving the text reported to what checking it reported; until it changes. */
+  showMessages(messages: Diagnostic[]): void
   /** Puts the cursor at a line and column, both from 1, the column in characters, and shows it. */
   reveal(line: number, column: number): void
   focus(): void
@@ -99,95 +99,17 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     'aria-label': 'Messages about the model',
     'data-testid': 'model-messages',
   })
-  const button = (name: string, title: string, run: (view: EditorView) => void) =>
-    el(
-      'button',
-      { type: 'button', title, 'data-testid': `model-${name.toLowerCase()}`, onclick: () => (run(view), view.focus()) },
-      name,
-    )
-  const back = button('Undo', 'Undo typing (Ctrl+Z)', undo)
-  const forth = button('Redo', 'Redo typing (Ctrl+Y)', redo)
-  const tools = el(
-    'div',
-    { class: 'model-tools', role: 'toolbar', 'aria-label': 'Model text' },
-    back,
-    forth,
-    button('Comment', 'Comment or uncomment lines (Ctrl+/)', toggleComment),
-    button('Next', 'Next message (F8)', nextDiagnostic),
-    el(
-      'button',
-      {
-        type: 'button',
-        title: 'Find and replace (Ctrl+F)',
-        'data-testid': 'model-find',
-        onclick: () => openSearchPanel(view),
-      },
-      'Find',
-    ),
-    status,
-  )
-
-  /**
-   * Typing within a while joins the step before where it is beside it; what comes from outside joins where it is
-   * reported to.
-   */
-  let before: { outside: boolean; time: number } = { outside: false, time: -Infinity }
-  const joins = (transaction: Transaction, beside: boolean): boolean => {
-    const foreign = transaction.annotation(outside)
-    return foreign ? foreign.sameStep && before.outside : beside && !before.outside && Date.now() - before.time < STEP
-  }
-
+  const { element: tools, back, forth } = toolbar(() => view, status)
   const view = new EditorView({
     state: EditorState.create({
       doc: text,
       extensions: [
-        lineNumbers(),
-        highlightActiveLineGutter(),
-        lintGutter(),
-        highlightSpecialChars(),
-        drawSelection(),
-        dropCursor(),
-        highlightActiveLine(),
-        EditorState.allowMultipleSelections.of(true),
-        history({ newGroupDelay: Infinity, joinToEvent: joins }),
-        indentUnit.of('  '),
-        bracketMatching(),
-        closeBrackets(),
-        highlightSelectionMatches(),
-        search({ top: true }),
-        autocompletion({ override: [(context) => complete(context, schema)], icons: false, positionInfo: beside }),
-        toml(),
-        theme(),
-        keymap.of([
-          { key: 'F8', run: nextDiagnostic, shift: previousDiagnostic },
-          ...closeBracketsKeymap,
-          ...completionKeymap,
-          ...searchKeymap,
-          ...historyKeymap,
-          ...defaultKeymap,
-          indentWithTab,
-          // Only where it closes nothing.
-          { key: 'Escape', run: () => (view.setTabFocusMode(true), false) },
-        ]),
-        EditorView.contentAttributes.of({
-          'aria-label': 'Model, TOML. Press Escape, then Tab to leave the text.',
-          'data-testid': 'model-text',
-          spellcheck: 'false',
-        }),
-        // The Tab key continues to move the focus for those who came by it; typing or clicking into the text edits it.
-        EditorView.domEventHandlers({
-          focus: () => view.setTabFocusMode(true),
-          pointerup: () => view.setTabFocusMode(false),
-          keydown: ({ key }) => {
-            if (!['Escape', 'Tab', 'Shift'].includes(key)) view.setTabFocusMode(false)
-          },
-        }),
-        EditorView.updateListener.of(({ docChanged, transactions }) => {
+        editing(schema),
+        undoHistory(),
+        EditorView.updateListener.of(({ docChanged }) => {
           back.disabled = undoDepth(view.state) === 0
           forth.disabled = redoDepth(view.state) === 0
-          if (!docChanged) return
-          before = { outside: transactions.some((one) => one.annotation(outside)), time: Date.now() }
-          later()
+          if (docChanged) later()
         }),
       ],
     }),
@@ -219,10 +141,10 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     const valid = !checked.some(isError)
     const other = valid && text !== shown
     if (valid) shown = text
-    tell()
+    render()
     if (other) onValid(text)
   }
-  const tell = () => {
+  const render = () => {
     const messages = [...checked, ...solved]
     view.dispatch(
       setDiagnostics(
@@ -235,20 +157,12 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
     status.classList.toggle('stale', stale)
     status.textContent = stale ? `${count}. The page shows the last valid model.` : count
     list.replaceChildren(
-      ...messages.slice(0, LISTED).map((message) => el('li', { class: message.severity }, entry(message))),
+      ...messages
+        .slice(0, LISTED)
+        .map((message) => el('li', { class: message.severity }, messageEntry(message, reveal))),
       ...(messages.length > LISTED ? [el('li', {}, `and ${messages.length - LISTED} more`)] : []),
     )
     list.hidden = messages.length === 0
-  }
-  const entry = (message: Diagnostic) => {
-    const { line, column } = message
-    if (line === null) return el('div', {}, ...said(message))
-    return el(
-      'button',
-      { type: 'button', class: 'plain', onclick: () => reveal(line, column ?? 1) },
-      el('span', { class: 'line' }, `line ${line}`),
-      el('span', {}, ...said(message)),
-    )
   }
   const reveal = (line: number, column: number) => {
     const at = placeOf(view.state.doc, line, column)
@@ -278,9 +192,9 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
       if (made.length > 0) view.dispatch({ changes: made, annotations: outside.of({ sameStep }) })
       shown = present()
     },
-    tell: (messages) => {
+    showMessages: (messages) => {
       solved = messages
-      tell()
+      render()
     },
     reveal,
     focus: () => view.focus(),
@@ -291,6 +205,120 @@ export function editor({ text, check, onValid, schema }: Options): Editor {
       element.remove()
     },
   }
+}
+
+/** Buttons for the text, with the status of its check. */
+function toolbar(view: () => EditorView, status: HTMLElement) {
+  const button = (name: string, title: string, run: (view: EditorView) => void) =>
+    el(
+      'button',
+      {
+        type: 'button',
+        title,
+        'data-testid': `model-${name.toLowerCase()}`,
+        onclick: () => (run(view()), view().focus()),
+      },
+      name,
+    )
+  const back = button('Undo', 'Undo typing (Ctrl+Z)', undo)
+  const forth = button('Redo', 'Redo typing (Ctrl+Y)', redo)
+  const find = el(
+    'button',
+    {
+      type: 'button',
+      title: 'Find and replace (Ctrl+F)',
+      'data-testid': 'model-find',
+      onclick: () => openSearchPanel(view()),
+    },
+    'Find',
+  )
+  const element = el(
+    'div',
+    { class: 'model-tools', role: 'toolbar', 'aria-label': 'Model text' },
+    back,
+    forth,
+    button('Comment', 'Comment or uncomment lines (Ctrl+/)', toggleComment),
+    button('Next', 'Next message (F8)', nextDiagnostic),
+    find,
+    status,
+  )
+  return { element, back, forth }
+}
+
+/** Editing of TOML with completion, keys and accessible focus. */
+function editing(schema: Options['schema']): Extension {
+  return [
+    lineNumbers(),
+    highlightActiveLineGutter(),
+    lintGutter(),
+    highlightSpecialChars(),
+    drawSelection(),
+    dropCursor(),
+    highlightActiveLine(),
+    EditorState.allowMultipleSelections.of(true),
+    indentUnit.of('  '),
+    bracketMatching(),
+    closeBrackets(),
+    highlightSelectionMatches(),
+    search({ top: true }),
+    autocompletion({ override: [(context) => complete(context, schema)], icons: false, positionInfo: beside }),
+    toml(),
+    theme(),
+    keymap.of([
+      { key: 'F8', run: nextDiagnostic, shift: previousDiagnostic },
+      ...closeBracketsKeymap,
+      ...completionKeymap,
+      ...searchKeymap,
+      ...historyKeymap,
+      ...defaultKeymap,
+      indentWithTab,
+      // Only where it closes nothing.
+      { key: 'Escape', run: (view) => (view.setTabFocusMode(true), false) },
+    ]),
+    EditorView.contentAttributes.of({
+      'aria-label': 'Model, TOML. Press Escape, then Tab to leave the text.',
+      'data-testid': 'model-text',
+      spellcheck: 'false',
+    }),
+    // The Tab key continues to move the focus for those who came by it; typing or clicking into the text edits it.
+    EditorView.domEventHandlers({
+      focus: (_, view) => view.setTabFocusMode(true),
+      pointerup: (_, view) => view.setTabFocusMode(false),
+      keydown: ({ key }, view) => {
+        if (!['Escape', 'Tab', 'Shift'].includes(key)) view.setTabFocusMode(false)
+      },
+    }),
+  ]
+}
+
+/**
+ * Undo history: adjacent typing within a short time is one step; a change from outside joins the previous one where
+ * that is requested.
+ */
+function undoHistory(): Extension {
+  let before: { outside: boolean; time: number } = { outside: false, time: -Infinity }
+  const joins = (transaction: Transaction, adjacent: boolean): boolean => {
+    const foreign = transaction.annotation(outside)
+    return foreign ? foreign.sameStep && before.outside : adjacent && !before.outside && Date.now() - before.time < STEP
+  }
+  return [
+    history({ newGroupDelay: Infinity, joinToEvent: joins }),
+    EditorView.updateListener.of(({ docChanged, transactions }) => {
+      if (docChanged) before = { outside: transactions.some((one) => one.annotation(outside)), time: Date.now() }
+    }),
+  ]
+}
+
+/** A message of the list; a click goes to its place, where it has one. */
+function messageEntry(message: Diagnostic, reveal: (line: number, column: number) => void): HTMLElement {
+  const { line, column } = message
+  if (line === null) return el('div', {}, ...messageElements(message))
+  return el(
+    'button',
+    { type: 'button', class: 'plain', onclick: () => reveal(line, column ?? 1) },
+    el('span', { class: 'line' }, `line ${line}`),
+    el('span', {}, ...messageElements(message)),
+  )
 }
 
 const isError = ({ severity }: Diagnostic) => severity === 'error'

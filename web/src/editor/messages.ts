@@ -42,12 +42,12 @@ export function mark(doc: Text, message: Diagnostic): Mark {
     to,
     severity: message.severity === 'note' ? 'info' : message.severity,
     message: message.message,
-    renderMessage: () => el('div', { class: 'message-tip' }, ...said(message)),
+    renderMessage: () => el('div', { class: 'message-tip' }, ...messageElements(message)),
   }
 }
 
-/** Complete text of a message. */
-export function said({ severity, code, message, label, notes, help }: Diagnostic): HTMLElement[] {
+/** All that a message says. */
+export function messageElements({ severity, code, message, label, notes, help }: Diagnostic): HTMLElement[] {
   return [
     el(
       'p',

@@ -17,8 +17,8 @@ const SPACE = /\s+/y
 const COMMENT = /#.*/y
 /** A heading with its keys; one that is not closed ends with its line. */
 const HEADING = /\[\[?(?:"(?:\\.|[^"\\])*"|'[^']*'|[^\]"'#])*\]{0,2}/y
-/** A line that can only be a heading, even after an open bracket. */
-const SURELY_HEADING = /^\[\[?[A-Za-z_](?:"(?:\\.|[^"\\])*"|'[^']*'|[^\]"',])*\]\]?\s*(?:#.*)?$/
+/** A line that can be nothing but a heading, whatever bracket was left open above. */
+const CERTAIN_HEADING = /^\[\[?[A-Za-z_](?:"(?:\\.|[^"\\])*"|'[^']*'|[^\]"',])*\]\]?\s*(?:#.*)?$/
 const LONG = /"""|'''/y
 /** A text on one line; one that is not closed ends with the line. */
 const SHORT = /"(?:\\.|[^"\\])*"?|'[^']*'?/y
@@ -29,7 +29,7 @@ const WORD = /[^\s,\]}#"'=[{]+/y
 /** The token of a line that begins at `at`, and its end; `reading` continues. */
 export function piece(line: string, at: number, reading: Reading): [kind: Kind, to: number] {
   const end = (pattern: RegExp) => ((pattern.lastIndex = at), pattern.test(line) ? pattern.lastIndex : 0)
-  if (at === 0 && reading.quotes === '' && (reading.open === '' || SURELY_HEADING.test(line)))
+  if (at === 0 && reading.quotes === '' && (reading.open === '' || CERTAIN_HEADING.test(line)))
     Object.assign(reading, start())
   if (reading.quotes !== '') return ['string', closing(line, at, reading)]
   const { key, open } = reading
@@ -106,7 +106,7 @@ export function outline(source: string): Entry[] {
 }
 
 /** Entry that is about to be written at the end of a text. */
-export interface Standing {
+export interface CursorContext {
   /** The table that it belongs to. */
   table: string[]
   /** The path of the key whose value it is, or part of it; none where a key is being written. */
@@ -120,7 +120,7 @@ export interface Standing {
 }
 
 /** State of a writer at the end of a text; undefined in a comment, or in a text over several lines. */
-export function standing(source: string): Standing | undefined {
+export function cursorContext(source: string): CursorContext | undefined {
   const { table, around, key, reading, last, kind } = read(source)
   if (kind === 'comment' || reading.quotes !== '') return undefined
   const open = around.at(-1)

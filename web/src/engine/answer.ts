@@ -10,7 +10,7 @@ export interface Answer<T> {
 }
 
 /** Reason why there is no answer, in the words of the command line. */
-export class Refused extends Error {
+export class RequestError extends Error {
   constructor(readonly messages: DiagnosticMessage[]) {
     super(messages[0]?.message ?? 'there is no answer')
   }
@@ -20,7 +20,7 @@ export class Refused extends Error {
 export function answer<T>(block: ArrayBuffer): Answer<T> {
   const length = new DataView(block).getUint32(0, true)
   const json: T | ErrorReply = JSON.parse(new TextDecoder().decode(new Uint8Array(block, 4, length)))
-  if (isFailed(json)) throw new Refused(json.failed)
+  if (isFailed(json)) throw new RequestError(json.failed)
   const start = Math.ceil((4 + length) / 4) * 4
   const decode = ([first, count]: wire.Curve): Curve =>
     count ? new Float32Array(block, start + 4 * first, count) : new Float32Array()

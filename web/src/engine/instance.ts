@@ -11,13 +11,16 @@ interface Exports {
 /** Answers a request with a block of bytes, at once. */
 export type Ask = (request: Request) => ArrayBuffer
 
-/** Creates an engine; `tell` receives the progress of studies. */
-export async function instantiate(module: WebAssembly.Module, tell: (progress: ProgressReply) => void): Promise<Ask> {
+/** An engine of its own; `onProgress` receives the progress of a study. */
+export async function instantiate(
+  module: WebAssembly.Module,
+  onProgress: (progress: ProgressReply) => void,
+): Promise<Ask> {
   let why = ''
   const text = (place: number, length: number) =>
     new TextDecoder().decode(new Uint8Array(exports.memory.buffer, place, length))
   const page = {
-    tell: (place: number, length: number) => tell(JSON.parse(text(place, length))),
+    tell: (place: number, length: number) => onProgress(JSON.parse(text(place, length))),
     panicked: (place: number, length: number) => (why = text(place, length)),
   }
   const { exports: found } = await WebAssembly.instantiate(module, { page })

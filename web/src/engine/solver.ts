@@ -1,29 +1,29 @@
 import { inflatedOf85 } from '../unpack'
 import { type Answer, answer } from './answer'
 import type { Request, ProgressReply } from './protocol'
-import type { Order, Report } from './worker'
+import type { WorkerRequest, WorkerReply } from './worker'
 import EngineWorker from './worker?worker&inline'
 
-interface Waiting {
+interface PendingRequest {
   done: (block: ArrayBuffer) => void
   failed: (error: Error) => void
-  tell?: (progress: ProgressReply) => void
+  onProgress?: (progress: ProgressReply) => void
 }
 
 /** An engine in a worker of its own. Requests are answered in order. */
 export class Solver {
   #worker?: Worker
-  #waiting = new Map<number, Waiting>()
+  #waiting = new Map<number, PendingRequest>()
   #number = 0
 
   constructor(private readonly module: WebAssembly.Module) {}
 
-  async ask<T>(request: Request, tell?: (progress: ProgressReply) => void): Promise<Answer<T>> {
+  async ask<T>(request: Request, onProgress?: (progress: ProgressReply) => void): Promise<Answer<T>> {
     const worker = (this.#worker ??= this.#start())
     const number = ++this.#number
     const block = await new Promise<ArrayBuffer>((done, failed) => {
-      this.#waiting.set(number, { done, failed, tell })
-      worker.postMessage({ number, request } satisfies Order)
+      this.#waiting.set(number, { done, failed, onProgress })
+      worker.postMessage({ number, request } satisfies WorkerRequest)
     })
     return answer<T>(block)
   }
@@ -38,15 +38,15 @@ export class Solver {
 
   #start(): Worker {
     const worker = new EngineWorker()
-    worker.postMessage({ module: this.module } satisfies Order)
-    worker.addEventListener('message', ({ data }: MessageEvent<Report>) => {
+    worker.postMessage({ module: this.module } satisfies WorkerRequest)
+    worker.addEventListener('message', ({ data }: MessageEvent<WorkerReply>) => {
       const waiting = this.#waiting.get(data.number)
       if (!waiting) return
-      if ('progress' in data) return waiting.tell?.(data.progress)
+      if ('progress' in data) return waiting.onProgress?.(data.progress)
       this.#waiting.delete(data.number)
       if ('block' in data) return waiting.done(data.block)
-      // After a panic its memory may be inconsistent.
-      waiting.failed(new Error(`the engine failed: ${data.broken}`))
+      // After a panic its memory is not to be trusted.
+      waiting.failed(new Error(`the engine failed: ${data.failure}`))
       this.stop()
     })
     worker.addEventListener('error', ({ message }) => {

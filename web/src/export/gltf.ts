@@ -17,7 +17,7 @@ import {
 } from 'three'
 import { GLTFExporter } from 'three/addons/exporters/GLTFExporter.js'
 import type { LineSegments2 } from 'three/addons/lines/LineSegments2.js'
-import type { Drawn } from '../scene/drawn'
+import type { Drawable } from '../scene/drawable'
 import type { Mechanism } from '../scene/mechanism'
 
 /** glTF is in metres; other units stay as they are. */
@@ -27,14 +27,14 @@ const METRES: Record<string, number> = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254, f
  * The whole motion as a binary glTF file: one node per body under its name, one animation. Arrows and other marks are
  * left out. Everything drawn is put in its place for every output time, and left at the time `step`.
  */
-export async function motionGltf(mechanism: Mechanism, drawn: Drawn[], step: number): Promise<Blob> {
+export async function motionGltf(mechanism: Mechanism, drawn: Drawable[], step: number): Promise<Blob> {
   const { scene, clip } = motionScene(mechanism, drawn, step)
   const file = await new GLTFExporter().parseAsync(scene, { binary: true, animations: [clip], onlyVisible: false })
   return new Blob([file as ArrayBuffer], { type: 'model/gltf-binary' })
 }
 
 /** Scene to write: the drawn things with materials that glTF knows, and their motion. */
-function motionScene(mechanism: Mechanism, drawn: Drawn[], step: number): { scene: Object3D; clip: AnimationClip } {
+function motionScene(mechanism: Mechanism, drawn: Drawable[], step: number): { scene: Object3D; clip: AnimationClip } {
   const { report } = mechanism
   const materials = new Map<Material, Material>()
   const matter = drawn.filter(({ overlay }) => !overlay)
@@ -140,7 +140,7 @@ function changes(numbers: number[], stride: number): boolean {
 
 function tracks(
   mechanism: Mechanism,
-  matter: Drawn[],
+  matter: Drawable[],
   bodies: Object3D[],
   pairs: [Object3D, Object3D][],
   step: number,

@@ -12,7 +12,7 @@ import {
   Vector3,
 } from 'three'
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js'
-import type { Placed } from '../scene/labels'
+import type { LabelBox } from '../scene/labels'
 import { escaped, round, svgFile, tag } from './markup'
 
 /** Options of a picture of the view. */
@@ -25,7 +25,7 @@ interface Picture {
   ground: string
   outline: string
   label: string
-  labels?: Placed[]
+  labels?: LabelBox[]
 }
 
 /**
@@ -62,7 +62,7 @@ interface Stroke {
 }
 
 /**
- * The drawing as vectors: faces from the farthest to the nearest (painter's order), their outlines and folds, and
+ * The view as vector graphics: faces from the farthest to the nearest (painter's order), their outlines and folds, and
  * lines. Faces that cross one another are not cut; shadows and textures are left out.
  */
 export function viewSvg(roots: Object3D[], camera: Camera, picture: Picture): Blob {

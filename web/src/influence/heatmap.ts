@@ -55,7 +55,7 @@ class HeatMap {
   constructor(private readonly state: State) {
     const known = knownGroups(state.report)
     this.#offered = known.length > 1 ? [...known, ['all', known.flatMap(([, members]) => members)]] : known
-    this.#cells = new Cells(state.senses, state.choice.order)
+    this.#cells = new Cells(state.sensitivityReport, state.choice.order)
     const layOut = () => this.#layOut()
     const options = this.#offered.map(([name]) => el('option', { value: name }, name))
     this.#group = el('select', { 'aria-label': 'quantities shown', onchange: layOut }, ...options)
@@ -117,8 +117,8 @@ class HeatMap {
 
   #chosen(): void {
     const { order } = this.state.choice
-    if (order !== this.#cells.order || this.#cells.report !== this.state.senses)
-      this.#cells = new Cells(this.state.senses, order)
+    if (order !== this.#cells.order || this.#cells.report !== this.state.sensitivityReport)
+      this.#cells = new Cells(this.state.sensitivityReport, order)
     this.#layOut()
   }
 
@@ -343,7 +343,7 @@ class HeatMap {
   }
 }
 
-/** A text, shortened to the width. */
+/** Text truncated to the available width. */
 function fitted(pen: CanvasRenderingContext2D, text: string, room: number): string {
   if (pen.measureText(text).width <= room) return text
   let [fits, long] = [0, text.length]

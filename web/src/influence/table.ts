@@ -92,7 +92,7 @@ export function rankingTable(state: State): HTMLElement {
 }
 
 /** Within each unit the largest first; then those that cannot be followed. */
-function ranked({ senses: report, choice }: State): Ranking[] {
+function ranked({ sensitivityReport: report, choice }: State): Ranking[] {
   const quantity = report.quantities[choice.quantity]
   if (!quantity) return []
   const followed = [...ranking(report, quantity, choice.order)].flatMap(([unit, peers]) =>

@@ -131,7 +131,7 @@ class Polar {
   }
 
   #draw(): void {
-    const { report, former, compares, present, changed } = this.state
+    const { report, former, isCompared, present, changed } = this.state
     const index = Number(this.#which.value)
     const load = report.loads[index]
     const joint = load.joint === null ? undefined : report.joints[load.joint]
@@ -149,7 +149,7 @@ class Polar {
       force && poses ? pathOf(force, poses, plane, sign) : []
     const loaded = () => of(load.force, report.bodies[body].poses)
     this.#path = present ? of(present.loads[index], present.poses[body]) : changed ? [] : loaded()
-    const before = !compares ? [] : former ? of(former.loads[index], former.poses[body]) : loaded()
+    const before = !isCompared ? [] : former ? of(former.loads[index], former.poses[body]) : loaded()
     const sizes = [...this.#path, ...before].map(([x, y]) => Math.hypot(x, y)).filter(Number.isFinite)
     const most = sizes.reduce((a, b) => Math.max(a, b), 0)
     const step = most > 0 ? roundStep(most / RINGS) : 1

@@ -66,7 +66,7 @@ class DriverMap {
         role: 'application',
         'aria-label': `map ${map.name}: arrow keys move between positions`,
         onpointermove: (event: PointerEvent) => this.#point(event),
-        onpointerleave: () => this.#say(),
+        onpointerleave: () => this.#showReading(),
         onkeydown: (event: KeyboardEvent) => this.#key(event),
       },
       this.#picture,
@@ -148,7 +148,7 @@ class DriverMap {
       ...legend(at, colour, pretty(unit), right + 12, box),
       ...(this.#place ? [cross(x.at(first.places[this.#place[0]]), y.at(second.places[this.#place[1]]))] : []),
     )
-    this.#say()
+    this.#showReading()
   }
 
   /** Positions that the mechanism did not reach: no colour. */
@@ -183,7 +183,7 @@ class DriverMap {
       const [a, b] = [places[0], places[places.length - 1]]
       return a + ((pixel - axis.at(a)) / (axis.at(b) - axis.at(a))) * (b - a)
     }
-    this.#say([
+    this.#showReading([
       value(this.#axes.x, event.clientX - corner.left, first.places),
       value(this.#axes.y, event.clientY - corner.top, second.places),
     ])
@@ -207,11 +207,11 @@ class DriverMap {
     const inside = (k: number, count: number) => Math.min(Math.max(k, 0), count - 1)
     this.#place = [inside(i + by[0], first.places.length), inside(j + by[1], second.places.length)]
     this.#render()
-    this.#say([first.places[this.#place[0]], second.places[this.#place[1]]])
+    this.#showReading([first.places[this.#place[0]], second.places[this.#place[1]]])
   }
 
   /** The value at a position; the least and greatest where none is pointed at. */
-  #say(at?: [number, number]): void {
+  #showReading(at?: [number, number]): void {
     const { name, unit, grid } = this.#shown()
     const [first, second] = this.map.drivers
     const value = at ? valueAt(grid, ...at) : NaN

@@ -53,7 +53,7 @@ function card(state: State, value: Value, index: number): { element: HTMLElement
     const before = state.former ? (state.former.values[index] ?? null) : value.value
     figure.textContent = now === null ? '–' : number(rounded(now), DIGITS)
     const by = now === null || before === null ? null : now - before
-    const known = state.compares && by !== null
+    const known = state.isCompared && by !== null
     change.hidden = !known
     change.className = 'delta'
     if (known) showChange(change, now!, by!, value.target)

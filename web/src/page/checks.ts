@@ -34,7 +34,7 @@ function marginPlot(state: State): HTMLElement {
   const show = () => {
     const { margin } = state.report
     if (!margin) return
-    const lines = [{ label: state.compares ? 'original' : 'margin', color: css('--trace'), curve: margin.curve }]
+    const lines = [{ label: state.isCompared ? 'original' : 'margin', color: css('--trace'), curve: margin.curve }]
     const present = state.present?.margin
     if (present) {
       Object.assign(lines[0], { color: css('--former'), dash: [6, 4] })

@@ -31,9 +31,9 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
   if (own.length === 0) return { ...content, message: unknown(title) }
   const label = state.isPredicted
     ? 'predicted to first order'
-    : (present?.name ?? (state.compares ? 'current design' : title))
+    : (present?.name ?? (state.isCompared ? 'current design' : title))
   content.lines.push({ label, color: css('--trace'), curve: quiet(state.curve(index, order), scale), width: 2.4 })
-  if (state.compares) {
+  if (state.isCompared) {
     const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own
     content.lines.push({
       label: former?.name ?? 'original',
@@ -81,7 +81,7 @@ export function valueContent(state: State, { quantity: index, order, over }: Sub
  * it.
  */
 export function sensitivityContent(state: State, subject: Subject): Content {
-  const { senses: report, choice } = state
+  const { sensitivityReport: report, choice } = state
   const { order } = subject
   const quantity = report.quantities[subject.quantity]
   const selected = report.variables[choice.variable]
@@ -156,10 +156,10 @@ interface AtAbscissa {
 }
 
 /**
- * How the sensitivities of the quantity are shown: as they are, or at a fixed abscissa; or why that cannot be. Where
- * several drivers move, the one that moves the abscissa most keeps it, and the others stand.
+ * Conversion of the quantity's sensitivities to a fixed abscissa, if there is one; a message where it is not possible.
+ * Where several drivers move, the one that moves the abscissa most holds it, and the others are fixed.
  */
-function atAbscissa({ senses: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
+function atAbscissa({ sensitivityReport: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
   if (over === undefined) return { seen: (curve) => curve, note: '' }
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
   if (order > 0) return 'Over another quantity, only sensitivities of values are available: choose the value, or time.'

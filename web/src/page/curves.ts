@@ -3,7 +3,7 @@ import { effects } from '../effect'
 import { groups } from '../report'
 import type { State } from '../state'
 import { Zoom } from '../zoom'
-import { Figure, type Shown } from './figure'
+import { Figure, type FigureKind } from './figure'
 
 /** Curves one below the other: the selected quantity, and more that can be added and taken away. */
 export class Curves {
@@ -29,7 +29,7 @@ export class Curves {
     queueMicrotask(() => this.#show())
   }
 
-  #add(shown: Shown, quantity?: number): Figure {
+  #add(shown: FigureKind, quantity?: number): Figure {
     const number = this.#made++
     const figure = new Figure(
       this.state,

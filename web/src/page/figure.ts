@@ -6,13 +6,13 @@ import type { Zoom } from '../zoom'
 import { sensitivityContent, valueContent, type Subject } from './contents'
 import { pointing } from './pointing'
 
-export type Shown = 'value' | 'sensitivity'
+export type FigureKind = 'value' | 'sensitivity'
 
 /** Options of a figure. */
-interface Wish {
-  /** Fixed quantity; the selected one by default. */
+interface FigureOptions {
+  /** Fixed quantity; the selected one where there is none. */
   quantity?: number
-  shown: Shown
+  shown: FigureKind
   testId: string
   /** The first figure controls the selection; others may follow it, and can be removed. */
   leads: boolean
@@ -24,11 +24,11 @@ export class Figure {
   #quantity?: number
   #order: Order = 0
   #over?: number
-  #shown: Shown
+  #shown: FigureKind
 
   constructor(
     private readonly state: State,
-    private readonly wish: Wish,
+    private readonly options: FigureOptions,
     time: Zoom,
     {
       onRemove,
@@ -36,10 +36,10 @@ export class Figure {
       tool,
     }: { onRemove: (figure: Figure) => void; onAdd: () => void; tool?: (figure: Figure) => HTMLElement | undefined },
   ) {
-    this.#quantity = wish.quantity
-    this.#shown = wish.shown
+    this.#quantity = options.quantity
+    this.#shown = options.shown
     const { report } = state
-    const first = wish.leads ? [] : [el('option', { value: '' }, 'selected quantity')]
+    const first = options.leads ? [] : [el('option', { value: '' }, 'selected quantity')]
     const quantity = select('quantity', 'Quantity', () => this.#pick(quantity.value), ...first, ...offered(state))
     const over = select(
       'over',
@@ -71,52 +71,23 @@ export class Figure {
       },
       'Sensitivity',
     )
-    const remove = el(
-      'button',
-      {
-        type: 'button',
-        class: 'icon',
-        'data-testid': 'remove',
-        title: 'Remove plot',
-        'aria-label': 'Remove plot',
-        onclick: () => onRemove(this),
-      },
-      '×',
-    )
-    const add = el(
-      'button',
-      {
-        type: 'button',
-        class: 'icon',
-        'data-testid': 'add-curve',
-        title: 'Add a plot',
-        'aria-label': 'Add a plot',
-        onclick: onAdd,
-      },
-      '+',
-    )
-    const controls = el(
-      'div',
-      { class: 'controls' },
-      quantity,
-      over,
-      order,
-      able ? shown : undefined,
-      wish.leads ? add : remove,
-    )
-    this.plot = new Plot(state, wish.testId, [controls], time)
-    this.plot.element.classList.toggle('leads', wish.leads)
+    const last = options.leads
+      ? icon('add-curve', 'Add a plot', '+', onAdd)
+      : icon('remove', 'Remove plot', '×', () => onRemove(this))
+    const controls = el('div', { class: 'controls' }, quantity, over, order, able ? shown : undefined, last)
+    this.plot = new Plot(state, options.testId, [controls], time)
+    this.plot.element.classList.toggle('leads', options.leads)
     pointing(state, this.plot.element, () => this.subject.quantity)
     let extra: HTMLElement | undefined
     this.show = () => {
       const subject = this.subject
       // The studio adds its parts when it has loaded.
       if (!extra && (extra = tool?.(this))) controls.lastElementChild!.before(extra)
-      quantity.value = this.#follows && !wish.leads ? '' : String(subject.quantity)
+      quantity.value = this.#follows && !options.leads ? '' : String(subject.quantity)
       over.value = subject.over === undefined ? '' : String(subject.over)
       order.value = String(subject.order)
-      // The adjacent field already names the quantity.
-      this.plot.element.classList.toggle('untitled', !this.#follows || wish.leads ? this.#shown === 'value' : false)
+      // The field beside it names the quantity already.
+      this.plot.element.classList.toggle('untitled', !this.#follows || options.leads ? this.#shown === 'value' : false)
       shown.setAttribute('aria-pressed', String(this.#shown === 'sensitivity'))
       this.plot.show(this.#shown === 'value' ? valueContent(state, subject) : sensitivityContent(state, subject))
     }
@@ -138,7 +109,7 @@ export class Figure {
   }
 
   #pick(value: string): void {
-    if (this.wish.leads) return this.state.choose({ quantity: Number(value) })
+    if (this.options.leads) return this.state.choose({ quantity: Number(value) })
     const { order, over } = this.subject
     this.#quantity = value === '' ? undefined : Number(value)
     this.#order = order
@@ -162,5 +133,13 @@ function offered(state: State): HTMLElement[] {
   const plural = (group: string) => (group === 'body' ? 'bodies' : `${group}s`)
   return groups(state.report).map(([name, members]) =>
     el('optgroup', { label: plural(name) }, ...members.map(({ index, name }) => el('option', { value: index }, name))),
+  )
+}
+
+function icon(testId: string, title: string, sign: string, onclick: () => void): HTMLElement {
+  return el(
+    'button',
+    { type: 'button', class: 'icon', 'data-testid': testId, title, 'aria-label': title, onclick },
+    sign,
   )
 }

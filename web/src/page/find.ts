@@ -65,27 +65,8 @@ export function find(state: State): { element: HTMLElement; focus: () => void } 
   }
   const show = () => {
     const words = input.value.toLowerCase().split(/\s+/).filter(Boolean)
-    matches =
-      words.length === 0
-        ? []
-        : entries.filter(({ name }) => words.every((word) => name.toLowerCase().includes(word))).slice(0, SHOWN)
-    list.replaceChildren(
-      ...matches.map((entry, k) =>
-        // The field keeps the focus until the click is done.
-        el(
-          'li',
-          {
-            role: 'option',
-            id: `match-${k}`,
-            'aria-selected': String(k === active),
-            onpointerdown: (event: Event) => event.preventDefault(),
-            onclick: () => take(entry),
-          },
-          el('span', {}, entry.name),
-          el('span', { class: 'muted' }, entry.about),
-        ),
-      ),
-    )
+    matches = words.length === 0 ? [] : entries.filter(({ name }) => hasWords(name, words)).slice(0, SHOWN)
+    list.replaceChildren(...matches.map((entry, k) => option(entry, k, k === active, () => take(entry))))
     if (words.length > 0 && matches.length === 0) list.replaceChildren(el('li', { class: 'muted' }, 'no matches'))
     list.hidden = words.length === 0
     input.setAttribute('aria-expanded', String(!list.hidden))
@@ -93,4 +74,24 @@ export function find(state: State): { element: HTMLElement; focus: () => void } 
     else input.removeAttribute('aria-activedescendant')
   }
   return { element: el('div', { class: 'find' }, input, list), focus: () => input.focus() }
+}
+
+function hasWords(name: string, words: string[]): boolean {
+  return words.every((word) => name.toLowerCase().includes(word))
+}
+
+/** A match in the list; the field keeps the focus until the click is done. */
+function option({ name, about }: Entry, index: number, isActive: boolean, take: () => void): HTMLElement {
+  return el(
+    'li',
+    {
+      role: 'option',
+      id: `match-${index}`,
+      'aria-selected': String(isActive),
+      onpointerdown: (event: Event) => event.preventDefault(),
+      onclick: take,
+    },
+    el('span', {}, name),
+    el('span', { class: 'muted' }, about),
+  )
 }

@@ -35,13 +35,13 @@ export interface Tools {
 }
 
 /** Parts of the page, for later additions. */
-export interface Made {
+export interface PageParts {
   view?: View
   bar: HTMLElement
 }
 
 /** Builds the page: bar, values, view and time, curves, variables, and tables behind tabs. */
-export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
+export function page(root: HTMLElement, state: State, tools: Tools = {}): PageParts {
   const { report } = state
   const hasQuantities = report.quantities.length > 0
   const hasVariables = report.variables.length > 0
@@ -49,53 +49,10 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
   const keys = help()
   const scene = stage(state)
   const curves = hasQuantities ? new Curves(state, tools.figure) : undefined
-  const table: Tab[] =
-    hasQuantities && hasVariables
-      ? [
-          {
-            name: 'table',
-            title: 'Table',
-            content: el('div', { class: 'influence' }, rankingTable(state), heatMap(state)),
-          },
-        ]
-      : []
-  const maps: Tab[] =
-    report.maps.length > 0
-      ? [
-          {
-            name: 'maps',
-            title: 'Maps',
-            content: el(
-              'div',
-              {},
-              ...report.maps.map((map) => driverMap(map, report.quantities[state.choice.quantity]?.name ?? '')),
-            ),
-          },
-        ]
-      : []
-  const sweep: Tab[] = report.sweep
-    ? [
-        {
-          name: 'designs',
-          title: report.sweep.what === 'design' ? 'Designs' : 'Residuals',
-          content: sweepPlot(report.sweep),
-        },
-      ]
-    : []
-  const loads: Tab[] = report.loads.length > 0 ? [{ name: 'loads', title: 'Forces', content: forcePaths(state) }] : []
   const sections: [name: string, element: HTMLElement | undefined][] = [
     ['variables', hasVariables ? variables(state) : undefined],
     ['curves', curves?.element],
-    [
-      'tables',
-      tabs('Tables and checks', [
-        ...sweep,
-        ...maps,
-        ...table,
-        ...loads,
-        { name: 'checks', title: 'Checks', content: checks(state) },
-      ]),
-    ],
+    ['tables', tabs('Tables and checks', tableTabs(state))],
   ]
   const shown = sections.flatMap(([name, element]) => (element ? [{ name, element }] : []))
   for (const { name, element } of shown) element.classList.add(`area-${name}`)
@@ -129,7 +86,27 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): Made {
   return { view: scene.view, bar: head }
 }
 
-/** Adds tools to the bar, before those of the report alone. */
+/** Tabs for which the report has data; the checks are always shown. */
+function tableTabs(state: State): Tab[] {
+  const { sweep, maps, quantities, variables, loads } = state.report
+  const all: Tab[] = []
+  if (sweep) {
+    const title = sweep.what === 'design' ? 'Designs' : 'Residuals'
+    all.push({ name: 'designs', title, content: sweepPlot(sweep) })
+  }
+  if (maps.length > 0) {
+    const selected = quantities[state.choice.quantity]?.name ?? ''
+    all.push({ name: 'maps', title: 'Maps', content: el('div', {}, ...maps.map((map) => driverMap(map, selected))) })
+  }
+  if (quantities.length > 0 && variables.length > 0) {
+    const content = el('div', { class: 'influence' }, rankingTable(state), heatMap(state))
+    all.push({ name: 'table', title: 'Table', content })
+  }
+  if (loads.length > 0) all.push({ name: 'loads', title: 'Forces', content: forcePaths(state) })
+  return [...all, { name: 'checks', title: 'Checks', content: checks(state) }]
+}
+
+/** Puts tools into the bar, before what is there for the report alone. */
 export function slot(head: HTMLElement, tools: HTMLElement): void {
   head.querySelector('.space')!.after(tools)
 }

@@ -80,8 +80,9 @@ function ghostKey(state: State): HTMLElement {
     name,
   )
   const sync = () => {
-    element.hidden = !state.compares
-    name.textContent = `${state.former?.name ?? 'original'}${state.isPredicted ? '; solid: predicted to first order' : ''}`
+    element.hidden = !state.isCompared
+    const solid = state.isPredicted ? '; solid: predicted to first order' : ''
+    name.textContent = `${state.former?.name ?? 'original'}${solid}`
   }
   state.onChoice(sync)
   sync()

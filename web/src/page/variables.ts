@@ -50,14 +50,14 @@ export function variables(state: State): HTMLElement {
     }
   }
   let ranked = ''
-  let senses = state.senses
+  let sensitivityReport = state.sensitivityReport
   const arrange = () => {
     const key = `${choice.quantity} ${choice.order}`
     const again = key === ranked
-    if (again && senses === state.senses) return
-    ;[ranked, senses] = [key, state.senses]
+    if (again && sensitivityReport === state.sensitivityReport) return
+    ;[ranked, sensitivityReport] = [key, state.sensitivityReport]
     const quantity = report.quantities[choice.quantity]
-    const all = quantity ? effects(state.senses, choice.quantity, choice.order) : []
+    const all = quantity ? effects(state.sensitivityReport, choice.quantity, choice.order) : []
     about.textContent = quantity ? `by effect on ${orderedName(quantity, choice.order)}` : ''
     const place = new Map(all.map(({ variable }, rank) => [variable.index, rank]))
     for (const item of rows) {
@@ -78,22 +78,11 @@ export function variables(state: State): HTMLElement {
     for (const item of rows) item.sync()
     resetAll.hidden = !state.changed
     const variable = report.variables[choice.variable]
-    const preface = state.isPredicted
-      ? 'Changes are predicted to first order. '
-      : state.sensed
-        ? ''
-        : 'Sensitivities are being updated. '
-    note.replaceChildren(...prose(preface + (variable?.note || variable?.description || '')))
+    note.replaceChildren(...prose(statusOf(state) + (variable?.note || variable?.description || '')))
     if (choice.variable === shown) return
     shown = choice.variable
     const { element } = rows[shown]
-    // Not scrollIntoView, which would move the whole page on a phone.
-    if (
-      element.offsetTop < list.scrollTop ||
-      element.offsetTop + element.offsetHeight > list.scrollTop + list.clientHeight
-    ) {
-      list.scrollTop = element.offsetTop - list.clientHeight / 3
-    }
+    bringIntoView(list, element)
   }
   list.addEventListener('keydown', (event) => {
     const by = { ArrowDown: 1, ArrowUp: -1 }[event.key]
@@ -111,22 +100,23 @@ export function variables(state: State): HTMLElement {
   return el('section', { class: 'variables', 'aria-label': 'Variables', 'data-testid': 'variables' }, head, list, note)
 }
 
+function statusOf(state: State): string {
+  if (state.isPredicted) return 'Changes are predicted to first order. '
+  return state.hasCurrentSensitivities ? '' : 'Sensitivities are being updated. '
+}
+
+/** Scrolls a list to one of its rows; scrollIntoView would move the whole page on a phone. */
+function bringIntoView(list: HTMLElement, { offsetTop: top, offsetHeight: height }: HTMLElement): void {
+  if (top < list.scrollTop || top + height > list.scrollTop + list.clientHeight) {
+    list.scrollTop = top - list.clientHeight / 3
+  }
+}
+
 function row(state: State, variable: Variable): Row {
   const { index, name, unit, admissibility } = variable
   const able = admissibility !== 'cannot_follow'
   const [low, high] = able ? reach(state.report, variable) : [0, 0]
   const step = high > low ? roundBelow((high - low) / (2 * STEPS)) : 0
-  let pending: number | undefined
-  const change = (by: number) => {
-    // A slider reports more often than a frame can be drawn.
-    if (pending === undefined)
-      requestAnimationFrame(() => {
-        const last = pending!
-        pending = undefined
-        state.change(index, last)
-      })
-    pending = by
-  }
   const button = el(
     'button',
     {
@@ -138,36 +128,7 @@ function row(state: State, variable: Variable): Row {
     },
     name,
   )
-  const slider = el('input', {
-    type: 'range',
-    min: low,
-    max: high,
-    step,
-    value: 0,
-    'data-testid': 'change',
-    'aria-label': `change of ${name}`,
-    oninput: () => change(Number(slider.value)),
-  })
-  const field = el('input', {
-    type: 'number',
-    step,
-    value: 0,
-    'data-testid': 'change-value',
-    'aria-label': `change of ${name} in ${pretty(unit) || 'its unit'}`,
-    onchange: () => state.change(index, limited(Number(field.value), variable)),
-  })
-  const reset = el(
-    'button',
-    {
-      type: 'button',
-      class: 'icon',
-      title: `reset ${name}`,
-      'aria-label': `reset ${name}`,
-      'data-testid': 'reset',
-      onclick: () => state.change(index, 0),
-    },
-    '↺',
-  )
+  const { slider, field, reset } = rowControls(state, variable, [low, high], step)
   const bar = el('span', { class: 'bar-of', 'aria-hidden': 'true' })
   const size = el('span', { class: 'size' })
   const effect = el('span', { class: 'effect', 'data-testid': 'effect' }, bar, size)
@@ -226,6 +187,53 @@ function row(state: State, variable: Variable): Row {
     },
     focus: () => button.focus(),
   }
+}
+
+/** Slider and field for the change of a variable, and the button that resets it. */
+function rowControls(state: State, variable: Variable, [low, high]: [number, number], step: number) {
+  const { index, name, unit } = variable
+  let pending: number | undefined
+  const changeSoon = (by: number) => {
+    // A slider reports more often than a frame can be drawn.
+    if (pending === undefined)
+      requestAnimationFrame(() => {
+        const last = pending!
+        pending = undefined
+        state.change(index, last)
+      })
+    pending = by
+  }
+  const slider = el('input', {
+    type: 'range',
+    min: low,
+    max: high,
+    step,
+    value: 0,
+    'data-testid': 'change',
+    'aria-label': `change of ${name}`,
+    oninput: () => changeSoon(Number(slider.value)),
+  })
+  const field = el('input', {
+    type: 'number',
+    step,
+    value: 0,
+    'data-testid': 'change-value',
+    'aria-label': `change of ${name} in ${pretty(unit) || 'its unit'}`,
+    onchange: () => state.change(index, limited(Number(field.value), variable)),
+  })
+  const reset = el(
+    'button',
+    {
+      type: 'button',
+      class: 'icon',
+      title: `reset ${name}`,
+      'aria-label': `reset ${name}`,
+      'data-testid': 'reset',
+      onclick: () => state.change(index, 0),
+    },
+    '↺',
+  )
+  return { slider, field, reset }
 }
 
 function limited(by: number, { bounds }: Variable): number {

@@ -1,7 +1,7 @@
 import { Group, type Material, type Mesh, type Vector3 } from 'three'
 import type { Choice } from '../state'
 import { bounds, outermost } from './bounds'
-import type { Draw, Drawn, Frame } from './drawn'
+import type { Draw, Drawable, Frame } from './drawable'
 import { Kit } from './kit'
 import type { Mechanism } from './mechanism'
 import { OVER, type Outlines } from './outlines'
@@ -14,9 +14,9 @@ const DETAIL = 1
 export class Assembly {
   /** One per body, then that of the world. */
   readonly groups: Group[]
-  readonly drawn: Drawn[]
+  readonly drawn: Drawable[]
   /** Numbers of the parts in the picture of part numbers. */
-  readonly numbers: { part: Drawn['part']; number: number }[] = []
+  readonly numbers: { part: Drawable['part']; number: number }[] = []
   #kit: Kit
   #frame?: Frame
   #reach?: Vector3[]

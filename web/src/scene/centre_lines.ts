@@ -36,8 +36,8 @@ function spokes(points: Vector3[], centre: Vector3, axis: Vector3): [Vector3, Ve
 }
 
 function nearest(flat: Flat[], corners: number[], [x, y]: Flat): number {
-  const apart = (k: number) => Math.hypot(flat[k][0] - x, flat[k][1] - y)
-  return corners.reduce((best, corner) => (apart(corner) < apart(best) ? corner : best))
+  const distance = (k: number) => Math.hypot(flat[k][0] - x, flat[k][1] - y)
+  return corners.reduce((best, corner) => (distance(corner) < distance(best) ? corner : best))
 }
 
 /** The plane through the two points that are farthest apart and the one farthest from their line. */

@@ -115,8 +115,8 @@ export function farthest<T>(points: T[], distance: (a: T, b: T) => number): [T, 
   let most = -1
   points.forEach((a, k) => {
     for (const b of points.slice(k + 1)) {
-      const apart = distance(a, b)
-      if (apart > most) [most, best] = [apart, [a, b]]
+      const separation = distance(a, b)
+      if (separation > most) [most, best] = [separation, [a, b]]
     }
   })
   return best

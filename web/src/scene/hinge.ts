@@ -28,15 +28,15 @@ export function foldAxis(mechanism: Mechanism, body: number): Vector3 | undefine
 function parallelHinges(mechanism: Mechanism, body: number): Vector3 | undefined {
   if (body === 0 || mechanism.plane || mechanism.vehicle || mechanism.large || mechanism.report.wheels.length > 0)
     return undefined
-  const held = mechanism.jointsOf(body)
+  const joints = mechanism.jointsOf(body)
   if (
-    held.length !== 2 ||
+    joints.length !== 2 ||
     mechanism.shapePoints(body).length !== 2 ||
-    held.some(({ joint, axis }) => joint.kind !== 'revolute' || joint.hinge || !axis)
+    joints.some(({ joint, axis }) => joint.kind !== 'revolute' || joint.hinge || !axis)
   )
     return undefined
-  const [first, second] = held.map(({ axis }) => axis!.clone().normalize())
-  const along = held[1].at.clone().sub(held[0].at).normalize()
+  const [first, second] = joints.map(({ axis }) => axis!.clone().normalize())
+  const along = joints[1].at.clone().sub(joints[0].at).normalize()
   return Math.abs(first.dot(second)) > PARALLEL && Math.abs(first.dot(along)) < SQUARE ? first : undefined
 }
 

@@ -3,8 +3,8 @@ import { type Camera, Vector3 } from 'three'
 import { svg } from '../dom'
 import { number, pretty } from '../format'
 import { rounded } from '../rounding'
-import type { Part, Frame } from './drawn'
-import { type Placed, placeLabels } from './labels'
+import type { Part, Frame } from './drawable'
+import { type LabelBox, placeLabels } from './labels'
 import type { Mechanism } from './mechanism'
 
 /** A text at a place of the world. */
@@ -26,7 +26,7 @@ const MOST = 60
 export class LabelLayer {
   readonly element = svg('svg', { class: 'labels', 'aria-hidden': 'true' })
   /** Placed labels, for a picture of the view. */
-  placed: Placed[] = []
+  placed: LabelBox[] = []
   #brush = document.createElement('canvas').getContext('2d')
   #widths = new Map<string, number>()
 

@@ -6,7 +6,7 @@ export interface Spot {
 }
 
 /** Place of a text: its middle, and the point that it belongs to. */
-export interface Placed {
+export interface LabelBox {
   spot: Spot
   x: number
   y: number
@@ -43,8 +43,8 @@ export function placeLabels(
   room: Room,
   middle: { x: number; y: number },
   wide = (text: string) => LETTER * text.length,
-): Placed[] {
-  const placed: Placed[] = []
+): LabelBox[] {
+  const placed: LabelBox[] = []
   for (const spot of spots) {
     const width = wide(spot.text) + PADDING
     const outwards = Math.atan2(spot.y - middle.y, spot.x - middle.x)
@@ -56,7 +56,7 @@ export function placeLabels(
   return placed
 }
 
-function candidates(spot: Spot, width: number, outwards: number): Placed[] {
+function candidates(spot: Spot, width: number, outwards: number): LabelBox[] {
   return DISTANCES.flatMap((distance) =>
     Array.from({ length: DIRECTIONS }, (_, k) => {
       const angle = outwards + (k % 2 ? 1 : -1) * Math.ceil(k / 2) * TURN
@@ -68,7 +68,7 @@ function candidates(spot: Spot, width: number, outwards: number): Placed[] {
   )
 }
 
-function inside({ x, y, width, height }: Placed, room: Room): boolean {
+function inside({ x, y, width, height }: LabelBox, room: Room): boolean {
   return (
     x - width / 2 >= EDGE &&
     x + width / 2 <= room.width - EDGE &&
@@ -77,6 +77,6 @@ function inside({ x, y, width, height }: Placed, room: Room): boolean {
   )
 }
 
-function overlap(a: Placed, b: Placed): boolean {
+function overlap(a: LabelBox, b: LabelBox): boolean {
   return Math.abs(a.x - b.x) < (a.width + b.width) / 2 && Math.abs(a.y - b.y) < (a.height + b.height) / 2
 }

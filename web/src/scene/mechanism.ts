@@ -1,7 +1,7 @@
 import { Box3, Quaternion, Vector3 } from 'three'
 import type { JointMark } from '../payload'
 import type { Report } from '../report'
-import type { Frame } from './drawn'
+import type { Frame } from './drawable'
 import { layers } from './layers'
 import { planeOf } from './plane'
 import { placed, type Pose, poseAt, turned } from './poses'
@@ -16,7 +16,7 @@ const SAMPLES = 64
 /** Two places nearer to one another than this part of the size are one. */
 const SAME = 1e-4
 /** Moments at which it is judged from where joints are seen best. */
-const JUDGED = 5
+const SAMPLED_STEPS = 5
 /** More bodies than this are drawn without details. */
 const MANY = 40
 /** The unit as a part of the distance between hardpoints, and its least and largest part of the size. */
@@ -176,9 +176,9 @@ export class Mechanism {
     const slotted = this.plane
       ? this.#slides.flatMap((slide) => (slide && slide.rail === body && body > 0 ? ends(slide) : []))
       : []
-    const held = this.distinct([...carried, ...this.#places[body], ...slotted])
-    if (held.length > 2) return held
-    return this.distinct([...held, ...indices.filter((k) => roles[k] === 'measured').map(point)])
+    const points = this.distinct([...carried, ...this.#places[body], ...slotted])
+    if (points.length > 2) return points
+    return this.distinct([...points, ...indices.filter((k) => roles[k] === 'measured').map(point)])
   }
 
   /** Radius of a glyph at a joint's place on a body, so that none hides a link. */
@@ -263,8 +263,8 @@ export class Mechanism {
   #seenFrom(): Vector3 {
     const { moments } = this
     const judged = Array.from(
-      { length: JUDGED },
-      (_, k) => moments[Math.floor((k * (moments.length - 1)) / (JUDGED - 1))],
+      { length: SAMPLED_STEPS },
+      (_, k) => moments[Math.floor((k * (moments.length - 1)) / (SAMPLED_STEPS - 1))],
     )
     const places = (step: number) =>
       this.distinct(this.#places.flatMap((own, body) => own.map((place) => this.worldAt(body, place, step))))
@@ -304,8 +304,8 @@ export class Mechanism {
       { at: this.worldAt(joint.body_j, new Vector3(...joint.at_j), 0), bodies: [joint.body_i, joint.body_j] },
     ])
     const massless = (joint: JointMark) => joint.kind === 'distance' || joint.kind === 'leg'
-    const held = pins.filter((_, k) => !massless(report.joints[Math.floor(k / 2)]))
-    const stacked = layers(lengths, held, 1e-3 * this.size)
+    const loadedPins = pins.filter((_, k) => !massless(report.joints[Math.floor(k / 2)]))
+    const stacked = layers(lengths, loadedPins, 1e-3 * this.size)
     const top = Math.max(0, ...stacked)
     // In front of the wheels that it carries a carrier is seen.
     for (const body of this.carriers) stacked[body] = top + 1

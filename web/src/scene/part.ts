@@ -1,4 +1,4 @@
-import type { Part } from './drawn'
+import type { Part } from './drawable'
 import type { Mechanism } from './mechanism'
 
 /** A body, with the joints that hold it. */

@@ -1,7 +1,7 @@
 import { type Intersection, type Material, type Mesh, type Object3D, Raycaster, Vector2 } from 'three'
 import { el } from '../dom'
 import type { Camera } from './camera'
-import type { Part } from './drawn'
+import type { Part } from './drawable'
 
 /** Distance from a line at which the pointer finds it, px. */
 const REACH = 6

@@ -16,19 +16,19 @@ const SAME = 1e-6
  * The design drawn solid: as loaded, as the changes of variables make it to first order, or another exact design
  * that the report brings. Its `former` is the design drawn dashed, where there is one.
  */
-export function present(today: Mechanism, state: State): Mechanism {
-  const { report, size } = today
+export function present(original: Mechanism, state: State): Mechanism {
+  const { report, size } = original
   const known = (design?: Design) => (design && design.poses.length === report.bodies.length ? design : undefined)
   const exact = known(state.present)
   const other = known(state.former)
-  const former = other ? new Mechanism(solved(report, other, size), today) : today
-  if (exact) return new Mechanism(solved(report, exact, size), today, former)
-  if (state.changed) return new Mechanism(predictedReport(report, state.changes, size), today, former)
-  return other ? new Mechanism(report, today, former) : today
+  const former = other ? new Mechanism(solved(report, other, size), original) : original
+  if (exact) return new Mechanism(solved(report, exact, size), original, former)
+  if (state.changed) return new Mechanism(predicted(report, state.changes, size), original, former)
+  return other ? new Mechanism(report, original, former) : original
 }
 
 /** A report as changes of its variables make it to first order. */
-export function predictedReport(report: Report, changes: number[], size: number): Report {
+export function predicted(report: Report, changes: number[], size: number): Report {
   const changed = report.variables.filter(({ index }) => changes[index])
   const poses = report.bodies.map((body, b) => {
     const shifts = sum(changed.map((variable) => ({ curve: variable.shifts[b], by: changes[variable.index] })))
@@ -37,7 +37,7 @@ export function predictedReport(report: Report, changes: number[], size: number)
   const arrowsAt = (body: number, at: Place): { arrow: Arrow; by: number }[] =>
     changed.flatMap(({ index, arrows }) =>
       arrows
-        .filter((arrow) => arrow.body === body && apart(arrow.at, at) <= SAME * size)
+        .filter((arrow) => arrow.body === body && distance(arrow.at, at) <= SAME * size)
         .slice(0, 1)
         .map((arrow) => ({ arrow, by: changes[index] })),
     )
@@ -77,7 +77,7 @@ function sum(items: { curve: Curve | undefined; by: number }[]): Curve | undefin
 /** A report as a re-solved design has it. */
 export function solved(report: Report, design: Design, size: number): Report {
   const move: Move = (body, at) => {
-    const k = report.bodies[body].skeleton.findIndex((point) => apart(point, at) <= SAME * size)
+    const k = report.bodies[body].skeleton.findIndex((point) => distance(point, at) <= SAME * size)
     return design.skeletons[body]?.[k] ?? at
   }
   const redrawn = redraw(report, design.poses, move)
@@ -140,7 +140,7 @@ function moved(poses: Curve, shifts: Curve, change: number): Curve {
   return out
 }
 
-const apart = (a: Place, b: Place) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2])
+const distance = (a: Place, b: Place) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2])
 const minus = (a: Place, b: Place) => new Vector3(a[0] - b[0], a[1] - b[1], a[2] - b[2])
 const added = (a: Place, v: Place, share: number): Place => [
   a[0] + share * v[0],

@@ -22,7 +22,7 @@ export interface Slide {
 
 const SLIDES = ['translational', 'cylindrical', 'inplane', 'inline', 'pin_in_slot']
 /** Slides in which body i has the way. */
-const ONE_WAY = ['inplane', 'inline', 'pin_in_slot']
+const GUIDE_ON_BODY_I = ['inplane', 'inline', 'pin_in_slot']
 
 /** The slide of a joint; ground is the rail, else the body that is longer along the axis. */
 export function slideOf(mechanism: Mechanism, joint: JointMark): Slide | undefined {
@@ -48,7 +48,7 @@ export function slideOf(mechanism: Mechanism, joint: JointMark): Slide | undefin
       : across(normal)
   } else if (joint.kind === 'pin_in_slot') {
     slide.axis = joint.axis2 ? new Vector3(...joint.axis2) : across(slide.axis)
-  } else if (!ONE_WAY.includes(joint.kind)) {
+  } else if (!GUIDE_ON_BODY_I.includes(joint.kind)) {
     const axis = mechanism.into(slide.block, mechanism.alongAt(slide.rail, slide.axis, 0))
     const grounded = slide.rail === 0 || slide.block === 0
     const longer = length(mechanism, slide.block, axis) > length(mechanism, slide.rail, slide.axis)

@@ -25,7 +25,7 @@ export function travelOf(driver: Driver): Travel | undefined {
 
 /** Rotations within this of a whole turn are drawn as a whole turn, rad. */
 const NEARLY = 0.2
-/** Drawn angle of a whole turn, rad; a gap separates its beginning and its end. */
+/** Angle drawn for a whole turn, so that both ends are visible, rad. */
 const WHOLE = 4.9
 
 /** A drawn arc: from one angle to another, with a head at its end, or at both ends. */

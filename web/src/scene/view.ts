@@ -11,7 +11,7 @@ import { cameraFor, fit, type Look, looksOf, pixelsPerLength, shapeTo } from './
 import { marks, matter } from './draw'
 import { changeText, shownChange } from './draw/design_velocity'
 import { forceText } from './draw/load'
-import { type Part, samePart } from './drawn'
+import { type Part, samePart } from './drawable'
 import { Floor } from './floor'
 import { distanceLabels, hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
@@ -43,7 +43,7 @@ export class View {
   readonly scene = new Scene()
   readonly camera
   /** The design as loaded. */
-  readonly today: Mechanism
+  readonly original: Mechanism
   #renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true })
   #outlines = new Outlines()
   #controls: OrbitControls
@@ -74,21 +74,21 @@ export class View {
   /** Size of the element, px, from its observer; reading it from the element would force a layout in a frame. */
   #extent = { width: 0, height: 0 }
   /** Parts that are no longer drawn. They are removed after the next picture, which then finds its shaders compiled. */
-  #gone: Assembly[] = []
+  #discarded: Assembly[] = []
   #onDrawn: (() => void)[] = []
 
   constructor(private readonly state: State) {
-    this.today = new Mechanism(state.report)
-    this.#triad = new Triad(this.today.vehicle)
-    this.looks = looksOf(this.today)
+    this.original = new Mechanism(state.report)
+    this.#triad = new Triad(this.original.vehicle)
+    this.looks = looksOf(this.original)
     this.#look = this.looks[0]
-    this.camera = cameraFor(this.today)
+    this.camera = cameraFor(this.original)
     this.canvas = this.#renderer.domElement
     this.canvas.setAttribute('data-testid', 'view-canvas')
     this.canvas.setAttribute('role', 'img')
     this.canvas.setAttribute('aria-label', `3D view of ${state.report.title}`)
     this.#renderer.autoClear = false
-    this.#renderer.shadowMap.enabled = this.today.plane === undefined
+    this.#renderer.shadowMap.enabled = this.original.plane === undefined
     this.#renderer.shadowMap.type = PCFShadowMap
     this.#renderer.shadowMap.autoUpdate = false
     this.#controls = new OrbitControls(this.camera, this.canvas)
@@ -112,7 +112,7 @@ export class View {
       el('span', { class: 'scale' }, this.#arrows, this.#grid),
     )
     this.element.append(this.#triad.element)
-    this.#overview = Overview.of(this.today, this.#look, (place) => this.#visit(place))
+    this.#overview = Overview.of(this.original, this.#look, (place) => this.#visit(place))
     if (this.#overview) this.element.append(this.#overview.element)
 
     this.#drawn = state.edition
@@ -176,8 +176,8 @@ export class View {
 
   /** Frees all graphics memory before the page is rebuilt. */
   dispose(): void {
-    this.#gone.push(this.#matter, this.#marks)
-    for (const one of this.#gone.splice(0)) one.dispose()
+    this.#discarded.push(this.#matter, this.#marks)
+    for (const one of this.#discarded.splice(0)) one.dispose()
     this.#controls.dispose()
     this.#renderer.dispose()
     this.#renderer.forceContextLoss()
@@ -205,9 +205,10 @@ export class View {
   }
 
   #frame(width: number, height: number): void {
-    const room = ROOM * this.today.unit
+    const room = ROOM * this.original.unit
     const padded = [0, 1, 2].flatMap((k) => [-room, room].map((by) => new Vector3().setComponent(k, by)))
-    const swept = this.mechanism === this.today ? this.today.sweep : [...this.today.sweep, ...this.mechanism.sweep]
+    const swept =
+      this.mechanism === this.original ? this.original.sweep : [...this.original.sweep, ...this.mechanism.sweep]
     const points = [
       ...swept.flatMap((point) => padded.map((by) => point.clone().add(by))),
       ...this.#matter.reach,
@@ -216,7 +217,7 @@ export class View {
     this.#overview?.resize(points, width, height)
     const seen = this.#overview?.part(points, this.#focus(), width / height) ?? points
     this.#controls.target.copy(
-      fit(this.camera, seen, this.today.size, this.#look, width, height, this.#overview?.strip(height)),
+      fit(this.camera, seen, this.original.size, this.#look, width, height, this.#overview?.strip(height)),
     )
     this.#controls.update()
   }
@@ -247,13 +248,13 @@ export class View {
   /** Focus in a long mechanism: the selection, or else the point that the chosen variable moves. */
   #focus(): Vector3 {
     const { selected, variable } = this.state.choice
-    const { report, sweep } = this.today
+    const { report, sweep } = this.original
     const joint = selected?.kind === 'joint' ? report.joints[selected.index] : undefined
     const arrow = report.variables[variable]?.arrows[0]
     if (selected?.kind === 'body' && selected.index > 0)
-      return this.today.worldAt(selected.index, this.today.shapePoints(selected.index)[0] ?? new Vector3(), 0)
-    if (joint) return this.today.worldAt(joint.body_i, new Vector3(...joint.at_i), 0)
-    if (arrow) return this.today.worldAt(arrow.body, new Vector3(...arrow.at), 0)
+      return this.original.worldAt(selected.index, this.original.shapePoints(selected.index)[0] ?? new Vector3(), 0)
+    if (joint) return this.original.worldAt(joint.body_i, new Vector3(...joint.at_i), 0)
+    if (arrow) return this.original.worldAt(arrow.body, new Vector3(...arrow.at), 0)
     return sweep[0] ?? new Vector3()
   }
 
@@ -282,7 +283,7 @@ export class View {
 
   #assembleMatter(): Assembly {
     const assembly = new Assembly(
-      present(this.today, this.state),
+      present(this.original, this.state),
       this.#palette,
       this.state.choice,
       matter,
@@ -294,13 +295,13 @@ export class View {
   }
 
   #assembleMarks(): Assembly {
-    const variable = this.today.report.variables[this.state.choice.variable]
-    const change = variable && shownChange(this.today, variable)
+    const variable = this.original.report.variables[this.state.choice.variable]
+    const change = variable && shownChange(this.original, variable)
     const forces = this.state.choice.forces && forceText(this.#matter.mechanism)
-    const said = [forces, change !== undefined && `Arrows: effect of ${changeText(change, variable)}`].filter(
+    const texts = [forces, change !== undefined && `Arrows: effect of ${changeText(change, variable)}`].filter(
       (words) => words,
     )
-    this.#arrows.textContent = said.map((words) => `${words}, `).join('')
+    this.#arrows.textContent = texts.map((words) => `${words}, `).join('')
     const assembly = new Assembly(
       this.#matter.mechanism,
       this.#palette,
@@ -314,10 +315,10 @@ export class View {
   }
 
   #lay(): Floor {
-    const { up, report } = this.today
-    const heights = [...this.#matter.reach, ...this.today.sweep].map((point) => point.dot(up))
+    const { up, report } = this.original
+    const heights = [...this.#matter.reach, ...this.original.sweep].map((point) => point.dot(up))
     const floor = new Floor(
-      this.today,
+      this.original,
       this.#palette,
       heights.length > 0 ? heights.reduce((a, b) => Math.min(a, b)) : 0,
     )
@@ -349,7 +350,7 @@ export class View {
 
   /** Makes all anew where it would be drawn too thin or too thick. */
   #rescale(height: number): boolean {
-    const changed = this.today.sizeTo(pixelsPerLength(this.camera, this.#controls.target, height))
+    const changed = this.original.sizeTo(pixelsPerLength(this.camera, this.#controls.target, height))
     if (changed) this.#assemble()
     return changed
   }
@@ -419,7 +420,7 @@ export class View {
     this.#renderer.render(this.scene, this.camera)
     layers.set(0)
     this.#overview?.draw(this.#renderer, this.scene, width, height)
-    for (const one of this.#gone.splice(0)) one.dispose()
+    for (const one of this.#discarded.splice(0)) one.dispose()
     this.#triad.update(this.camera)
     this.#label()
     for (const listener of this.#onDrawn) listener()
@@ -427,7 +428,7 @@ export class View {
 
   #discard(one: Assembly): void {
     for (const group of one.groups) group.removeFromParent()
-    this.#gone.push(one)
+    this.#discarded.push(one)
   }
 
   #label(): void {

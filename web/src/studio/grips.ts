@@ -5,7 +5,18 @@ import type { MovableHardpoint, OpenReply } from '../engine/protocol'
 import { poseAt } from '../scene/poses'
 import type { View } from '../scene/view'
 import type { State } from '../state'
-import { AXES, followed, lengthOf, mirrors, placeOf, settingsFor, snapped, turnOf, type Way, WAYS } from './moves'
+import {
+  AXES,
+  followed,
+  lengthOf,
+  mirrors,
+  placeOf,
+  settingsFor,
+  snapped,
+  turnOf,
+  type DragDirection,
+  DRAG_DIRECTIONS,
+} from './moves'
 
 /** Snaps that are offered, in the model's unit. */
 const SNAPS = [0, 0.1, 0.5, 1, 5, 10]
@@ -14,7 +25,7 @@ const NUDGE = 1e-3
 /** Half length of an axis drawn through a hardpoint, relative to the size. */
 const GUIDE = 0.25
 
-interface Shown {
+interface Grip {
   grip: MovableHardpoint
   body: number
   point: number
@@ -22,11 +33,11 @@ interface Shown {
 }
 
 /** A drag under way. */
-interface Hold {
-  shown: Shown
+interface ActiveDrag {
+  shown: Grip
   /** Position in the world and in the design configuration, at the start. */
   from: Vector3
-  drawn: Vector3
+  nominal: Vector3
   turn: Quaternion
   /** From the hardpoint to where it was taken hold of. */
   offset: Vector3
@@ -53,10 +64,10 @@ export class Grips {
     'Drag points',
   )
   #guide = svg('svg', { class: 'guide', 'aria-hidden': 'true' })
-  #shown: Shown[]
-  #chosen?: Shown
-  #hold?: Hold
-  #way: Way = 'free'
+  #shown: Grip[]
+  #chosen?: Grip
+  #activeDrag?: ActiveDrag
+  #direction: DragDirection = 'free'
   #snap = 0
   #mirror?: { axis: number; partner: Map<string, MovableHardpoint>; on: boolean }
   #fields: HTMLInputElement[] = []
@@ -70,9 +81,9 @@ export class Grips {
     private readonly state: State,
     private readonly opened: OpenReply,
     /** Called when a hand lets go. */
-    private readonly rest: () => void,
+    private readonly onRelease: () => void,
   ) {
-    this.#size = view.today.size
+    this.#size = view.original.size
     this.#shown = opened.grips.flatMap((grip) => this.#place(grip))
     const found = mirrors(opened.grips)
     this.#mirror = found && { ...found, on: true }
@@ -84,8 +95,8 @@ export class Grips {
   }
 
   /** True if a hand holds one. */
-  get holding(): boolean {
-    return this.#hold !== undefined
+  get isDragging(): boolean {
+    return this.#activeDrag !== undefined
   }
 
   get on(): boolean {
@@ -109,7 +120,7 @@ export class Grips {
   }
 
   /** Positions of a drawn hardpoint: for the bodies that it is fixed in, ground first. */
-  #place(grip: MovableHardpoint): Shown[] {
+  #place(grip: MovableHardpoint): Grip[] {
     const { bodies } = this.state.report
     for (const [body, { labels }] of bodies.entries()) {
       const point = labels.findIndex((label) => label.split(', ').includes(grip.name))
@@ -122,23 +133,23 @@ export class Grips {
         'data-testid': `grip-${grip.name}`,
         onclick: () => this.choose(grip.name),
         onkeydown: (event: KeyboardEvent) => this.#key(event, shown),
-        onpointerdown: (event: PointerEvent) => this.#take(event, shown),
+        onpointerdown: (event: PointerEvent) => this.#grab(event, shown),
         onpointermove: (event: PointerEvent) => this.#drag(event),
-        onpointerup: () => this.#let(),
-        onpointercancel: () => this.#let(),
+        onpointerup: () => this.#release(),
+        onpointercancel: () => this.#release(),
       })
-      const shown: Shown = { grip, body, point, button }
+      const shown: Grip = { grip, body, point, button }
       return [shown]
     }
     return []
   }
 
-  #world({ body, point }: Shown): Vector3 {
+  #world({ body, point }: Grip): Vector3 {
     const { mechanism } = this.view
     return mechanism.frame(this.state.step).at(body, new Vector3(...mechanism.report.bodies[body].skeleton[point]))
   }
 
-  #turn({ body }: Shown): Quaternion {
+  #turn({ body }: Grip): Quaternion {
     const pose = poseAt(this.view.mechanism.report.bodies[body].poses, this.state.step)
     return pose ? turnOf(this.opened.frames[body] ?? [1, 0, 0, 0], pose.turn) : new Quaternion()
   }
@@ -152,17 +163,17 @@ export class Grips {
       shown.button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
     }
     this.#guide.replaceChildren()
-    if (!this.#chosen || this.#way === 'free') return
+    if (!this.#chosen || this.#direction === 'free') return
     const at = this.#world(this.#chosen)
     const turn = this.#turn(this.#chosen)
-    for (const axis of this.#way) {
+    for (const axis of this.#direction) {
       const along = new Vector3().setComponent(AXES.indexOf(axis as 'x'), GUIDE * this.#size).applyQuaternion(turn)
       const [a, b] = [1, -1].map((side) => this.view.project(at.clone().addScaledVector(along, side)))
       this.#guide.append(svg('line', { x1: a.x, y1: a.y, x2: b.x, y2: b.y, class: `axis-${axis}` }))
     }
   }
 
-  #take(event: PointerEvent, shown: Shown): void {
+  #grab(event: PointerEvent, shown: Grip): void {
     if (event.button !== 0) return
     this.choose(shown.grip.name)
     shown.button.setPointerCapture(event.pointerId)
@@ -171,14 +182,14 @@ export class Grips {
     const turn = this.#turn(shown)
     const sight = this.#sight(event)
     const offset = followed(sight, from, 'free', turn, this.#facing()) ?? new Vector3()
-    this.#hold = { shown, from, turn, drawn: placeOf(shown.grip, this.state.settings), offset }
+    this.#activeDrag = { shown, from, turn, nominal: placeOf(shown.grip, this.state.settings), offset }
     // A grip that is left lying keeps the keys.
     shown.button.focus({ preventScroll: true })
     event.preventDefault()
   }
 
   #drag(event: PointerEvent): void {
-    if (!this.#hold) return
+    if (!this.#activeDrag) return
     const first = this.#pending === undefined
     this.#pending = event
     // A pointer reports more often than a frame can be drawn.
@@ -186,27 +197,27 @@ export class Grips {
   }
 
   #dragged(): void {
-    const [event, hold] = [this.#pending, this.#hold]
+    const [event, hold] = [this.#pending, this.#activeDrag]
     this.#pending = undefined
     if (!event || !hold) return
     const sight = this.#sight(event)
     sight.origin.sub(hold.offset)
-    const way = followed(sight, hold.from, this.#way, hold.turn, this.#facing())
+    const way = followed(sight, hold.from, this.#direction, hold.turn, this.#facing())
     if (!way) return
-    const place = hold.drawn.clone().add(way.applyQuaternion(hold.turn.clone().invert()))
-    this.#put(
+    const place = hold.nominal.clone().add(way.applyQuaternion(hold.turn.clone().invert()))
+    this.#moveTo(
       hold.shown,
       place,
       event.ctrlKey || event.metaKey ? this.#snap || this.#coarse : this.#snap || this.#fine,
-      hold.drawn,
+      hold.nominal,
     )
   }
 
-  #let(): void {
-    if (!this.#hold) return
+  #release(): void {
+    if (!this.#activeDrag) return
     this.#dragged()
-    this.#hold = undefined
-    this.rest()
+    this.#activeDrag = undefined
+    this.onRelease()
   }
 
   /** Resolution of a drag, so that it leaves no meaningless digits. */
@@ -226,11 +237,11 @@ export class Grips {
 
   /** Towards the eye; of a planar mechanism its normal, so that it stays in its plane. */
   #facing(): Vector3 {
-    return this.view.today.plane?.clone() ?? new Vector3().setFromMatrixColumn(this.view.camera.matrixWorld, 2)
+    return this.view.original.plane?.clone() ?? new Vector3().setFromMatrixColumn(this.view.camera.matrixWorld, 2)
   }
 
-  /** Moves a hardpoint and its mirror image in the design configuration; unchanged coordinates keep their digits. */
-  #put({ grip }: Shown, place: Vector3, snap: number, before: Vector3): void {
+  /** Puts a hardpoint, and its mirror image, at a place of the drawing; coordinates that stay keep their numbers. */
+  #moveTo({ grip }: Grip, place: Vector3, snap: number, before: Vector3): void {
     const still = 1e-9 * this.#size
     AXES.forEach((_, k) => {
       const moved = Math.abs(place.getComponent(k) - before.getComponent(k)) > still
@@ -249,43 +260,49 @@ export class Grips {
     this.state.adjust([...own.settings, ...(other?.settings ?? [])])
   }
 
-  #key(event: KeyboardEvent, shown: Shown): void {
+  #key(event: KeyboardEvent, shown: Grip): void {
     const key = event.key.toLowerCase()
     if (key === 'x' || key === 'y' || key === 'z') {
-      this.#go(this.#way === key ? 'free' : key)
+      this.#setDirection(this.#direction === key ? 'free' : key)
     } else {
       const by = { arrowleft: [-1, 0], arrowright: [1, 0], arrowup: [0, 1], arrowdown: [0, -1] }[key]
       if (!by) return
       const step = (this.#snap || NUDGE * this.#size) * (event.shiftKey ? 10 : 1)
       const before = placeOf(shown.grip, this.state.settings)
       const way = new Vector3()
-      if (this.#way.length === 1) way.setComponent(AXES.indexOf(this.#way as 'x'), step * (by[0] + by[1]))
+      if (this.#direction.length === 1) way.setComponent(AXES.indexOf(this.#direction as 'x'), step * (by[0] + by[1]))
       else {
         // The axis that is seen most in the direction of the key.
         const turn = this.#turn(shown)
         const screen = new Vector3().setFromMatrixColumn(this.view.camera.matrixWorld, by[0] ? 0 : 1)
         const parts = AXES.map((_, k) => new Vector3().setComponent(k, 1).applyQuaternion(turn).dot(screen))
-        const allowed = (k: number) => this.#way === 'free' || this.#way.includes(AXES[k])
+        const allowed = (k: number) => this.#direction === 'free' || this.#direction.includes(AXES[k])
         const axis = [0, 1, 2].filter(allowed).sort((a, b) => Math.abs(parts[b]) - Math.abs(parts[a]))[0]
         way.setComponent(axis, step * Math.sign(parts[axis]) * (by[0] + by[1]))
       }
-      this.#put(shown, before.clone().add(way), 0, before)
-      this.rest()
+      this.#moveTo(shown, before.clone().add(way), 0, before)
+      this.onRelease()
     }
     event.preventDefault()
     event.stopPropagation()
   }
 
-  #go(way: Way): void {
-    this.#way = way
+  #setDirection(way: DragDirection): void {
+    this.#direction = way
     this.#follow()
     this.#show()
   }
 
-  #ways: HTMLButtonElement[] = []
+  #directionButtons: HTMLButtonElement[] = []
   #name = el('h3')
-  #why = el('p', { class: 'refusal', role: 'status', 'data-testid': 'refusal' })
+  #refusal = el('p', { class: 'refusal', role: 'status', 'data-testid': 'refusal' })
   #mirrorField?: HTMLInputElement
+
+  #directionButton(way: DragDirection): HTMLButtonElement {
+    const title = way === 'free' ? 'In the plane of the screen' : `Along ${[...way].join(' and ')}`
+    const onclick = () => this.#setDirection(way)
+    return el('button', { type: 'button', 'data-testid': `way-${way}`, title, onclick }, way)
+  }
 
   #makePane(): void {
     const { length } = this.state.report.units
@@ -296,23 +313,12 @@ export class Grips {
         'aria-label': `${axis} in ${length}`,
         'data-testid': `grip-${axis}`,
         oninput: () => (this.#typing = true),
-        onchange: () => this.#typed(k),
+        onchange: () => this.#applyInput(k),
       }),
     )
     const label = (text: string, field: HTMLElement, after = '') =>
       el('label', {}, el('span', {}, text), field, el('span', { class: 'unit' }, after))
-    this.#ways = WAYS.map((way) =>
-      el(
-        'button',
-        {
-          type: 'button',
-          'data-testid': `way-${way}`,
-          title: way === 'free' ? 'In the plane of the screen' : `Along ${[...way].join(' and ')}`,
-          onclick: () => this.#go(way),
-        },
-        way,
-      ),
-    )
+    this.#directionButtons = DRAG_DIRECTIONS.map((way) => this.#directionButton(way))
     const snap = el(
       'select',
       { 'aria-label': 'Snap', 'data-testid': 'snap', onchange: () => (this.#snap = Number(snap.value)) },
@@ -344,25 +350,25 @@ export class Grips {
         ),
       ),
       el('div', { class: 'coordinates' }, ...AXES.map((axis, k) => label(axis, this.#fields[k], length))),
-      el('div', { class: 'ways', role: 'toolbar', 'aria-label': 'Direction' }, ...this.#ways),
+      el('div', { class: 'ways', role: 'toolbar', 'aria-label': 'Direction' }, ...this.#directionButtons),
       el(
         'div',
         { class: 'ways' },
         snap,
         this.#mirrorField && el('label', { class: 'mirror' }, this.#mirrorField, 'mirror to the other side'),
       ),
-      this.#why,
+      this.#refusal,
     )
   }
 
-  #typed(k: number): void {
+  #applyInput(k: number): void {
     this.#typing = false
     const chosen = this.#chosen
     const value = chosen && lengthOf(this.#fields[k].value, this.state.report.units.length)
     if (chosen && value !== undefined) {
       const before = placeOf(chosen.grip, this.state.settings)
-      this.#put(chosen, before.clone().setComponent(k, value), 0, before)
-      this.rest()
+      this.#moveTo(chosen, before.clone().setComponent(k, value), 0, before)
+      this.onRelease()
     }
     this.#show(true)
   }
@@ -370,18 +376,20 @@ export class Grips {
   #reset(): void {
     if (!this.#chosen) return
     const before = placeOf(this.#chosen.grip, this.state.settings)
-    this.#put(this.#chosen, new Vector3(...this.#chosen.grip.place), 0, before)
-    this.rest()
+    this.#moveTo(this.#chosen, new Vector3(...this.#chosen.grip.place), 0, before)
+    this.onRelease()
   }
 
   #show(all = false): void {
     this.pane.hidden = !this.on
     this.element.classList.toggle('refused', this.state.refusal !== '')
-    this.#why.replaceChildren(...prose(this.state.refusal || this.state.bound))
+    this.#refusal.replaceChildren(...prose(this.state.refusal || this.state.bound))
     const chosen = this.#chosen
     this.pane.classList.toggle('idle', !chosen)
     this.#name.textContent = chosen?.grip.name ?? 'Click a point to move it'
-    this.#ways.forEach((button, k) => button.setAttribute('aria-pressed', String(WAYS[k] === this.#way)))
+    this.#directionButtons.forEach((button, k) =>
+      button.setAttribute('aria-pressed', String(DRAG_DIRECTIONS[k] === this.#direction)),
+    )
     for (const field of this.#fields) field.disabled = !chosen
     if (!chosen) return
     const place = placeOf(chosen.grip, this.state.settings)

@@ -18,7 +18,7 @@ export interface Snapshot {
 }
 
 /** Steps that are kept; earlier ones are forgotten, but for the first. */
-const MOST = 200
+const MAX_STEPS = 200
 
 /** The designs that a reader has been through, to go back and forth, and those that were given a name. */
 export class History {
@@ -27,12 +27,12 @@ export class History {
   readonly #listeners: (() => void)[] = []
   #at = 0
   /** Source of the last step, as long as it may be continued. */
-  #hand?: string
+  #gesture?: string
   #named = 0
 
   constructor(
     readonly first: Step,
-    private readonly most = MOST,
+    private readonly limit = MAX_STEPS,
   ) {
     this.#steps = [first]
   }
@@ -69,33 +69,33 @@ export class History {
    * Goes on to a design. What the same `hand` does without a pause, such as all of a drag, is one step; `rest` ends it.
    * A step that comes back to where it began is none.
    */
-  go(step: Step, hand?: string): void {
-    const goesOn = hand !== undefined && hand === this.#hand
+  go(step: Step, gesture?: string): void {
+    const isContinued = gesture !== undefined && gesture === this.#gesture
     if (same(step, this.present)) {
-      if (!goesOn) this.#hand = undefined
+      if (!isContinued) this.#gesture = undefined
       return
     }
-    this.#hand = hand
+    this.#gesture = gesture
     this.#steps.length = this.#at + 1
-    if (goesOn) this.#steps.length = this.#at
+    if (isContinued) this.#steps.length = this.#at
     this.#steps.push(step)
     this.#at = this.#steps.length - 1
-    if (goesOn && same(step, this.#steps[this.#at - 1])) {
+    if (isContinued && same(step, this.#steps[this.#at - 1])) {
       this.#steps.length = this.#at
       this.#at--
-      this.#hand = undefined
+      this.#gesture = undefined
     }
-    // The first design is no step that can be undone: it is the origin.
-    if (this.#steps.length > this.most) {
-      this.#steps.splice(1, this.#steps.length - this.most)
+    // Of the first there is no step to be undone: it is what all comes back to.
+    if (this.#steps.length > this.limit) {
+      this.#steps.splice(1, this.#steps.length - this.limit)
       this.#at = this.#steps.length - 1
     }
-    this.#tell()
+    this.#notify()
   }
 
-  /** Ends a step: the pointer was released. */
-  rest(): void {
-    this.#hand = undefined
+  /** Ends what a hand does: it has let go. */
+  endGesture(): void {
+    this.#gesture = undefined
   }
 
   /** Goes one step back; undefined at the first. */
@@ -113,17 +113,17 @@ export class History {
     return this.present
   }
 
-  /** Names the present design; by default `design 1` and so on. */
-  keep(name = ''): Snapshot {
+  /** Gives the present design a name; `design 1` and so on where none is given. */
+  save(name = ''): Snapshot {
     this.#named++
     const snapshot = { id: this.#named, name: name.trim() || this.#free(), step: this.present }
     this.#snapshots.push(snapshot)
-    this.#tell()
+    this.#notify()
     return snapshot
   }
 
-  /** Goes to a named design, as a step that can be undone. */
-  take(snapshot: Snapshot): Step {
+  /** Goes to a design that was given a name, as a step that can be undone. */
+  restore(snapshot: Snapshot): Step {
     this.go({ ...snapshot.step, label: snapshot.name })
     return this.present
   }
@@ -131,13 +131,13 @@ export class History {
   /** Without a name it keeps the one that it has. */
   rename(snapshot: Snapshot, name: string): void {
     snapshot.name = name.trim() || snapshot.name
-    this.#tell()
+    this.#notify()
   }
 
-  forget(snapshot: Snapshot): void {
+  remove(snapshot: Snapshot): void {
     const at = this.#snapshots.indexOf(snapshot)
     if (at >= 0) this.#snapshots.splice(at, 1)
-    this.#tell()
+    this.#notify()
   }
 
   #free(): string {
@@ -146,14 +146,14 @@ export class History {
   }
 
   #move(by: number): Step | undefined {
-    this.#hand = undefined
+    this.#gesture = undefined
     if (!this.#steps[this.#at + by]) return undefined
     this.#at += by
-    this.#tell()
+    this.#notify()
     return this.present
   }
 
-  #tell(): void {
+  #notify(): void {
     for (const listener of this.#listeners) listener()
   }
 }

@@ -3,7 +3,7 @@ import type { History, Snapshot, Step } from './history'
 import './studio.css'
 
 /** Actions of the page for the bar. */
-export interface Shows {
+export interface HistoryActions {
   /** Shows another design. */
   show: (step: Step) => void
   /** Compares with a design that was given a name, or with none of them any more. */
@@ -18,7 +18,7 @@ const FORTH = 'M12.5 6.5h-6a3.5 3.5 0 0 0 0 7h3M9.5 3.5l3 3l-3 3'
  * Buttons for undo, redo, reset and the designs that were given a name; and their keys, wherever the focus is but in a
  * text.
  */
-export function historyBar(history: History, { show, compare }: Shows): HTMLElement {
+export function historyBar(history: History, { show, compare }: HistoryActions): HTMLElement {
   const icon = (path: string) => svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: path }))
   const undo = () => history.undo()
   const redo = () => history.redo()
@@ -88,8 +88,8 @@ function stepOf({ key, ctrlKey, metaKey, altKey, shiftKey }: KeyboardEvent): 'un
   return letter === 'y' && !shiftKey ? 'redo' : undefined
 }
 
-/** A button that opens the designs with names: keep this one, take another, compare with it, rename and delete it. */
-function snapshots(history: History, { show, compare }: Shows): HTMLElement {
+/** A button that opens the named designs: save the current one; open, compare, rename and delete others. */
+function snapshots(history: History, { show, compare }: HistoryActions): HTMLElement {
   let compared: Snapshot | undefined
   const name = el('input', {
     type: 'text',
@@ -117,48 +117,17 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
     compare(snapshot)
     render()
   }
-  const row = (snapshot: Snapshot): HTMLElement => {
-    const field = el('input', {
-      type: 'text',
-      value: snapshot.name,
-      'data-testid': 'snapshot-rename',
-      onchange: () => {
-        history.rename(snapshot, field.value)
-        label()
+  const row = (snapshot: Snapshot): HTMLElement =>
+    snapshotRow(snapshot, compared === snapshot, {
+      rename: (text) => history.rename(snapshot, text),
+      open: () => (show(history.restore(snapshot)), open(false), button.focus()),
+      compare: () => choose(compared === snapshot ? undefined : snapshot),
+      remove: () => {
+        if (compared === snapshot) choose(undefined)
+        history.remove(snapshot)
+        name.focus()
       },
     })
-    const action = (title: string, name: string, run: () => void) =>
-      el(
-        'button',
-        {
-          type: 'button',
-          name: `${name} ${snapshot.id}`,
-          title,
-          'data-testid': `snapshot-${name.toLowerCase()}`,
-          onclick: run,
-        },
-        name,
-      )
-    const actions = [
-      action('Open this design', 'Open', () => (show(history.take(snapshot)), open(false), button.focus())),
-      action('Compare the current design with it', 'Compare', () =>
-        choose(compared === snapshot ? undefined : snapshot),
-      ),
-      action('Delete this design', 'Delete', () => {
-        if (compared === snapshot) choose(undefined)
-        history.forget(snapshot)
-        name.focus()
-      }),
-    ]
-    actions[1].setAttribute('aria-pressed', String(compared === snapshot))
-    const label = () => {
-      field.value = snapshot.name
-      field.setAttribute('aria-label', `Name of ${snapshot.name}`)
-      for (const one of actions) one.setAttribute('aria-label', `${one.title}: ${snapshot.name}`)
-    }
-    label()
-    return el('li', {}, field, ...actions)
-  }
   let shown = ''
   const render = () => {
     const key = [compared?.id, ...history.snapshots.map(({ id }) => id)].join()
@@ -172,7 +141,7 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
   }
   form.addEventListener('submit', (event) => {
     event.preventDefault()
-    history.keep(name.value)
+    history.save(name.value)
     name.value = ''
   })
   element.addEventListener('keydown', (event) => {
@@ -192,4 +161,50 @@ function snapshots(history: History, { show, compare }: Shows): HTMLElement {
   shown = '-'
   render()
   return element
+}
+
+interface RowActions {
+  rename: (text: string) => void
+  open: () => void
+  compare: () => void
+  remove: () => void
+}
+
+/** A named design with its field and its buttons. */
+function snapshotRow(
+  snapshot: Snapshot,
+  isCompared: boolean,
+  { rename, open, compare, remove }: RowActions,
+): HTMLElement {
+  const field = el('input', {
+    type: 'text',
+    value: snapshot.name,
+    'data-testid': 'snapshot-rename',
+    onchange: () => (rename(field.value), label()),
+  })
+  const action = (title: string, name: string, run: () => void) =>
+    el(
+      'button',
+      {
+        type: 'button',
+        name: `${name} ${snapshot.id}`,
+        title,
+        'data-testid': `snapshot-${name.toLowerCase()}`,
+        onclick: run,
+      },
+      name,
+    )
+  const actions = [
+    action('Open this design', 'Open', open),
+    action('Compare the current design with it', 'Compare', compare),
+    action('Delete this design', 'Delete', remove),
+  ]
+  actions[1].setAttribute('aria-pressed', String(isCompared))
+  const label = () => {
+    field.value = snapshot.name
+    field.setAttribute('aria-label', `Name of ${snapshot.name}`)
+    for (const one of actions) one.setAttribute('aria-label', `${one.title}: ${snapshot.name}`)
+  }
+  label()
+  return el('li', {}, field, ...actions)
 }

@@ -5,8 +5,8 @@ import type { MovableHardpoint, VariableSetting } from '../engine/protocol'
  * Direction in which a hardpoint is moved: in the plane of the picture, along an axis of the model, or in the plane of
  * two axes.
  */
-export type Way = 'free' | 'x' | 'y' | 'z' | 'xy' | 'yz' | 'zx'
-export const WAYS: readonly Way[] = ['free', 'x', 'y', 'z', 'xy', 'yz', 'zx']
+export type DragDirection = 'free' | 'x' | 'y' | 'z' | 'xy' | 'yz' | 'zx'
+export const DRAG_DIRECTIONS: readonly DragDirection[] = ['free', 'x', 'y', 'z', 'xy', 'yz', 'zx']
 export const AXES = ['x', 'y', 'z'] as const
 
 /** Sine of the angle between a line of sight and an axis or plane below which they count as parallel. */
@@ -14,17 +14,23 @@ const GRAZING = 0.02
 /** Two hardpoints are mirror images to this part of the size of the mechanism. */
 const MIRRORED = 1e-6
 
-/** Unit vectors of a direction in the design configuration; none for the plane of the picture. */
-function directions(way: Way): Vector3[] {
+/** Unit vectors of a drag direction in the design configuration; none for the plane of the screen. */
+function directions(way: DragDirection): Vector3[] {
   return way === 'free' ? [] : [...way].map((axis) => new Vector3().setComponent(AXES.indexOf(axis as 'x'), 1))
 }
 
 /**
- * Displacement of a point of the world along its direction so that it follows the line of sight. `turn` maps directions
- * of the design configuration to the world; `facing` points to the eye. Undefined if the line of sight is nearly
- * parallel.
+ * Displacement of a point, in the world, that follows the line of sight in a drag direction; `turn` rotates directions
+ * of the design configuration into the world, `facing` points to the eye. Undefined where the line of sight is nearly
+ * parallel to the axis or plane.
  */
-export function followed(ray: Ray, place: Vector3, way: Way, turn: Quaternion, facing: Vector3): Vector3 | undefined {
+export function followed(
+  ray: Ray,
+  place: Vector3,
+  way: DragDirection,
+  turn: Quaternion,
+  facing: Vector3,
+): Vector3 | undefined {
   const along = directions(way).map((axis) => axis.applyQuaternion(turn))
   if (along.length === 1) {
     // The point of the axis that is nearest to the line of sight.

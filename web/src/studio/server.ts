@@ -1,6 +1,6 @@
 import type { DiagnosticMessage } from '../engine/protocol'
 /** Data about the server that the page comes from; undefined in a file. */
-interface About {
+interface PageInfo {
   token: string
   /** The model file that the page shows. */
   file: string | null
@@ -31,17 +31,17 @@ export interface OnDisk {
 export type Diagnostic = DiagnosticMessage
 
 /** Outcome of saving. */
-export type Saved =
+export type SaveOutcome =
   | { outcome: 'saved'; revision: string }
   | ({ outcome: 'changed' } & OnDisk)
   | { outcome: 'exists' }
   | { outcome: 'invalid'; diagnostics: Diagnostic[]; text: string }
   | { outcome: 'refused'; why: string }
 
-export type What = 'optimize' | 'tolerance' | 'sweep'
+export type StudyKind = 'optimize' | 'tolerance' | 'sweep'
 
-export interface Asked {
-  what: What
+export interface StudyRequest {
+  what: StudyKind
   text: string
   case?: string
   options?: { starts?: number; iterations?: number; samples?: number; seed?: number; allocate?: 'rss' | 'worst_case' }
@@ -50,7 +50,7 @@ export interface Asked {
 /** State of a study. */
 export interface Study {
   id: number
-  what: What
+  what: StudyKind
   state: 'running' | 'done' | 'cancelled' | 'failed'
   progress?: { what: string; unit: string; done: number; of: number } | null
   lines: string[]
@@ -76,8 +76,8 @@ interface Events {
   missed: undefined
 }
 
-/** Error if no server answers, or another one. */
-export class NoAnswer extends Error {}
+/** That nobody has answered, or a stranger. */
+export class NoAnswerError extends Error {}
 
 /** Seconds between attempts to reach a server that is gone. */
 const FIRST_PAUSE = 0.5
@@ -87,8 +87,8 @@ const SILENCE = 20
 
 /** The server that the page comes from; `undefined` of a page from a file. */
 export function connect(document: Document): Server | undefined {
-  const about = document.getElementById('server')?.textContent
-  return about ? new Server(JSON.parse(about) as About) : undefined
+  const info = document.getElementById('server')?.textContent
+  return info ? new Server(JSON.parse(info) as PageInfo) : undefined
 }
 
 /** The studio's server, as `hardpoint studio` runs it. */
@@ -112,7 +112,7 @@ export class Server {
   private run?: string
   private leaving = false
 
-  constructor({ token, file, revision, case: shown, cases }: About) {
+  constructor({ token, file, revision, case: shown, cases }: PageInfo) {
     this.token = token
     this.file = file
     this.case = shown
@@ -150,7 +150,7 @@ export class Server {
   }
 
   /** The present text was made from that one: it may be saved over it. */
-  base({ revision }: OnDisk): void {
+  setBase({ revision }: OnDisk): void {
     this.revision = revision
   }
 
@@ -159,8 +159,8 @@ export class Server {
     return revision === this.revision
   }
 
-  /** Saves over the text that this one was made from; with `anyway` even if the model is invalid. */
-  async save(text: string, anyway = false): Promise<Saved> {
+  /** Saves in place, over the text that this one was made from; with `anyway` also what is no valid model. */
+  async save(text: string, anyway = false): Promise<SaveOutcome> {
     const response = await this.request('PUT', this.target(this.file!, anyway), {
       body: text,
       headers: { 'if-match': `"${this.revision}"` },
@@ -171,7 +171,7 @@ export class Server {
   }
 
   /** Saves under a name that no file has. */
-  async saveAs(file: string, text: string, anyway = false): Promise<Saved> {
+  async saveAs(file: string, text: string, anyway = false): Promise<SaveOutcome> {
     return outcome(await this.request('POST', this.target(file, anyway), { body: text }))
   }
 
@@ -179,8 +179,8 @@ export class Server {
     return `/api/model?${new URLSearchParams({ file, client: this.client, ...(anyway ? { anyway: '1' } : {}) })}`
   }
 
-  /** Starts a study of a text; its results arrive as `study` events. */
-  async begin(asked: Asked): Promise<Study> {
+  /** Begins a study of a text; what comes of it is heard as `study`. */
+  async begin(asked: StudyRequest): Promise<Study> {
     const body = JSON.stringify({ file: this.file, ...asked })
     const response = await this.request('POST', '/api/study', { body, headers: { 'content-type': 'application/json' } })
     if (!response.ok) throw new Error(await why(response))
@@ -205,19 +205,19 @@ export class Server {
       headers: { 'x-hardpoint-token': this.token, ...headers },
       ...options,
     }).catch(() => undefined)
-    this.become(response ? (response.status === 403 ? 'stranger' : 'there') : 'gone')
-    if (!response) throw new NoAnswer('The server does not answer.')
-    if (response.status === 403) throw new NoAnswer('Another server answers at this address.')
+    this.setState(response ? (response.status === 403 ? 'stranger' : 'there') : 'gone')
+    if (!response) throw new NoAnswerError('The server does not answer.')
+    if (response.status === 403) throw new NoAnswerError('Another server answers at this address.')
     return response
   }
 
-  private become(state: State): void {
+  private setState(state: State): void {
     if (state === this.state || this.leaving) return
     this.state = state
-    this.tell('state', state)
+    this.emit('state', state)
   }
 
-  private tell<K extends keyof Events>(name: K, event: Events[K]): void {
+  private emit<K extends keyof Events>(name: K, event: Events[K]): void {
     for (const listener of this.listeners[name]) listener(event)
   }
 
@@ -233,32 +233,32 @@ export class Server {
           clearTimeout(timer)
           timer = setTimeout(() => silence.abort(), 1000 * SILENCE)
           pause = FIRST_PAUSE
-          this.hear(name, data)
+          this.dispatch(name, data)
         }
       } catch {
         // The next attempt shows the state of the server.
       }
       clearTimeout(timer)
-      if (this.state === 'there') this.become('gone')
+      if (this.state === 'there') this.setState('gone')
       await new Promise((resolve) => setTimeout(resolve, 1000 * pause))
     }
   }
 
-  private hear(name: string, data: string): void {
+  private dispatch(name: string, data: string): void {
     if (name === 'alive') return
     const event = JSON.parse(data)
-    if (name === 'study') this.tell('study', event)
-    else if (name === 'missed') this.tell('missed', undefined)
+    if (name === 'study') this.emit('study', event)
+    else if (name === 'missed') this.emit('missed', undefined)
     else if (name === 'hello') {
-      if (this.run !== undefined) this.tell('missed', undefined)
+      if (this.run !== undefined) this.emit('missed', undefined)
       this.run = event.server
     }
     if ((name === 'changed' || name === 'hello') && this.file !== null && event.revision !== this.revision)
-      this.tell('changed', { revision: event.revision })
+      this.emit('changed', { revision: event.revision })
   }
 }
 
-async function outcome(response: Response): Promise<Saved> {
+async function outcome(response: Response): Promise<SaveOutcome> {
   const { status } = response
   if (response.ok) return { outcome: 'saved', revision: (await response.json()).revision }
   if (status === 422) return { outcome: 'invalid', ...(await response.json()) }

@@ -1,7 +1,7 @@
 import './server.css'
 import { el, prose } from '../dom'
 import { menu, type Item } from '../page/menu'
-import { NoAnswer, type Entry, type Saved, type Server, type Study, type What } from './server'
+import { NoAnswerError, type Entry, type SaveOutcome, type Server, type Study, type StudyKind } from './server'
 
 /** The present text of the model. */
 export interface Text {
@@ -11,7 +11,7 @@ export interface Text {
 }
 
 /** Studies of the server, by their button labels. */
-const STUDIES: Record<What, string> = { optimize: 'Optimise', tolerance: 'Run tolerance analysis', sweep: 'Sweep' }
+const STUDIES: Record<StudyKind, string> = { optimize: 'Optimise', tolerance: 'Run tolerance analysis', sweep: 'Sweep' }
 
 /** Controls that a server adds to the page's bar: save, other models, studies; and notices. */
 export function serverBar(server: Server, text: Text): HTMLElement {
@@ -73,7 +73,7 @@ class Desk {
   }
 
   items(): Item[] {
-    const study = (what: What): Item => ({
+    const study = (what: StudyKind): Item => ({
       name: `${STUDIES[what]} on this machine`,
       testId: `study-${what}`,
       run: () => this.study(what),
@@ -102,7 +102,7 @@ class Desk {
     await this.asking(async () => this.after(await this.server.save(present, anyway), present, () => this.save(true)))
   }
 
-  private after(saved: Saved, present: string, anyway: () => Promise<void>): void {
+  private after(saved: SaveOutcome, present: string, anyway: () => Promise<void>): void {
     this.notes.drop('saving')
     if (saved.outcome === 'saved') {
       this.saved = present
@@ -142,7 +142,7 @@ class Desk {
   private async reload(): Promise<void> {
     const read = await this.server.read(this.server.file!)
     if (!read) return this.changed(null)
-    this.server.base(read)
+    this.server.setBase(read)
     this.saved = read.text
     this.notes.drop('changed')
     this.text.replace(read.text)
@@ -153,7 +153,7 @@ class Desk {
   private async keep(): Promise<void> {
     const read = await this.server.read(this.server.file!)
     if (!read) return this.changed(null)
-    this.server.base(read)
+    this.server.setBase(read)
     this.saved = read.text
     this.notes.drop('changed')
     await this.compare()
@@ -225,7 +225,7 @@ class Desk {
     name.select()
   }
 
-  private async study(what: What): Promise<void> {
+  private async study(what: StudyKind): Promise<void> {
     const { server, notes } = this
     const shown = server.cases.length > 0 && what === 'tolerance' ? (server.case ?? undefined) : undefined
     let study = await server.begin({ what, text: await this.text.text(), case: shown })
@@ -304,7 +304,7 @@ class Desk {
     try {
       await what()
     } catch (error) {
-      if (!(error instanceof NoAnswer)) throw error
+      if (!(error instanceof NoAnswerError)) throw error
       this.answers()
     }
   }

@@ -14,11 +14,11 @@ const CLICK = 4
 /** Step of an arrow key relative to the visible range, in round numbers: without and with Shift. */
 const STRIDE = 1 / 40
 const STEP = 1 / 200
-/** Factor of the ordinate range, about its middle, for drawing beyond the curves. */
+/** Factor on the range of the ordinate, about its middle, to draw beyond the curves. */
 const ROOM = 1.6
 
 /** Actions on a drawn curve. */
-export interface Drawn {
+export interface SketchActions {
   /** The curve is as it should be: points with rising abscissas in the units that are shown; at least two. */
   done: (points: Point[]) => void
   /** The curve is discarded. */
@@ -37,7 +37,7 @@ export class Sketch implements Overlay {
   #room = ROOM
   /** The stroke under way, px; or the point that is held. */
   #stroke?: Point[]
-  #held?: number
+  #draggedPoint?: number
   /** Position of the cross that the keys move. */
   #cross?: Point
   #canvas = svg('svg', { 'aria-hidden': 'true' })
@@ -64,7 +64,7 @@ export class Sketch implements Overlay {
 
   constructor(
     private readonly over: Plot,
-    private readonly ends: Drawn,
+    private readonly ends: SketchActions,
     points: readonly Point[] = [],
   ) {
     this.#points = [...points]
@@ -128,29 +128,29 @@ export class Sketch implements Overlay {
   }
 
   drawn(): void {
-    const places = this.#points.map((point) => this.#placed(point))
+    const places = this.#points.map((point) => this.#toPixels(point))
     const line = (points: readonly Point[]) => points.map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(' ')
     const parts: SVGElement[] = [svg('polyline', { class: 'drawn', points: line(places) })]
     for (const [x, y] of places) parts.push(svg('circle', { class: 'point', cx: x, cy: y, r: 4 }))
     if (this.#stroke) parts.push(svg('polyline', { class: 'stroke', points: line(this.#stroke) }))
     if (this.#cross && document.activeElement === this.#element) {
-      const [x, y] = this.#placed(this.#cross)
+      const [x, y] = this.#toPixels(this.#cross)
       parts.push(svg('path', { class: 'cross', d: `M${x} -9999V9999M-9999 ${y}H9999` }))
     }
     this.#canvas.replaceChildren(...parts)
     this.#take.disabled = this.#points.length < 2
-    this.#reading.textContent = this.#said()
+    this.#reading.textContent = this.#readingText()
   }
 
-  #said(): string {
+  #readingText(): string {
     const { over, unit } = this.over.content
     const read = ([x, y]: Point) => `${figure(x, over?.unit ?? 's')}: ${figure(y, unit)}`
     const focus =
-      this.#held === undefined
+      this.#draggedPoint === undefined
         ? document.activeElement === this.#element
           ? this.#cross
           : undefined
-        : this.#points[this.#held]
+        : this.#points[this.#draggedPoint]
     const count = this.#points.length
     if (focus) return `${read(focus)}${count > 0 ? ` · ${count} point${count === 1 ? '' : 's'}` : ''}`
     return count === 0
@@ -158,11 +158,11 @@ export class Sketch implements Overlay {
       : `${count} point${count === 1 ? '' : 's'}; draw over a section to change it, or drag a point`
   }
 
-  #placed([x, y]: Point): Point {
+  #toPixels([x, y]: Point): Point {
     return [this.#plot!.valToPos(x, 'x'), this.#plot!.valToPos(y, 'y')]
   }
 
-  #valued([left, top]: Point): Point {
+  #toValues([left, top]: Point): Point {
     return [this.#plot!.posToVal(left, 'x'), this.#plot!.posToVal(top, 'y')]
   }
 
@@ -175,7 +175,7 @@ export class Sketch implements Overlay {
     return [of('x'), of('y')]
   }
 
-  #where({ clientX, clientY }: PointerEvent): Point {
+  #positionOf({ clientX, clientY }: PointerEvent): Point {
     const { left, top, width, height } = this.#element.getBoundingClientRect()
     return [Math.min(Math.max(clientX - left, 0), width), Math.min(Math.max(clientY - top, 0), height)]
   }
@@ -184,20 +184,20 @@ export class Sketch implements Overlay {
     if (event.button !== 0) return
     this.#element.setPointerCapture(event.pointerId)
     this.#element.focus({ preventScroll: true })
-    const here = this.#where(event)
+    const here = this.#positionOf(event)
     this.#cross = undefined
-    const held = this.#nearest((point) => Math.hypot(...sub(this.#placed(point), here)))
-    if (held && held.away <= (event.pointerType === 'touch' ? FINGER : NEAR)) this.#held = held.index
+    const held = this.#nearest((point) => Math.hypot(...sub(this.#toPixels(point), here)))
+    if (held && held.away <= (event.pointerType === 'touch' ? FINGER : NEAR)) this.#draggedPoint = held.index
     else this.#stroke = [here]
     this.drawn()
   }
 
   #move(event: PointerEvent): void {
-    if (this.#held !== undefined) this.#drag(this.#held, this.#valued(this.#where(event)))
+    if (this.#draggedPoint !== undefined) this.#drag(this.#draggedPoint, this.#toValues(this.#positionOf(event)))
     else if (this.#stroke) {
       // A fast hand moves several times in a frame.
       const all = event.getCoalescedEvents?.() ?? []
-      this.#stroke.push(...(all.length > 0 ? all : [event]).map((one) => this.#where(one)))
+      this.#stroke.push(...(all.length > 0 ? all : [event]).map((one) => this.#positionOf(one)))
       this.drawn()
     }
   }
@@ -208,13 +208,13 @@ export class Sketch implements Overlay {
     if (!stroke) return
     const [xs, ys] = [stroke.map(([x]) => x), stroke.map(([, y]) => y)]
     const moved = Math.hypot(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys))
-    if (moved < CLICK) return this.#put(this.#valued(stroke[0]))
-    const part = thinned(smoothed(upright(stroke))).map((point) => this.#valued(point))
+    if (moved < CLICK) return this.#setPoint(this.#toValues(stroke[0]))
+    const part = thinned(smoothed(upright(stroke))).map((point) => this.#toValues(point))
     this.#set(replaced(this.#points, part, this.#range()[0]))
   }
 
   #drop(): void {
-    this.#stroke = this.#held = undefined
+    this.#stroke = this.#draggedPoint = undefined
     this.drawn()
   }
 
@@ -228,7 +228,7 @@ export class Sketch implements Overlay {
   }
 
   /** Sets a point, in place of one at that abscissa. */
-  #put(point: Point): void {
+  #setPoint(point: Point): void {
     const near = this.#range()[0] * STEP
     this.#set([...this.#points.filter(([x]) => Math.abs(x - point[0]) >= near), point].sort((a, b) => a[0] - b[0]))
   }
@@ -258,12 +258,12 @@ export class Sketch implements Overlay {
 
   #action({ key, shiftKey }: KeyboardEvent): (() => void) | undefined {
     const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[key]
-    if (by) return () => this.#walk(by[0], by[1], shiftKey ? STEP : STRIDE)
+    if (by) return () => this.#moveCross(by[0], by[1], shiftKey ? STEP : STRIDE)
     const cross = this.#cross
     switch (key) {
       case 'Enter':
       case ' ':
-        return () => this.#put((this.#cross ??= this.#start()))
+        return () => this.#setPoint((this.#cross ??= this.#start()))
       case 'Delete':
       case 'Backspace':
         return () => {
@@ -280,7 +280,7 @@ export class Sketch implements Overlay {
     return undefined
   }
 
-  #walk(right: number, up: number, part: number): void {
+  #moveCross(right: number, up: number, part: number): void {
     const [across, high] = this.#range()
     const [x, y] = (this.#cross ??= this.#start())
     const { x: horizontal, y: vertical } = this.#plot!.scales

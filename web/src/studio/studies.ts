@@ -23,7 +23,7 @@ export interface StudyHost {
   /** The text of the present design. */
   text: () => string
   /** Shows the design that a study found; its changes count from the text that was studied. */
-  take: (result: StudyResult, studied: string) => void
+  apply: (result: StudyResult, studied: string) => void
 }
 
 /** A study with its form, its progress and its result. */
@@ -98,34 +98,15 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
 
   const showForm = (made: Form<Request>, refusal?: HTMLElement) => {
     shown = 'form'
-    const why = el('span', { class: 'muted', 'data-testid': `${testId}-why` })
-    const run = el('button', { type: 'submit', class: 'first', 'data-testid': `${testId}-run` }, verb)
-    const again = el(
-      'button',
-      { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: () => void load() },
-      'Reload from model',
-    )
-    const sync = () => {
-      const request = made.request()
-      run.disabled = typeof request === 'string'
-      why.replaceChildren(...prose(typeof request === 'string' ? request : ''))
-      again.hidden = read === host.text()
-    }
-    const whole = el(
-      'form',
-      { class: 'study', novalidate: true, oninput: () => ((touched = true), sync()) },
-      ...(refusal ? [refusal] : []),
-      ...made.elements,
-      el('div', { class: 'acts' }, run, again, why),
-    )
-    whole.addEventListener('submit', (event) => {
-      event.preventDefault()
-      const request = made.request()
-      if (typeof request !== 'string') void work(made, request)
+    const view = formView(name, verb, made, refusal, {
+      isStale: () => read !== host.text(),
+      changed: () => (touched = true),
+      reload: () => void load(),
+      run: (request) => void work(made, request),
     })
-    stale = sync
-    sync()
-    show(whole)
+    stale = view.sync
+    stale()
+    show(view.element)
   }
   let stale = () => {}
 
@@ -145,40 +126,12 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
   const work = async (made: Form<Request>, request: Request) => {
     shown = 'progress'
     const text = host.text()
-    const bar = el('progress', {
-      'aria-label': `Progress of ${name.toLowerCase()}`,
-      'data-testid': `${testId}-progress`,
-    })
-    const log = el('pre', { class: 'log', 'data-testid': `${testId}-lines` })
-    const cancel = el(
-      'button',
-      {
-        type: 'button',
-        'data-testid': `${testId}-cancel`,
-        onclick: () => {
-          cancel.disabled = true
-          cancel.textContent = 'Cancelling…'
-          running.cancel()
-        },
-      },
-      'Cancel',
-    )
-    const lines: string[] = []
-    show(
-      bar,
-      log,
-      el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')),
-    )
+    const view = progressView(name, () => running.cancel())
+    show(...view.elements)
     let running: Running<StudyResult>
     try {
       running = start(text, request)
-      running.onProgress((done, total, line) => {
-        if (total === null) bar.removeAttribute('value')
-        else Object.assign(bar, { max: Math.max(total, 1), value: done })
-        if (line === '' || line === lines.at(-1)) return
-        lines.push(line)
-        log.textContent = lines.slice(-LINES).join('\n')
-      })
+      running.onProgress(view.update)
       showResult(made, await running.result, text)
     } catch (error) {
       showForm(made, refused(error))
@@ -188,40 +141,14 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
 
   const showResult = (made: Form<Request>, result: StudyResult, text: string) => {
     shown = 'result'
-    const found = result.change !== null || result.text !== null
-    const away = () => {
+    const leave = () => {
       showForm(made)
       if (!touched) refresh()
     }
-    const take = el(
-      'button',
-      {
-        type: 'button',
-        class: 'first',
-        'data-testid': `${testId}-take`,
-        onclick: () => (host.take(result, text), away()),
-      },
-      'Apply design',
-    )
-    const discard = el(
-      'button',
-      { type: 'button', 'data-testid': `${testId}-discard`, onclick: away },
-      found ? 'Discard' : 'Back',
-    )
-    const outcome = el('p', { class: 'outcome', 'data-testid': `${testId}-outcome` }, ...prose(result.message))
-    const since = el(
-      'p',
-      { class: 'outcome stale', 'data-testid': `${testId}-stale` },
-      'The design has changed since the study began. Applying the result discards later changes.',
-    )
-    stale = () => (since.hidden = host.text() === text)
+    const view = resultView(name, result, { apply: () => (host.apply(result, text), leave()), leave })
+    stale = () => (view.since.hidden = host.text() === text)
     stale()
-    show(
-      outcome,
-      since,
-      el('div', { class: 'acts' }, ...(found ? [take] : []), discard),
-      el('div', { class: 'checks' }, ...result.tables.map(factTable)),
-    )
+    show(...view.elements)
     announced.textContent = result.message
   }
 
@@ -230,6 +157,111 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     else stale()
   }
   return { element, refresh }
+}
+
+interface FormActions<Request> {
+  /** True if the text is another than the one that the form was made from. */
+  isStale: () => boolean
+  changed: () => void
+  reload: () => void
+  run: (request: Request) => void
+}
+
+/** Form of a study with the button that begins it; `sync` shows whether it can begin and whether its text is stale. */
+function formView<Request>(
+  name: string,
+  verb: string,
+  made: Form<Request>,
+  refusal: HTMLElement | undefined,
+  { isStale, changed, reload, run }: FormActions<Request>,
+) {
+  const testId = name.toLowerCase()
+  const why = el('span', { class: 'muted', 'data-testid': `${testId}-why` })
+  const begin = el('button', { type: 'submit', class: 'first', 'data-testid': `${testId}-run` }, verb)
+  const again = el(
+    'button',
+    { type: 'button', hidden: true, 'data-testid': `${testId}-again`, onclick: reload },
+    'Reload from model',
+  )
+  const sync = () => {
+    const request = made.request()
+    begin.disabled = typeof request === 'string'
+    why.replaceChildren(...prose(typeof request === 'string' ? request : ''))
+    again.hidden = !isStale()
+  }
+  const element = el(
+    'form',
+    { class: 'study', novalidate: true, oninput: () => (changed(), sync()) },
+    ...(refusal ? [refusal] : []),
+    ...made.elements,
+    el('div', { class: 'acts' }, begin, again, why),
+  )
+  element.addEventListener('submit', (event) => {
+    event.preventDefault()
+    const request = made.request()
+    if (typeof request !== 'string') run(request)
+  })
+  return { element, sync }
+}
+
+/** Outcome of a study with the buttons that apply it or leave it; `since` warns of later changes. */
+function resultView(name: string, result: StudyResult, { apply, leave }: { apply: () => void; leave: () => void }) {
+  const testId = name.toLowerCase()
+  const hasDesign = result.change !== null || result.text !== null
+  const take = el(
+    'button',
+    { type: 'button', class: 'first', 'data-testid': `${testId}-take`, onclick: apply },
+    'Apply design',
+  )
+  const discard = el(
+    'button',
+    { type: 'button', 'data-testid': `${testId}-discard`, onclick: leave },
+    hasDesign ? 'Discard' : 'Back',
+  )
+  const since = el(
+    'p',
+    { class: 'outcome stale', 'data-testid': `${testId}-stale` },
+    'The design has changed since the study began. Applying the result discards later changes.',
+  )
+  const outcome = el('p', { class: 'outcome', 'data-testid': `${testId}-outcome` }, ...prose(result.message))
+  const acts = el('div', { class: 'acts' }, ...(hasDesign ? [take] : []), discard)
+  const tables = el('div', { class: 'checks' }, ...result.tables.map(factTable))
+  return { elements: [outcome, since, acts, tables], since }
+}
+
+/** Progress of a running study: a bar, its last lines, and a button that cancels it. */
+function progressView(name: string, onCancel: () => void) {
+  const testId = name.toLowerCase()
+  const bar = el('progress', { 'aria-label': `Progress of ${testId}`, 'data-testid': `${testId}-progress` })
+  const log = el('pre', { class: 'log', 'data-testid': `${testId}-lines` })
+  const cancel = el(
+    'button',
+    {
+      type: 'button',
+      'data-testid': `${testId}-cancel`,
+      onclick: () => {
+        cancel.disabled = true
+        cancel.textContent = 'Cancelling…'
+        onCancel()
+      },
+    },
+    'Cancel',
+  )
+  const lines: string[] = []
+  return {
+    elements: [
+      bar,
+      log,
+      el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')),
+    ],
+    update: (done: number, total: number | null, line: string) => {
+      if (total === null) bar.removeAttribute('value')
+      else Object.assign(bar, { max: Math.max(total, 1), value: done })
+      if (line === '' || line === lines.at(-1)) return
+      lines.push(line)
+      log.textContent = lines.slice(-LINES).join('\n')
+    },
+  }
 }
 
 function optimizeForm({ variables, goals, limits, starts, iterations }: OptimizeOffer): Form<OptimizeRequest> {

@@ -4,10 +4,10 @@ import type { Editor } from '../editor/editor'
 import { openEditor } from '../editor/open'
 import type { StudyResult } from '../engine/engine'
 import type { CheckReply, OpenReply, VariableSetting, DesignReply, Text } from '../engine/protocol'
-import { type Answer, Refused } from '../engine/answer'
+import { type Answer, RequestError } from '../engine/answer'
 import { Solver } from '../engine/solver'
 import { save } from '../export/save'
-import { page, type Made, slot } from '../page'
+import { page, type PageParts, slot } from '../page'
 import type { Item } from '../page/menu'
 import type { Design as WireDesign, ModelText, Payload } from '../payload'
 import { design, read, type Design, type Report } from '../report'
@@ -61,7 +61,7 @@ export class Studio {
     private readonly root: HTMLElement,
     private model: ModelText,
     private state: State,
-    private made: Made,
+    private made: PageParts,
   ) {
     this.#drags = new Solver(module)
     this.#sensing = new Solver(module)
@@ -69,13 +69,13 @@ export class Studio {
     this.#text = model.text
     this.history = new History({ text: model.text, settings: [], label: 'original' })
     const bar = historyBar(this.history, {
-      show: (step) => void this.#go(step),
+      show: (step) => void this.#showStep(step),
       compare: (snapshot) => void this.#compare(snapshot),
     })
     const host = {
       studies: new Workers(module, (text) => ({ ...this.model, text })),
       text: () => this.#text,
-      take: ({ change, text }: StudyResult, studied: string) => void this.#take(change, text, studied),
+      apply: ({ change, text }: StudyResult, studied: string) => void this.#applyResult(change, text, studied),
     }
     this.#drawer = new Drawer([
       { name: 'Model', title: 'Edit the text of the model', open: () => this.#openEditor() },
@@ -88,7 +88,7 @@ export class Studio {
     ])
     const server = connect(document)
     const own = {
-      text: () => this.#settled(),
+      text: () => this.#currentText(),
       replace: (text: string) => void this.replace(text, 'from disk'),
       onChange: (listener: () => void) => this.onText(listener),
     }
@@ -119,8 +119,8 @@ export class Studio {
   async replace(text: string, label: string): Promise<void> {
     if (text === this.#text) return
     this.history.go({ text, settings: [], label })
-    const solved = this.#become({ ...this.model, text }, [])
-    this.#tell(text)
+    const solved = this.#openModel({ ...this.model, text }, [])
+    this.#setText(text)
     await solved
   }
 
@@ -129,7 +129,7 @@ export class Studio {
     {
       name: 'Model as TOML',
       testId: 'export-toml',
-      run: async () => save(new Blob([await this.#settled()], { type: 'application/toml' }), this.model.file),
+      run: async () => save(new Blob([await this.#currentText()], { type: 'application/toml' }), this.model.file),
     },
   ]
 
@@ -157,7 +157,7 @@ export class Studio {
     this.#grips?.toggle()
   }
 
-  #say(words: string): void {
+  #showStatus(words: string): void {
     this.#status.textContent = words
   }
 
@@ -165,8 +165,8 @@ export class Studio {
   #attach(): void {
     const { state } = this
     state.onChange(() => {
-      this.#note()
-      this.#wait()
+      this.#recordStep()
+      this.#scheduleUpdate()
     })
   }
 
@@ -182,12 +182,12 @@ export class Studio {
       state.solver = () => this.#solve()
       this.#offerGrips()
       this.#offerCases(json.cases)
-      this.#say('')
+      this.#showStatus('')
       this.root.dataset.engine = 'ready'
       state.choose({})
       if (state.changed) this.#solve()
     } catch (error) {
-      this.#say(`Showing linear predictions, because the solver is not available: ${words(error)}`)
+      this.#showStatus(`Showing linear predictions, because the solver is not available: ${messageOf(error)}`)
       this.root.dataset.engine = 'failed'
     }
   }
@@ -195,7 +195,7 @@ export class Studio {
   #offerGrips(): void {
     const { view } = this.made
     if (!view || !this.#opened) return
-    const grips = new Grips(view, this.state, this.#opened, () => this.#wait())
+    const grips = new Grips(view, this.state, this.#opened, () => this.#scheduleUpdate())
     this.#grips = grips
     view.element.append(grips.element, grips.pane)
     view.element.querySelector('.looks')?.append(grips.button)
@@ -209,15 +209,15 @@ export class Studio {
         'aria-label': 'Case',
         title: 'Case',
         'data-testid': 'case',
-        onchange: () => void this.#become({ ...this.model, text: this.#text, case: select.value }, []),
+        onchange: () => void this.#openModel({ ...this.model, text: this.#text, case: select.value }, []),
       },
       ...cases.map((name) => el('option', { value: name, selected: name === (this.model.case ?? cases[0]) }, name)),
     )
     this.#cases.replaceChildren(select)
   }
 
-  /** Adds the design to the history as a step, or as part of a drag. */
-  #note(): void {
+  /** Notes the design as a step of the history, or as part of what the hand does. */
+  #recordStep(): void {
     const { settings } = this.state
     this.history.go({ text: this.model.text, settings, label: settings.at(-1)?.name ?? 'reset' }, `${this.#hand}`)
   }
@@ -225,22 +225,22 @@ export class Studio {
   /** Solves the changed design; while the engine is busy, only the last change waits. */
   #solve(): void {
     this.#wanted = this.state.settings
-    if (!this.#busy) void this.#work()
+    if (!this.#busy) void this.#solvePending()
   }
 
-  async #work(): Promise<void> {
+  async #solvePending(): Promise<void> {
     this.#busy = true
     const version = this.#version
     while (this.#wanted && version === this.#version) {
       const wanted = this.#wanted
       this.#wanted = undefined
-      await this.#step(wanted, version)
+      await this.#solveDesign(wanted, version)
     }
     this.#busy = false
-    this.#wait()
+    this.#scheduleUpdate()
   }
 
-  async #step(wanted: VariableSetting[], version: number): Promise<void> {
+  async #solveDesign(wanted: VariableSetting[], version: number): Promise<void> {
     const { state } = this
     if (wanted.length === 0) {
       this.#accepted = []
@@ -255,9 +255,9 @@ export class Studio {
       state.solved(this.#read(answer.json.design, answer, reached), reached, why?.message ?? '', !this.#wanted)
     } catch (error) {
       if (version !== this.#version) return
-      this.#say(words(error))
+      this.#showStatus(messageOf(error))
       // After a failure the engine has nothing open.
-      if (!(error instanceof Refused)) void this.#open()
+      if (!(error instanceof RequestError)) void this.#open()
     }
   }
 
@@ -267,49 +267,49 @@ export class Studio {
     return { ...design(found, decode), change: this.state.report.variables.map(({ name }) => by.get(name) ?? 0) }
   }
 
-  #wait(): void {
+  #scheduleUpdate(): void {
     clearTimeout(this.#resting)
     this.root.dataset.settled = 'no'
-    this.#resting = setTimeout(() => void this.#rest(), REST)
+    this.#resting = setTimeout(() => void this.#update(), REST)
   }
 
   /** Text and sensitivities follow the design. */
-  async #rest(): Promise<void> {
-    if (this.#busy || this.#grips?.holding) return
+  async #update(): Promise<void> {
+    if (this.#busy || this.#grips?.isDragging) return
     const { state } = this
-    // The pointer was released: the next change is another step. A design that stopped is added unchanged.
-    this.#note()
+    // The hand has let go: what comes next is another step. Where the design stopped, it is noted as it is.
+    this.#recordStep()
     this.#hand++
-    this.history.rest()
+    this.history.endGesture()
     const [settings, version] = [state.settings, this.#version]
     const same = () => version === this.#version && JSON.stringify(settings) === JSON.stringify(state.settings)
     try {
-      const text = await this.#settled()
+      const text = await this.#currentText()
       if (!same()) return
-      this.#tell(text)
-      if (settings.length === 0) state.sense(undefined, [])
-      else if (!state.sensed) {
+      this.#setText(text)
+      if (settings.length === 0) state.setSensitivities(undefined, [])
+      else if (!state.hasCurrentSensitivities) {
         this.#sensing.stop()
         const found = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...this.model, text } })
         const report = read(found.json, found.decode)
         if (!same()) return
-        if (alike(report, state.report)) state.sense(report, settings)
+        if (hasSameNames(report, state.report)) state.setSensitivities(report, settings)
       }
-      this.#say('')
+      this.#showStatus('')
       this.root.dataset.settled = 'yes'
     } catch (error) {
-      if (same()) this.#say(words(error))
+      if (same()) this.#showStatus(messageOf(error))
     }
   }
 
   /** The text with the changes. */
-  async #settled(): Promise<string> {
+  async #currentText(): Promise<string> {
     const { settings } = this.state
     if (settings.length === 0) return this.#next ?? this.model.text
     return (await this.#drags.ask<Text>({ ask: 'text', change: settings })).json.text
   }
 
-  #tell(text: string): void {
+  #setText(text: string): void {
     if (text === this.#text) return
     this.#text = text
     this.#editor?.setText(text)
@@ -317,15 +317,15 @@ export class Studio {
   }
 
   /** Shows a step of the history. */
-  async #go({ text, settings }: Step): Promise<void> {
+  async #showStep({ text, settings }: Step): Promise<void> {
     this.#hand++
-    if (text === this.model.text) this.state.become([...settings])
-    else await this.#become({ ...this.model, text }, [...settings])
+    if (text === this.model.text) this.state.setDesign([...settings])
+    else await this.#openModel({ ...this.model, text }, [...settings])
   }
 
   /** Shows another model, solved anew. */
-  async #become(model: ModelText, settings: VariableSetting[]): Promise<void> {
-    this.#say('solving')
+  async #openModel(model: ModelText, settings: VariableSetting[]): Promise<void> {
+    this.#showStatus('solving')
     this.#next = model.text
     this.#version++
     this.#sensing.stop()
@@ -334,13 +334,13 @@ export class Studio {
       this.model = json.model ?? model
       this.#next = undefined
       this.#show(read(json, decode))
-      this.#tell(this.model.text)
+      this.#setText(this.model.text)
       await this.#open()
-      if (settings.length > 0) this.state.become(settings)
+      if (settings.length > 0) this.state.setDesign(settings)
       else this.root.dataset.settled = 'yes'
     } catch (error) {
-      this.#say(words(error))
-      if (error instanceof Refused) this.#editor?.tell(error.messages)
+      this.#showStatus(messageOf(error))
+      if (error instanceof RequestError) this.#editor?.showMessages(error.messages)
     }
   }
 
@@ -389,18 +389,18 @@ export class Studio {
       }
       const found = this.#read(answer.json.design, answer, [...settings])
       if (!found) return
-      this.state.keep({ ...found, name: snapshot.name })
+      this.state.addComparison({ ...found, name: snapshot.name })
       this.state.choose({ compared: this.state.designs.length - 1 })
     } catch (error) {
-      this.#say(words(error))
+      this.#showStatus(messageOf(error))
     }
   }
 
   /** Makes the design that a study found the present one. */
-  async #take(change: VariableSetting[] | null, text: string | null, studied: string): Promise<void> {
+  async #applyResult(change: VariableSetting[] | null, text: string | null, studied: string): Promise<void> {
     if (text !== null) await this.replace(text, 'found')
     else if (studied !== this.#text) await this.replace(studied, 'studied')
-    if (text === null && change) this.state.become(change)
+    if (text === null && change) this.state.setDesign(change)
   }
 
   async #openEditor(): Promise<HTMLElement> {
@@ -457,12 +457,12 @@ function keepMeshes(before: Report, after: Report): void {
  * True if two reports have the same quantities and variables: the page of a what-if has variables that its text has
  * not.
  */
-function alike(a: Report, b: Report): boolean {
+function hasSameNames(a: Report, b: Report): boolean {
   const same = (a: readonly { name: string }[], b: readonly { name: string }[]) =>
     a.length === b.length && a.every(({ name }, k) => name === b[k].name)
   return same(a.quantities, b.quantities) && same(a.variables, b.variables)
 }
 
-function words(error: unknown): string {
+function messageOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error)
 }

@@ -50,11 +50,11 @@ export class Workers implements Studies {
     let best: VariableSetting[] | null = null
     let ended: (result: StudyResult) => void
     const cancelled = new Promise<StudyResult>((done) => (ended = done))
-    const report = (news: ProgressReply) => {
+    const onProgress = (news: ProgressReply) => {
       best = news.change ?? best
       for (const listener of listeners) listener(news)
     }
-    const whole = solver.ask<StudyReply>(request, report).then(({ json }) => json)
+    const whole = solver.ask<StudyReply>(request, onProgress).then(({ json }) => json)
     return {
       onProgress: (listener) => listeners.push(({ done, total, line }) => listener(done, total, line)),
       cancel: () => {

@@ -109,7 +109,7 @@ const host = {
     tolerance: begin,
   },
   text: () => window.model,
-  take: ({ change }: StudyResult, studied: string) => window.taken.push({ change, studied }),
+  apply: ({ change }: StudyResult, studied: string) => window.taken.push({ change, studied }),
 }
 const panes = [optimizePane(host), tolerancePane(host)]
 window.refresh = () => panes.forEach((pane) => pane.refresh())

@@ -1,5 +1,5 @@
-//! Clock of the engine in a page. It replaces the crate of the same name, whose imports from JavaScript the page would
-//! have to provide (`Cargo.toml`, `[patch]`). Time does not advance, so that no time limit expires.
+//! A clock for the engine in a page, in place of the crate of the same name, whose imports from JavaScript the page
+//! would have to serve (`Cargo.toml`, `[patch]`). No time ever passes, so no time limit is reached.
 
 pub use std::time::Duration;
 

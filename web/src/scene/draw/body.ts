@@ -1,5 +1,5 @@
 import { Group, type Object3D } from 'three'
-import type { Drawn } from '../drawn'
+import type { Drawable } from '../drawable'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { bodyPart } from '../part'
@@ -12,9 +12,9 @@ import { upright } from './body_upright'
  * Every moving body by its hardpoints, those that a coupler or a curve shapes left to them; a mesh of its own
  * represents all that.
  */
-export function bodies(mechanism: Mechanism, kit: Kit): Drawn[] {
+export function bodies(mechanism: Mechanism, kit: Kit): Drawable[] {
   const { report } = mechanism
-  return report.bodies.flatMap(({ mesh }, body): Drawn[] => {
+  return report.bodies.flatMap(({ mesh }, body): Drawable[] => {
     if (body === 0 || mesh) return []
     const pieces = piecesOf(mechanism, kit, body)
     if (pieces.length === 0) return []

@@ -45,8 +45,8 @@ export function flatLink(mechanism: Mechanism, kit: Kit, body: number): Object3D
     })
   const radius = (holes.length > 0 ? SLOTTED : mechanism.carriers.has(body) ? CARRIER : END) * s
   const corners = hull(points)
-  const ends = farthest(points, apart)
-  const length = apart(...ends)
+  const ends = farthest(points, distance)
+  const length = distance(...ends)
   if (holes.length > 0 || corners.length < 3 || area(corners) <= NARROW * length * length) {
     const aside = holes.length > 0 || corners.length < 3 ? [] : points.filter((point) => !ends.includes(point))
     const struts = aside.flatMap((point) =>
@@ -70,7 +70,7 @@ export function flatLink(mechanism: Mechanism, kit: Kit, body: number): Object3D
     .flatMap((point) => {
       const nearest = corners
         .slice()
-        .sort((a, b) => apart(a, point) - apart(b, point))
+        .sort((a, b) => distance(a, point) - distance(b, point))
         .slice(0, 2)
       return nearest.map((corner) =>
         slab(
@@ -90,7 +90,7 @@ export function thinLink(mechanism: Mechanism, kit: Kit, body: number): Object3D
   if (points.length < 2) return []
   const corners = hull(points)
   const outline = round(
-    (corners.length > 2 ? corners : farthest(points, apart)).map(([x, y]) => [x, y, THIN * kit.unit]),
+    (corners.length > 2 ? corners : farthest(points, distance)).map(([x, y]) => [x, y, THIN * kit.unit]),
   )
   return [kit.slab(outline, basis, mechanism.thickness, kit.body(body))]
 }
@@ -104,4 +104,4 @@ function layOut(mechanism: Mechanism, body: number): { basis: Basis; points: Fla
   return { basis, points: shape.map((point) => basis.to(point)) }
 }
 
-const apart = (a: Flat, b: Flat) => Math.hypot(a[0] - b[0], a[1] - b[1])
+const distance = (a: Flat, b: Flat) => Math.hypot(a[0] - b[0], a[1] - b[1])

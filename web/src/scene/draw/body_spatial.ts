@@ -112,11 +112,11 @@ function folding(mechanism: Mechanism, kit: Kit, body: number, a: Vector3, b: Ve
 
 function single(mechanism: Mechanism, kit: Kit, body: number, point: Vector3): Object3D[] {
   const { report } = mechanism
-  const held = report.joints.flatMap((_, k) => (mechanism.slideOf(k)?.block === body ? [k] : []))
+  const slides = report.joints.flatMap((_, k) => (mechanism.slideOf(k)?.block === body ? [k] : []))
   const coupled = report.couplers.some(({ terms }) =>
     terms.some(({ joint }) => [report.joints[joint].body_i, report.joints[joint].body_j].includes(body)),
   )
-  if (held.length > 0 || coupled) return []
+  if (slides.length > 0 || coupled) return []
   const axis = axisAt(mechanism, body, point) ?? mechanism.into(body, mechanism.up)
   return [kit.disc(point, axis, POINT * kit.unit, 0.8 * POINT * kit.unit, kit.body(body))]
 }

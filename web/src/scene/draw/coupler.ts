@@ -1,5 +1,5 @@
 import type { CouplerMark } from '../../payload'
-import type { Drawn, Part } from '../drawn'
+import type { Drawable, Part } from '../drawable'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { Train } from '../train'
@@ -10,19 +10,19 @@ import { rack } from './coupler_rack'
 import { shafts } from './coupler_shaft'
 
 /** Drawing of a coupler. */
-export interface Coupled {
+export interface CouplerContext {
   mechanism: Mechanism
   kit: Kit
   train: Train
   coupler: CouplerMark
   index: number
 }
-export type DrawCoupler = (coupled: Coupled) => Omit<Drawn, 'part'>[]
+export type DrawCoupler = (coupled: CouplerContext) => Omit<Drawable, 'part'>[]
 
 const KINDS: Record<string, DrawCoupler> = { gear: gears, bevel: bevels, rack, belt }
 
 /** Gears, belts and racks, then the shafts through them; other relations have nothing to see. */
-export function couplers(mechanism: Mechanism, kit: Kit): Drawn[] {
+export function couplers(mechanism: Mechanism, kit: Kit): Drawable[] {
   const train = new Train(mechanism)
   const drawn = mechanism.report.couplers.flatMap((coupler, index) => {
     const draw = Object.hasOwn(KINDS, coupler.kind) ? KINDS[coupler.kind] : undefined

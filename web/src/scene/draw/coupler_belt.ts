@@ -2,7 +2,7 @@ import { Group, Vector3 } from 'three'
 import { Basis } from '../flat'
 import type { Kit } from '../kit'
 import { type BeltPath, beltPath } from '../shapes/belt'
-import type { Drawn } from '../drawn'
+import type { Drawable } from '../drawable'
 import type { DrawCoupler } from './coupler'
 
 /** Thickness of the band in units, and its width in face widths. */
@@ -20,7 +20,7 @@ export const belt: DrawCoupler = ({ mechanism, kit, train, coupler, index }) => 
   const between = b.centre.clone().sub(a.centre)
   const crossed = a.coefficient * b.coefficient * a.shaft.axis.dot(b.shaft.axis) > 0
   const width = mechanism.plane ? mechanism.thickness : train.face
-  const pulleys = pair.map(({ shaft, body, centre }, k): Omit<Drawn, 'part'> => {
+  const pulleys = pair.map(({ shaft, body, centre }, k): Omit<Drawable, 'part'> => {
     const at = mechanism.placeInto(body, centre).add(mechanism.lift(body))
     const axis = mechanism.into(body, shaft.axis)
     const colour = kit.body(body)

@@ -1,5 +1,5 @@
 import { Group, TorusGeometry, Vector3 } from 'three'
-import type { Drawn } from '../drawn'
+import type { Drawable } from '../drawable'
 import { across } from '../flat'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
@@ -16,11 +16,11 @@ const MOTOR = { from: 5, radius: 4.6, length: 10 }
 const RING = { from: 1, radius: 4.75, height: 1.2 }
 
 /** A shaft through everything on it, with a bearing; a motor at the end of a driven one. */
-export function shafts(mechanism: Mechanism, kit: Kit, train: Train): Drawn[] {
+export function shafts(mechanism: Mechanism, kit: Kit, train: Train): Drawable[] {
   return mechanism.plane ? [] : train.shafts.flatMap((shaft) => shaftOn(mechanism, kit, shaft))
 }
 
-function shaftOn(mechanism: Mechanism, kit: Kit, shaft: Shaft): Drawn[] {
+function shaftOn(mechanism: Mechanism, kit: Kit, shaft: Shaft): Drawable[] {
   const { report } = mechanism
   const { joint, body, at, axis, low, high } = shaft
   const s = kit.unit
@@ -36,7 +36,7 @@ function shaftOn(mechanism: Mechanism, kit: Kit, shaft: Shaft): Drawn[] {
   if (driven) ends[side < 0 ? 0 : 1] = mount
   const [from, to] = ends.map((t) => mechanism.placeInto(body, on(t)))
   const bar = kit.cylinder(from, to, SHAFT.radius * s, SHAFT.radius * s, kit.body(body))
-  const drawn: Drawn[] = [{ body, object: bar, part: bodyPart(mechanism, body) }]
+  const drawn: Drawable[] = [{ body, object: bar, part: bodyPart(mechanism, body) }]
   drawn.push({ body: frame, object: bearing(mechanism, kit, frame, at, axis), part: jointPart(mechanism, joint) })
   if (!driven) return drawn
   const can = kit.cylinder(

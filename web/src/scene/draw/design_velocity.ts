@@ -4,7 +4,7 @@ import type { Arrow } from '../../payload'
 import type { Variable } from '../../report'
 import { rounded } from '../../rounding'
 import { ABOVE, ringArrow, straightArrow } from '../arrow'
-import type { Draw, Drawn } from '../drawn'
+import type { Draw, Drawable } from '../drawable'
 import { hingePlaces } from '../hinge'
 import type { Mechanism } from '../mechanism'
 
@@ -31,7 +31,7 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
   const part = { kind: 'mark' as const, index: variable.index, name: variable.name, about }
   const { chosen } = kit.palette
   const size = { head: HEAD * kit.unit, shaft: { radius: SHAFT * kit.unit } }
-  const straight = moving(mechanism, variable, change ?? 0).map(({ body, from, to }): Drawn => {
+  const straight = moving(mechanism, variable, change ?? 0).map(({ body, from, to }): Drawable => {
     const lift = mechanism.lift(body, mechanism.topLayer + 3)
     return {
       body,
@@ -42,7 +42,7 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
   })
   const most = longest(variable.arrows.map(({ turn }) => turn))
   const turning = variable.arrows.filter(({ turn }) => rounded(Math.hypot(...turn), most) > 0)
-  const rings = onePerPlace(mechanism, turning).map(({ body, at, turn }): Drawn => {
+  const rings = onePerPlace(mechanism, turning).map(({ body, at, turn }): Drawable => {
     const place = turnedAt(mechanism, body, placeOf(mechanism, body, at)).add(
       mechanism.lift(body, mechanism.topLayer + 3),
     )

@@ -1,6 +1,6 @@
 import { Group, Vector3 } from 'three'
 import { above, ABOVE, straightArrow } from '../arrow'
-import type { Draw, Frame } from '../drawn'
+import type { Draw, Frame } from '../drawable'
 import { square } from '../flat'
 import { place, stretch } from '../kit'
 import type { Mechanism } from '../mechanism'

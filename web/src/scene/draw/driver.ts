@@ -3,7 +3,7 @@ import { valueAt } from '../../curve'
 import type { JointMark } from '../../payload'
 import type { Driver } from '../../report'
 import { above, ABOVE, arcHead, arcPoints, straightArrow } from '../arrow'
-import type { Draw, Drawn, Frame } from '../drawn'
+import type { Draw, Drawable, Frame } from '../drawable'
 import { across, Basis, square } from '../flat'
 import { type Kit, place } from '../kit'
 import type { Mechanism } from '../mechanism'
@@ -24,7 +24,7 @@ const ALONG_LEG = 0.55
 
 /** Driven coordinates, as arrows with the travel of this motion. */
 export const drivers: Draw = (mechanism, kit) =>
-  mechanism.report.drivers.flatMap((driver, index): Drawn[] => {
+  mechanism.report.drivers.flatMap((driver, index): Drawable[] => {
     const travel = travelOf(driver)
     const arrow = travel && arrowOf(mechanism, kit, driver, travel)
     if (!arrow) return []
@@ -32,7 +32,7 @@ export const drivers: Draw = (mechanism, kit) =>
     return [{ ...arrow, part, overlay: true }]
   })
 
-type Arrow = Pick<Drawn, 'body' | 'object' | 'follow'>
+type Arrow = Pick<Drawable, 'body' | 'object' | 'follow'>
 
 function arrowOf(mechanism: Mechanism, kit: Kit, driver: Driver, travel: Travel): Arrow | undefined {
   if (driver.joint === null) return driver.point ? pointArrow(mechanism, kit, driver, travel) : undefined

@@ -2,7 +2,7 @@ import { Group, type Object3D, Vector3 } from 'three'
 import type { JointMark } from '../../payload'
 import { above, ABOVE } from '../arrow'
 import { centreLines, differs } from '../centre_lines'
-import type { Draw, Drawn, Frame } from '../drawn'
+import type { Draw, Drawable, Frame } from '../drawable'
 import { type Kit, stretch } from '../kit'
 import type { Mechanism } from '../mechanism'
 
@@ -17,7 +17,7 @@ export const formerDesign: Draw = (mechanism, kit) => {
   const { former, report } = mechanism
   if (!former) return []
   const least = SAME * mechanism.size
-  const bodies = report.bodies.flatMap(({ name }, body): Drawn[] => {
+  const bodies = report.bodies.flatMap(({ name }, body): Drawable[] => {
     if (body === 0 || !differs(mechanism, former, body, least)) return []
     const lines = centreLines(former, body)
     // A block that one hardpoint represents has none.
@@ -31,9 +31,9 @@ export const formerDesign: Draw = (mechanism, kit) => {
     }
     return [{ object, follow, part: { kind: 'mark', index: body, name, about: 'reference design' }, overlay: true }]
   })
-  const rods = former.report.joints.flatMap((joint, index): Drawn[] => {
+  const rods = former.report.joints.flatMap((joint, index): Drawable[] => {
     const rod = joint.kind === 'distance' || joint.kind === 'leg'
-    if (!rod || !mechanism.moments.some((step) => apart(mechanism, former, index, step) > least)) return []
+    if (!rod || !mechanism.moments.some((step) => separation(mechanism, former, index, step) > least)) return []
     const { object, follow } = formerRod(kit, former, joint)
     return [
       { object, follow, part: { kind: 'mark', index, name: joint.name, about: 'reference design' }, overlay: true },
@@ -42,7 +42,7 @@ export const formerDesign: Draw = (mechanism, kit) => {
   return [...bodies, ...rods]
 }
 
-function formerRod(kit: Kit, former: Mechanism, joint: JointMark): Pick<Drawn, 'object' | 'follow'> {
+function formerRod(kit: Kit, former: Mechanism, joint: JointMark): Pick<Drawable, 'object' | 'follow'> {
   const [a, b] = [new Vector3(...joint.at_i), new Vector3(...joint.at_j)]
   const ends = (step: number) => [former.worldAt(joint.body_i, a, step), former.worldAt(joint.body_j, b, step)]
   const lengths = former.moments.map((step) => ends(step)[0].distanceTo(ends(step)[1])).filter(Number.isFinite)
@@ -61,7 +61,7 @@ function formerRod(kit: Kit, former: Mechanism, joint: JointMark): Pick<Drawn, '
   return { object, follow }
 }
 
-function apart(present: Mechanism, former: Mechanism, joint: number, step: number): number {
+function separation(present: Mechanism, former: Mechanism, joint: number, step: number): number {
   const [now, was] = [present, former].map((mechanism) => {
     const { body_i, body_j, at_i, at_j } = mechanism.report.joints[joint]
     return [

@@ -1,5 +1,5 @@
 import { Group, Vector3 } from 'three'
-import type { Drawn } from '../drawn'
+import type { Drawable } from '../drawable'
 import type { JointMark } from '../../payload'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
@@ -33,7 +33,7 @@ const HINGES = ['revolute', 'inline', 'cylindrical']
 const BALLS = ['spherical', 'universal', 'constant_velocity', 'distance', 'leg', 'point_coincident']
 
 /** Ground: the feet of all joints with ground, each place once. */
-export function ground(mechanism: Mechanism, kit: Kit): Drawn[] {
+export function ground(mechanism: Mechanism, kit: Kit): Drawable[] {
   const part = bodyPart(mechanism, 0)
   const kept: Foot[] = []
   for (const foot of feet(mechanism))

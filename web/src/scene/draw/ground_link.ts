@@ -1,5 +1,5 @@
 import { Group, Vector3 } from 'three'
-import type { Drawn } from '../drawn'
+import type { Drawable } from '../drawable'
 import { Basis, hull, round } from '../flat'
 import { FOLD, foldAxis } from '../hinge'
 import type { Kit } from '../kit'
@@ -12,13 +12,13 @@ const FLAT = 0.01
 const PLATE = { round: 2.5, thickness: 0.6, opacity: 0.28 }
 
 /** The fixed link of a spatial mechanism that is no vehicle: a dashed line between two places, a plate through more. */
-export function fixedLink(mechanism: Mechanism, kit: Kit): Drawn[] {
+export function fixedLink(mechanism: Mechanism, kit: Kit): Drawable[] {
   const { report, plane, vehicle } = mechanism
   if (plane || vehicle || report.wheels.length > 0 || report.couplers.length > 0) return []
   const places = mechanism.placesOf(0).flatMap((place) => acrossFold(mechanism, place))
   if (places.length < 2) return []
   const { ground } = kit.palette
-  const drawn = (...pieces: Parameters<Group['add']>): Drawn => ({
+  const drawn = (...pieces: Parameters<Group['add']>): Drawable => ({
     body: 0,
     object: new Group().add(...pieces),
     part: bodyPart(mechanism, 0),

@@ -1,4 +1,4 @@
-import type { Draw } from '../drawn'
+import type { Draw } from '../drawable'
 import { bodies } from './body'
 import { couplers } from './coupler'
 import { designVelocity } from './design_velocity'

@@ -1,6 +1,6 @@
 import { Group, type Object3D } from 'three'
 import type { JointMark } from '../../payload'
-import type { Drawn } from '../drawn'
+import type { Drawable } from '../drawable'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
 import { jointPart } from '../part'
@@ -20,7 +20,7 @@ import { universal } from './joint_universal'
 import { weld } from './joint_weld'
 
 /** An object in a body's frame; in the world where there is no body. */
-export type Piece = Omit<Drawn, 'part'>
+export type Piece = Omit<Drawable, 'part'>
 /** Drawing of a kind of joint. */
 export type DrawJoint = (mechanism: Mechanism, kit: Kit, joint: JointMark, index: number) => Piece[]
 
@@ -45,7 +45,7 @@ const KINDS: Record<string, DrawJoint> = {
 }
 
 /** Every joint by its kind; one of a kind that is not known has a neutral mark. */
-export function joints(mechanism: Mechanism, kit: Kit): Drawn[] {
+export function joints(mechanism: Mechanism, kit: Kit): Drawable[] {
   return mechanism.report.joints.flatMap((joint, index) => {
     const draw = Object.hasOwn(KINDS, joint.kind) ? KINDS[joint.kind] : otherJoint
     const part = jointPart(mechanism, index)

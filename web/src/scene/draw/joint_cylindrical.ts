@@ -1,7 +1,7 @@
 import { Vector3 } from 'three'
 import { type DrawJoint, piece } from './joint'
 import { hinge } from './joint_hinge'
-import { wayEnds } from './way_ends'
+import { guideEnds } from './guide_ends'
 
 /** Radius and length of the pin, and of the sleeve on it. A rod that lies on the pin hides it. */
 const PIN = [0.9, 11]
@@ -28,7 +28,7 @@ export const cylindrical: DrawJoint = (mechanism, kit, joint, index) => {
     piece(
       slide.rail,
       kit.disc(middle, slide.axis, PIN[0] * r, length, kit.palette.steel),
-      ...(slide.rail === 0 ? wayEnds(mechanism, kit, end(-0.5), end(0.5), r) : []),
+      ...(slide.rail === 0 ? guideEnds(mechanism, kit, end(-0.5), end(0.5), r) : []),
     ),
     piece(
       slide.block,

@@ -49,9 +49,9 @@ export const hinge: DrawJoint = (mechanism, kit, joint, index) => {
   const places = hingePlaces(mechanism, joint).map((place) =>
     mechanism.placeInto(body, mechanism.worldAt(joint.body_i, place, 0)),
   )
-  const held = joint.body_j > 0 ? joint.body_j : joint.body_i
+  const bushed = joint.body_j > 0 ? joint.body_j : joint.body_i
   const bushes = joint.hinge
-    ? places.map((place) => kit.disc(place, axis, BUSH[0] * r, BUSH[1] * r, kit.body(held)))
+    ? places.map((place) => kit.disc(place, axis, BUSH[0] * r, BUSH[1] * r, kit.body(bushed)))
     : []
   const wide = [joint.body_i, joint.body_j].some((one) => foldAxis(mechanism, one))
   const pins = places.map((place) => kit.disc(place, axis, PIN[0] * r, wide ? WIDE * kit.unit : PIN[1] * r, steel))

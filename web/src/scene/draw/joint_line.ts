@@ -2,7 +2,7 @@ import { Vector3 } from 'three'
 import { type DrawJoint, piece } from './joint'
 import { hinge } from './joint_hinge'
 import { slottedPin } from './joint_slot'
-import { wayEnds } from './way_ends'
+import { guideEnds } from './guide_ends'
 
 /** Radius of the bar, its overhang beyond the travel, and radius of the bead on it. */
 const BAR = { radius: 0.6, room: 4 }
@@ -31,7 +31,7 @@ export const onLine: DrawJoint = (mechanism, kit, joint, index) => {
         BAR.radius * r,
         slide.rail === 0 ? kit.palette.ground : kit.palette.steel,
       ),
-      ...(slide.rail === 0 ? wayEnds(mechanism, kit, ends[0], ends[1], r) : []),
+      ...(slide.rail === 0 ? guideEnds(mechanism, kit, ends[0], ends[1], r) : []),
     ),
     piece(slide.block, kit.ball(slide.blockPlace, BEAD * r, kit.body(slide.block))),
   ]

@@ -2,7 +2,7 @@ import { CylinderGeometry, Quaternion, Vector3 } from 'three'
 import { place } from '../kit'
 import { Helix } from '../shapes/helix'
 import { type DrawJoint, piece } from './joint'
-import { wayEnds } from './way_ends'
+import { guideEnds } from './guide_ends'
 
 /** Radius of the rod and its least length; the thread's line, and from one turn of it to the next. */
 const ROD = { radius: 1.15, length: 26 }
@@ -53,7 +53,7 @@ export const screw: DrawJoint = (mechanism, kit, joint) => {
       joint.body_i,
       kit.cylinder(from, to, ROD.radius * r, ROD.radius * r, steel),
       kit.line(thread, outline, THREAD.width, { opacity: 0.7 }),
-      ...(joint.body_i === 0 ? wayEnds(mechanism, kit, from, to, r) : []),
+      ...(joint.body_i === 0 ? guideEnds(mechanism, kit, from, to, r) : []),
     ),
     piece(joint.body_j, place(nut, nutAt, own)),
   ]

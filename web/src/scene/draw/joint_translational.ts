@@ -170,7 +170,7 @@ interface End {
   body: number
   at: Vector3
   /** True if another joint holds the body there. */
-  held: boolean
+  isJoined: boolean
 }
 
 /** Tolerance of a hardpoint on the axis, relative to the mechanism's size. */
@@ -178,26 +178,27 @@ const ON_AXIS = 1e-3
 
 /** In a changed design, the hardpoints that were on the axis as loaded: they move with it. */
 function endsOf(mechanism: Mechanism, joint: JointMark, body: number, own: Slide): End[] {
-  const today = mechanism.base ?? mechanism
-  const slide = today.slideOf(mechanism.report.joints.indexOf(joint)) ?? own
+  const base = mechanism.base ?? mechanism
+  const slide = base.slideOf(mechanism.report.joints.indexOf(joint)) ?? own
   const onBlock = body === slide.block
   const [place, axis] = onBlock
-    ? [slide.blockPlace, today.into(body, today.alongAt(slide.rail, slide.axis, 0))]
+    ? [slide.blockPlace, base.into(body, base.alongAt(slide.rail, slide.axis, 0))]
     : [slide.place, slide.axis]
   const isOnAxis = (point: [number, number, number]) =>
-    new Vector3(...point).sub(place).cross(axis).length() < ON_AXIS * today.size
-  const onAxis = today.report.bodies[body].skeleton.flatMap((point, k) =>
+    new Vector3(...point).sub(place).cross(axis).length() < ON_AXIS * base.size
+  const onAxis = base.report.bodies[body].skeleton.flatMap((point, k) =>
     isOnAxis(point) ? [new Vector3(...mechanism.report.bodies[body].skeleton[k])] : [],
   )
   const others = mechanism.jointsOf(body).filter((other) => other.joint !== joint)
   const ends = onAxis.length > 0 ? onAxis : [onBlock ? own.blockPlace : own.place]
-  return ends.map((at) => ({ body, at, held: others.some((other) => mechanism.same(other.at, at)) }))
+  return ends.map((at) => ({ body, at, isJoined: others.some((other) => mechanism.same(other.at, at)) }))
 }
 
 /** The two ends that other joints hold; where that leaves a choice, those farthest apart. */
 function farthest(mechanism: Mechanism, some: End[], others: End[]): [End, End] {
   const far = ([a, b]: [End, End]) => mechanism.worldAt(a.body, a.at, 0).distanceTo(mechanism.worldAt(b.body, b.at, 0))
-  const rank = (pair: [End, End]) => (Number(pair[0].held) + Number(pair[1].held)) * 2 * mechanism.size + far(pair)
+  const rank = (pair: [End, End]) =>
+    (Number(pair[0].isJoined) + Number(pair[1].isJoined)) * 2 * mechanism.size + far(pair)
   const pairs = some.flatMap((a) => others.map((b): [End, End] => [a, b]))
   return pairs.reduce((best, pair) => (rank(pair) > rank(best) ? pair : best))
 }

@@ -3,7 +3,7 @@ import { number } from '../../format'
 import type { Load } from '../../report'
 import { forceAt, largestForce } from '../../loads/force'
 import { ABOVE, straightArrow } from '../arrow'
-import type { Draw, Drawn, Frame } from '../drawn'
+import type { Draw, Drawable, Frame } from '../drawable'
 import { place } from '../kit'
 import type { Mechanism } from '../mechanism'
 
@@ -24,7 +24,7 @@ export const loads: Draw = (mechanism, kit, choice) => {
   const most = largestForce((base ?? mechanism).report.loads)
   if (!choice.forces || most === 0) return []
   const longest = Math.max(LONGEST.ofSize * mechanism.size, LONGEST.least * kit.unit)
-  return report.loads.flatMap((load, index): Drawn[] => {
+  return report.loads.flatMap((load, index): Drawable[] => {
     if (load.force.length === 0) return []
     const { at, joint } = load
     const on = report.bodies[at.body].name

@@ -1,6 +1,6 @@
 import { BufferAttribute, BufferGeometry, Float32BufferAttribute, Vector3 } from 'three'
 import { deformed } from '../deform'
-import type { Draw, Drawn } from '../drawn'
+import type { Draw, Drawable } from '../drawable'
 import type { Mechanism } from '../mechanism'
 import { bodyPart } from '../part'
 
@@ -11,7 +11,7 @@ const MANY = 60_000
 
 /** Bodies with a mesh, which deforms with the hardpoints when the design changes. */
 export const meshes: Draw = (mechanism, kit) =>
-  mechanism.report.bodies.flatMap(({ mesh }, body): Drawn[] => {
+  mechanism.report.bodies.flatMap(({ mesh }, body): Drawable[] => {
     if (!mesh) return []
     const triangles = Uint32Array.from(mesh.triangles)
     const geometry = new BufferGeometry()

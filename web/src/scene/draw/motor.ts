@@ -1,5 +1,5 @@
 import { Group } from 'three'
-import type { Drawn } from '../drawn'
+import type { Drawable } from '../drawable'
 import { carried, hingePlaces, restOf } from '../hinge'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
@@ -11,11 +11,11 @@ const CAN = { from: 2.2, radius: 2.5, length: 5.4 }
 const RING = { at: 2.6, radius: 2.65, height: 0.8 }
 
 /** A motor on every driven hinge of ground in space, on the side where it hides least; shafts have theirs at an end. */
-export function motors(mechanism: Mechanism, kit: Kit): Drawn[] {
+export function motors(mechanism: Mechanism, kit: Kit): Drawable[] {
   const { report, plane, large } = mechanism
   if (plane || large) return []
   const shafts = shaftJoints(report)
-  return report.drivers.flatMap(({ joint, turns }): Drawn[] => {
+  return report.drivers.flatMap(({ joint, turns }): Drawable[] => {
     if (joint === null || !turns || shafts.has(joint)) return []
     const mark = report.joints[joint]
     if (mark.kind !== 'revolute' || (mark.body_i !== 0 && mark.body_j !== 0)) return []

@@ -1,5 +1,5 @@
 import { Group, Vector3 } from 'three'
-import type { Draw, Drawn } from '../drawn'
+import type { Draw, Drawable } from '../drawable'
 import { bodyPart } from '../part'
 import { pieces } from './trace'
 
@@ -22,7 +22,7 @@ export const paths: Draw = (mechanism, kit) => {
     })
   })
   if (points.length > MOST) return []
-  return points.flatMap(({ body, at }): Drawn[] => {
+  return points.flatMap(({ body, at }): Drawable[] => {
     const lift = mechanism.lift(0)
     const runs = pieces(report.times.length, (step) => mechanism.worldAt(body, at, step).add(lift))
     const wide = runs.flat().some((place) => place.distanceTo(runs[0][0]) > STILL * mechanism.size)

@@ -2,7 +2,7 @@ import { Group, InstancedMesh, Matrix4, SphereGeometry, Vector3 } from 'three'
 import { stepAt } from '../../curve'
 import { roundBelow } from '../../format'
 import { above, ABOVE, over } from '../arrow'
-import type { Draw, Frame } from '../drawn'
+import type { Draw, Frame } from '../drawable'
 import type { Kit } from '../kit'
 
 /** Width of the line, px; of the former design's. */

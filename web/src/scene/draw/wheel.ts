@@ -1,6 +1,6 @@
 import { Group, Vector3 } from 'three'
 import type { WheelMark } from '../../payload'
-import type { Drawn } from '../drawn'
+import type { Drawable } from '../drawable'
 import { Basis } from '../flat'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
@@ -16,7 +16,7 @@ const CIRCLES = [
 const SPOKES = { count: 5, from: 0.2, side: 0.25, line: 2.2, opacity: 0.28 }
 
 /** Road wheels: a tyre that casts a shadow and hides nothing. */
-export function wheels(mechanism: Mechanism, kit: Kit): Drawn[] {
+export function wheels(mechanism: Mechanism, kit: Kit): Drawable[] {
   return mechanism.report.wheels.map((wheel, index) => ({
     body: wheel.centre.body,
     object: tyre(kit, wheel, mechanism.into(wheel.centre.body, mechanism.up)),

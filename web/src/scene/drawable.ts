@@ -17,8 +17,8 @@ export interface Part {
  * One thing drawn: an object in a body's frame (0 is ground), or in the world and put in its place for every frame.
  * Its meshes of one colour are outlined as one.
  */
-export interface Drawn {
-  /** The body whose frame it is in; the world by default. */
+export interface Drawable {
+  /** The body whose frame it is in; in the world where there is none. */
   body?: number
   object: Object3D
   part: Part
@@ -42,7 +42,7 @@ export interface Frame {
 }
 
 /** Drawing of a kind of thing; the choice matters to marks only. */
-export type Draw = (mechanism: Mechanism, kit: Kit, choice: Choice) => Drawn[]
+export type Draw = (mechanism: Mechanism, kit: Kit, choice: Choice) => Drawable[]
 
 /** True if two are the same thing, drawn of several objects. */
 export function samePart(a: Part | undefined, b: Part | undefined): boolean {

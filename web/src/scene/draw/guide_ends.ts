@@ -9,7 +9,7 @@ const LINE = 2.6
 /**
  * Supports of a bar or rod on ground: a hatched plate at either end, in a planar mechanism a hatched line across it.
  */
-export function wayEnds(mechanism: Mechanism, kit: Kit, from: Vector3, to: Vector3, r: number): Object3D[] {
+export function guideEnds(mechanism: Mechanism, kit: Kit, from: Vector3, to: Vector3, r: number): Object3D[] {
   const along = to.clone().sub(from).normalize()
   const { plane } = mechanism
   if (!plane)
