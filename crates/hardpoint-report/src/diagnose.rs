@@ -3,6 +3,7 @@
 
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity;
+use hardpoint::model::element::ActsOn;
 use hardpoint::motion::{Closing, Motion, Stop, StopKind};
 use hardpoint::topology::TopologyError;
 use hardpoint::{
@@ -315,8 +316,8 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
 /// True if both ends of a spring or damper coincide at an output time.
 fn has_no_length(model: &Model, motion: &Motion, k: usize, kind: &ElementKind) -> bool {
     let Some(force) = kind.force(model) else { return false };
-    let ([Some(from), Some(to)], true) = (force.points, force.is_along_line) else { return false };
-    let [p, q] = [from, to].map(|p| {
+    let ActsOn::Line(ends) = force.acts_on else { return false };
+    let [p, q] = ends.map(|p| {
         let point = &model.points[p.0];
         let as_drawn = model.hardpoints[point.at.0].position;
         let in_body = model.bodies[point.body.0].frame.inverse().point(as_drawn);

@@ -2,7 +2,7 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{BodyMoment, Compliance, ForceProperties, Properties};
+use crate::model::element::{ActsOn, BodyMoment, Compliance, ForceProperties, Properties};
 use crate::model::{Dimension, ElementId, GROUND, Model};
 use crate::space::{Real, Wrench};
 
@@ -10,20 +10,15 @@ impl ForceProperties for BodyMoment {
     #[inline]
     fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
-            bodies: [GROUND, self.body],
-            points: [None; 2],
-            is_along_line: false,
+            acts_on: ActsOn::Body(self.body),
             dimension: Dimension::MOMENT,
-            coordinate: None,
+            given: [Some(self.moment.0), None, None],
+            table: None,
             law: self.law.as_ref(),
             is_arithmetic: true,
             compliance: Compliance::None,
             friction: None,
         }
-    }
-
-    fn given_force(&self, model: &Model) -> f64 {
-        model.numbers[self.moment.0.0].value.abs() / model.size()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{Bushing, Compliance, ForceProperties, Properties};
+use crate::model::element::{ActsOn, Bushing, Compliance, ForceProperties, Properties};
 use crate::model::{Dimension, ElementId, Model};
 use crate::space::{Mat3, Real, Vec3, Wrench};
 
@@ -32,23 +32,18 @@ impl Bushing {
 
 impl ForceProperties for Bushing {
     #[inline]
-    fn properties(&self, model: &Model) -> Properties<'_> {
+    fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
-            bodies: [self.from, self.to].map(|p| model.points[p.0].body),
-            points: [Some(self.from), Some(self.to)],
-            is_along_line: false,
+            acts_on: ActsOn::Points([self.from, self.to]),
             dimension: Dimension::FORCE,
-            coordinate: None,
+            given: [None; 3],
+            table: None,
             law: None,
             // The turn is a series as long as it is small.
             is_arithmetic: [self.about_x, self.about_y, self.about_z].iter().all(|n| n.is_none()),
             compliance: Compliance::Element,
             friction: None,
         }
-    }
-
-    fn given_force(&self, _: &Model) -> f64 {
-        0.0
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{Compliance, ElasticJoint, ForceProperties, Properties};
+use crate::model::element::{ActsOn, Compliance, ElasticJoint, ForceProperties, Properties};
 use crate::model::{Dimension, ElementId, Model, NumberId};
 use crate::space::{Real, Wrench};
 
@@ -16,22 +16,17 @@ impl ElasticJoint {
 
 impl ForceProperties for ElasticJoint {
     #[inline]
-    fn properties(&self, model: &Model) -> Properties<'_> {
+    fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
-            bodies: model.joints[self.joint.0].bodies,
-            points: [None; 2],
-            is_along_line: false,
+            acts_on: ActsOn::Joint(self.joint),
             dimension: Dimension::FORCE,
-            coordinate: None,
+            given: [None; 3],
+            table: None,
             law: None,
             is_arithmetic: true,
             compliance: Compliance::Joint(self.joint, self.stiffnesses()),
             friction: None,
         }
-    }
-
-    fn given_force(&self, _: &Model) -> f64 {
-        0.0
     }
 }
 

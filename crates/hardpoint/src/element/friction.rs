@@ -3,7 +3,7 @@
 use crate::draft::{CheckElement, ElementCheck};
 use crate::joint::Quantity;
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{Compliance, ForceProperties, Friction, JointFriction, Properties};
+use crate::model::element::{ActsOn, Compliance, ForceProperties, Friction, JointFriction, Properties};
 use crate::model::{Dimension, ElementId, Model};
 use crate::space::{Real, Wrench};
 
@@ -17,11 +17,10 @@ impl ForceProperties for Friction {
         let joint = &model.joints[self.joint.0];
         let coordinate = joint.kind.coordinates.iter().position(|c| c.quantity == Quantity::Angle);
         Properties {
-            bodies: joint.bodies,
-            points: [None; 2],
-            is_along_line: false,
+            acts_on: coordinate.map_or(ActsOn::Joint(self.joint), |c| ActsOn::Coordinate(self.joint, c)),
             dimension: Dimension::MOMENT,
-            coordinate: coordinate.map(|c| (self.joint, c)),
+            given: [None; 3],
+            table: None,
             law: None,
             is_arithmetic: true,
             compliance: Compliance::None,
@@ -37,10 +36,6 @@ impl ForceProperties for Friction {
                 default_transition_velocity: TRANSITION_VELOCITY,
             }),
         }
-    }
-
-    fn given_force(&self, _: &Model) -> f64 {
-        0.0
     }
 }
 

@@ -3,28 +3,23 @@
 use crate::draft::{CheckElement, ElementCheck};
 use crate::joint::Quantity;
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{Compliance, ForceProperties, JointSpring, Properties};
+use crate::model::element::{ActsOn, Compliance, ForceProperties, JointSpring, Properties};
 use crate::model::{Dimension, ElementId, Model};
 use crate::space::{Real, Wrench};
 
 impl ForceProperties for JointSpring {
     #[inline]
-    fn properties(&self, model: &Model) -> Properties<'_> {
+    fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
-            bodies: model.joints[self.joint.0].bodies,
-            points: [None; 2],
-            is_along_line: false,
+            acts_on: ActsOn::Coordinate(self.joint, self.coordinate),
             dimension: Dimension::FORCE,
-            coordinate: Some((self.joint, self.coordinate)),
+            given: [None; 3],
+            table: None,
             law: None,
             is_arithmetic: true,
             compliance: Compliance::Element,
             friction: None,
         }
-    }
-
-    fn given_force(&self, _: &Model) -> f64 {
-        0.0
     }
 }
 

@@ -2,28 +2,23 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{Compliance, ForceProperties, PointForce, Properties};
+use crate::model::element::{ActsOn, Compliance, ForceProperties, PointForce, Properties};
 use crate::model::{Dimension, ElementId, GROUND, Model};
 use crate::space::{Real, Wrench};
 
 impl ForceProperties for PointForce {
     #[inline]
-    fn properties(&self, model: &Model) -> Properties<'_> {
+    fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
-            bodies: [GROUND, model.points[self.at.0].body],
-            points: [Some(self.at), None],
-            is_along_line: false,
+            acts_on: ActsOn::Point(self.at),
             dimension: Dimension::FORCE,
-            coordinate: None,
+            given: [Some(self.force.0), None, None],
+            table: None,
             law: self.law.as_ref(),
             is_arithmetic: true,
             compliance: Compliance::None,
             friction: None,
         }
-    }
-
-    fn given_force(&self, model: &Model) -> f64 {
-        model.numbers[self.force.0.0].value.abs()
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::draft::{CheckElement, ElementCheck};
 use crate::joint::Quantity;
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{Compliance, ForceProperties, JointFriction, Properties, SlideFriction};
+use crate::model::element::{ActsOn, Compliance, ForceProperties, JointFriction, Properties, SlideFriction};
 use crate::model::{Dimension, ElementId, Model};
 use crate::space::{Real, Wrench};
 
@@ -19,11 +19,10 @@ impl ForceProperties for SlideFriction {
         let joint = &model.joints[self.joint.0];
         let coordinate = joint.kind.coordinates.iter().position(|c| c.quantity == Quantity::Length);
         Properties {
-            bodies: joint.bodies,
-            points: [None; 2],
-            is_along_line: false,
+            acts_on: coordinate.map_or(ActsOn::Joint(self.joint), |c| ActsOn::Coordinate(self.joint, c)),
             dimension: Dimension::FORCE,
-            coordinate: coordinate.map(|c| (self.joint, c)),
+            given: [None; 3],
+            table: None,
             law: None,
             is_arithmetic: true,
             compliance: Compliance::None,
@@ -39,10 +38,6 @@ impl ForceProperties for SlideFriction {
                 default_transition_velocity: TRANSITION_VELOCITY,
             }),
         }
-    }
-
-    fn given_force(&self, _: &Model) -> f64 {
-        0.0
     }
 }
 

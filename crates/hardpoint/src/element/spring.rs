@@ -2,7 +2,7 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{Compliance, ForceProperties, Properties, Spring};
+use crate::model::element::{ActsOn, Compliance, ForceProperties, Properties, Spring};
 use crate::model::{Dimension, ElementId, Model, SpringTable};
 use crate::space::{Real, Wrench};
 
@@ -38,26 +38,16 @@ impl Spring {
 
 impl ForceProperties for Spring {
     #[inline]
-    fn properties(&self, model: &Model) -> Properties<'_> {
+    fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
-            bodies: [self.from, self.to].map(|p| model.points[p.0].body),
-            points: [Some(self.from), Some(self.to)],
-            is_along_line: true,
+            acts_on: ActsOn::Line([self.from, self.to]),
             dimension: Dimension::FORCE,
-            coordinate: None,
+            given: [self.preload.map(|n| n.0), None, None],
+            table: self.table(),
             law: None,
             is_arithmetic: self.table().is_none(),
             compliance: Compliance::Element,
             friction: None,
-        }
-    }
-
-    fn given_force(&self, model: &Model) -> f64 {
-        // A table gives no single force: its largest one.
-        let largest = |t: &SpringTable| t.points().iter().map(|p| p[1].abs()).fold(0.0, f64::max);
-        match self.preload {
-            Some(preload) => model.numbers[preload.0.0].value.abs(),
-            None => self.table().map_or(0.0, largest),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{Compliance, ForceProperties, Properties, WheelForce};
+use crate::model::element::{ActsOn, Compliance, ForceProperties, Properties, WheelForce};
 use crate::model::{Dimension, ElementId, GROUND, Model};
 use crate::space::{Real, Vec3, Wrench};
 
@@ -18,25 +18,17 @@ impl WheelForce {
 
 impl ForceProperties for WheelForce {
     #[inline]
-    fn properties(&self, model: &Model) -> Properties<'_> {
-        let wheel = &model.wheels[self.wheel.0];
+    fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
-            bodies: [GROUND, wheel.body],
-            // Its contact point wanders.
-            points: [Some(wheel.centre), None],
-            is_along_line: false,
+            acts_on: ActsOn::Wheel(self.wheel),
             dimension: Dimension::FORCE,
-            coordinate: None,
+            given: [self.outboard, self.forward, self.up].map(|n| n.map(|n| n.0)),
+            table: None,
             law: self.law.as_ref(),
             is_arithmetic: true,
             compliance: Compliance::None,
             friction: None,
         }
-    }
-
-    fn given_force(&self, model: &Model) -> f64 {
-        let forces = [self.outboard, self.forward, self.up].into_iter().flatten();
-        forces.map(|n| model.numbers[n.0.0].value.abs()).fold(0.0, f64::max)
     }
 }
 

@@ -106,7 +106,7 @@ impl<'a> Compliances<'a> {
         };
         let mut bodies = bodies_asked_for(model);
         let forces = model.elements.iter().filter_map(|e| e.kind.force(model));
-        bodies.extend(forces.flat_map(|force| force.bodies).map(|b| b.0));
+        bodies.extend(forces.flat_map(|force| force.acts_on.bodies(model)).map(|b| b.0));
         bodies.sort_unstable();
         bodies.dedup();
         bodies.retain(|b| *b != GROUND.0);

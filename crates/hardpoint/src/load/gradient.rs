@@ -54,7 +54,8 @@ impl LoadGradients {
         let bodies = model.bodies.len();
         let mut felt = vec![Vec::new(); bodies];
         for (e, element) in model.elements.iter().enumerate() {
-            let Some([i, j]) = element.kind.force(model).map(|force| force.bodies) else { continue };
+            let Some(force) = element.kind.force(model) else { continue };
+            let [i, j] = force.acts_on.bodies(model);
             felt[i.0].push(ElementId(e));
             if i != j {
                 felt[j.0].push(ElementId(e));

@@ -1,7 +1,7 @@
 //! Sources of a mechanism's loads: masses, springs, given forces.
 
 use crate::law::Law;
-use crate::model::{BodyId, Dimension, JointId, Model, PointId, Solid, SpringTable, WheelId};
+use crate::model::{BodyId, Dimension, GROUND, JointId, Model, PointId, Solid, SpringTable, WheelId};
 use crate::number::Real;
 use crate::space::Vec3;
 
@@ -384,24 +384,19 @@ pub(crate) trait MassProperties {
 pub(crate) trait ForceProperties {
     /// Returns what the program uses besides the formulas.
     fn properties(&self, model: &Model) -> Properties<'_>;
-
-    /// Returns the magnitude of the force in the design configuration, N, if the element defines one; otherwise zero.
-    fn given_force(&self, model: &Model) -> f64;
 }
 
 /// Properties of a force besides its formulas. Every type defines all of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Properties<'a> {
-    /// Bodies that it acts on. If it acts on a single body, the first is ground.
-    pub bodies: [BodyId; 2],
-    /// Points at which it acts.
-    pub points: [Option<PointId>; 2],
-    /// True if it acts along the line between two points.
-    pub is_along_line: bool,
+    /// Part of the model that it acts on.
+    pub acts_on: ActsOn,
     /// Dimension of its magnitude.
     pub dimension: Dimension,
-    /// The joint and its coordinate that it acts on.
-    pub coordinate: Option<(JointId, usize)>,
+    /// Forces or moments that the element defines.
+    pub given: [Option<NumberId>; 3],
+    /// Table of its force.
+    pub table: Option<&'a SpringTable>,
     /// The law that it is multiplied by.
     pub law: Option<&'a Law>,
     /// True if its formula is arithmetic on where bodies are, which can be recorded: it looks up no table, and has no
@@ -411,6 +406,50 @@ pub struct Properties<'a> {
     pub compliance: Compliance,
     /// Coulomb friction.
     pub friction: Option<JointFriction>,
+}
+
+/// Part of a model that a force acts on.
+#[derive(Clone, Copy, Debug)]
+pub enum ActsOn {
+    /// Two points, along the line between them.
+    Line([PointId; 2]),
+    /// Two points.
+    Points([PointId; 2]),
+    /// A point.
+    Point(PointId),
+    /// A wheel, at its contact point.
+    Wheel(WheelId),
+    /// A body.
+    Body(BodyId),
+    /// A coordinate of a joint.
+    Coordinate(JointId, usize),
+    /// A joint.
+    Joint(JointId),
+}
+
+impl ActsOn {
+    /// Bodies that the force acts on. If it acts on a single body, the first is ground.
+    pub fn bodies(self, model: &Model) -> [BodyId; 2] {
+        let body = |p: PointId| model.points[p.0].body;
+        match self {
+            Self::Line(points) | Self::Points(points) => points.map(body),
+            Self::Point(point) => [GROUND, body(point)],
+            Self::Wheel(wheel) => [GROUND, model.wheels[wheel.0].body],
+            Self::Body(body) => [GROUND, body],
+            Self::Coordinate(joint, _) | Self::Joint(joint) => model.joints[joint.0].bodies,
+        }
+    }
+
+    /// Points at which the force acts.
+    pub fn points(self, model: &Model) -> [Option<PointId>; 2] {
+        match self {
+            Self::Line(points) | Self::Points(points) => points.map(Some),
+            Self::Point(point) => [Some(point), None],
+            // Its contact point wanders.
+            Self::Wheel(wheel) => [Some(model.wheels[wheel.0].centre), None],
+            Self::Body(_) | Self::Coordinate(..) | Self::Joint(_) => [None; 2],
+        }
+    }
 }
 
 /// Compliance of a force element.
@@ -498,12 +537,6 @@ macro_rules! in_models {
             pub fn force(&self, model: &Model) -> Option<Properties<'_>> {
                 match self { $(Self::$variant(e) => if_mass!($table, None, Some(e.properties(model)))),* }
             }
-
-            /// Magnitude of the force in the design configuration, N, if the element defines one: a given force or a
-            /// preload.
-            pub fn given_force(&self, model: &Model) -> f64 {
-                match self { $(Self::$variant(e) => if_mass!($table, 0.0, e.given_force(model))),* }
-            }
         }
     };
 }
@@ -522,6 +555,16 @@ impl ElementKind {
         self.friction(model).is_some()
     }
 
+    /// Magnitude of the force in the design configuration, N, if the element defines one: a given force, a preload, or
+    /// the largest force of a table.
+    pub fn given_force(&self, model: &Model) -> f64 {
+        let Some(Properties { given, table, dimension, .. }) = self.force(model) else { return 0.0 };
+        let given = given.into_iter().flatten().map(|n| model.numbers[n.0].value.abs()).reduce(f64::max);
+        let in_table = || table.map_or(0.0, |t| t.points().iter().map(|p| p[1].abs()).fold(0.0, f64::max));
+        let force = given.unwrap_or_else(in_table);
+        if dimension == Dimension::MOMENT { force / model.size() } else { force }
+    }
+
     /// The law that a given force or moment is multiplied by.
     #[inline]
     pub(crate) fn law(&self, model: &Model) -> Option<&Law> {
@@ -531,7 +574,15 @@ impl ElementKind {
     /// The joint whose coordinate it acts on.
     #[inline]
     pub(crate) fn coordinate(&self, model: &Model) -> Option<(JointId, usize)> {
-        self.force(model)?.coordinate
+        match self.force(model)?.acts_on {
+            ActsOn::Coordinate(joint, coordinate) => Some((joint, coordinate)),
+            ActsOn::Line(_)
+            | ActsOn::Points(_)
+            | ActsOn::Point(_)
+            | ActsOn::Wheel(_)
+            | ActsOn::Body(_)
+            | ActsOn::Joint(_) => None,
+        }
     }
 }
 
@@ -539,7 +590,7 @@ impl Model {
     /// Points at which forces act: both ends of a spring or bushing, the point of a given force, the centre of a wheel.
     pub fn points_of_application(&self) -> Vec<(ElementId, PointId)> {
         let of = |(e, element): (usize, &Element)| {
-            let points = element.kind.force(self).map_or([None; 2], |force| force.points);
+            let points = element.kind.force(self).map_or([None; 2], |force| force.acts_on.points(self));
             points.into_iter().flatten().map(move |p| (ElementId(e), p))
         };
         self.elements.iter().enumerate().flat_map(of).collect()
