@@ -2,7 +2,7 @@
 
 use crate::draft::measure::Field;
 use crate::draft::{ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
-use crate::joint::Quantity;
+use crate::joint::{Freedom, Quantity, Slide};
 use crate::law::Law;
 use crate::model::{
     Angle, Axes, CubicStiffness, Damping, Density, Element, ElementKind, ElementUnit, Force, GROUND, Inertia,
@@ -119,11 +119,11 @@ impl Checker<'_> {
                 }
             }
             ElementKind::Friction { joint, coefficient, radius, length, viscous, transition_velocity } => {
-                let kind = self.model.joints[joint.0].kind.name;
-                if !["revolute", "cylindrical", "spherical"].contains(&kind) {
-                    let help = match kind {
-                        "translational" => "write `type = \"slide_friction\"` for a slide",
-                        "universal" => {
+                let kind = self.model.joints[joint.0].kind;
+                if !kind.is_hinge && !kind.is_ball() {
+                    let help = match (kind.slide, kind.freedoms) {
+                        (Slide::Block, _) => "write `type = \"slide_friction\"` for a slide",
+                        (_, Some([Freedom::Turn(_), Freedom::Turn(_)])) => {
                             "replace the universal joint by two revolute joints with a body between them; for viscous friction alone use the `damping` of a `torsion_spring`"
                         }
                         _ => {
@@ -131,7 +131,7 @@ impl Checker<'_> {
                         }
                     };
                     self.report_friction_joint(&e.name, *joint, "hinge or ball joint", here, help);
-                } else if let (Some(_), "spherical") = (length, kind) {
+                } else if length.is_some() && kind.is_ball() {
                     let message =
                         format!("`{}` has a `length`, which does not apply to a spherical joint", e.name);
                     self.fault("HP0251", here.key("length"), message).help("remove `length`");
@@ -154,13 +154,12 @@ impl Checker<'_> {
                 viscous,
                 transition_velocity,
             } => {
-                let kind = self.model.joints[joint.0].kind.name;
-                if !["translational", "cylindrical"].contains(&kind) {
-                    let help = match kind {
-                        "revolute" | "spherical" => "write `type = \"friction\"` for a hinge or ball joint",
-                        _ => {
-                            "name a translational or cylindrical joint; for viscous friction of others use the `damping` of a `joint_spring`"
-                        }
+                let kind = self.model.joints[joint.0].kind;
+                if kind.slide != Slide::Block {
+                    let help = if kind.is_hinge || kind.is_ball() {
+                        "write `type = \"friction\"` for a hinge or ball joint"
+                    } else {
+                        "name a translational or cylindrical joint; for viscous friction of others use the `damping` of a `joint_spring`"
                     };
                     self.report_friction_joint(&e.name, *joint, "slide", here, help);
                 } else if let Some(normal) = ignored_direction {
