@@ -65,7 +65,7 @@ export function crank(changes: Partial<Report> = {}): Report {
       { name: 'ground', poses: poses(still), skeleton: [[0, 0, 0]], labels: ['pivot'], roles: ['joint'], mesh: null },
       { name: 'crank', poses: poses(turn), skeleton: [[0, 0, 0], [200, 0, 0]], labels: ['pivot', 'pin'], roles: ['joint', 'joint'], mesh: null },
     ],
-    joints: [{ name: 'hinge', ...hinge, axis2: null, hinge: null, lead: null, curve: null, draw: null, cut: false } as Report['joints'][number]],
+    joints: [{ name: 'hinge', ...hinge, axis2: null, slide: null, hinge: null, lead: null, curve: null, draw: null, cut: false } as Report['joints'][number]],
     drivers: [{ name: 'motor', law: 'one turn', joint: 0, turns: true, point: null, along: null, travel, alone: [] }],
     loads: [],
     quantities: [],
