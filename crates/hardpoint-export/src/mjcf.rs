@@ -218,3 +218,29 @@ fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut ExportedModel) 
         out.report_unsupported("joint", &joint.name, why);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use hardpoint::joint::ALL;
+
+    use super::*;
+
+    #[test]
+    fn joint_types_with_equivalents() {
+        let those = |is: &dyn Fn(&JointType) -> bool| -> Vec<&str> {
+            ALL.iter().filter(|t| is(t)).map(|t| t.name).collect()
+        };
+        let carry = [
+            "fixed",
+            "revolute",
+            "translational",
+            "cylindrical",
+            "spherical",
+            "universal",
+            "planar",
+            "pin_in_slot",
+        ];
+        assert_eq!(those(&|t| freedoms(t).is_some()), carry);
+        assert_eq!(those(&|t| Closure::of(t).is_some()), ["fixed", "revolute", "spherical", "distance"]);
+    }
+}

@@ -118,3 +118,23 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     out.text = text + "</robot>\n";
     out.without_motions(file, "URDF");
 }
+
+#[cfg(test)]
+mod tests {
+    use hardpoint::joint::ALL;
+
+    use super::*;
+
+    #[test]
+    fn joint_types_with_equivalents() {
+        let found: Vec<_> = ALL.iter().filter_map(|t| Some((t.name, urdf_type(t)?))).collect();
+        let expected = [
+            ("fixed", "fixed"),
+            ("revolute", "continuous"),
+            ("translational", "prismatic"),
+            ("spherical", BALL),
+            ("planar", "planar"),
+        ];
+        assert_eq!(found, expected);
+    }
+}
