@@ -1,6 +1,11 @@
 // Written by the tests of `crates/hardpoint-report/src/page.rs`; change the structs there.
 
 /**
+ * Type of a joint.
+ */
+export type JointKind = 'fixed' | 'revolute' | 'translational' | 'cylindrical' | 'spherical' | 'universal' | 'constant_velocity' | 'planar' | 'pin_in_slot' | 'screw' | 'inline' | 'inplane' | 'orientation' | 'parallel' | 'dot1' | 'dot2' | 'angle' | 'distance' | 'revolute_spherical' | 'point_on_curve' | 'leg' | 'travel' | 'heading';
+
+/**
  * One number per output step, as `f32`; NaN means "no value at this step" and is drawn as a gap.
  *
  * In the page it is a list of tracks of the packed block, whose values follow each other in turn: see
@@ -286,9 +291,9 @@ export type JointMark = {
  */
 name: string,
 /**
- * Type: `revolute`, `spherical`, `translational`, `distance`, ...; an unknown type gets a neutral mark.
+ * Type.
  */
-kind: string,
+kind: JointKind,
 /**
  * Index into [`Payload::bodies`].
  */
@@ -320,6 +325,10 @@ axis_j: [number, number, number] | null,
  */
 axis2: [number, number, number] | null,
 /**
+ * Straight guide between the bodies, if the type has one.
+ */
+slide: SlideMark | null,
+/**
  * Hardpoints that define the axis in the design configuration, in the frame of body i, if it is defined by two.
  */
 hinge: [[number, number, number], [number, number, number]] | null,
@@ -339,6 +348,19 @@ draw: string | null,
  * True if the joint closes a loop (cut joint) instead of carrying body j (tree joint).
  */
 cut: boolean, };
+
+/**
+ * Straight guide of a joint.
+ */
+export type SlideMark = {
+/**
+ * Unit vector along it in the frame of body i; `None` for a plane perpendicular to the joint's axis.
+ */
+along: [number, number, number] | null,
+/**
+ * True if either body may be the rail; otherwise it is body i.
+ */
+either: boolean, };
 
 /**
  * Planar curve on a body, sampled finely enough for drawing.

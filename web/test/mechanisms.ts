@@ -110,6 +110,7 @@ export function crank(changes: Partial<Report> = {}): Report {
         name: 'hinge',
         ...hinge,
         axis2: null,
+        slide: null,
         hinge: null,
         lead: null,
         curve: null,

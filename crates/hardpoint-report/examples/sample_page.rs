@@ -132,22 +132,24 @@ fn bodies(times: &[f64]) -> Vec<BodyTrack> {
 }
 
 fn joints() -> Vec<JointMark> {
-    let joint = |name: &str, kind: &str, [body_i, body_j]: [usize; 2], at_i, at_j, axis, cut| JointMark {
-        name: name.into(),
-        kind: kind.into(),
-        body_i,
-        body_j,
-        at_i,
-        at_j,
-        axis: Some(axis),
-        axis_j: Some(axis),
-        axis2: None,
-        hinge: None,
-        lead: None,
-        curve: None,
-        draw: None,
-        cut,
-    };
+    let joint =
+        |name: &str, kind: &'static str, [body_i, body_j]: [usize; 2], at_i, at_j, axis, cut| JointMark {
+            name: name.into(),
+            kind,
+            body_i,
+            body_j,
+            at_i,
+            at_j,
+            axis: Some(axis),
+            axis_j: Some(axis),
+            axis2: None,
+            slide: (kind == "translational").then_some(SlideMark { along: Some(axis), either: true }),
+            hinge: None,
+            lead: None,
+            curve: None,
+            draw: None,
+            cut,
+        };
     let (z, x) = ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
     let pin = [CRANK, 0.0, 0.0];
     vec![

@@ -243,8 +243,9 @@ pub struct Mesh {
 pub struct JointMark {
     /// Name of the joint.
     pub name: String,
-    /// Type: `revolute`, `spherical`, `translational`, `distance`, ...; an unknown type gets a neutral mark.
-    pub kind: String,
+    /// Type.
+    #[cfg_attr(test, ts(type = "JointKind"))]
+    pub kind: &'static str,
     /// Index into [`Payload::bodies`].
     pub body_i: usize,
     /// Index into [`Payload::bodies`].
@@ -261,6 +262,8 @@ pub struct JointMark {
     /// Unit vector along the second axis, if there is one: in the frame of body j for `universal`, `constant_velocity`,
     /// `dot1` and `angle`, in that of body i for others.
     pub axis2: Option<[f64; 3]>,
+    /// Straight guide between the bodies, if the type has one.
+    pub slide: Option<SlideMark>,
     /// Hardpoints that define the axis in the design configuration, in the frame of body i, if it is defined by two.
     pub hinge: Option<[[f64; 3]; 2]>,
     /// Travel per revolution of a screw.
@@ -271,6 +274,16 @@ pub struct JointMark {
     pub draw: Option<String>,
     /// True if the joint closes a loop (cut joint) instead of carrying body j (tree joint).
     pub cut: bool,
+}
+
+/// Straight guide of a joint.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct SlideMark {
+    /// Unit vector along it in the frame of body i; `None` for a plane perpendicular to the joint's axis.
+    pub along: Option<[f64; 3]>,
+    /// True if either body may be the rail; otherwise it is body i.
+    pub either: bool,
 }
 
 /// Planar curve on a body, sampled finely enough for drawing.
@@ -849,6 +862,9 @@ pub(crate) mod tests {
         let mut expected = String::from(
             "// Written by the tests of `crates/hardpoint-report/src/page.rs`; change the structs there.\n",
         );
+        let kinds: Vec<String> = hardpoint::joint::ALL.iter().map(|t| format!("'{}'", t.name)).collect();
+        expected +=
+            &format!("\n/**\n * Type of a joint.\n */\nexport type JointKind = {};\n", kinds.join(" | "));
         macro_rules! declare {
             ($($name:ident)*) => { $(
                 expected += "\n";
@@ -857,7 +873,7 @@ pub(crate) mod tests {
             )* };
         }
         declare!(
-            Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark JointCurve CouplerMark CouplerTerm
+            Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark SlideMark JointCurve CouplerMark CouplerTerm
             DriverMark BodyPlace WheelMark DistanceMark LoadMark VehicleAxes Quantity Value Design DesignKind DesignCurves
             GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );

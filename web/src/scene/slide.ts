@@ -20,35 +20,25 @@ export interface Slide {
   high: number
 }
 
-const SLIDES = ['translational', 'cylindrical', 'inplane', 'inline', 'pin_in_slot']
-/** Slides in which body i has the way. */
-const GUIDE_ON_BODY_I = ['inplane', 'inline', 'pin_in_slot']
-
 /** The slide of a joint; ground is the rail, else the body that is longer along the axis. */
 export function slideOf(mechanism: Mechanism, joint: JointMark): Slide | undefined {
-  if (!SLIDES.includes(joint.kind) || !joint.axis) return undefined
+  if (!joint.slide || !joint.axis) return undefined
+  const { along, either } = joint.slide
+  const { plane } = mechanism
   // Seen along its line, a point on a line is a pin.
-  if (
-    joint.kind === 'inline' &&
-    mechanism.plane &&
-    Math.abs(mechanism.alongAt(joint.body_i, new Vector3(...joint.axis), 0).dot(mechanism.plane)) > 0.9
-  )
+  if (along && !either && plane && Math.abs(mechanism.alongAt(joint.body_i, new Vector3(...along), 0).dot(plane)) > 0.9)
     return undefined
   let slide = {
     rail: joint.body_i,
     block: joint.body_j,
-    axis: new Vector3(...joint.axis),
+    axis: new Vector3(...(along ?? joint.axis)),
     place: new Vector3(...joint.at_i),
     blockPlace: new Vector3(...joint.at_j),
   }
-  if (joint.kind === 'inplane') {
+  if (!along) {
     const normal = slide.axis
-    slide.axis = mechanism.plane
-      ? mechanism.into(slide.rail, mechanism.plane).cross(normal).normalize()
-      : across(normal)
-  } else if (joint.kind === 'pin_in_slot') {
-    slide.axis = joint.axis2 ? new Vector3(...joint.axis2) : across(slide.axis)
-  } else if (!GUIDE_ON_BODY_I.includes(joint.kind)) {
+    slide.axis = plane ? mechanism.into(slide.rail, plane).cross(normal).normalize() : across(normal)
+  } else if (either) {
     const axis = mechanism.into(slide.block, mechanism.alongAt(slide.rail, slide.axis, 0))
     const grounded = slide.rail === 0 || slide.block === 0
     const longer = length(mechanism, slide.block, axis) > length(mechanism, slide.rail, slide.axis)

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use hardpoint::draft::{ElementType, FieldKind, MeasureField};
+use hardpoint::draft::{ElementType, FieldKind, MeasureField, MeasureType};
 use hardpoint::joint;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
@@ -112,17 +112,10 @@ impl Reader<'_> {
             }
         });
         sections(model, "measures", &mut |measure| {
-            if word(measure, "type").as_deref() == Some("angle")
-                || word(measure, "type").as_deref() == Some("angular_velocity")
-                    && !measure.contains_key("along")
-            {
-                let name = if measure.contains_key("body") { "along" } else { "about" };
-                square(measure, name);
-            }
-        });
-        sections(model, "measures", &mut |measure| {
-            if word(measure, "type").as_deref() == Some("shaking_moment") {
-                square(measure, "along");
+            let kind = word(measure, "type").and_then(|kind| MeasureType::named(&kind));
+            let fields = kind.filter(|kind| kind.normal_in_plane).map_or(&[][..], |kind| kind.fields);
+            if let Some(direction) = fields.iter().find(|f| f.kind == FieldKind::Direction) {
+                square(measure, direction.key);
             }
         });
         sections(model, "forces", &mut |force| {

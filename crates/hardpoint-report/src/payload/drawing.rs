@@ -2,7 +2,7 @@
 //! model and not from names.
 
 use hardpoint::constraint::Row;
-use hardpoint::joint::{Freedom, Need, Quantity as Kind};
+use hardpoint::joint::{Freedom, Need, Quantity as Kind, Slide};
 use hardpoint::measure::Output;
 use hardpoint::model::{
     BodyId, Change, Coupler, Curve as PlanarCurve, Direction, Driver, DriverId, HardpointId, Joint, JointId,
@@ -17,7 +17,7 @@ use crate::facts::{fixed_spins, written_kind};
 use crate::figures::symbol;
 use crate::page::{
     Arrow, BodyPlace, BodyTrack, CouplerMark, CouplerTerm, Curve, DistanceMark, DriverMark, JointCurve,
-    JointMark, Mesh, PointRole, VehicleAxes, WheelMark,
+    JointMark, Mesh, PointRole, SlideMark, VehicleAxes, WheelMark,
 };
 
 use super::Compose;
@@ -172,7 +172,7 @@ impl Compose<'_> {
             let ends = joint.axis.and_then(Direction::hardpoints);
             JointMark {
                 name: joint.name.clone(),
-                kind: written_kind(joint, spins.contains(&JointId(j))).into(),
+                kind: written_kind(joint, spins.contains(&JointId(j))),
                 body_i: joint.bodies[0].0,
                 body_j: joint.bodies[1].0,
                 at_i: self.length(i.r),
@@ -180,6 +180,14 @@ impl Compose<'_> {
                 axis: joint.axis.map(|_| i.rot.cols[2].to_array()),
                 axis_j: joint.axis.map(|_| k.rot.cols[2].to_array()),
                 axis2: axis2.map(Vec3::to_array),
+                slide: match joint.kind.slide {
+                    Slide::None => None,
+                    Slide::Block => Some(SlideMark { along: Some(i.rot.cols[2].to_array()), either: true }),
+                    Slide::Line(k) => {
+                        Some(SlideMark { along: Some(i.rot.cols[k].to_array()), either: false })
+                    }
+                    Slide::Plane => Some(SlideMark { along: None, either: false }),
+                },
                 hinge: ends.map(|ends| ends.map(|h| self.length(self.in_body(joint.bodies[0], h)))),
                 lead: self.lead(JointId(j)),
                 curve: joint.curve.as_ref().map(|curve| self.joint_curve(curve, *i)),
@@ -337,14 +345,14 @@ impl Compose<'_> {
 
     /// Marks of measured distances.
     pub(super) fn distances(&self) -> Vec<DistanceMark> {
-        let mark = |(m, measure): (usize, &Measure)| match measure.kind {
-            MeasureKind::Distance { from, to } => Some(DistanceMark {
+        let mark = |(m, measure): (usize, &Measure)| {
+            let MeasureKind::Distance { from, to } = measure.kind else { return None };
+            Some(DistanceMark {
                 name: measure.name.clone(),
                 from: self.place(from),
                 to: self.place(to),
                 draw: self.looks.measures.get(&m).map(|form| form.name().into()),
-            }),
-            _ => None,
+            })
         };
         self.model.measures.iter().enumerate().filter_map(mark).collect()
     }

@@ -106,9 +106,9 @@ impl<'m> DesignMap<'m> {
     /// Returns the body-fixed data of the measures for these values of the variables.
     pub(crate) fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
         let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
-        let markers = |m: &Measure| match m.kind {
-            MeasureKind::Coordinate { joint, .. } => Some([0, 1].map(|e| design.marker(joint.0, e))),
-            _ => None,
+        let markers = |m: &Measure| {
+            let MeasureKind::Coordinate { joint, .. } = m.kind else { return None };
+            Some([0, 1].map(|e| design.marker(joint.0, e)))
         };
         BodyFixed {
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),

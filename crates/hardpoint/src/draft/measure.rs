@@ -2,6 +2,7 @@
 
 use crate::draft::{DirectionDraft, NumberDraft, PointRef, RayDraft};
 use crate::expression::Expression;
+use crate::joint::VectorKind;
 use crate::law::Law;
 use crate::model::{
     Axes, AxleMeasure, BodyId, Combination, Direction, DriverId, ElementId, ElementUnit, JointId,
@@ -19,6 +20,10 @@ pub struct MeasureType {
     pub name: &'static str,
     /// Description of the measure in one sentence.
     pub summary: &'static str,
+    /// Kind of its direction, for the image in a mirror.
+    pub vector_kind: VectorKind,
+    /// True if its direction defaults to the normal of the plane in a planar model.
+    pub normal_in_plane: bool,
     /// Fields of the type.
     pub fields: &'static [MeasureField],
 }
@@ -125,7 +130,7 @@ pub(super) trait Field: Sized {
 /// Measure types as written, and their resolution to the model.
 macro_rules! in_drafts {
     ($(
-        $(#[doc = $doc:literal])* $variant:ident $name:literal {
+        $(#[doc = $doc:literal])* $variant:ident $name:literal [$vector:ident, normal: $normal:literal] {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
         } |$model:pat_param, $words:pat_param| $dimension:expr, $known:expr, $says:expr;
     )*) => {
@@ -156,6 +161,8 @@ macro_rules! in_drafts {
             pub const ALL: &[Self] = &[$(Self {
                 name: $name,
                 summary: concat!($($doc),*).trim_ascii(),
+                vector_kind: VectorKind::$vector,
+                normal_in_plane: $normal,
                 fields: &[$(MeasureField {
                     key: stringify!($field),
                     kind: <$type as Field>::KIND,
@@ -163,6 +170,11 @@ macro_rules! in_drafts {
                     summary: concat!($($field_doc),*).trim_ascii(),
                 }),*],
             }),*];
+
+            /// Returns the type of this name.
+            pub fn named(name: &str) -> Option<&'static Self> {
+                Self::ALL.iter().find(|t| t.name == name)
+            }
 
             /// Returns a measure of this type from its fields; `None` if a field is missing or of the wrong kind.
             pub fn draft(&self, mut field: impl FnMut(&MeasureField) -> Option<FieldDraft>) -> Option<MeasureKindDraft> {
@@ -194,3 +206,29 @@ macro_rules! in_drafts {
 }
 
 measures!(in_drafts);
+
+/// Pattern of the measures that are not the value of one coordinate, which a driver could prescribe.
+macro_rules! not_drivable {
+    () => {
+        MeasureKindDraft::Orientation { .. }
+            | MeasureKindDraft::TransmissionAngle { .. }
+            | MeasureKindDraft::Velocity { .. }
+            | MeasureKindDraft::AngularVelocity { .. }
+            | MeasureKindDraft::Acceleration { .. }
+            | MeasureKindDraft::Curvature { .. }
+            | MeasureKindDraft::Rate { .. }
+            | MeasureKindDraft::Slope { .. }
+            | MeasureKindDraft::Combination { .. }
+            | MeasureKindDraft::Camber { .. }
+            | MeasureKindDraft::DriverForce { .. }
+            | MeasureKindDraft::DriverPower { .. }
+            | MeasureKindDraft::Reaction { .. }
+            | MeasureKindDraft::SpringForce { .. }
+            | MeasureKindDraft::KineticEnergy { .. }
+            | MeasureKindDraft::ShakingForce { .. }
+            | MeasureKindDraft::ShakingMoment { .. }
+            | MeasureKindDraft::Compliance { .. }
+            | MeasureKindDraft::Axle { .. }
+    };
+}
+pub(super) use not_drivable;

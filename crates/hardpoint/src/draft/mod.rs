@@ -16,6 +16,7 @@ pub(crate) use check::{CheckElement, ElementCheck};
 pub use check::{ConstantError, Nominal};
 pub use element::{ElementDraft, ElementKindDraft, ElementType, NumberDraft};
 pub use error::{DraftError, DraftLocation, Section, did_you_mean, some_of};
+use measure::not_drivable;
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
 
 use std::collections::BTreeMap;
@@ -376,7 +377,7 @@ impl DrivenDraft {
                 }
                 Some(MeasureKindDraft::Angle { .. } | MeasureKindDraft::Toe { .. }) => Some(Quantity::Angle),
                 Some(MeasureKindDraft::Wheel { what, .. }) => quantity_at_wheel(*what),
-                Some(_) => None,
+                Some(MeasureKindDraft::Unread | not_drivable!()) => None,
             },
         }
     }

@@ -281,8 +281,5 @@ const DEPENDENT: f64 = 1e-5;
 const SINGULAR: f64 = 1e-14;
 
 fn released_by(model: &Model, measure: usize) -> Option<DriverId> {
-    match model.measures[measure].kind {
-        MeasureKind::Compliance { released, .. } => released,
-        _ => None,
-    }
+    if let MeasureKind::Compliance { released, .. } = model.measures[measure].kind { released } else { None }
 }

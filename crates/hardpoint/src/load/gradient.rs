@@ -241,10 +241,10 @@ impl LoadGradients {
 fn touches(model: &Model, changed: &Geometry<Dual>) -> bool {
     let goes = |v: Vec3<Dual>| [v.x, v.y, v.z].iter().any(|x| x.d != 0.0);
     let of_elements = model.elements.iter().filter_map(|e| e.kind.coordinate(model)).map(|(joint, _)| joint);
-    let of_measures = model.measures.iter().filter_map(|m| match m.kind {
-        MeasureKind::Reaction { joint, .. } => Some(joint),
-        _ => None,
-    });
+    let of_measures = model
+        .measures
+        .iter()
+        .filter_map(|m| if let MeasureKind::Reaction { joint, .. } = m.kind { Some(joint) } else { None });
     let marker = |m: &Pose<Dual>| goes(m.r) || m.rot.cols.iter().any(|c| goes(*c));
     changed.numbers.iter().any(|n| n.d != 0.0)
         || changed.points.iter().chain(&changed.spin_axes).any(|p| goes(*p))

@@ -1,6 +1,6 @@
 //! Evaluation of load measures, for any number type.
 
-use crate::model::{Axes, BodyId, ElementId, JointId, MeasureKind, ReactionPart};
+use crate::model::{Axes, BodyId, ElementId, JointId, MeasureKind, ReactionPart, of_bodies};
 use crate::space::{Mat3, Real, Vec3, Wrench};
 
 use super::acting::AppliedLoads;
@@ -30,7 +30,11 @@ impl<T: Real> Instant<'_, T> {
                 let p = self.acting.point(*about);
                 component(shaking.m - p.cross(shaking.f), *along)
             }
-            _ => T::constant(f64::NAN),
+            MeasureKind::Slope { .. }
+            | MeasureKind::Compliance { .. }
+            | MeasureKind::Wheel { .. }
+            | MeasureKind::Axle { .. }
+            | of_bodies!() => T::constant(f64::NAN),
         }
     }
 
@@ -83,10 +87,8 @@ impl<T: Real> Instant<'_, T> {
     /// not above zero if it is only round-off.
     pub fn excess(&self, kind: &MeasureKind, most: T) -> T {
         let size = self.acting.model.size();
-        let scale = match kind {
-            MeasureKind::Reaction { part, .. } if part.is_moment() => most * size,
-            _ => most,
-        };
+        let is_moment = matches!(kind, MeasureKind::Reaction { part, .. } if part.is_moment());
+        let scale = if is_moment { most * size } else { most };
         self.measure(kind).abs() - scale * KNOWN
     }
 

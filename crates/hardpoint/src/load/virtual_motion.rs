@@ -2,7 +2,7 @@
 //! its driver moves alone (`docs/theory.md`, section 14); for any number type.
 
 use crate::constraint::{MarkerPairRates, Row};
-use crate::model::{BodyId, DriverId, GROUND, JointId, MeasureKind};
+use crate::model::{BodyId, DriverId, GROUND, JointId, MeasureKind, of_bodies};
 use crate::motion::kinematics::State;
 use crate::motion::level::Flow;
 use crate::number::{Dual, Real};
@@ -44,7 +44,13 @@ impl<T: Real> Weights<T> {
             MeasureKind::ShakingForce { .. } | MeasureKind::ShakingMoment { .. } => {
                 weights.ground = slopes(carried, |carried| &mut carried.shaking, &objective);
             }
-            _ => {}
+            MeasureKind::SpringForce { .. }
+            | MeasureKind::KineticEnergy { .. }
+            | MeasureKind::Slope { .. }
+            | MeasureKind::Compliance { .. }
+            | MeasureKind::Wheel { .. }
+            | MeasureKind::Axle { .. }
+            | of_bodies!() => {}
         }
         joints.sort_unstable();
         joints.dedup();

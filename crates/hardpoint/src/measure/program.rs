@@ -183,15 +183,12 @@ fn moving_bodies(model: &Model) -> Vec<usize> {
 
 /// Measures that formulas may use with all their turns.
 fn turning(model: &Model, outputs: &[Output]) -> Vec<usize> {
-    let formulas = model.measures.iter().filter_map(|m| match &m.kind {
-        MeasureKind::Combination { expression } => Some(expression),
-        _ => None,
-    });
+    let formulas = model.measures.iter().filter(|m| matches!(m.kind, MeasureKind::Combination { .. }));
     let mut turning: Vec<usize> = formulas
-        .flat_map(|formula| formula.sources())
+        .flat_map(|formula| formula.kind.sources())
         .filter_map(|source| match source {
-            OutputSource::Measure(m) if super::is_counted(model, &outputs[m]) => Some(m),
-            _ => None,
+            OutputSource::Measure(m) => outputs[m].known.counted.then_some(m),
+            OutputSource::Point(..) => None,
         })
         .collect();
     turning.sort_unstable();
@@ -291,7 +288,7 @@ impl Recorder<'_> {
         recording::begin();
         let orders = output.known.orders;
         let is_formula =
-            matches!(output.source, OutputSource::Measure(m) if super::is_formula(self.model, m));
+            matches!(output.source, OutputSource::Measure(m) if super::formulas::is_formula(self.model, m));
         let whole_turns: &[_] = if is_formula { &self.whole_turns } else { &[] };
         let at = |fixed: &BodyFixed<Dual<RecordedRates>>, poses: &[Pose<Dual<RecordedRates>>]| {
             Instant { whole_turns, ..Instant::new(self.model, fixed, poses) }.output(output.source)
@@ -359,14 +356,9 @@ impl Recorder<'_> {
 /// True if an output, or one that it uses, depends on more of a step than the motion of its bodies.
 fn depends_on_step(model: &Model, output: OutputSource) -> bool {
     let OutputSource::Measure(m) = output else { return false };
+    // Others that are made of outputs depend on the step themselves.
     model.depends_on_step(m)
-        || match &model.measures[m].kind {
-            MeasureKind::Rate { of } => depends_on_step(model, *of),
-            MeasureKind::Combination { expression: formula } => {
-                formula.sources().any(|source| depends_on_step(model, source))
-            }
-            _ => false,
-        }
+        || model.measures[m].kind.sources().into_iter().any(|source| depends_on_step(model, source))
 }
 
 /// Per output: the bodies that it depends on, and the variables that change its body-fixed data.

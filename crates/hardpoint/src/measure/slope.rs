@@ -7,7 +7,8 @@ use hardpoint_tape::{Number, record};
 
 use crate::design::{BodyFixed, DesignMap};
 use crate::model::{
-    AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId, WheelRequirement,
+    AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId, WheelRequirement, loads,
+    of_bodies,
 };
 use crate::motion::kinematics::State;
 use crate::motion::step_program::RecordedStep;
@@ -202,9 +203,8 @@ pub(crate) fn hindrance(design_map: &DesignMap<'_>) -> Option<&'static str> {
     if pairs > MOST_PAIRS {
         return Some("the program for the motion of single drivers would be too long");
     }
-    let slopes = model.measures.iter().filter_map(|m| match m.kind {
-        MeasureKind::Slope { of, over, .. } => Some([of, over]),
-        _ => None,
+    let slopes = model.measures.iter().filter_map(|m| {
+        if let MeasureKind::Slope { of, over, .. } = m.kind { Some([of, over]) } else { None }
     });
     let outputs: Vec<_> = slopes.flatten().collect();
     if outputs.is_empty() {
@@ -244,7 +244,7 @@ fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
                 model.axles[axle.0].wheels.map(|wheel| of_wheel(wheel, WheelRequirement::Bump));
             left.zip(right).map(|(l, r)| [l, r])
         }
-        _ => None,
+        of_bodies!() | loads!() | MeasureKind::Compliance { .. } => None,
     }
 }
 
@@ -279,7 +279,7 @@ impl<T: Real> DriverAlone<'_, T> {
                 let (y, height) = axle_roll_centre([wheel(first, 0, left), wheel(second, 1, right)]);
                 if what == AxleMeasure::RollCentreY { y } else { height }
             }
-            _ => unknown,
+            of_bodies!() | loads!() | MeasureKind::Compliance { .. } => unknown,
         }
     }
 }

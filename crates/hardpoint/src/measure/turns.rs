@@ -1,16 +1,132 @@
 //! Angles whose whole turns only the path indicates.
 
+use std::collections::BTreeMap;
+
 use crate::constraint::MarkerPair;
 use crate::design::{BodyFixed, DesignMap, Geometry};
 use crate::joint::Quantity;
-use crate::model::{ElementId, MeasureKind, Model};
-use crate::motion::BodyState;
-use crate::motion::turns::CountedAngles;
+use crate::law::Law;
+use crate::model::{DriverId, ElementId, JointId, MeasureKind, Model, OutputSource};
+use crate::motion::turns::{CountedAngles, turned};
+use crate::motion::{BodyState, Motion};
 use crate::number::{Jet, Rates};
 use crate::space::{Mat3, Pose};
-use crate::topology::Topology;
+use crate::topology::{CoordinateId, Topology};
 
-use super::{Instant, Turns, outputs, turns, with_rates};
+use super::formulas::Instant;
+use super::storage::{MeasureResults, Output, outputs};
+use super::with_rates;
+
+/// Source of the number of whole turns of a joint's angle.
+pub(super) enum Turns {
+    /// The driver's law.
+    Driver(DriverId),
+    /// The tree coordinate, which is the angle itself.
+    Coordinate(CoordinateId),
+    /// The path alone, for a cut joint or an angle between two directions about an axis.
+    Path(PathTurns),
+}
+
+/// An angle whose turns are counted along the path.
+#[derive(Clone, Copy)]
+pub(super) struct PathTurns {
+    /// Place among the angles that were counted, where the path was followed.
+    angle: Option<CountedPlace>,
+    /// Value where the path begins; as it is measured, without a whole turn, where that is `None`.
+    origin: Option<f64>,
+}
+
+/// A place among all counted angles.
+#[derive(Clone, Copy)]
+struct CountedPlace {
+    place: usize,
+    of: usize,
+}
+
+/// The outputs that are counted angles, and what indicates their turns.
+fn turns(model: &Model, topology: &Topology, outputs: &[Output]) -> Vec<Option<Turns>> {
+    let mut link_of = vec![None; model.joints.len()];
+    for link in &topology.links {
+        if let Some(j) = link.joint {
+            link_of[j.0] = Some(link);
+        }
+    }
+    let driver_of: BTreeMap<_, _> =
+        model.drivers.iter().enumerate().map(|(k, d)| ((d.joint, d.coordinate), DriverId(k))).collect();
+    let path = |origin| Turns::Path(PathTurns { angle: None, origin });
+    let of_joint = |joint: JointId, coordinate: usize| {
+        if let Some(&d) = driver_of.get(&(joint, coordinate)) {
+            return Turns::Driver(d);
+        }
+        let freedom = model.joints[joint.0].kind.coordinates[coordinate].freedom;
+        let Some((link, freedom)) = link_of[joint.0].zip(freedom) else { return path(Some(0.0)) };
+        Turns::Coordinate(link.coordinate_of(freedom))
+    };
+    let of_output = |output: &Output| {
+        let OutputSource::Measure(m) = output.source else { return None };
+        output.known.counted.then(|| {
+            let MeasureKind::Coordinate { joint, coordinate } = model.measures[m].kind else {
+                return path(None);
+            };
+            of_joint(joint, coordinate)
+        })
+    };
+    outputs.iter().map(of_output).collect()
+}
+
+/// The same, with the places of what was counted along the path of this motion.
+pub(super) fn placed_turns(
+    model: &Model,
+    topology: &Topology,
+    motion: &Motion,
+    outputs: &[Output],
+) -> Vec<Option<Turns>> {
+    let mut turns = turns(model, topology, outputs);
+    if !motion.counted.is_empty() {
+        let angles = path_angles(model, topology, true);
+        for (place, angle) in angles.iter().enumerate() {
+            if let PathAngle::Measure(m) = *angle
+                && let Some(Turns::Path(path)) = &mut turns[m]
+            {
+                path.angle = Some(CountedPlace { place, of: angles.len() });
+            }
+        }
+    }
+    turns
+}
+
+/// Counts whole turns of angles.
+pub(super) fn unwrap_angles(
+    laws: &[Law],
+    motion: &Motion,
+    k: usize,
+    turns: &[Option<Turns>],
+    measured: &mut MeasureResults,
+    mut counted: impl FnMut(usize, f64),
+) {
+    for (m, turns_of) in turns.iter().enumerate() {
+        let Some(turns_of) = turns_of else { continue };
+        let [now, rate, acceleration] = measured.value(k, m);
+        let near = match *turns_of {
+            // About f(t), q of the tree, or what the path has counted
+            Turns::Driver(d) => laws[d.0].at(motion.times[k]).value(),
+            Turns::Coordinate(q) => motion.coordinates.row(k).get(q.0),
+            Turns::Path(PathTurns { angle: Some(at), .. }) => motion.counted[k * at.of + at.place],
+            Turns::Path(PathTurns { angle: None, origin }) => match k {
+                // Designs side by side begin in the design configuration.
+                0 => origin.unwrap_or(now),
+                _ => {
+                    let [before, rate_before, _] = measured.value(k - 1, m);
+                    // x + h (x. before + x. now) / 2: wrong by h^3 x... / 12, where anything below half a turn is right
+                    before + 0.5 * (motion.times[k] - motion.times[k - 1]) * (rate_before + rate)
+                }
+            },
+        };
+        let value = turned(now, near);
+        measured.set(k, m, [value, rate, acceleration]);
+        counted(m, value - now);
+    }
+}
 
 /// An angle that is counted along the path.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -26,27 +26,28 @@ pub enum OutputSource {
     Point(PointId, usize),
 }
 
-/// The types of measures: their fields, as written and as they mean in a model; their dimension, how much can be known
-/// of them, and how to say what they are. With a formula in `measure/` a type is complete. The model takes its half of
-/// each line, the draft (`draft/measure.rs`) the other.
+/// The types of measures: the kind of their direction, if they have one, and whether it is the normal of a planar model
+/// by default; their fields, as written and as they mean in a model; their dimension, how much can be known of them,
+/// and how to say what they are. With a formula in `measure/formulas.rs` or `load/measures.rs` a type is complete. The
+/// model takes its half of each line, the draft (`draft/measure.rs`) the other.
 macro_rules! measures {
     ($declare:ident) => { $declare! {
     /// A joint's coordinate, counted from the design configuration; of a rod or leg the whole length.
-    Coordinate "coordinate" {
+    Coordinate "coordinate" [Polar, normal: false] {
         /// The joint's name.
         joint: String => JointId,
         /// Coordinate of the joint; may be left out if it has only one.
         coordinate: Option<String> => usize,
     } |m, MeasureWords { model, .. }|
         m.joints[joint.0].kind.coordinates[*coordinate].quantity.into(),
-        POSITIONS,
+        counted_if(m.joints[joint.0].kind.coordinates[*coordinate].quantity == Quantity::Angle),
         {
             let joint = &model.joints[joint.0];
             format!("{} of joint `{}`", joint.kind.coordinates[*coordinate].name, joint.name)
         };
 
     /// Distance between two points.
-    Distance "distance" {
+    Distance "distance" [Polar, normal: false] {
         /// From this point.
         from: PointRef => PointId,
         /// To this one.
@@ -54,7 +55,7 @@ macro_rules! measures {
     } |_, w| Dimension::LENGTH, POSITIONS, format!("distance from {} to {}", w.point(*from), w.point(*to));
 
     /// Position of a point along a global direction.
-    Coordinates "position" {
+    Coordinates "position" [Polar, normal: false] {
         /// The point.
         point: PointRef => PointId,
         /// The direction, of any length.
@@ -65,7 +66,7 @@ macro_rules! measures {
         format!("position of {} along {}", w.point(*point), (w.direction)(*along));
 
     /// Angle from one direction to another: between them, 0 to 180 deg, or as seen along `about`.
-    Angle "angle" {
+    Angle "angle" [Axial, normal: true] {
         /// From this direction.
         from: RayDraft => Ray,
         /// To this one.
@@ -74,27 +75,27 @@ macro_rules! measures {
         about: Option<Vec3> => Option<Vec3>,
     } |_, w|
         Dimension::ANGLE,
-        POSITIONS,
+        counted_if(about.is_some()),
         match about {
             None => format!("angle between {} and {}", w.ray(from), w.ray(to)),
             Some(n) => format!("angle from {} to {} about {}", w.ray(from), w.ray(to), (w.direction)(*n)),
         };
 
     /// Orientation of a body, as one of three angles.
-    Orientation "orientation" {
+    Orientation "orientation" [Axial, normal: false] {
         /// The body's name.
         body: String => BodyId,
         /// The angle.
         angle: OrientationAngle => OrientationAngle,
         /// The body whose frame it is turned against. Default: the global axes.
         relative_to: Option<String> => Option<BodyId>,
-    } |_, w| Dimension::ANGLE, POSITIONS, match relative_to {
+    } |_, w| Dimension::ANGLE, counted_if(angle.is_counted()), match relative_to {
         Some(other) => format!("{} of `{}` relative to `{}`", angle.words(), w.body(*body), w.body(*other)),
         None => format!("{} of `{}`", angle.words(), w.body(*body)),
     };
 
     /// Angle between two lines, 0 to 90 deg.
-    TransmissionAngle "transmission_angle" {
+    TransmissionAngle "transmission_angle" [Polar, normal: false] {
         /// Along this direction.
         from: RayDraft => Ray,
         /// And this one.
@@ -105,7 +106,7 @@ macro_rules! measures {
         format!("angle between the lines along {} and {}, at most 90 deg", w.ray(from), w.ray(to));
 
     /// Velocity of a point.
-    Velocity "velocity" {
+    Velocity "velocity" [Polar, normal: false] {
         /// The point.
         point: PointRef => PointId,
         /// The direction of the component, of any length. Default: the magnitude.
@@ -113,7 +114,7 @@ macro_rules! measures {
     } |_, w| Dimension::LENGTH.rate(1), moving(2), w.component("velocity", *point, *along);
 
     /// Angular velocity of a body.
-    AngularVelocity "angular_velocity" {
+    AngularVelocity "angular_velocity" [Axial, normal: true] {
         /// The body's name.
         body: String => BodyId,
         /// The direction of the component, of any length. Default: the magnitude.
@@ -124,7 +125,7 @@ macro_rules! measures {
     };
 
     /// Acceleration of a point.
-    Acceleration "acceleration" {
+    Acceleration "acceleration" [Polar, normal: false] {
         /// The point.
         point: PointRef => PointId,
         /// The direction of the component, of any length. Default: the magnitude.
@@ -132,7 +133,7 @@ macro_rules! measures {
     } |_, w| Dimension::LENGTH.rate(2), moving(1), w.component("acceleration", *point, *along);
 
     /// Curvature of a point's path.
-    Curvature "curvature" {
+    Curvature "curvature" [Axial, normal: false] {
         /// The point.
         point: PointRef => PointId,
         /// The direction, pointing at the viewer, seen along which a turn to the left is positive. Default: all are.
@@ -143,7 +144,7 @@ macro_rules! measures {
         format!("curvature of the path of {}", w.point(*point));
 
     /// Time derivative of another measure.
-    Rate "rate" {
+    Rate "rate" [Polar, normal: false] {
         /// The name of the measure, or `POINT.x`.
         of: String => OutputSource,
     } |m, w|
@@ -152,7 +153,7 @@ macro_rules! measures {
         format!("rate of {}", w.output(*of));
 
     /// Derivative of one measure by another while one driver alone moves, such as a motion ratio.
-    Slope "slope" {
+    Slope "slope" [Polar, normal: false] {
         /// The measure, or `POINT.x`, that changes.
         of: String => OutputSource,
         /// Over this one.
@@ -165,7 +166,7 @@ macro_rules! measures {
     };
 
     /// A formula over other measures.
-    Combination "expression" {
+    Combination "expression" [Polar, normal: false] {
         /// Like `front_left.toe + front_right.toe`; lengths are in the file's unit, angles in rad.
         expression: Expression => Combination,
     } |m, _|
@@ -173,12 +174,13 @@ macro_rules! measures {
         expression.sources().map(|s| m.known(s)).fold(POSITIONS, |all, one| KnownOrders {
             orders: all.orders.min(one.orders),
             by_position: all.by_position && one.by_position,
+            ..all
         }),
         expression.text().into();
 
     /// Toe of a wheel, positive for toe-in. It is a left wheel where its spin axis points to +y in the design
     /// configuration, else a right one.
-    Toe "toe" {
+    Toe "toe" [Polar, normal: false] {
         /// The body that the wheel turns on.
         body: String => BodyId,
         /// The wheel's spin axis in the design configuration, pointing outboard.
@@ -186,7 +188,7 @@ macro_rules! measures {
     } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("toe", *body, spin_axis);
 
     /// Camber of a wheel, positive where its top leans outboard.
-    Camber "camber" {
+    Camber "camber" [Polar, normal: false] {
         /// The body that the wheel turns on.
         body: String => BodyId,
         /// The wheel's spin axis in the design configuration, pointing outboard.
@@ -194,13 +196,13 @@ macro_rules! measures {
     } |_, w| Dimension::ANGLE, POSITIONS, w.of_axis("camber", *body, spin_axis);
 
     /// Force or moment that a driver needs; positive where it works while what it drives grows.
-    DriverForce "driver_force" {
+    DriverForce "driver_force" [Polar, normal: false] {
         /// The driver. Default: the only one.
         driver: Option<String> => DriverId,
     } |m, w| m.force_on(&m.drivers[driver.0]), moving(1), format!("force of driver `{}`", w.model.drivers[driver.0].name);
 
     /// Power that a driver gives the mechanism.
-    DriverPower "driver_power" {
+    DriverPower "driver_power" [Polar, normal: false] {
         /// The driver. Default: the only one.
         driver: Option<String> => DriverId,
     } |_, w|
@@ -209,7 +211,7 @@ macro_rules! measures {
         format!("power of driver `{}`", w.model.drivers[driver.0].name);
 
     /// Force or moment that a joint puts on one of its bodies, with that of drivers on its coordinates.
-    Reaction "reaction" {
+    Reaction "reaction" [Polar, normal: false] {
         /// The joint.
         joint: String => JointId,
         /// Component of the reaction.
@@ -224,7 +226,7 @@ macro_rules! measures {
         format!("{} of joint `{}`", part.words(), model.joints[joint.0].name);
 
     /// Tension of a spring, force or moment of one on a joint's coordinate, size of any other force.
-    SpringForce "spring_force" {
+    SpringForce "spring_force" [Polar, normal: false] {
         /// The force's name.
         force: String => ElementId,
     } |m, w|
@@ -233,7 +235,7 @@ macro_rules! measures {
         format!("force of `{}`", w.model.elements[force.0].name);
 
     /// Kinetic energy of a body, or of all.
-    KineticEnergy "kinetic_energy" {
+    KineticEnergy "kinetic_energy" [Polar, normal: false] {
         /// The body. Default: all.
         body: Option<String> => Option<BodyId>,
     } |_, w| Dimension::MOMENT, moving(1), match body {
@@ -242,7 +244,7 @@ macro_rules! measures {
     };
 
     /// Force that the mechanism puts on ground.
-    ShakingForce "shaking_force" {
+    ShakingForce "shaking_force" [Polar, normal: false] {
         /// The direction of the component, of any length. Default: the magnitude.
         along: Option<Vec3> => Option<Vec3>,
     } |_, w| Dimension::FORCE, moving(1), match along {
@@ -251,7 +253,7 @@ macro_rules! measures {
     };
 
     /// Moment that the mechanism puts on ground.
-    ShakingMoment "shaking_moment" {
+    ShakingMoment "shaking_moment" [Axial, normal: true] {
         /// About this point.
         about: PointRef => PointId,
         /// The direction of the component, of any length. Default: the magnitude.
@@ -260,7 +262,7 @@ macro_rules! measures {
 
     /// Derivative of a measure by a force on a point, from the compliance of elastic joints, springs and bushings,
     /// linearised at every position.
-    Compliance "compliance" {
+    Compliance "compliance" [Polar, normal: false] {
         /// The measure, or `POINT.x`.
         of: String => OutputSource,
         /// The point that the force pushes.
@@ -286,7 +288,7 @@ pub(crate) use measures;
 /// Measure types with references resolved to ids.
 macro_rules! in_models {
     ($(
-        $(#[doc = $doc:literal])* $variant:ident $name:literal {
+        $(#[doc = $doc:literal])* $variant:ident $name:literal [$vector:ident, normal: $normal:literal] {
             $($(#[doc = $field_doc:literal])* $field:ident: $draft:ty => $type:ty),* $(,)?
         } |$model:pat_param, $words:pat_param| $dimension:expr, $known:expr, $says:expr;
     )*) => {
@@ -362,6 +364,41 @@ macro_rules! in_models {
 
 measures!(in_models);
 
+/// Pattern of the measures that follow from the poses of bodies and their rates, but those of wheels and axles.
+macro_rules! of_bodies {
+    () => {
+        MeasureKind::Coordinate { .. }
+            | MeasureKind::Distance { .. }
+            | MeasureKind::Coordinates { .. }
+            | MeasureKind::Angle { .. }
+            | MeasureKind::Orientation { .. }
+            | MeasureKind::TransmissionAngle { .. }
+            | MeasureKind::Velocity { .. }
+            | MeasureKind::AngularVelocity { .. }
+            | MeasureKind::Acceleration { .. }
+            | MeasureKind::Curvature { .. }
+            | MeasureKind::Rate { .. }
+            | MeasureKind::Combination { .. }
+            | MeasureKind::Toe { .. }
+            | MeasureKind::Camber { .. }
+    };
+}
+pub(crate) use of_bodies;
+
+/// Pattern of the measures that are loads: what drives the mechanism, or what its parts carry.
+macro_rules! loads {
+    () => {
+        MeasureKind::DriverForce { .. }
+            | MeasureKind::DriverPower { .. }
+            | MeasureKind::Reaction { .. }
+            | MeasureKind::SpringForce { .. }
+            | MeasureKind::KineticEnergy { .. }
+            | MeasureKind::ShakingForce { .. }
+            | MeasureKind::ShakingMoment { .. }
+    };
+}
+pub(crate) use loads;
+
 /// Bodies that a field of a measure names, or on which the named items are.
 trait OnBodies {
     fn bodies(&self, _model: &Model) -> Vec<BodyId> {
@@ -434,11 +471,16 @@ impl OnBodies for OutputSource {}
 impl OnBodies for Combination {}
 
 /// All of an output that follows from positions is known.
-const POSITIONS: KnownOrders = KnownOrders { orders: 3, by_position: true };
+const POSITIONS: KnownOrders = counted_if(false);
+
+/// The same of an angle that is counted through whole turns, or is not.
+const fn counted_if(counted: bool) -> KnownOrders {
+    KnownOrders { orders: 3, by_position: true, counted }
+}
 
 /// Known orders of a quantity that moves: the first `orders` of value, rate and acceleration.
 fn moving(orders: usize) -> KnownOrders {
-    KnownOrders { orders, by_position: false }
+    KnownOrders { orders, by_position: false, counted: false }
 }
 
 /// Builder of the descriptions of measures.
@@ -586,30 +628,22 @@ impl MeasureKind {
             | Self::Curvature { .. }
             | Self::Toe { .. }
             | Self::Camber { .. }
-            | Self::DriverForce { .. }
-            | Self::DriverPower { .. }
-            | Self::Reaction { .. }
-            | Self::SpringForce { .. }
-            | Self::KineticEnergy { .. }
-            | Self::ShakingForce { .. }
-            | Self::ShakingMoment { .. }
             | Self::Wheel { .. }
-            | Self::Axle { .. } => Vec::new(),
+            | Self::Axle { .. }
+            | loads!() => Vec::new(),
         }
     }
 
     /// True if it is a load: what drives the mechanism, or what its parts carry.
     pub fn is_load(&self) -> bool {
-        matches!(
-            self,
-            Self::DriverForce { .. }
-                | Self::DriverPower { .. }
-                | Self::Reaction { .. }
-                | Self::SpringForce { .. }
-                | Self::KineticEnergy { .. }
-                | Self::ShakingForce { .. }
-                | Self::ShakingMoment { .. }
-        )
+        match self {
+            loads!() => true,
+            of_bodies!()
+            | Self::Slope { .. }
+            | Self::Compliance { .. }
+            | Self::Wheel { .. }
+            | Self::Axle { .. } => false,
+        }
     }
 }
 
@@ -844,6 +878,8 @@ pub struct KnownOrders {
     pub orders: usize,
     /// True if it follows from positions alone: then it has second design derivatives, and slopes.
     pub by_position: bool,
+    /// True if it is an angle that is counted through whole turns along the motion.
+    pub counted: bool,
 }
 
 impl Model {
@@ -861,7 +897,7 @@ impl Model {
             MeasureKind::Slope { .. } => true,
             MeasureKind::Wheel { what, .. } => what.needs().depends_on_driver(),
             MeasureKind::Axle { what, .. } => what.depends_on_driver(),
-            _ => false,
+            of_bodies!() | loads!() | MeasureKind::Compliance { .. } => false,
         }
     }
 
@@ -913,7 +949,19 @@ impl Model {
                     Ray::Fixed { body, axis } => Some((body, axis)),
                     Ray::Between(_) => None,
                 }),
-            _ => [None; 2],
+            MeasureKind::Coordinate { .. }
+            | MeasureKind::Distance { .. }
+            | MeasureKind::Coordinates { .. }
+            | MeasureKind::Orientation { .. }
+            | MeasureKind::Velocity { .. }
+            | MeasureKind::AngularVelocity { .. }
+            | MeasureKind::Acceleration { .. }
+            | MeasureKind::Curvature { .. }
+            | MeasureKind::Rate { .. }
+            | MeasureKind::Slope { .. }
+            | MeasureKind::Combination { .. }
+            | MeasureKind::Compliance { .. }
+            | loads!() => [None; 2],
         }
     }
 }

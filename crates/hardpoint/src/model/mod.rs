@@ -32,11 +32,11 @@ pub use element::{
 };
 pub(crate) use element::{each_number, elements, if_mass};
 pub use formula::{Formula, NamedNumber, Source, Target};
-pub(crate) use measure::measures;
 pub use measure::{
     Combination, Dimension, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource, Ray,
     ReactionPart,
 };
+pub(crate) use measure::{loads, measures, of_bodies};
 pub use measured::{Measurements, Reading};
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};

@@ -221,8 +221,8 @@ enum Requested {
 /// Index of the measure of an output that is a load; `None` otherwise.
 fn load_of(model: &Model, output: &Output) -> Option<usize> {
     match output.source {
-        OutputSource::Measure(m) if model.measures[m].kind.is_load() => Some(m),
-        _ => None,
+        OutputSource::Measure(m) => model.measures[m].kind.is_load().then_some(m),
+        OutputSource::Point(..) => None,
     }
 }
 

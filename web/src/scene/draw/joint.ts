@@ -1,5 +1,5 @@
 import { Group, type Object3D } from 'three'
-import type { JointMark } from '../../payload'
+import type { JointKind, JointMark } from '../../payload'
 import type { Drawable } from '../drawable'
 import type { Kit } from '../kit'
 import type { Mechanism } from '../mechanism'
@@ -24,7 +24,7 @@ export type Piece = Omit<Drawable, 'part'>
 /** Drawing of a kind of joint. */
 export type DrawJoint = (mechanism: Mechanism, kit: Kit, joint: JointMark, index: number) => Piece[]
 
-const KINDS: Record<string, DrawJoint> = {
+const KINDS: Record<JointKind, DrawJoint> = {
   revolute: hinge,
   spherical,
   universal,
@@ -42,14 +42,19 @@ const KINDS: Record<string, DrawJoint> = {
   revolute_spherical: massless,
   dot2: onPlane,
   fixed: weld,
+  orientation: otherJoint,
+  parallel: otherJoint,
+  dot1: otherJoint,
+  angle: otherJoint,
+  travel: otherJoint,
+  heading: otherJoint,
 }
 
-/** Every joint by its kind; one of a kind that is not known has a neutral mark. */
+/** Every joint by its kind. */
 export function joints(mechanism: Mechanism, kit: Kit): Drawable[] {
   return mechanism.report.joints.flatMap((joint, index) => {
-    const draw = Object.hasOwn(KINDS, joint.kind) ? KINDS[joint.kind] : otherJoint
     const part = jointPart(mechanism, index)
-    return draw(mechanism, kit, joint, index).map((piece) => ({ ...piece, part }))
+    return KINDS[joint.kind](mechanism, kit, joint, index).map((piece) => ({ ...piece, part }))
   })
 }
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use hardpoint::draft::{ElementType, FieldKind};
+use hardpoint::draft::{ElementType, FieldKind, MeasureType};
 use hardpoint::joint;
 use hardpoint::joint::{CoordinateAxis, CoordinateType, JointType, VectorKind};
 use hardpoint::model::{ElementUnit, WheelMeasure};
@@ -20,9 +20,6 @@ use crate::tree::{Value, axis_named};
 use crate::walk::{list_of, table_of};
 
 use super::{Opposites, Rule, each, turn_sign};
-
-/// Measures whose `along` is an axis of rotation.
-const TURNING_MEASURES: [&str; 2] = ["angular_velocity", "shaking_moment"];
 
 /// The other side under construction.
 pub(super) struct Side<'m, 'a> {
@@ -82,12 +79,12 @@ impl<'a> Side<'_, 'a> {
     fn mirror(&mut self, section: &str, of: Shape, name: &str, value: &mut Value<'a>) -> bool {
         let entry = value.get_ref().as_table();
         let joint = entry.filter(|_| section == "joints").and_then(type_of);
-        let is_turning = entry.and_then(|t| word(t, "type")).is_some_and(|t| TURNING_MEASURES.contains(&t));
+        let measure = entry.and_then(|t| word(t, "type")).and_then(MeasureType::named);
         let turns = move |key: &str| match (section, key) {
             (_, "about" | "rotate" | "turn") => true,
             ("joints", "axis") => joint.is_some_and(|t| t.vector_kinds[0] == VectorKind::Axial),
             ("joints", "axis2") => joint.is_some_and(|t| t.vector_kinds[1] == VectorKind::Axial),
-            ("measures", "along") => is_turning,
+            ("measures", "along") => measure.is_some_and(|t| t.vector_kind == VectorKind::Axial),
             _ => false,
         };
         let first = |value: &Value<'a>| {

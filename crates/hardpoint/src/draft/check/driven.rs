@@ -1,6 +1,7 @@
 //! Checks of driven quantities: a coordinate of a joint, or of an unnamed joint made for the driver.
 
 use crate::constraint::Row;
+use crate::draft::measure::not_drivable;
 use crate::draft::{
     DirectionDraft, DraftLocation, DrivenDraft, DriverDraft, MeasureKindDraft, PointRef, RayDraft, Section,
 };
@@ -231,7 +232,7 @@ impl Checker<'_> {
                 }
             }
             MeasureKindDraft::Angle { .. } => self.report_not_drivable(d, name, "angle", &at),
-            _ => self.report_not_drivable(d, name, "type", &at),
+            not_drivable!() => self.report_not_drivable(d, name, "type", &at),
         }
     }
 

@@ -1,0 +1,263 @@
+//! Evaluation of all outputs over a motion: by a program where there is one, else by the formulas.
+
+use std::ops::Range;
+
+use hardpoint_tape::LANES;
+
+use crate::design::{BodyFixed, DesignMap};
+use crate::law::Law;
+use crate::model::{Model, VariableId};
+use crate::motion::Motion;
+use crate::number::{Dual, Jet, Rates};
+use crate::sensitivity::{Admissibility, Sensitivities};
+use crate::space::Pose;
+use crate::topology::Topology;
+
+use super::StepValues;
+use super::bodies::{with_rates, with_sensitivity};
+use super::formulas::{Instant, bodies_asked_for, is_formula};
+use super::program::{MeasureProgram, MeasureRun};
+use super::storage::{MeasureResults, Output, dense, outputs};
+use super::turns::{Turns, placed_turns, unwrap_angles};
+
+/// The design whose motion is measured.
+pub(crate) struct MeasuredDesign<'a> {
+    pub model: &'a Model,
+    pub design_map: &'a DesignMap<'a>,
+    /// The variables' values.
+    pub values: &'a [f64],
+    /// The drivers' laws.
+    pub laws: &'a [Law],
+}
+
+/// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for; by a
+/// program, if there is one, but for what it cannot tell.
+pub(crate) fn evaluate(
+    design: &MeasuredDesign<'_>,
+    topology: &Topology,
+    (motion, sensitivities): (&Motion, &Sensitivities),
+    slopes: &StepValues,
+    program: Option<&MeasureProgram>,
+    measured: &mut MeasureResults,
+) {
+    let &MeasuredDesign { model, values, .. } = design;
+    make_room(model, sensitivities, motion.len(), program, measured);
+    let mut run = program.map(|program| MeasureRun::new(program, values));
+    let mut formulas = FormulaEvaluator::new(design, topology, motion, slopes, measured);
+    for first in (0..motion.len()).step_by(LANES) {
+        let times = first..usize::min(first + LANES, motion.len());
+        let asked = loop {
+            if let Some(run) = &mut run {
+                // Eight output times at once; what the program cannot tell is listed, and asked of the formulas one by
+                // one.
+                run.at(first, motion, sensitivities, measured);
+            }
+            let asked = formulas.fill(times.clone(), run.as_ref(), measured);
+            // The program went by the turns of the output time before.
+            let turns = |m: usize, k: usize| formulas.counted[k * model.measures.len() + m];
+            if !run.as_mut().is_some_and(|run| run.take_turns(times.clone(), turns)) {
+                break asked;
+            }
+        };
+        measured.by_formula += times.len() * asked;
+        if let Some(run) = &mut run {
+            run.turns().for_each(|(_, lanes)| *lanes = [lanes[LANES - 1]; LANES]);
+        }
+    }
+    let FormulaEvaluator { left, counted, .. } = formulas;
+    let more = Context { slopes, whole_turns: &counted };
+    let outputs = measured.outputs.clone();
+    derivatives(design, &outputs, &left, (motion, sensitivities), &more, |k, b, m, numbers| {
+        measured.set_d(k, VariableId(b), m, numbers);
+    });
+}
+
+/// Room for all outputs of a motion of that many steps, as a program lays them out, if there is one.
+fn make_room(
+    model: &Model,
+    sensitivities: &Sensitivities,
+    steps: usize,
+    program: Option<&MeasureProgram>,
+    measured: &mut MeasureResults,
+) {
+    let outputs = outputs(model);
+    let variables = sensitivities.variables;
+    let layout = program.map_or_else(|| dense(outputs.len(), variables), MeasureProgram::layout);
+    measured.shape(outputs, variables, layout, steps);
+    let cannot_follow =
+        |b: &usize| matches!(sensitivities.admissibility[*b], Admissibility::CannotFollow { .. });
+    measured.forget((0..variables).filter(cannot_follow));
+}
+
+/// The formulas of the outputs, at work on one motion.
+struct FormulaEvaluator<'a> {
+    model: &'a Model,
+    laws: &'a [Law],
+    motion: &'a Motion,
+    slopes: &'a StepValues,
+    fixed: BodyFixed<Rates>,
+    /// The bodies that measures name, and where they are.
+    bodies: Vec<usize>,
+    poses: Vec<Pose<Rates>>,
+    /// Per output: what indicates its turns, if it is an angle that has any.
+    turns: Vec<Option<Turns>>,
+    /// True if any measure is a formula over angles that are counted through turns.
+    counts: bool,
+    /// Blocks of output times, and outputs there, that the formulas themselves are requested.
+    left: Vec<(usize, usize)>,
+    /// By time and measure, where any counts: the whole turns.
+    counted: Vec<f64>,
+    /// Room for the slopes and the whole turns of one output time.
+    given: Vec<Rates>,
+    whole_turns: Vec<Rates>,
+}
+
+impl<'a> FormulaEvaluator<'a> {
+    fn new(
+        design: &MeasuredDesign<'a>,
+        topology: &Topology,
+        motion: &'a Motion,
+        slopes: &'a StepValues,
+        measured: &MeasureResults,
+    ) -> Self {
+        let &MeasuredDesign { model, design_map, values, laws } = design;
+        Self {
+            model,
+            laws,
+            motion,
+            slopes,
+            // Body-fixed data have no rates: all rates are in the poses.
+            fixed: design_map.fixed(values).map(Jet::constant),
+            bodies: bodies_asked_for(model),
+            poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],
+            turns: placed_turns(model, topology, motion, &measured.outputs),
+            counts: (0..model.measures.len()).any(|m| is_formula(model, m)),
+            left: Vec::new(),
+            counted: Vec::new(),
+            given: Vec::new(),
+            whole_turns: Vec::new(),
+        }
+    }
+
+    /// Evaluates what a program does not tell at these output times, which are a block of eight, and counts all angles
+    /// there; says how many outputs that are.
+    fn fill(
+        &mut self,
+        times: Range<usize>,
+        run: Option<&MeasureRun<'_>>,
+        measured: &mut MeasureResults,
+    ) -> usize {
+        let first = times.start;
+        let begins = self.left.partition_point(|(block, _)| *block < first);
+        self.left.truncate(begins);
+        self.counted.truncate(first * self.model.measures.len());
+        let fits = |m: &usize| run.is_some_and(|run| run.fits(*m, times.len()));
+        let model = self.model;
+        let is_given = |m: &usize| *m < model.measures.len() && model.depends_on_step(*m);
+        self.left.extend((0..self.turns.len()).filter(|m| !is_given(m) && !fits(m)).map(|m| (first, m)));
+        measured.take_given(first, self.slopes, run.is_some());
+        times.for_each(|k| self.fill_one(k, begins, measured));
+        self.left.len() - begins
+    }
+
+    /// The same at output time k, for the outputs that are left from `begins` on.
+    fn fill_one(&mut self, k: usize, begins: usize, measured: &mut MeasureResults) {
+        let Self { model, motion, fixed, bodies, poses, left, given, whole_turns, .. } = self;
+        let left = &left[begins..];
+        let place = |poses: &mut [Pose<Rates>]| {
+            let states = motion.at(k);
+            bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
+        };
+        if !left.is_empty() {
+            place(poses);
+        }
+        given.clear();
+        if !left.is_empty() {
+            given.extend(self.slopes.at(k).map(only));
+        }
+        let instant = Instant { slopes: given, ..Instant::new(model, fixed, poses) };
+        for &(_, m) in left {
+            measured.set(k, m, instant.output(measured.outputs[m].source).0);
+        }
+        whole_turns.clear();
+        whole_turns.resize(model.measures.len(), Jet([0.0; 3]));
+        unwrap_angles(self.laws, motion, k, &self.turns, measured, |m, whole| {
+            whole_turns[m].0[0] = whole;
+        });
+        if self.counts {
+            // The formula of measures asks for angles with their turns, so these are found first.
+            self.counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
+            let instant = Instant { whole_turns, ..instant };
+            for &(_, m) in left.iter().filter(|(_, m)| is_formula(model, *m)) {
+                measured.set(k, m, instant.measure(m).0);
+            }
+        }
+    }
+}
+
+/// Inputs of outputs besides the motion.
+pub(crate) struct Context<'a> {
+    /// Values of the measures that depend on a driver.
+    pub slopes: &'a StepValues,
+    /// By time and measure: the whole turns of its angle, rad; empty where no formula asks for them.
+    pub whole_turns: &'a [f64],
+}
+
+/// A number whose rates are not known.
+fn only(x: f64) -> Rates {
+    Jet([x, f64::NAN, f64::NAN])
+}
+
+/// Derivatives of some outputs by the variables that the mechanism follows: of those that are listed, in the order of
+/// blocks of eight output times that begin there. `out` is given output time, variable, output and the derivatives.
+///
+/// Evaluates variable by variable, so that body-fixed data are computed once for each.
+pub(crate) fn derivatives(
+    design: &MeasuredDesign<'_>,
+    outputs: &[Output],
+    listed: &[(usize, usize)],
+    (motion, sensitivities): (&Motion, &Sensitivities),
+    more: &Context<'_>,
+    mut out: impl FnMut(usize, usize, usize, [f64; 3]),
+) {
+    let &MeasuredDesign { model, design_map, values, .. } = design;
+    let bodies = bodies_asked_for(model);
+    let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
+    let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
+    let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
+    for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
+        // d/db of what is fixed in the bodies; that of the poses is W at this time, by `with_sensitivity`.
+        values[b] = Dual::variable(values[b].v);
+        let fixed = design_map.fixed(&values);
+        let fixed = fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
+        values[b] = Dual::constant(values[b].v);
+        for listed in listed.chunk_by(|a, b| a.0 == b.0) {
+            let first = listed[0].0;
+            for k in first..usize::min(first + LANES, motion.len()) {
+                let Some(d) = sensitivities.at(k, b) else { break };
+                let states = motion.at(k);
+                bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
+                given.clear();
+                let both = more.slopes.at(k).zip(more.slopes.d(k, b));
+                // A measure by a driver has a value and its derivative by b, but no rates.
+                given.extend(both.map(|(x, d)| Dual { v: only(x), d: only(d) }));
+                let turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
+                whole_turns.clear();
+                whole_turns.extend(
+                    turns
+                        .iter()
+                        .take(model.measures.len())
+                        .map(|turns| Dual::constant(Rates::constant(*turns))),
+                );
+                let instant = Instant {
+                    slopes: &given,
+                    whole_turns: &whole_turns,
+                    ..Instant::new(model, &fixed, &poses)
+                };
+                for &(_, m) in listed {
+                    out(k, b, m, instant.output(outputs[m].source).d.0);
+                }
+            }
+        }
+    }
+}
