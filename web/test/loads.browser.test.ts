@@ -5,7 +5,7 @@ import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
 import { launch, visit, type Visit } from './browser'
 
 const { models } = inject('samples')
-const ARROWS = 'arrows of forces'
+const ARROWS = 'Force arrows'
 /** The page shows that many digits of a force, and keeps it as a number of 24 bits. */
 const SHOWN = 6e-4
 
