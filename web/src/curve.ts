@@ -49,9 +49,9 @@ export function padded(low: number | null, high: number | null): [number, number
   if (low === null || high === null) return [-1, 1]
   const size = Math.max(Math.abs(low), Math.abs(high))
   const flat = high - low <= RESOLUTION * size
-  const least = size > 0 ? (flat ? FLAT : RESOLUTION) * size : 2
+  const minimum = size > 0 ? (flat ? FLAT : RESOLUTION) * size : 2
   const middle = (low + high) / 2
-  const half = 0.56 * Math.max(high - low, least)
+  const half = 0.56 * Math.max(high - low, minimum)
   return [middle - half, middle + half]
 }
 
@@ -88,8 +88,8 @@ export function slope(y: readonly [Curve, Curve, Curve], x: readonly [Curve, Cur
  * hardly moves `x`.
  */
 export function slopeAlone(y: Curve, x: Curve): Curve {
-  const least = peak(x) * TURNS
-  return y.map((value, k) => (Math.abs(x[k]) > least ? value / x[k] : NaN))
+  const minimum = peak(x) * TURNS
+  return y.map((value, k) => (Math.abs(x[k]) > minimum ? value / x[k] : NaN))
 }
 
 /** A sensitivity at a fixed abscissa rather than a fixed time: `dy - slope dx`. */

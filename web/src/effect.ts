@@ -32,8 +32,8 @@ export function effects(report: Report, quantity: number, order: Order): Effect[
     kinds.map((name) => [name, Math.max(...found.filter((item) => kind(item) === name).map(size))]),
   )
   for (const item of found) {
-    const most = largest.get(kind(item)) ?? 0
-    item.share = most > 0 ? rounded(size(item) / most) : 0
+    const maximum = largest.get(kind(item)) ?? 0
+    item.share = maximum > 0 ? rounded(size(item) / maximum) : 0
   }
   return found.sort(
     (a, b) =>

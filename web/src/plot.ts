@@ -218,9 +218,9 @@ export class Plot {
       this.content.part ?? (over ? padded(low, high) : [low, high])
     // uPlot finds whole steps only, and over another quantity among all of them.
     const upright = (low: number | null, high: number | null) => {
-      const [least, most] = (this.content.part && this.#ordinates()) ?? [low, high]
-      if (logarithmic) return decades(least, most)
-      const range = padded(...reaching(least, most, content))
+      const [minimum, maximum] = (this.content.part && this.#ordinates()) ?? [low, high]
+      if (logarithmic) return decades(minimum, maximum)
+      const range = padded(...reaching(minimum, maximum, content))
       return this.overlay?.reach(...range) ?? range
     }
     const abscissa = over ? titled(over.label, over.unit) : titled('time', units.time)

@@ -214,7 +214,7 @@ describe('without WebGL', () => {
     const browser = await launch(NO_3D)
     try {
       const { page, complaints } = await visit(browser, whole)
-      expect(await text(page, 'no-webgl')).toContain('no WebGL')
+      expect(await text(page, 'no-webgl')).toContain('needs WebGL')
       expect((await curve(page, 'plot-0')).colours).toBeGreaterThan(10)
       const before = await text(page, 'plot-0')
       await scrub(page, 7)

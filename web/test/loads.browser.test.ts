@@ -5,7 +5,7 @@ import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
 import { launch, visit, type Visit } from './browser'
 
 const { models } = inject('samples')
-const ARROWS = 'arrows of forces'
+const ARROWS = 'Force arrows'
 /** Number of shown digits of a force, which is stored with 24 bits. */
 const SHOWN = 6e-4
 

@@ -10,11 +10,11 @@ export interface Change {
  * where both have the same number of lines there. A line break counts one.
  */
 export function changes(before: readonly string[], after: readonly string[]): Change[] {
-  const least = Math.min(before.length, after.length)
+  const minimum = Math.min(before.length, after.length)
   let head = 0
-  while (head < least && before[head] === after[head]) head++
+  while (head < minimum && before[head] === after[head]) head++
   let tail = 0
-  while (tail < least - head && before.at(-1 - tail) === after.at(-1 - tail)) tail++
+  while (tail < minimum - head && before.at(-1 - tail) === after.at(-1 - tail)) tail++
   const [old, made] = [before.slice(head, before.length - tail), after.slice(head, after.length - tail)]
   let at = before.slice(0, head).reduce((sum, line) => sum + line.length + 1, 0)
   if (old.length === made.length) {
@@ -31,10 +31,10 @@ export function changes(before: readonly string[], after: readonly string[]): Ch
 }
 
 function within(before: string, after: string, at: number): Change {
-  const least = Math.min(before.length, after.length)
+  const minimum = Math.min(before.length, after.length)
   let head = 0
-  while (head < least && before[head] === after[head]) head++
+  while (head < minimum && before[head] === after[head]) head++
   let tail = 0
-  while (tail < least - head && before.at(-1 - tail) === after.at(-1 - tail)) tail++
+  while (tail < minimum - head && before.at(-1 - tail) === after.at(-1 - tail)) tail++
   return { from: at + head, to: at + before.length - tail, insert: after.slice(head, after.length - tail) }
 }

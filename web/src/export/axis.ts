@@ -36,9 +36,9 @@ export function logarithmicAxis([low, high]: [number, number], from: number, to:
 }
 
 /** The nearest of 1, 2 and 5 times a power of ten that is not below. */
-export function roundStep(least: number): number {
-  const power = 10 ** Math.floor(Math.log10(least))
-  return ([1, 2, 5].find((lead) => lead * power >= least * (1 - 1e-9)) ?? 10) * power
+export function roundStep(minimum: number): number {
+  const power = 10 ** Math.floor(Math.log10(minimum))
+  return ([1, 2, 5].find((lead) => lead * power >= minimum * (1 - 1e-9)) ?? 10) * power
 }
 
 /** Minimum and maximum of the numbers; undefined if there are none. */

@@ -18,22 +18,22 @@ export function forceAt(force: Curve, step: number): Vector3 {
 
 /** The largest of some forces over the motion, N; 0 where nothing is known. */
 export function largestForce(loads: Load[]): number {
-  let most = 0
+  let maximum = 0
   for (const { force } of loads) {
     for (let k = 0; k < force.length; k += 3) {
       const size = Math.hypot(force[k], force[k + 1], force[k + 2])
-      if (size > most) most = size
+      if (size > maximum) maximum = size
     }
   }
-  return most
+  return maximum
 }
 
 /** When a force is largest: a step. */
 export function largestAt(force: Curve): number {
-  let [most, at] = [-1, 0]
+  let [maximum, at] = [-1, 0]
   for (let k = 0; k < force.length / 3; k++) {
     const size = Math.hypot(force[3 * k], force[3 * k + 1], force[3 * k + 2])
-    if (size > most) [most, at] = [size, k]
+    if (size > maximum) [maximum, at] = [size, k]
   }
   return at
 }

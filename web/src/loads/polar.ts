@@ -151,9 +151,9 @@ class Polar {
     this.#path = present ? of(present.loads[index], present.poses[body]) : changed ? [] : loaded()
     const before = !isCompared ? [] : former ? of(former.loads[index], former.poses[body]) : loaded()
     const sizes = [...this.#path, ...before].map(([x, y]) => Math.hypot(x, y)).filter(Number.isFinite)
-    const most = sizes.reduce((a, b) => Math.max(a, b), 0)
-    const step = most > 0 ? roundStep(most / RINGS) : 1
-    const rings = Math.max(1, Math.ceil(most / step - 1e-9))
+    const maximum = sizes.reduce((a, b) => Math.max(a, b), 0)
+    const step = maximum > 0 ? roundStep(maximum / RINGS) : 1
+    const rings = Math.max(1, Math.ceil(maximum / step - 1e-9))
     const [middle, radius] = [SIZE / 2, SIZE / 2 - ROOM]
     this.#scale = radius / (rings * step)
     const title = `Force of ${load.name} on ${report.bodies[body].name}, N`
@@ -246,12 +246,12 @@ class Polar {
     const { report, present, changed } = this.state
     const rows = report.loads.map((load, k) => {
       const force = present ? present.loads[k] : changed ? undefined : load.force
-      const most = force ? largestForce([{ ...load, force }]) : NaN
+      const maximum = force ? largestForce([{ ...load, force }]) : NaN
       const cells = [
         load.name,
         report.bodies[load.at.body].name,
-        most > 0 ? number(most, 4) : '–',
-        most > 0 ? number(valueAt(report.times, largestAt(force!)), 4) : '–',
+        maximum > 0 ? number(maximum, 4) : '–',
+        maximum > 0 ? number(valueAt(report.times, largestAt(force!)), 4) : '–',
       ]
       return el(
         'tr',
@@ -266,11 +266,11 @@ class Polar {
   #point(event: PointerEvent): void {
     const box = this.#picture.getBoundingClientRect()
     const [px, py] = [((event.clientX - box.left) / box.width) * SIZE, ((event.clientY - box.top) / box.height) * SIZE]
-    let [best, least] = [-1, REACH]
+    let [best, minimum] = [-1, REACH]
     this.#path.forEach((at, k) => {
       const [x, y] = this.#pixels(at)
       const distance = Math.hypot(x - px, y - py)
-      if (distance < least) [best, least] = [k, distance]
+      if (distance < minimum) [best, minimum] = [k, distance]
     })
     if (best < 0) return
     this.state.pause()

@@ -239,11 +239,11 @@ class DriverMap {
 function shades(values: ArrayLike<number>, at: number[]): (band: number) => string {
   const scale = new Scale()
   const [low, high] = extent([values]) ?? [0, 0]
-  const most = Math.max(Math.abs(low), Math.abs(high)) || 1
+  const maximum = Math.max(Math.abs(low), Math.abs(high)) || 1
   const edges = [low, ...at, high]
   return (band) => {
     const middle = (edges[band] + edges[band + 1]) / 2
-    return scale.of(low < 0 && high > 0 ? middle / most : high > low ? (middle - low) / (high - low) : 0)
+    return scale.of(low < 0 && high > 0 ? middle / maximum : high > low ? (middle - low) / (high - low) : 0)
   }
 }
 

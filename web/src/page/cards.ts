@@ -90,9 +90,9 @@ function miss(value: number, [low, high]: Target): number {
 function showTarget(scale: HTMLElement, target: Target, now: number | null): string {
   const [low, high] = target
   const ends = [low, high, now].filter((end) => end !== null)
-  const [least, most] = [Math.min(...ends), Math.max(...ends)]
-  const room = (most - least || Math.abs(most) || 1) * 0.35
-  const at = (value: number) => `${(100 * (value - least + room)) / (most - least + 2 * room)}%`
+  const [minimum, maximum] = [Math.min(...ends), Math.max(...ends)]
+  const room = (maximum - minimum || Math.abs(maximum) || 1) * 0.35
+  const at = (value: number) => `${(100 * (value - minimum + room)) / (maximum - minimum + 2 * room)}%`
   scale.style.setProperty('--from', low === null ? '0%' : at(low))
   scale.style.setProperty('--to', high === null ? '100%' : at(high))
   scale.style.setProperty('--tick', now === null ? '-10%' : at(now))

@@ -183,8 +183,8 @@ function atAbscissa({ sensitivityReport: report }: State, { quantity, order, ove
 /** Among several moving drivers, the one that moves the quantity most. */
 function moverOf({ drivers }: Report, quantity: number): Driver | undefined {
   const reach = ({ alone, travel }: Driver) => {
-    const [least, most] = extent([travel]) ?? [0, 0]
-    return alone[quantity]?.length ? peak(alone[quantity]) * (most - least) : 0
+    const [minimum, maximum] = extent([travel]) ?? [0, 0]
+    return alone[quantity]?.length ? peak(alone[quantity]) * (maximum - minimum) : 0
   }
   const [first] = [...drivers].sort((a, b) => reach(b) - reach(a))
   return first && reach(first) > 0 ? first : undefined

@@ -19,10 +19,10 @@ export function outermost(points: Vector3[]): Vector3[] {
   if (points.length <= DIRECTIONS) return points
   const found = new Set<Vector3>()
   for (const { x, y, z } of directions) {
-    let [farthest, most] = [points[0], -Infinity]
+    let [farthest, maximum] = [points[0], -Infinity]
     for (const point of points) {
       const reach = point.x * x + point.y * y + point.z * z
-      if (reach > most) [farthest, most] = [point, reach]
+      if (reach > maximum) [farthest, maximum] = [point, reach]
     }
     found.add(farthest)
   }

@@ -92,7 +92,10 @@ export function fit(
   // Upper limit of the picture: -1 to 1 is all of it.
   const ceiling = 1 - (2 * top) / height
   const bound = (measure: (x: number, y: number, z: number) => number) =>
-    points.reduce((most, point) => Math.max(most, measure(point.dot(right), point.dot(up), point.dot(back))), -Infinity)
+    points.reduce(
+      (maximum, point) => Math.max(maximum, measure(point.dot(right), point.dot(up), point.dot(back))),
+      -Infinity,
+    )
   const nearest = bound((_, __, z) => z)
   const middle = (nearest - bound((_, __, z) => -z)) / 2
   const tangent = camera instanceof PerspectiveCamera ? Math.tan((camera.fov * Math.PI) / 360) : 0

@@ -50,10 +50,10 @@ function planeThrough(points: Vector3[]): Basis {
 }
 
 /** True if a body of the former design is anywhere else, or of another form, at any of the moments. */
-export function differs(present: Mechanism, former: Mechanism, body: number, least: number): boolean {
+export function differs(present: Mechanism, former: Mechanism, body: number, minimum: number): boolean {
   const [now, was] = [present, former].map((mechanism) => mechanism.shapePoints(body))
   if (now.length !== was.length) return true
   return present.moments.some((step) =>
-    now.some((point, k) => present.worldAt(body, point, step).distanceTo(former.worldAt(body, was[k], step)) > least),
+    now.some((point, k) => present.worldAt(body, point, step).distanceTo(former.worldAt(body, was[k], step)) > minimum),
   )
 }

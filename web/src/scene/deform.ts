@@ -9,9 +9,9 @@ const AT = 1e-9
  * near them.
  */
 export function deformed(positions: Float32Array, from: Vector3[], to: Vector3[]): Float32Array {
-  const ways = from.map((point, k) => to[k].clone().sub(point))
+  const directions = from.map((point, k) => to[k].clone().sub(point))
   const moved = positions.slice()
-  if (ways.every((way) => way.lengthSq() === 0)) return moved
+  if (directions.every((direction) => direction.lengthSq() === 0)) return moved
   const size = Math.max(...from.map((point) => point.lengthSq()), 1e-30)
   for (let k = 0; k < positions.length; k += 3) {
     const sum = [0, 0, 0]
@@ -21,9 +21,9 @@ export function deformed(positions: Float32Array, from: Vector3[], to: Vector3[]
         (positions[k] - from[i].x) ** 2 + (positions[k + 1] - from[i].y) ** 2 + (positions[k + 2] - from[i].z) ** 2
       const weight = 1 / Math.max(squared, AT * AT * size)
       weights += weight
-      sum[0] += weight * ways[i].x
-      sum[1] += weight * ways[i].y
-      sum[2] += weight * ways[i].z
+      sum[0] += weight * directions[i].x
+      sum[1] += weight * directions[i].y
+      sum[2] += weight * directions[i].z
     }
     for (let axis = 0; axis < 3; axis++) moved[k + axis] += sum[axis] / weights
   }

@@ -112,11 +112,11 @@ export function area(outline: Flat[]): number {
 /** The two of the points that are farthest from each other. */
 export function farthest<T>(points: T[], distance: (a: T, b: T) => number): [T, T] {
   let best: [T, T] = [points[0], points[0]]
-  let most = -1
+  let maximum = -1
   points.forEach((a, k) => {
     for (const b of points.slice(k + 1)) {
       const separation = distance(a, b)
-      if (separation > most) [most, best] = [separation, [a, b]]
+      if (separation > maximum) [maximum, best] = [separation, [a, b]]
     }
   })
   return best

@@ -99,8 +99,8 @@ export function restOf(mechanism: Mechanism, body: number, at: Vector3): Vector3
 
 /** Unit vector in a body's frame from a point on it to its other points; `otherwise` if there are none. */
 export function towardsRest(mechanism: Mechanism, body: number, at: Vector3, otherwise: Vector3): Vector3 {
-  const way = restOf(mechanism, body, at).sub(at)
+  const direction = restOf(mechanism, body, at).sub(at)
   const shaft = shaftAxis(mechanism, body)
-  if (shaft) return shaft.multiplyScalar(Math.sign(shaft.dot(way)) || 1)
-  return way.length() > 1e-6 * mechanism.size ? way.normalize() : otherwise.clone()
+  if (shaft) return shaft.multiplyScalar(Math.sign(shaft.dot(direction)) || 1)
+  return direction.length() > 1e-6 * mechanism.size ? direction.normalize() : otherwise.clone()
 }

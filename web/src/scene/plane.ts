@@ -23,7 +23,7 @@ export function planeOf(report: Report, sweep: Vector3[], size: number): Vector3
 
 /** x and z point to the viewer, y away: in the plane xz, z points up and x to the right. */
 function towardsReader({ x, y, z }: Vector3): number {
-  const most = Math.max(Math.abs(x), Math.abs(y), Math.abs(z))
-  if (Math.abs(z) === most) return Math.sign(z)
-  return Math.abs(y) === most ? -Math.sign(y) : Math.sign(x)
+  const maximum = Math.max(Math.abs(x), Math.abs(y), Math.abs(z))
+  if (Math.abs(z) === maximum) return Math.sign(z)
+  return Math.abs(y) === maximum ? -Math.sign(y) : Math.sign(x)
 }

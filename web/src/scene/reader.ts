@@ -21,8 +21,8 @@ export function readerOf(moments: Vector3[][], size: number, backs: Vector3[] = 
     (1 + crowding(moments, corner, size)) * (1 + BEHIND * backs.filter((back) => back.dot(corner) > 0).length)
   const usual = cost(READER)
   const costs = OTHERS.map(cost)
-  const least = Math.min(...costs)
-  return (least < BETTER * usual ? OTHERS[costs.indexOf(least)] : READER).clone()
+  const minimum = Math.min(...costs)
+  return (minimum < BETTER * usual ? OTHERS[costs.indexOf(minimum)] : READER).clone()
 }
 
 /** Large where many joints lie closer to one another as seen along a direction than they are. */

@@ -37,33 +37,33 @@ export interface Arc {
 }
 
 /**
- * The arc of a hinge's travel: at least `least` long, as narrow as that allows. Whole turns have one head, in the sense
+ * The arc of a hinge's travel: at least `minimum` long, as narrow as that allows. Whole turns have one head, in the sense
  * of the turn.
  */
 export function arcOf(
   low: number,
   high: number,
   onwards: boolean,
-  least: number,
+  minimum: number,
   [narrow, wide]: [number, number],
 ): Arc {
   const swept = high - low
   if (swept > 2 * Math.PI - NEARLY) {
     return { radius: narrow, from: 0.5, to: 0.5 + WHOLE, heads: onwards ? 'last' : 'first' }
   }
-  const radius = Math.min(Math.max(narrow, swept > 0 ? least / swept : wide), wide)
-  const grow = Math.max(0, (least / radius - swept) / 2)
+  const radius = Math.min(Math.max(narrow, swept > 0 ? minimum / swept : wide), wide)
+  const grow = Math.max(0, (minimum / radius - swept) / 2)
   return { radius, from: low - grow, to: high + grow, heads: 'both' }
 }
 
 /** A range that is lengthened to both sides until it can be seen. */
-export function atLeast(low: number, high: number, least: number): [number, number] {
-  const grow = Math.max(0, (least - (high - low)) / 2)
+export function atLeast(low: number, high: number, minimum: number): [number, number] {
+  const grow = Math.max(0, (minimum - (high - low)) / 2)
   return [low - grow, high + grow]
 }
 
 /** Unit vector of the component of `direction` perpendicular to an axis; undefined if it is zero. */
-export function offAxis(direction: Vector3, axis: Vector3, least: number): Vector3 | undefined {
+export function offAxis(direction: Vector3, axis: Vector3, minimum: number): Vector3 | undefined {
   const rest = direction.clone().addScaledVector(axis, -direction.dot(axis))
-  return rest.length() > least ? rest.normalize() : undefined
+  return rest.length() > minimum ? rest.normalize() : undefined
 }

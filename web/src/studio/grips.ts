@@ -202,9 +202,9 @@ export class Grips {
     if (!event || !hold) return
     const sight = this.#sight(event)
     sight.origin.sub(hold.offset)
-    const way = followed(sight, hold.from, this.#direction, hold.turn, this.#facing())
-    if (!way) return
-    const place = hold.nominal.clone().add(way.applyQuaternion(hold.turn.clone().invert()))
+    const direction = followed(sight, hold.from, this.#direction, hold.turn, this.#facing())
+    if (!direction) return
+    const place = hold.nominal.clone().add(direction.applyQuaternion(hold.turn.clone().invert()))
     this.#moveTo(
       hold.shown,
       place,
@@ -269,8 +269,9 @@ export class Grips {
       if (!by) return
       const step = (this.#snap || NUDGE * this.#size) * (event.shiftKey ? 10 : 1)
       const before = placeOf(shown.grip, this.state.settings)
-      const way = new Vector3()
-      if (this.#direction.length === 1) way.setComponent(AXES.indexOf(this.#direction as 'x'), step * (by[0] + by[1]))
+      const direction = new Vector3()
+      if (this.#direction.length === 1)
+        direction.setComponent(AXES.indexOf(this.#direction as 'x'), step * (by[0] + by[1]))
       else {
         // The axis that is seen most in the direction of the key.
         const turn = this.#turn(shown)
@@ -278,17 +279,17 @@ export class Grips {
         const parts = AXES.map((_, k) => new Vector3().setComponent(k, 1).applyQuaternion(turn).dot(screen))
         const allowed = (k: number) => this.#direction === 'free' || this.#direction.includes(AXES[k])
         const axis = [0, 1, 2].filter(allowed).sort((a, b) => Math.abs(parts[b]) - Math.abs(parts[a]))[0]
-        way.setComponent(axis, step * Math.sign(parts[axis]) * (by[0] + by[1]))
+        direction.setComponent(axis, step * Math.sign(parts[axis]) * (by[0] + by[1]))
       }
-      this.#moveTo(shown, before.clone().add(way), 0, before)
+      this.#moveTo(shown, before.clone().add(direction), 0, before)
       this.onRelease()
     }
     event.preventDefault()
     event.stopPropagation()
   }
 
-  #setDirection(way: DragDirection): void {
-    this.#direction = way
+  #setDirection(direction: DragDirection): void {
+    this.#direction = direction
     this.#follow()
     this.#show()
   }
@@ -298,10 +299,10 @@ export class Grips {
   #refusal = el('p', { class: 'refusal', role: 'status', 'data-testid': 'refusal' })
   #mirrorField?: HTMLInputElement
 
-  #directionButton(way: DragDirection): HTMLButtonElement {
-    const title = way === 'free' ? 'In the plane of the screen' : `Along ${[...way].join(' and ')}`
-    const onclick = () => this.#setDirection(way)
-    return el('button', { type: 'button', 'data-testid': `way-${way}`, title, onclick }, way)
+  #directionButton(direction: DragDirection): HTMLButtonElement {
+    const title = direction === 'free' ? 'In the plane of the screen' : `Along ${[...direction].join(' and ')}`
+    const onclick = () => this.#setDirection(direction)
+    return el('button', { type: 'button', 'data-testid': `way-${direction}`, title, onclick }, direction)
   }
 
   #makePane(): void {
@@ -318,7 +319,7 @@ export class Grips {
     )
     const label = (text: string, field: HTMLElement, after = '') =>
       el('label', {}, el('span', {}, text), field, el('span', { class: 'unit' }, after))
-    this.#directionButtons = DRAG_DIRECTIONS.map((way) => this.#directionButton(way))
+    this.#directionButtons = DRAG_DIRECTIONS.map((direction) => this.#directionButton(direction))
     const snap = el(
       'select',
       { 'aria-label': 'Snap', 'data-testid': 'snap', onchange: () => (this.#snap = Number(snap.value)) },

@@ -58,7 +58,7 @@ export function thinned(curve: readonly Point[], off = OFF): Point[] {
   const away = curve.map(([x, y]) =>
     length === 0 ? Math.hypot(x - x0, y - y0) : Math.abs((x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)) / length,
   )
-  const farthest = away.reduce((most, distance, k) => (distance > away[most] ? k : most), 0)
+  const farthest = away.reduce((maximum, distance, k) => (distance > away[maximum] ? k : maximum), 0)
   if (away[farthest] <= off) return [curve[0], curve.at(-1)!]
   return [...thinned(curve.slice(0, farthest + 1), off).slice(0, -1), ...thinned(curve.slice(farthest), off)]
 }

@@ -268,7 +268,7 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
   const searched = variables.map(variableRow)
   const wanted = goals.map(goalRow)
   const from = whole('Starts', starts, 1, 100_000, 'optimise-starts')
-  const most = whole('Maximum iterations', iterations, 1, 100_000, 'optimise-iterations')
+  const maximum = whole('Maximum iterations', iterations, 1, 100_000, 'optimise-iterations')
   return {
     elements: [
       group(
@@ -308,7 +308,7 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
             ),
           ]
         : []),
-      el('div', { class: 'settings' }, from.element, most.element),
+      el('div', { class: 'settings' }, from.element, maximum.element),
     ],
     request: () => {
       const [chosen, aims] = [searched.filter(({ chosen }) => chosen()), wanted.filter(({ chosen }) => chosen())]
@@ -318,7 +318,7 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
         variables: chosen.map(({ value }) => value()),
         goals: aims.map(({ value }) => value()),
         starts: from.value(),
-        iterations: most.value(),
+        iterations: maximum.value(),
       }
       return (
         [...asked.variables, ...asked.goals, asked.starts, asked.iterations].find((part) => typeof part === 'string') ??
@@ -480,14 +480,14 @@ function choose(
 function whole(
   title: string,
   value: number,
-  least: number,
-  most: number,
+  minimum: number,
+  maximum: number,
   testId: string,
 ): { element: HTMLElement; value: () => number | string } {
   const input = el('input', {
     type: 'number',
-    min: least,
-    max: most,
+    min: minimum,
+    max: maximum,
     step: 1,
     value,
     required: true,
@@ -495,6 +495,7 @@ function whole(
   })
   return {
     element: el('label', {}, title, ' ', input),
-    value: () => (input.checkValidity() ? input.valueAsNumber : `${title}: a whole number from ${least} to ${most}.`),
+    value: () =>
+      input.checkValidity() ? input.valueAsNumber : `${title}: a whole number from ${minimum} to ${maximum}.`,
   }
 }

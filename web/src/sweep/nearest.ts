@@ -14,11 +14,11 @@ export function nearest(
   reach: number,
 ): number | undefined {
   let best: number | undefined
-  let least = reach
+  let minimum = reach
   for (const k of points) {
     const [a, b] = at(k)
     const distance = Math.hypot(a - x, b - y)
-    if (distance < least) [best, least] = [k, distance]
+    if (distance < minimum) [best, minimum] = [k, distance]
   }
   return best
 }

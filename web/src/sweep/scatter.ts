@@ -179,8 +179,8 @@ class Scatter {
   #renderBars(): void {
     const of = Number(this.#y.value)
     const indices = this.sweep.indices.filter(({ metric }) => metric === of).sort((a, b) => b.total[0] - a.total[0])
-    const most = Math.max(1, ...indices.map(({ total }) => total[0] + total[1]))
-    const part = (share: number) => `${(100 * Math.min(Math.max(share / most, 0), 1)).toFixed(2)}%`
+    const maximum = Math.max(1, ...indices.map(({ total }) => total[0] + total[1]))
+    const part = (share: number) => `${(100 * Math.min(Math.max(share / maximum, 0), 1)).toFixed(2)}%`
     const rows = indices.flatMap(({ variable, first, total }) => [
       el('span', {}, this.sweep.axes[variable].name),
       el(

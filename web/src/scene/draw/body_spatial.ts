@@ -43,7 +43,7 @@ export function spatialBody(mechanism: Mechanism, kit: Kit, body: number): Objec
   const length = along.length()
   along.divideScalar(length)
   const aside = (p: Vector3) => p.clone().sub(a).cross(along)
-  const widest = points.reduce((most, p) => (aside(p).length() > aside(most).length() ? p : most))
+  const widest = points.reduce((maximum, p) => (aside(p).length() > aside(maximum).length() ? p : maximum))
   if (aside(widest).length() < STRAIGHT * length) return straight(mechanism, kit, body, a, b)
   const normal = aside(widest).normalize()
   if (points.every((p) => Math.abs(p.clone().sub(a).dot(normal)) < FLAT * length))

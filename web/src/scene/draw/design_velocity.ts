@@ -40,8 +40,8 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
       overlay: true,
     }
   })
-  const most = longest(variable.arrows.map(({ turn }) => turn))
-  const turning = variable.arrows.filter(({ turn }) => rounded(Math.hypot(...turn), most) > 0)
+  const maximum = longest(variable.arrows.map(({ turn }) => turn))
+  const turning = variable.arrows.filter(({ turn }) => rounded(Math.hypot(...turn), maximum) > 0)
   const rings = onePerPlace(mechanism, turning).map(({ body, at, turn }): Drawable => {
     const place = turnedAt(mechanism, body, placeOf(mechanism, body, at)).add(
       mechanism.lift(body, mechanism.topLayer + 3),
@@ -63,9 +63,9 @@ export const designVelocity: Draw = (mechanism, kit, choice) => {
 
 /** Change of a variable at which its arrows have the length of the displacements; undefined if no hardpoint moves. */
 export function shownChange(mechanism: Mechanism, { arrows }: Variable): number | undefined {
-  const most = longest(arrows.map(({ v }) => v))
-  return most > STILL * mechanism.size * longest(arrows.map(({ turn }) => turn))
-    ? longestArrow(mechanism) / most
+  const maximum = longest(arrows.map(({ v }) => v))
+  return maximum > STILL * mechanism.size * longest(arrows.map(({ turn }) => turn))
+    ? longestArrow(mechanism) / maximum
     : undefined
 }
 
@@ -87,8 +87,8 @@ function moving(
   change: number,
 ): { body: number; from: Vector3; to: Vector3 }[] {
   if (change === 0) return []
-  const most = longest(arrows.map(({ v }) => v))
-  const going = arrows.filter(({ v }) => rounded(Math.hypot(...v), most) > 0)
+  const maximum = longest(arrows.map(({ v }) => v))
+  const going = arrows.filter(({ v }) => rounded(Math.hypot(...v), maximum) > 0)
   return onePerPlace(mechanism, going).map(({ body, at, v }) => {
     const velocity = new Vector3(...v)
     const from = placeOf(mechanism, body, at)

@@ -101,8 +101,8 @@ function sideways(mechanism: Mechanism, body: number, axis: Vector3): Vector3 {
 
 /** A double arrow along a leg, which moves with it. */
 function legArrow(mechanism: Mechanism, kit: Kit, joint: JointMark, { low, high }: Travel): Arrow {
-  const [least, most] = atLeast(low, high, LEAST * kit.unit)
-  const half = (most - least) / 2
+  const [minimum, maximum] = atLeast(low, high, LEAST * kit.unit)
+  const half = (maximum - minimum) / 2
   const object = double(kit, new Vector3(), new Vector3(0, 1, 0), [-half, half])
   const [a, b] = [new Vector3(...joint.at_i), new Vector3(...joint.at_j)]
   const follow = (frame: Frame) => {

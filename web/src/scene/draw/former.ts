@@ -16,9 +16,9 @@ const CASING = { width: 5, opacity: 0.75 }
 export const formerDesign: Draw = (mechanism, kit) => {
   const { former, report } = mechanism
   if (!former) return []
-  const least = SAME * mechanism.size
+  const minimum = SAME * mechanism.size
   const bodies = report.bodies.flatMap(({ name }, body): Drawable[] => {
-    if (body === 0 || !differs(mechanism, former, body, least)) return []
+    if (body === 0 || !differs(mechanism, former, body, minimum)) return []
     const lines = centreLines(former, body)
     // A block that one hardpoint represents has none.
     if (lines.length === 0) return []
@@ -33,7 +33,7 @@ export const formerDesign: Draw = (mechanism, kit) => {
   })
   const rods = former.report.joints.flatMap((joint, index): Drawable[] => {
     const rod = joint.kind === 'distance' || joint.kind === 'leg'
-    if (!rod || !mechanism.moments.some((step) => separation(mechanism, former, index, step) > least)) return []
+    if (!rod || !mechanism.moments.some((step) => separation(mechanism, former, index, step) > minimum)) return []
     const { object, follow } = formerRod(kit, former, joint)
     return [
       { object, follow, part: { kind: 'mark', index, name: joint.name, about: 'reference design' }, overlay: true },

@@ -113,9 +113,9 @@ export function downwards(mechanism: Mechanism, { at, axis, towards }: Foot): Ve
   const away = at.clone().sub(towards)
   if (away.length() < 1e-6 * mechanism.size) away.copy(mechanism.up).negate()
   away.normalize()
-  const ways = [0, 1, 2].flatMap((k) => [1, -1].map((sign) => new Vector3().setComponent(k, sign)))
-  const worth = (way: Vector3) => way.dot(away) + (way.dot(mechanism.up) < -0.5 ? DOWNWARDS : 0)
-  const free = ways.filter((way) => !axis || Math.abs(way.dot(axis)) < 0.6)
+  const directions = [0, 1, 2].flatMap((k) => [1, -1].map((sign) => new Vector3().setComponent(k, sign)))
+  const worth = (direction: Vector3) => direction.dot(away) + (direction.dot(mechanism.up) < -0.5 ? DOWNWARDS : 0)
+  const free = directions.filter((direction) => !axis || Math.abs(direction.dot(axis)) < 0.6)
   const best = free.reduce((a, b) => (worth(b) > worth(a) ? b : a))
   return axis ? best.addScaledVector(axis, -best.dot(axis)).normalize() : best
 }
@@ -140,6 +140,6 @@ function clearance(mechanism: Mechanism, body: number, at: Vector3): Foot['clear
           .map((vertex) => mechanism.worldAt(body, vertex, step).sub(at))
           .map((from) => [from.dot(down), from.clone().cross(down).length()] as const),
       )
-    return reach.reduce((most, [along, aside]) => (aside < half && along > most ? along : most), 0)
+    return reach.reduce((maximum, [along, aside]) => (aside < half && along > maximum ? along : maximum), 0)
   }
 }

@@ -27,7 +27,7 @@ export function fixedLink(mechanism: Mechanism, kit: Kit): Drawable[] {
   const [a, b] = [places[1].clone().sub(places[0]), places.slice(2).map((place) => place.clone().sub(places[0]))]
   const widest = b
     .map((side) => a.clone().cross(side))
-    .reduce((most, one) => (one.length() > most.length() ? one : most), new Vector3())
+    .reduce((maximum, one) => (one.length() > maximum.length() ? one : maximum), new Vector3())
   if (widest.length() < FLAT * mechanism.size * a.length())
     return [drawn(kit.line(places, ground, 2, { dashed: true }))]
   const basis = new Basis(places[0], widest)

@@ -45,8 +45,8 @@ export const constantVelocity: DrawJoint = (mechanism, kit, joint) => {
 
 /** Size relative to a wheel of the model, limited by the distance of other joints. */
 function glyph(mechanism: Mechanism, joint: JointMark): number {
-  const least = mechanism.radiusOf(joint)
+  const minimum = mechanism.radiusOf(joint)
   const wheel = Math.min(...mechanism.report.wheels.map(({ radius }) => radius))
-  if (!Number.isFinite(wheel)) return least
-  return Math.max(least, Math.min(OF_WHEEL * wheel, OF_DISTANCE * mechanism.roomOf(joint)) / BELL)
+  if (!Number.isFinite(wheel)) return minimum
+  return Math.max(minimum, Math.min(OF_WHEEL * wheel, OF_DISTANCE * mechanism.roomOf(joint)) / BELL)
 }

@@ -88,9 +88,9 @@ function groove(mechanism: Mechanism, kit: Kit, joint: JointMark, basis: Basis, 
     const near = points.reduce((best, point) =>
       Math.hypot(point[0] - at[0], point[1] - at[1]) < Math.hypot(best[0] - at[0], best[1] - at[1]) ? point : best,
     )
-    const way = Math.hypot(near[0] - at[0], near[1] - at[1])
+    const direction = Math.hypot(near[0] - at[0], near[1] - at[1])
     // It ends within the band, short of the slot.
-    const share = Math.max(0, (way - half - 0.75 * GROOVE.band * kit.unit) / way)
+    const share = Math.max(0, (direction - half - 0.75 * GROOVE.band * kit.unit) / direction)
     const end: Flat = [at[0] + share * (near[0] - at[0]), at[1] + share * (near[1] - at[1])]
     return kit.slab(
       round([

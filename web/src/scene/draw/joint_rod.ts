@@ -40,9 +40,9 @@ export function member(
   const lengths = mechanism.moments
     .map((step) => mechanism.worldAt(a.body, places[0], step).distanceTo(mechanism.worldAt(b.body, places[1], step)))
     .filter(Number.isFinite)
-  const least = Math.min(...lengths, Infinity)
+  const minimum = Math.min(...lengths, Infinity)
   const mean = lengths.reduce((sum, one) => sum + one, 0) / (lengths.length || 1)
-  const barrel = Math.min(BARREL.ofMean * mean, Math.max(BARREL.ofLeast * least - kit.unit, 0.35 * mean))
+  const barrel = Math.min(BARREL.ofMean * mean, Math.max(BARREL.ofLeast * minimum - kit.unit, 0.35 * mean))
   const { object, span } = strut(kit, form, lengths[0] ?? mean, barrel)
   const ends = [0, 1].map((k) =>
     plane ? eye(kit) : hinge && k === 0 ? hingedEye(kit) : kit.ball(new Vector3(), BALL * kit.unit, kit.palette.steel),

@@ -40,7 +40,7 @@ export const spherical: DrawJoint = (mechanism, kit, joint) => {
   const own = new Vector3(...(on === joint.body_j ? joint.at_j : joint.at_i))
   const up = mechanism.into(on, mechanism.up)
   // The cup of ground is on the side of the ball opposite to the other body.
-  const way = grounded
+  const direction = grounded
     ? mechanism
         .into(on, mechanism.alongAt(body, towardsRest(mechanism, body, at, mechanism.into(body, mechanism.up)), 0))
         .negate()
@@ -48,5 +48,5 @@ export const spherical: DrawJoint = (mechanism, kit, joint) => {
   const cup = kit.mesh(new SphereGeometry(CUP * r, 24, 12, 0, 2 * Math.PI, 0, OPENING * Math.PI), kit.body(on), {
     open: true,
   })
-  return [piece(body, kit.ball(at, BALL * r, steel)), piece(on, place(cup, own, way))]
+  return [piece(body, kit.ball(at, BALL * r, steel)), piece(on, place(cup, own, direction))]
 }

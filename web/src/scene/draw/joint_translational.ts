@@ -206,8 +206,8 @@ function farthest(mechanism: Mechanism, some: End[], others: End[]): [End, End] 
 /** The axis of the world that is most downwards and perpendicular to a slide. */
 function below(mechanism: Mechanism, axis: Vector3): Vector3 {
   const down = mechanism.up.clone().negate()
-  const ways = [0, 1, 2].flatMap((k) => [1, -1].map((sign) => new Vector3().setComponent(k, sign)))
-  const best = ways
+  const directions = [0, 1, 2].flatMap((k) => [1, -1].map((sign) => new Vector3().setComponent(k, sign)))
+  const best = directions
     .filter((way) => Math.abs(way.dot(axis)) < 0.6)
     .reduce((a, b) => (b.dot(down) > a.dot(down) + 1e-9 ? b : a))
   return best.addScaledVector(axis, -best.dot(axis)).normalize()

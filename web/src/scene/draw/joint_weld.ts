@@ -30,8 +30,8 @@ export const weld: DrawJoint = (mechanism, kit, joint) => {
       ),
     ]
   }
-  const way = towardsRest(mechanism, joint.body_j, at[1], mechanism.into(joint.body_j, mechanism.up))
-  const axes = [mechanism.into(joint.body_i, mechanism.alongAt(joint.body_j, way, 0)), way]
+  const direction = towardsRest(mechanism, joint.body_j, at[1], mechanism.into(joint.body_j, mechanism.up))
+  const axes = [mechanism.into(joint.body_i, mechanism.alongAt(joint.body_j, direction, 0)), direction]
   return bodies.map((body, k) => {
     const middle = at[k].clone().addScaledVector(axes[k], (k - 0.5) * FLANGE[1] * r)
     return piece(body, kit.disc(middle, axes[k], FLANGE[0] * r, FLANGE[1] * r, kit.body(body), { edges: 30 }))

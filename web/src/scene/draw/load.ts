@@ -21,8 +21,8 @@ const SEEN = 2e-3
  */
 export const loads: Draw = (mechanism, kit, choice) => {
   const { report, base } = mechanism
-  const most = largestForce((base ?? mechanism).report.loads)
-  if (!choice.forces || most === 0) return []
+  const maximum = largestForce((base ?? mechanism).report.loads)
+  if (!choice.forces || maximum === 0) return []
   const longest = Math.max(LONGEST.ofSize * mechanism.size, LONGEST.least * kit.unit)
   return report.loads.flatMap((load, index): Drawable[] => {
     if (load.force.length === 0) return []
@@ -34,7 +34,7 @@ export const loads: Draw = (mechanism, kit, choice) => {
       joint === null
         ? { kind: 'load' as const, index, name: load.name, about }
         : { kind: 'joint' as const, index: joint, name: load.name, about }
-    const length = (step: number) => (forceAt(load.force, step).length() / most) * longest
+    const length = (step: number) => (forceAt(load.force, step).length() / maximum) * longest
     const arrow = straightArrow(
       kit,
       new Vector3(),
@@ -64,8 +64,8 @@ export const loads: Draw = (mechanism, kit, choice) => {
 
 /** Scale of the arrows: `longest force 1200 N`; undefined without any. */
 export function forceText({ base, report }: Mechanism): string {
-  const most = report.loads.some(({ force }: Load) => force.length > 0)
+  const maximum = report.loads.some(({ force }: Load) => force.length > 0)
     ? largestForce((base?.report ?? report).loads)
     : 0
-  return most > 0 ? `force arrows: up to ${number(most, 3)} N` : ''
+  return maximum > 0 ? `Force arrows: up to ${number(maximum, 3)} N` : ''
 }
