@@ -283,7 +283,7 @@ class Model:
         sigma: Mapping[str, float] | None = None,
         variables: Iterable[str] = (),
         loss: str = "squares",
-        iterations: int = 100,
+        iterations: int | None = None,
         progress: Progress = None,
     ) -> Study:
         """Finds the design that explains what was measured: a CSV file (docs/calibrate.md has its columns), or a pandas table of the same."""

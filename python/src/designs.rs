@@ -1,7 +1,6 @@
 //! Many designs at once, as one array.
 
 use std::num::NonZero;
-use std::ops::ControlFlow;
 
 use hardpoint::Run as Asked;
 use hardpoint::Solution;
@@ -278,9 +277,4 @@ fn keep(
             *cell = units.derivative_from_si(of, variable.quantity, *x);
         }
     }
-}
-
-/// True if to go on, for what asks so.
-pub(crate) fn flow(more: bool) -> ControlFlow<()> {
-    if more { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }

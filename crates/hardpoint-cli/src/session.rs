@@ -18,6 +18,7 @@ use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, ReadError};
 use hardpoint_report::course::{Course, Gathering};
 use hardpoint_report::figures::{bytes, some_of};
 use hardpoint_report::{GENERATOR, diagnose};
+use hardpoint_study::RequestError;
 use serde_json::json;
 
 use crate::args::Motions;
@@ -506,6 +507,13 @@ impl Session {
     /// Indicates that the command line asks for something that the model does not have.
     pub fn misunderstood(&self, why: &str) -> Outcome {
         self.refuse("HP0602", why, None, "nothing was solved", "see `hardpoint help`");
+        Outcome::Misunderstood
+    }
+
+    /// Indicates that a study cannot be requested.
+    pub fn refused(&self, file: &ModelFile, error: &RequestError) -> Outcome {
+        let message = format!("`{}`: {}", file.file_name(), error.message);
+        self.refuse("HP0602", &message, None, "nothing was solved", &error.help);
         Outcome::Misunderstood
     }
 

@@ -3,7 +3,7 @@
 use std::io;
 
 use hardpoint::measure::Output;
-use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, SweepSettings, VariableId};
+use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, SweepSettings};
 use hardpoint_file::{ModelFile, Units};
 use hardpoint_study::sweep::{
     Distribution, SobolIndex, Sweep, SweptBlock, SweptMetric, rank_correlation, sobol_indices,
@@ -200,16 +200,10 @@ impl SweepInputs<'_> {
         self.model().metric_dimension(&self.model().metrics[of.metric])
     }
 
-    /// Value of a variable in the file's units: of a parameter its value, otherwise the change.
-    fn shown(&self, variable: VariableId, change: f64) -> f64 {
-        let quantity = self.model().variables[variable.0].quantity;
-        self.units().from_si(quantity, change + self.model().nominal_value(variable))
-    }
-
     /// Swept variables of a design, in the file's units.
     fn variables_of(&self, number: usize) -> Vec<f64> {
         let swept = self.sweep.plan().swept(number);
-        self.asked.ranges.iter().zip(swept).map(|(range, x)| self.shown(range.variable, x)).collect()
+        self.asked.ranges.iter().zip(swept).map(|(range, x)| self.file.value_of(range.variable, x)).collect()
     }
 
     fn title(&self, of: SweptMetric) -> String {
@@ -432,10 +426,10 @@ impl SweepInputs<'_> {
             SweptVariable {
                 name: variable.name.clone(),
                 unit: variable_unit(&file.model, file.units, variable),
-                from: self.shown(range.variable, range.low),
-                to: self.shown(range.variable, range.high),
+                from: self.file.value_of(range.variable, range.low),
+                to: self.file.value_of(range.variable, range.high),
                 levels: (asked.method == SweepMethod::Factorial).then_some(range.levels),
-                start: self.shown(range.variable, 0.0),
+                start: self.file.value_of(range.variable, 0.0),
                 end: best.map(|b| b[k]),
             }
         };

@@ -1,6 +1,7 @@
 //! Settings of an optimisation.
 
 use hardpoint::draft::{GoalDraft, LimitDraft, LimitTargetDraft, OptimizationSettingsDraft, Section};
+use hardpoint::model::OptimizationSettings;
 
 use crate::format::{
     HARDPOINT, JOINT, Key, Kinds, METRIC, NUMBER, Shape, TWO_NUMBERS, Table, VARIABLE, keys, table,
@@ -10,9 +11,6 @@ use crate::tree::{Field, Fields, MOST_ENTRIES, Reader};
 
 use super::Raw;
 
-/// More starts, and more iterations, than these are surely a slip.
-const MOST_STARTS: u32 = 100_000;
-const MOST_ITERATIONS: u32 = 100_000;
 /// More variables by name than these are surely a slip.
 const MOST_VARIABLES: usize = 10_000;
 pub(crate) const OPTIMIZE: Table = table! {
@@ -27,9 +25,9 @@ pub(crate) const OPTIMIZE: Table = table! {
     /// No motion may come nearer to a singular position than this margin, above 0 and below 1. Default: it may.
     may "min_margin": NUMBER, "0.02";
     /// From how many designs the search starts: that of the file, and others spread within the bounds.
-    or("1") "starts": Shape::Count(MOST_STARTS), "8";
+    or("1") "starts": Shape::Count(OptimizationSettings::MOST), "8";
     /// Maximum number of iterations of a search.
-    or("100") "max_iterations": Shape::Count(MOST_ITERATIONS), "100";
+    or("100") "max_iterations": Shape::Count(OptimizationSettings::MOST), "100";
 };
 pub(super) const GOAL: Table = table! {
     /// A metric that is made small, or brought to a target.
@@ -139,8 +137,8 @@ impl Reader<'_> {
         let place = EntryPlace::of(&fields);
         let variables = self.given(&fields, "variables", |r, f| r.variables_of(&fields, f));
         let margin = self.number_of(&fields, "min_margin");
-        let starts = self.count_of(&fields, "starts", MOST_STARTS);
-        let iterations = self.count_of(&fields, "max_iterations", MOST_ITERATIONS);
+        let starts = self.count_of(&fields, "starts", OptimizationSettings::MOST);
+        let iterations = self.count_of(&fields, "max_iterations", OptimizationSettings::MOST);
         self.need(&fields, "goals");
         for key in ["goals", "limits"] {
             let table = fields.get(key).map(|f| f.value.get_ref().as_table());

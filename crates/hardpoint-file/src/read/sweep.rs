@@ -16,7 +16,7 @@ use super::Raw;
 use super::data::{DataError, Wanted, delimiter, number, text_from, unquoted};
 
 /// More designs than these are surely a slip.
-const MOST_SAMPLES: u32 = 1_000_000_000;
+const MOST_SAMPLES: u32 = SweepSettings::MOST as u32;
 /// More values of one variable than these are surely a slip.
 const MOST_LEVELS: u32 = 1_000_000;
 pub(crate) const SWEEP: Table = table! {

@@ -14,8 +14,6 @@ use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject};
 
 use super::Raw;
 
-/// More designs than these are surely a slip: their metrics would not fit into memory.
-const MOST_SAMPLES: u32 = 10_000_000;
 /// More names in a list than these are surely a slip.
 const MOST_NAMES: usize = 10_000;
 pub(crate) const TOLERANCE: Table = table! {
@@ -39,7 +37,7 @@ pub(crate) const TOLERANCE: Table = table! {
     /// Limits of metrics.
     may "limits": Shape::Entries("a metric", &Shape::Table(&LIMIT)), "{ toe = { metric = \"toe_range\", max = 0.5 } }";
     /// Number of designs that are drawn and solved exactly.
-    or("10000") "samples": Shape::Count(MOST_SAMPLES), "100000";
+    or("10000") "samples": Shape::Count(ToleranceSettings::MOST), "100000";
     /// Seed of the random numbers: the same seed gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
     /// The loosest tolerances are sought that keep the limits, of variables that have a `cost`.
@@ -107,7 +105,7 @@ impl Reader<'_> {
             |of: &mut Self, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
         let metrics = names(self, "metrics", "a list of names of metrics");
         let curves = names(self, "curves", "a list of names of measures");
-        let samples = self.count_of(&fields, "samples", MOST_SAMPLES);
+        let samples = self.count_of(&fields, "samples", ToleranceSettings::MOST);
         let seed = self.count_of(&fields, "seed", u32::MAX);
         let keep = self.number_of(&fields, "required_sigmas");
         let rule = fields.get("allocate").and_then(|_| self.word_of(&fields, "allocate"));

@@ -2,6 +2,7 @@
 
 mod indices;
 mod plan;
+mod request;
 mod sobol;
 mod statistics;
 
@@ -12,11 +13,13 @@ use hardpoint::model::{Model, OutputSource, SweepSettings};
 use hardpoint::run::{Run, Solution};
 
 use super::evaluation::{Motions, StudyCost};
+use super::request::RequestError;
 use super::samples::{SampleBlock, SampleRun};
 use hardpoint::run::{metric_number, place_of};
 
 pub use indices::{SobolIndex, sobol_indices};
-pub use plan::{SweepPlan, SweepPlanError};
+pub use plan::SweepPlan;
+pub use request::{Overrides, Request, method};
 pub(super) use statistics::quantile;
 pub use statistics::{Distribution, rank_correlation};
 
@@ -81,13 +84,14 @@ impl<'a> Sweep<'a> {
     /// Prepares the sweep over the designs of a model in some of its motions, given by `numbers`.
     ///
     /// # Errors
-    /// A [`SweepPlanError`] if the designs cannot be chosen.
+    /// A [`RequestError`] if the designs cannot be chosen.
     pub fn new(
         model: &Model,
         motions: &'a Motions<'a>,
         numbers: &[usize],
-        settings: &'a SweepSettings,
-    ) -> Result<Self, SweepPlanError> {
+        request: &'a Request,
+    ) -> Result<Self, RequestError> {
+        let settings = &request.settings;
         let plan = SweepPlan::new(settings, model)?;
         let of_motion = |(metric, (motion, number)): (usize, (usize, &usize))| {
             Some(SweptMetric { metric, motion, place: place_of(model, metric, *number)? })
