@@ -7,7 +7,7 @@ use std::path::Path;
 use hardpoint_report::cells::Cells;
 use hardpoint_report::sweep::{SweepInputs, Tally};
 use hardpoint_study::request::variable;
-use hardpoint_study::sweep::{Overrides, Request, Sweep as Designs, SweptBlock, method};
+use hardpoint_study::sweep::{self, Overrides, Request, Sweep as Designs, method};
 use hardpoint_study::{BLOCK, RequestError};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -151,7 +151,7 @@ impl Sweep {
                 let to = to.min(swept.sweep.plan().count());
                 let (mut rows, mut curves) = (Vec::new(), Vec::new());
                 let has_curves = !self.asked.settings.curves.is_empty();
-                let mut done = |block: SweptBlock| {
+                let mut done = |block: sweep::Block| {
                     rows.push(swept.rows(&block));
                     if has_curves {
                         curves.push(swept.curve_rows(&block));
@@ -190,7 +190,7 @@ impl Sweep {
                 let (mut rows, mut curves, mut tally) = (Vec::new(), Vec::new(), Tally::default());
                 let mut metrics = vec![Vec::new(); swept.sweep.metrics().len()];
                 let has_curves = !self.asked.settings.curves.is_empty();
-                let mut done = |block: SweptBlock| {
+                let mut done = |block: sweep::Block| {
                     swept.tally(&mut tally, &block);
                     rows.push(swept.rows(&block));
                     if has_curves {

@@ -9,16 +9,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use hardpoint::draft::did_you_mean;
 use hardpoint::model::{CaseId, VariableId};
 use hardpoint::motion::Execution;
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint::{Analysis, Footprint, Run, Solution};
 use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, ReadError};
 use hardpoint_report::course::{Course, Gathering};
-use hardpoint_report::figures::{bytes, some_of};
+use hardpoint_report::figures::bytes;
 use hardpoint_report::{GENERATOR, diagnose};
 use hardpoint_study::RequestError;
+use hardpoint_study::request::named;
 use serde_json::json;
 
 use crate::args::Motions;
@@ -242,21 +242,14 @@ impl Session {
     /// # Errors
     /// Where it has none of that name, or where that is no motion.
     pub fn case(&self, file: &ModelFile, name: &str) -> Result<CaseId, Outcome> {
-        if let Some(id) = file.model.case(name) {
-            return Ok(id);
-        }
-        let cases: Vec<&str> = file.model.cases.iter().map(|c| c.name.as_str()).collect();
-        let why = match &cases[..] {
-            _ if file.model.grids.iter().any(|grid| grid.name == name) => {
-                "it is a grid of positions and no motion, which `hardpoint run` solves".to_owned()
-            }
-            [] => "there is no such case; the model has no cases".to_owned(),
-            _ => match did_you_mean(name, cases.iter().copied()) {
-                Some(near) => format!("there is no such case; did you mean `{near}`?"),
-                None => format!("there is no such case; its cases are {}", some_of(&cases, ", ")),
-            },
-        };
-        Err(self.misunderstood(&format!("`--case {name}`: {why}")))
+        let model = &file.model;
+        let found = named("case", name, model.cases.iter().map(|c| c.name.as_str())).map(CaseId);
+        found.map_err(|error| match model.grids.iter().any(|grid| grid.name == name) {
+            true => self.misunderstood(&format!(
+                "`--case {name}`: it is a grid of positions and no motion, which `hardpoint run` solves"
+            )),
+            false => self.refused(file, &error),
+        })
     }
 
     /// The motions of a model that a command is done for, by their numbers.

@@ -12,7 +12,7 @@ use hardpoint_report::page::SweepPlot;
 use hardpoint_report::sweep::{SweepFacts, SweepInputs, Tally};
 use hardpoint_study::Motions;
 use hardpoint_study::request::variable;
-use hardpoint_study::sweep::{Overrides, Request, Sweep as Designs};
+use hardpoint_study::sweep::{self, Overrides, Request, Sweep as Designs};
 
 use crate::args::{Method, Sweep, TableForm};
 use crate::folder::{Folder, WriteError};
@@ -178,7 +178,7 @@ fn solve(
     let from = journal.designs();
     let mut meter = session.meter("solving", "designs").with_rate(from);
     let mut failure = None;
-    let mut done = |block: hardpoint_study::sweep::SweptBlock| {
+    let mut done = |block: sweep::Block| {
         if let Err(error) = journal.add(&block) {
             failure = Some(error);
             return ControlFlow::Break(());

@@ -5,9 +5,7 @@ use std::io;
 use hardpoint::measure::Output;
 use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, SweepSettings};
 use hardpoint_file::{ModelFile, Units};
-use hardpoint_study::sweep::{
-    Distribution, SobolIndex, Sweep, SweptBlock, SweptMetric, rank_correlation, sobol_indices,
-};
+use hardpoint_study::sweep::{self, Distribution, SobolIndex, Sweep, rank_correlation, sobol_indices};
 use hardpoint_study::{Motions, StudyCost};
 use serde::Serialize;
 
@@ -196,7 +194,7 @@ impl SweepInputs<'_> {
         case_name(self.model(), self.numbers[motion])
     }
 
-    fn dimension(&self, of: SweptMetric) -> Dimension {
+    fn dimension(&self, of: sweep::Metric) -> Dimension {
         self.model().metric_dimension(&self.model().metrics[of.metric])
     }
 
@@ -206,7 +204,7 @@ impl SweepInputs<'_> {
         self.asked.ranges.iter().zip(swept).map(|(range, x)| self.file.value_of(range.variable, x)).collect()
     }
 
-    fn title(&self, of: SweptMetric) -> String {
+    fn title(&self, of: sweep::Metric) -> String {
         let name = &self.model().metrics[of.metric].name;
         self.case(of.motion).map_or(name.clone(), |case| format!("{case}.{name}"))
     }
@@ -218,7 +216,7 @@ impl SweepInputs<'_> {
             with_brackets(&variable.name, &variable_unit(self.model(), self.units(), variable))
         };
         let metric =
-            |of: &SweptMetric| with_brackets(&self.title(*of), &unit(self.units(), self.dimension(*of)));
+            |of: &sweep::Metric| with_brackets(&self.title(*of), &unit(self.units(), self.dimension(*of)));
         let numbers = self.asked.ranges.iter().map(variable).chain(self.sweep.metrics().iter().map(metric));
         let mut columns = vec![("design".to_owned(), Cells::Whole(Vec::new()))];
         columns.extend(numbers.map(|name| (name, Cells::Numbers(Vec::new()))));
@@ -227,12 +225,12 @@ impl SweepInputs<'_> {
     }
 
     /// Rows of a block of designs.
-    pub fn rows(&self, block: &SweptBlock) -> Vec<Cells> {
+    pub fn rows(&self, block: &sweep::Block) -> Vec<Cells> {
         let mut variables = vec![Vec::new(); self.asked.ranges.len()];
         for number in block.numbers.clone() {
             variables.iter_mut().zip(self.variables_of(number)).for_each(|(column, x)| column.push(x));
         }
-        let metric = |(of, values): (&SweptMetric, &Vec<f64>)| {
+        let metric = |(of, values): (&sweep::Metric, &Vec<f64>)| {
             let dimension = self.dimension(*of);
             values.iter().map(|x| self.units().from_si(dimension, *x)).collect()
         };
@@ -271,7 +269,7 @@ impl SweepInputs<'_> {
     }
 
     /// Rows of the curves of a block of designs.
-    pub fn curve_rows(&self, block: &SweptBlock) -> Vec<Cells> {
+    pub fn curve_rows(&self, block: &sweep::Block) -> Vec<Cells> {
         let (mut designs, mut cases, mut times) = (Vec::new(), Vec::new(), Vec::new());
         let mut values = vec![Vec::new(); self.asked.curves.len()];
         let of = |m: &usize| self.model().dimension(OutputSource::Measure(*m));
@@ -301,7 +299,7 @@ impl SweepInputs<'_> {
     }
 
     /// Adds a block to the totals.
-    pub fn tally(&self, tally: &mut Tally, block: &SweptBlock) {
+    pub fn tally(&self, tally: &mut Tally, block: &sweep::Block) {
         tally.designs = block.numbers.end;
         tally.cost += block.cost;
         let mut last = None;

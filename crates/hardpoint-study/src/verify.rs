@@ -1,6 +1,9 @@
 //! Verification of analytic sensitivities against re-solved designs over a range of steps (section 6 of the paper), for
 //! any model. The error must fall with the square of the step (central differences) or with the step itself (one-sided
 //! differences), then rise by round-off.
+//!
+//! Input: a solution with sensitivities, and [`Options`] with steps as parts of natural steps. Output: a
+//! [`Verification`] with relative errors per variable and quantity.
 
 use std::ops::ControlFlow;
 

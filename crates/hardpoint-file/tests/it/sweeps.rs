@@ -8,7 +8,7 @@ use hardpoint::model::{Model, SweepMethod, SweepSettings};
 use hardpoint::run::metrics;
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, parse};
-use hardpoint_study::sweep::{Request, Sweep, SweptBlock, sobol_indices};
+use hardpoint_study::sweep::{self, Request, Sweep, sobol_indices};
 use hardpoint_study::{BLOCK, Motions};
 
 /// A slider-crank: the slider's place over the crank's angle is `x = r cos a + sqrt(l^2 - (r sin a - e)^2)`.
@@ -35,7 +35,7 @@ fn file(text: &str) -> ModelFile {
     parse(text, "sweeps.toml").unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn swept_from(model: &Model, asked: &SweepSettings, from: usize, threads: usize) -> Vec<SweptBlock> {
+fn swept_from(model: &Model, asked: &SweepSettings, from: usize, threads: usize) -> Vec<sweep::Block> {
     let models = model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let numbers: Vec<usize> = (0..models.len()).collect();

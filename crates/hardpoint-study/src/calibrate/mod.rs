@@ -1,6 +1,9 @@
 //! Calibration: fit of the geometry to measured data, with the accuracy of the result, unidentifiable changes, and
 //! proposed further readings.
 //!
+//! Input: a [`Request`] with readings of outputs in postures of the drivers, SI. Output: a [`Calibration`] with the
+//! fitted design and its covariance, m, rad or plain.
+//!
 //! A reading i of an output y in a posture, with standard deviation s_i, has the residual `r_i = (y(b) - m_i) / s_i`.
 //! The fit minimises the sum of their squares or of a robust loss. With the exact Jacobian `J = dr/db` of the readings,
 //!

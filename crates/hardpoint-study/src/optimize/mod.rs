@@ -1,4 +1,11 @@
-//! Optimisation: the design that minimises weighted goals within bounds and limits.
+//! Optimisation: which design minimises weighted goals within bounds and limits?
+//!
+//! Input: a [`Request`] with bounded variables (m, rad or plain), goals and limits on metrics in SI. Output: an
+//! [`Optimization`] with the best design of every start, its active constraints and multipliers.
+//!
+//! ```text
+//! minimise sum of weight value, or (weight (value - target))^2,    subject to least <= limit <= most
+//! ```
 //!
 //! Goals and limits are metrics of the motions, with exact derivatives. If all goals are squares (a curve fitted, a
 //! target met) and only bounds limit the design, bounded least squares are used, otherwise sequential programming. For

@@ -8,14 +8,14 @@ use super::sobol::{Sobol, mixed};
 
 /// Designs of a sweep. A design depends only on its number.
 #[derive(Clone, Debug)]
-pub struct SweepPlan<'a> {
+pub struct Plan<'a> {
     settings: &'a SweepSettings,
     variables: usize,
     count: usize,
     sobol: Option<Sobol>,
 }
 
-impl<'a> SweepPlan<'a> {
+impl<'a> Plan<'a> {
     /// Plans the requested designs.
     ///
     /// # Errors

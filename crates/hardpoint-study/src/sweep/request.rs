@@ -2,7 +2,7 @@
 
 use hardpoint::model::{Model, SweepMethod, SweepRange, SweepSettings, VariableId};
 
-use super::SweepPlan;
+use super::Plan;
 use crate::request::{RequestError, named};
 
 /// Request for a sweep.
@@ -101,7 +101,7 @@ impl Request {
                 "declare some in `[metrics]`, or store the curves of measures",
             ));
         }
-        SweepPlan::new(&settings, model)?;
+        Plan::new(&settings, model)?;
         Ok(Self { settings })
     }
 }

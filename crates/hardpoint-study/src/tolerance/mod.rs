@@ -1,7 +1,11 @@
 //! Tolerance study: effects of the tolerances of design variables on every metric and along whole curves.
 //!
-//! Derivatives give, without sampling: worst case, root sum square, second-order mean and variance, contributions of
-//! the variables, and yield (`docs/theory.md`, section on tolerances). Sampled designs that are solved exactly give the
+//! Input: a [`Request`] with tolerances (half widths in m, rad or plain), their distributions, and limits of metrics in
+//! SI. Output: a [`ToleranceResult`] in SI, with yields from 0 to 1.
+//!
+//! Derivatives give, without sampling: worst case, root sum square, second-order mean (37) and variance (38),
+//! contributions of the variables, and yield (`docs/theory.md`, section 12; Seber and Lee, *Linear Regression
+//! Analysis*, theorems 1.5 and 1.6). Sampled designs that are solved exactly give the
 //! same statistics and show the error of the derivatives. Allocation gives the loosest tolerances that satisfy the
 //! limits.
 
