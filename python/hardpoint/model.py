@@ -282,7 +282,7 @@ class Model:
         sigma: Mapping[str, float] | None = None,
         variables: Iterable[str] = (),
         loss: str = "squares",
-        iterations: int = 100,
+        iterations: int | None = None,
         progress: Progress = None,
     ) -> Study:
         """Fits the design to measured data: a CSV file (docs/calibration.md lists its columns), or a pandas table with the same columns."""

@@ -17,25 +17,14 @@ pub(crate) fn changes(file: &ModelFile, values: &[f64]) -> Result<Vec<f64>, Fail
     }
     let change = |(k, value): (usize, &f64)| {
         let variable = VariableId(k);
-        if value.is_nan() || *value == drawn(file, variable) {
+        if value.is_nan() {
             return Ok(0.0);
         }
         if value.is_infinite() {
             let name = &model.variables[k].name;
             return Err(Failure::Misunderstood(format!("the value of `{name}` is infinite")));
         }
-        Ok(file.units.to_si(model.variables[k].quantity, *value) - model.nominal_value(variable))
+        Ok(file.change_to(variable, *value))
     };
     values.iter().enumerate().map(change).collect()
-}
-
-/// Nominal value of a variable.
-pub(crate) fn drawn(file: &ModelFile, variable: VariableId) -> f64 {
-    shown(file, variable, 0.0)
-}
-
-/// Value of a variable after a change.
-pub(crate) fn shown(file: &ModelFile, variable: VariableId, change: f64) -> f64 {
-    let quantity = file.model.variables[variable.0].quantity;
-    file.units.from_si(quantity, change + file.model.nominal_value(variable))
 }

@@ -1,7 +1,6 @@
 //! Many designs in one call, as one array.
 
 use std::num::NonZero;
-use std::ops::ControlFlow;
 
 use hardpoint::Run as Asked;
 use hardpoint::Solution;
@@ -278,9 +277,4 @@ fn keep(
             *cell = units.derivative_from_si(of, variable.quantity, *x);
         }
     }
-}
-
-/// Returns whether to continue.
-pub(crate) fn flow(more: bool) -> ControlFlow<()> {
-    if more { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }

@@ -1,6 +1,8 @@
 //! Errors, as exceptions of the package.
 
 use hardpoint_file::{Diagnostic, Diagnostics, ModelFile};
+use hardpoint_study::RequestError;
+use hardpoint_study::request::Fault;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
@@ -15,6 +17,8 @@ pub(crate) enum Kind {
     Stopped,
     /// A study is impossible.
     Study,
+    /// Invalid request.
+    Usage,
 }
 
 /// An error.
@@ -44,12 +48,17 @@ impl Failure {
     pub fn of_model(kind: Kind, file: &ModelFile, found: &Diagnostic) -> Self {
         Self::Found(kind, vec![diagnostic_json(file, found)])
     }
+}
 
-    /// Error of an impossible study, with a suggested fix.
-    pub fn of_study(message: impl Into<String>) -> Self {
-        let message = message.into();
-        let rendered = format!("error: {message}");
-        Self::Found(Kind::Study, vec![plain(&message, &rendered)])
+impl From<RequestError> for Failure {
+    fn from(error: RequestError) -> Self {
+        let mut json = plain(&error.message, &format!("error: {error}"));
+        json["help"] = Value::String(error.help);
+        let kind = match error.fault {
+            Fault::Model => Kind::Study,
+            Fault::Override => Kind::Usage,
+        };
+        Self::Found(kind, vec![json])
     }
 }
 
@@ -90,6 +99,7 @@ impl From<Failure> for PyErr {
                     Kind::Topology => "TopologyError",
                     Kind::Stopped => "MotionStopped",
                     Kind::Study => "StudyError",
+                    Kind::Usage => "UsageError",
                 },
                 Value::Array(list),
             ),

@@ -18,7 +18,7 @@ use hardpoint_study::whatif::{add_coordinates, add_tilts};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
-use crate::design::{changes, drawn};
+use crate::design::changes;
 use crate::failure::{Failure, Kind, diagnostic_json};
 
 /// A model with its plans, made once.
@@ -138,13 +138,12 @@ impl Model {
         let (file, model, units) = (&self.whole, &self.whole.model, self.whole.units);
         let body = |b: hardpoint::model::BodyId| model.bodies[b.0].name.as_str();
         let variables = model.variables.iter().enumerate().map(|(k, v)| {
-            let drawn = drawn(file, VariableId(k));
-            let shown = |b: f64| units.from_si(v.quantity, b + model.nominal_value(VariableId(k)));
+            let shown = |b: f64| file.value_of(VariableId(k), b);
             let is_parameter = v.changes.iter().any(|c| matches!(c, Change::Parameter(_)));
             json!({
                 "name": v.name,
                 "unit": variable_unit(model, units, v),
-                "drawn": drawn,
+                "drawn": shown(0.0),
                 "bounds": v.bounds.map(|b| b.map(shown)),
                 "typical": v.typical.map(|x| units.from_si(v.quantity, x)),
                 "tolerance": v.tolerance.map(|x| units.from_si(v.quantity, x)),

@@ -20,7 +20,6 @@ use pyo3::prelude::*;
 use serde_json::Value;
 
 use crate::array::{array, array1};
-use crate::design::shown;
 use crate::failure::{Failure, Kind, diagnostic_json};
 use crate::model::Model;
 use crate::watch::Quick;
@@ -103,7 +102,7 @@ impl Run {
     fn design(&self) -> Vec<f64> {
         let file = self.file();
         (0..file.model.variables.len())
-            .map(|k| shown(file, VariableId(k), self.changes.get(k).copied().unwrap_or(0.0)))
+            .map(|k| file.value_of(VariableId(k), self.changes.get(k).copied().unwrap_or(0.0)))
             .collect()
     }
 

@@ -1,11 +1,11 @@
 //! Studies of a model; the result is the JSON that the command line writes, with its tables.
 
+use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::Analysis;
-use hardpoint::draft::did_you_mean;
-use hardpoint::model::{AllocationRule, AllocationSettings, ToleranceSettings, VariableId};
+use hardpoint::model::VariableId;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::topology::Formulation;
 use hardpoint_report::calibrate::{CalibrateFacts, CalibrationInputs};
@@ -13,25 +13,24 @@ use hardpoint_report::diagnose;
 use hardpoint_report::maps::MapFact;
 use hardpoint_report::optimize::{OptimizeFacts, rounded};
 use hardpoint_report::page::Table;
-use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs};
+use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs, nominal_stop};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_report::verdict::Verdict;
 use hardpoint_report::whatif::WhatIfFacts;
-use hardpoint_study::calibrate::{CalibrationError, CalibrationRequest, Loss, calibrate};
+use hardpoint_study::calibrate::{self, Loss, calibrate};
 use hardpoint_study::difference::DifferenceScheme;
 use hardpoint_study::grid::GridMap;
-use hardpoint_study::optimize::{OptimizationRequest, SearchProgress, optimize};
-use hardpoint_study::tolerance::{ToleranceError, ToleranceStage, tolerance, toleranced_designs};
-use hardpoint_study::validity;
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::optimize::{self, optimize};
+use hardpoint_study::tolerance::{self, tolerance, toleranced_designs};
+use hardpoint_study::verify::{self, verify};
 use hardpoint_study::whatif::what_if;
+use hardpoint_study::{Control, Progress, validity};
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde_json::json;
 
 use crate::array::array;
-use crate::design::shown;
-use crate::designs::{flow, threads};
+use crate::designs::threads;
 use crate::failure::{Failure, Kind};
 use crate::model::Model;
 use crate::watch::patiently;
@@ -47,23 +46,7 @@ type Searched = (String, Option<Vec<f64>>, Option<Vec<f64>>);
 impl Model {
     /// Values of all variables of a design, in the units of the file.
     fn values_of(&self, changes: &[f64]) -> Vec<f64> {
-        changes.iter().enumerate().map(|(k, b)| shown(&self.whole, VariableId(k), *b)).collect()
-    }
-
-    /// Variables with these names, or all.
-    fn variables(&self, names: &[String]) -> Result<Vec<VariableId>, Failure> {
-        let model = &self.whole.model;
-        if names.is_empty() {
-            return Ok((0..model.variables.len()).map(VariableId).collect());
-        }
-        let one = |name: &String| {
-            model.variable(name).ok_or_else(|| {
-                let near = did_you_mean(name, model.variables.iter().map(|v| v.name.as_str()));
-                let help = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-                Failure::Misunderstood(format!("there is no design variable named `{name}`{help}"))
-            })
-        };
-        names.iter().map(one).collect()
+        changes.iter().enumerate().map(|(k, b)| self.whole.value_of(VariableId(k), *b)).collect()
     }
 }
 
@@ -81,38 +64,19 @@ impl Model {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Searched> {
         let (file, motions) = (&self.whole, self.motions()?);
-        let Some(asked) = &file.model.optimization else {
-            return Err(Failure::of_study(
-                "the model has no `[optimize]` table; add `[optimize.goals]` with the metrics to minimise, and `bounds` to \
-                 the design variables that may change",
-            )
-            .into());
-        };
-        let mut asked = asked.clone();
-        asked.starts = starts.unwrap_or(asked.starts).max(1);
-        asked.iterations = iterations.unwrap_or(asked.iterations).max(1);
+        let overrides = optimize::Overrides { starts, iterations, first, selection: None };
+        let request = optimize::Request::of(&file.model, overrides).map_err(Failure::from)?;
+        let asked = &request.settings;
         let found = patiently(py, progress, |watch| {
-            let mut ended = 0;
-            let mut report = |_: usize, event: SearchProgress<'_>| match event {
-                SearchProgress::Iteration(i) if asked.starts == 1 => watch.tell(i.number, asked.iterations),
-                SearchProgress::End(_) if asked.starts > 1 => {
-                    ended += 1;
-                    watch.tell(ended, asked.starts)
-                }
-                _ => flow(watch.more()),
-            };
-            let searching = OptimizationRequest {
-                progress: &mut report,
-                more: &|| watch.more(),
-                threads: threads(workers),
-                first,
-            };
-            optimize(&file.model, motions, &asked, searching)
+            let mut progress = |p: Progress<'_>| watch.tell(p.done, p.total);
+            let more = || watch.more();
+            let control = Control { threads: threads(workers), progress: &mut progress, more: &more };
+            optimize(&file.model, motions, &request, control)
         })?;
-        let facts = OptimizeFacts::of(file, &asked, &found);
+        let facts = OptimizeFacts::of(file, asked, &found);
         let best = found.best.and_then(|k| found.searches[k].found.as_ref());
         let exact = best.map(|best| self.values_of(&best.design));
-        let design = best.map(|best| self.values_of(&rounded(file, &asked, &best.design)));
+        let design = best.map(|best| self.values_of(&rounded(file, asked, &best.design)));
         Ok((outcome(&facts, &facts.tables()), design, exact))
     }
 
@@ -123,55 +87,29 @@ impl Model {
         py: Python<'_>,
         samples: Option<usize>,
         seed: Option<u64>,
-        allocate: Option<&str>,
+        allocate: Option<String>,
         workers: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let (file, motions) = (&self.whole, self.motions()?);
-        let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
-        let Some(mut asked) = asked else {
-            return Err(Failure::of_study(
-                "the design variables of the model have no tolerances; add `tolerance = 0.1` to those in `[design]` or \
-                 `[parameters]`",
-            )
-            .into());
-        };
-        asked.samples = samples.unwrap_or(asked.samples);
-        asked.seed = seed.unwrap_or(asked.seed);
-        if let Some(rule) = allocate {
-            let rule = match (rule, asked.allocation.map(|a| a.rule)) {
-                ("rss", Some(rule @ AllocationRule::Rss { .. })) => rule,
-                ("rss", _) => AllocationRule::Rss { sigmas: ToleranceSettings::SIGMAS },
-                ("worst_case", _) => AllocationRule::Worst,
-                _ => {
-                    return Err(Failure::Misunderstood(format!(
-                        "unknown rule `{rule}`; there are rss, worst_case"
-                    ))
-                    .into());
-                }
-            };
-            asked.allocation = Some(AllocationSettings { rule });
-        }
+        let overrides = tolerance::Overrides { samples, seed, allocate };
+        let request = tolerance::Request::of(&file.model, &overrides).map_err(Failure::from)?;
         let numbers: Vec<usize> = (0..motions.len()).collect();
         let found = patiently(py, progress, |watch| {
-            let mut on = |stage: ToleranceStage| match stage {
-                ToleranceStage::Derivatives(done, of) | ToleranceStage::Designs(done, of) => {
-                    watch.tell(done, of)
-                }
-            };
-            tolerance(&file.model, motions, &numbers, &asked, threads(workers), &mut on, &|| watch.more())
+            let mut progress = |p: Progress<'_>| watch.tell(p.done, p.total);
+            let more = || watch.more();
+            let control = Control { threads: threads(workers), progress: &mut progress, more: &more };
+            tolerance(&file.model, motions, &numbers, &request, control)
         })?;
-        let found = found.map_err(|failure| match failure {
-            ToleranceError::Nominal(rejection) => {
-                let case = &self.cases[rejection.motion];
-                Failure::of_model(Kind::Stopped, case, &diagnose::stop(case, &rejection.stop, 0, None))
+        let found = found.map_err(|error| match error {
+            tolerance::Error::Nominal(stopped) => {
+                let (of_motion, diagnostic) = nominal_stop(file, motions, &numbers, &stopped);
+                Failure::of_model(Kind::Stopped, &of_motion, &diagnostic)
             }
-            ToleranceError::NothingVaries => Failure::of_study(
-                "none of the variables with a tolerance is admissible; give tolerances to admissible variables",
-            ),
+            tolerance::Error::Request(error) => error.into(),
         })?;
-        let facts =
-            ToleranceFacts::of(&ToleranceInputs { file, numbers: &numbers, asked: &asked, found: &found });
+        let asked = &request.settings;
+        let facts = ToleranceFacts::of(&ToleranceInputs { file, numbers: &numbers, asked, found: &found });
         Ok(outcome(&facts, &facts.tables()))
     }
 
@@ -184,11 +122,8 @@ impl Model {
         seed: Option<u64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (file, motions) = (&self.whole, self.motions()?);
-        let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
-        let Some(mut asked) = asked else {
-            return Err(Failure::of_study("the model has no design variables with tolerances").into());
-        };
-        asked.seed = seed.unwrap_or(asked.seed);
+        let overrides = tolerance::Overrides { seed, ..Default::default() };
+        let request = tolerance::Request::of(&file.model, &overrides).map_err(Failure::from)?;
         let left_out = py.detach(|| {
             let mut left_out = Vec::new();
             for analysis in motions.analyses() {
@@ -198,7 +133,7 @@ impl Model {
             }
             left_out
         });
-        let design = toleranced_designs(&file.model, &asked, &left_out);
+        let design = toleranced_designs(&file.model, &request.settings, &left_out);
         let rows: Vec<f64> = numbers.iter().flat_map(|n| self.values_of(&design(*n))).collect();
         array(py, rows, [numbers.len(), file.model.variables.len()])
     }
@@ -213,46 +148,27 @@ impl Model {
         sigmas: Vec<(String, f64)>,
         variables: Vec<String>,
         loss: &str,
-        iterations: usize,
+        iterations: Option<usize>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(String, Vec<f64>)> {
         let file = &self.whole;
-        let variables = self.variables(&variables)?;
         let table = file.measured(Path::new(measured), &sigmas).map_err(|found| Failure::of_text(&found))?;
-        let loss = match loss {
-            "squares" => Loss::Squares,
-            "huber" => Loss::Huber,
-            "cauchy" => Loss::Cauchy,
-            _ => {
-                return Err(Failure::Misunderstood(format!(
-                    "unknown loss `{loss}`; there are squares, huber, cauchy"
-                ))
-                .into());
-            }
-        };
-        let asked = CalibrationRequest {
-            measured: &table.measurements,
-            variables: &variables,
-            loss,
-            formulation: Formulation::Relative,
-            iterations,
-        };
+        let loss = Loss::named(loss).map_err(Failure::from)?;
+        let formulation = Formulation::Relative;
+        let overrides = calibrate::Overrides { variables, loss, formulation, iterations };
+        let request =
+            calibrate::Request::of(&file.model, &table.measurements, &overrides).map_err(Failure::from)?;
         let found = patiently(py, progress, |watch| {
-            let mut report = |k: usize, _: f64| {
-                let _ = watch.tell(k, iterations);
-            };
-            calibrate(&file.model, &asked, &mut report, &|| watch.more())
+            let mut progress = |p: Progress<'_>| watch.tell(p.done, p.total);
+            let more = || watch.more();
+            let control = Control { threads: NonZero::<usize>::MIN, progress: &mut progress, more: &more };
+            calibrate(&file.model, &request, control)
         })?;
-        let found = found.map_err(|why| match why {
-            CalibrationError::Topology(fault) => Failure::of_model(Kind::Topology, file, &diagnose::topology_fault(file, &fault)),
-            CalibrationError::NothingReached(why) => {
-                Failure::of_study(format!("no posture of the table can be reached; error on the path to the first: {why}"))
+        let found = found.map_err(|error| match error {
+            calibrate::Error::Topology(fault) => {
+                Failure::of_model(Kind::Topology, file, &diagnose::topology_fault(file, &fault))
             }
-            CalibrationError::NothingVaries => Failure::of_study("none of the variables to fit is admissible"),
-            CalibrationError::TooFewReadings { readings, variables } => Failure::of_study(format!(
-                "{readings} readings without standard deviations do not determine {variables} variables and their standard deviation; give `sigma`, \
-                 seek fewer variables, or measure more"
-            )),
+            calibrate::Error::Request(error) => error.into(),
         })?;
         let facts = CalibrateFacts::of(&CalibrationInputs {
             file,
@@ -306,8 +222,8 @@ impl Model {
                     &diagnose::stop(file, stop, solution.motion.len(), None),
                 ));
             }
-            let tell = |done: usize| watch.tell(done, file.model.variables.len());
-            Ok(verify(analysis, &solution, &VerifyOptions::new(DifferenceScheme::Central), tell))
+            let tell = |p: Progress<'_>| watch.tell(p.done, p.total);
+            Ok(verify(analysis, &solution, &verify::Options::new(DifferenceScheme::Central), tell))
         })??;
         let verdict = Verdict::new(file, analysis, &found, 0.0);
         Ok(outcome(&verdict, &[verdict.table()]))

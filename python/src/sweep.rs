@@ -4,19 +4,17 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::draft::did_you_mean;
-use hardpoint::model::{SweepMethod, SweepRange, SweepSettings, VariableId};
 use hardpoint_report::cells::Cells;
 use hardpoint_report::sweep::{SweepInputs, Tally};
-use hardpoint_study::BLOCK;
-use hardpoint_study::sweep::{Sweep as Designs, SweepPlanError, SweptBlock};
+use hardpoint_study::request::variable;
+use hardpoint_study::sweep::{self, Overrides, Request, Sweep as Designs, method};
+use hardpoint_study::{BLOCK, RequestError};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use serde::Deserialize;
 use serde_json::json;
 
 use crate::array::array1;
-use crate::design::drawn;
 use crate::designs::threads;
 use crate::failure::Failure;
 use crate::model::Model;
@@ -40,79 +38,29 @@ struct Asked {
 #[pyclass(frozen, module = "hardpoint._native")]
 pub(crate) struct Sweep {
     model: Py<Model>,
-    asked: SweepSettings,
+    asked: Request,
     motions: hardpoint_study::Motions<'static>,
     numbers: Vec<usize>,
 }
 
 impl Model {
-    fn sweeping(&self, asked: &Asked) -> Result<SweepSettings, Failure> {
-        let model = &self.whole.model;
-        let mut all = model.sweeping.clone().unwrap_or_else(|| SweepSettings::of_bounds(model));
-        if let Some(path) = &asked.designs {
-            let (ranges, listed) =
-                self.whole.designs(Path::new(path)).map_err(|found| Failure::of_text(&found))?;
-            all = SweepSettings { method: SweepMethod::Listed, ranges, listed, ..all };
-        }
-        let refused = |why: String| Err(Failure::Misunderstood(why));
-        if let Some(name) = &asked.method {
-            let Some(k) = SweepMethod::NAMES.iter().position(|known| known == name) else {
-                return refused(format!(
-                    "unknown method `{name}`; there are {}",
-                    SweepMethod::NAMES.join(", ")
-                ));
-            };
-            all.method = SweepMethod::NAMED[k];
-        }
-        all.samples = asked.samples.unwrap_or(all.samples);
-        all.seed = asked.seed.unwrap_or(all.seed);
-        if let Some(levels) = asked.levels {
-            all.ranges.iter_mut().for_each(|range| range.levels = levels);
-        }
-        for (name, [from, to]) in &asked.ranges {
-            let names = || model.variables.iter().map(|v| v.name.as_str());
-            let Some(k) = names().position(|known| known == name) else {
-                let near =
-                    did_you_mean(name, names()).map_or(String::new(), |n| format!("; did you mean `{n}`?"));
-                return refused(format!("there is no design variable named `{name}`{near}"));
-            };
-            if !(from < to) || !(to - from).is_finite() {
-                return refused(format!(
-                    "the range of `{name}` is not in ascending order; give the lower end first"
-                ));
-            }
-            let variable = VariableId(k);
-            let change = |x: f64| match x == drawn(&self.whole, variable) {
-                true => 0.0,
-                false => {
-                    self.whole.units.to_si(model.variables[k].quantity, x) - model.nominal_value(variable)
-                }
-            };
-            let levels = asked
-                .levels
-                .or_else(|| all.ranges.first().map(|r| r.levels))
-                .unwrap_or(SweepSettings::LEVELS);
-            let one = SweepRange { variable, low: change(*from), high: change(*to), levels };
-            match all.ranges.iter_mut().find(|r| r.variable == variable) {
-                Some(range) => *range = SweepRange { levels: range.levels, ..one },
-                None => all.ranges.push(one),
-            }
-        }
-        for name in &asked.curves {
-            let names = || model.measures.iter().map(|m| m.name.as_str());
-            let Some(k) = names().position(|known| known == name) else {
-                let near =
-                    did_you_mean(name, names()).map_or(String::new(), |n| format!("; did you mean `{n}`?"));
-                return refused(format!("there is no measure named `{name}`{near}"));
-            };
-            if !all.curves.contains(&k) {
-                all.curves.push(k);
-            }
-        }
-        if all.metrics.is_empty() && all.curves.is_empty() {
-            return refused("the model has no metrics to compare designs; name curves to store".into());
-        }
-        Ok(all)
+    fn sweeping(&self, asked: Asked) -> Result<Request, Failure> {
+        let file = &self.whole;
+        let designs = asked.designs.map(|path| file.designs(Path::new(&path))).transpose();
+        let range = |(name, ends): (String, [f64; 2])| {
+            let variable = variable(&file.model, &name)?;
+            Ok((variable, ends.map(|x| file.change_to(variable, x))))
+        };
+        let overrides = Overrides {
+            designs: designs.map_err(|found| Failure::of_text(&found))?,
+            method: asked.method.map(|name| method(&name)).transpose()?,
+            samples: asked.samples,
+            seed: asked.seed,
+            levels: asked.levels,
+            ranges: asked.ranges.into_iter().map(range).collect::<Result<_, RequestError>>()?,
+            curves: asked.curves,
+        };
+        Ok(Request::of(&file.model, overrides)?)
     }
 }
 
@@ -128,7 +76,7 @@ impl Model {
         let motions = hardpoint_study::Motions::from(
             numbers.iter().map(|k| motions.analyses()[*k].clone()).collect::<Vec<_>>(),
         );
-        let asked = model.sweeping(&asked)?;
+        let asked = model.sweeping(asked)?;
         let sweep = Sweep { model: this.unbind(), asked, motions, numbers };
         sweep.with(|_| ())?;
         Ok(sweep)
@@ -139,21 +87,11 @@ impl Sweep {
     /// Plans the sweep and its tables.
     fn with<X>(&self, of: impl FnOnce(SweepInputs<'_>) -> X) -> Result<X, Failure> {
         let file = &self.model.get().whole;
-        let designs = Designs::new(&file.model, &self.motions, &self.numbers, &self.asked).map_err(|why| {
-            Failure::Misunderstood(match why {
-                SweepPlanError::NoRanges => "the model has no ranges of design variables; give `ranges`".into(),
-                SweepPlanError::NoDesigns => "there are no designs; give at least one sample".into(),
-                SweepPlanError::TooMany => format!("the sweep has more than {} designs; give fewer levels or variables", SweepSettings::MOST),
-                SweepPlanError::TooManyDimensions(most) => format!(
-                    "Sobol's sequence is known for {most} variables, and for indices for {}; sweep over fewer, or by latin_hypercube",
-                    most / 2
-                ),
-            })
-        })?;
+        let designs = Designs::new(&file.model, &self.motions, &self.numbers, &self.asked)?;
         Ok(of(SweepInputs {
             file,
             numbers: &self.numbers,
-            asked: &self.asked,
+            asked: &self.asked.settings,
             motions: &self.motions,
             sweep: &designs,
         }))
@@ -212,8 +150,8 @@ impl Sweep {
             self.with(|swept| {
                 let to = to.min(swept.sweep.plan().count());
                 let (mut rows, mut curves) = (Vec::new(), Vec::new());
-                let has_curves = !self.asked.curves.is_empty();
-                let mut done = |block: SweptBlock| {
+                let has_curves = !self.asked.settings.curves.is_empty();
+                let mut done = |block: sweep::Block| {
                     rows.push(swept.rows(&block));
                     if has_curves {
                         curves.push(swept.curve_rows(&block));
@@ -251,8 +189,8 @@ impl Sweep {
                 let count = swept.sweep.plan().count();
                 let (mut rows, mut curves, mut tally) = (Vec::new(), Vec::new(), Tally::default());
                 let mut metrics = vec![Vec::new(); swept.sweep.metrics().len()];
-                let has_curves = !self.asked.curves.is_empty();
-                let mut done = |block: SweptBlock| {
+                let has_curves = !self.asked.settings.curves.is_empty();
+                let mut done = |block: sweep::Block| {
                     swept.tally(&mut tally, &block);
                     rows.push(swept.rows(&block));
                     if has_curves {

@@ -11,6 +11,8 @@ from conftest import MODELS
 TIMES = ("seconds", "files", "timings")
 """Keys that differ from run to run."""
 
+DATA = MODELS / "studies/strut_measured.csv"
+
 
 def printed(done):
     facts = json.loads(done.stdout)
@@ -129,3 +131,40 @@ def test_the_page_is_that_of_the_command_line(strut, command, tmp_path):
     assert slots(ours) == slots(theirs)
     ours.save(tmp_path / "ours.html")
     assert (tmp_path / "ours.html").read_text() == ours
+
+
+@pytest.mark.parametrize(
+    ("arguments", "ask"),
+    [
+        (["optimize", "macpherson.toml"], lambda m: m.optimize()),
+        (["tolerance", "macpherson.toml"], lambda m: m.tolerance()),
+        (["optimize", "studies/strut_toe.toml", "--starts", 100001], lambda m: m.optimize(starts=100001)),
+        (["calibrate", "studies/strut_calibrate.toml", "{data}", "--variable", "outer_q"], lambda m: m.calibrate(DATA, variables=["outer_q"])),
+        (["sweep", "studies/strut_sweep.toml", "--range", "lca_front_z=5..-5"], lambda m: m.sweep(ranges={"lca_front_z": (5, -5)})),
+        (["sweep", "studies/strut_sweep.toml", "--range", "lca_fron_z=-5..5"], lambda m: m.sweep(ranges={"lca_fron_z": (-5, 5)})),
+        (["sweep", "studies/strut_sweep.toml", "--curves", "tow"], lambda m: m.sweep(curves=["tow"])),
+        (["sweep", "studies/strut_sweep.toml", "--method", "factorial", "--levels", 1000], lambda m: m.sweep(method="factorial", levels=1000)),
+    ],
+)
+def test_a_study_is_refused_with_the_message_of_the_command(command, arguments, ask):
+    name = arguments[1]
+    paths = [str(one).format(data=DATA) if k != 1 else MODELS / name for k, one in enumerate(arguments)]
+    found = json.loads(command(*paths, "--json").stdout)["diagnostics"][0]
+    with pytest.raises((hardpoint.StudyError, hardpoint.UsageError)) as raised:
+        ask(hardpoint.read(MODELS / name))
+    assert found["code"] == "HP0602"
+    assert found["message"] == f"`{MODELS / name}`: {raised.value.message}"
+    assert found["help"] == raised.value.help
+
+
+def test_a_list_of_designs_has_no_ranges_and_no_search_has_no_start(tmp_path, strut, toe):
+    path = tmp_path / "designs.csv"
+    path.write_text("outer_z\n1\n")
+    with pytest.raises(hardpoint.UsageError, match="a list of designs has no range"):
+        toe.sweep(designs=path, ranges={"outer_z": (-1, 1)})
+    with pytest.raises(hardpoint.UsageError, match="a list of designs has no method"):
+        toe.sweep(designs=path, method="sobol")
+    with pytest.raises(hardpoint.UsageError, match="the number of starts is 0"):
+        toe.optimize(starts=0)
+    with pytest.raises(hardpoint.UsageError, match="there is no loss function named `hubert`"):
+        hardpoint.read(MODELS / "studies/strut_calibrate.toml").calibrate(DATA, loss="hubert")

@@ -5,13 +5,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use hardpoint::model::{SweepSettings, ToleranceSettings};
 use hardpoint::space::Angles;
 use hardpoint::topology::Formulation;
 use hardpoint_study::difference::DifferenceScheme;
-
-/// Maximum number of designs of a tolerance study or a sweep.
-pub const MOST_DRAWN: u32 = 10_000_000;
-pub const MOST_SWEPT: u32 = 1_000_000_000;
+use serde::Deserialize;
 
 const AFTER: &str = "\
 Examples:
@@ -592,7 +590,7 @@ pub struct Tolerance {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Number of Monte Carlo designs, 0 for none [default: that of the file, or 10000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MOST_DRAWN)))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(ToleranceSettings::MOST)))]
     pub samples: Option<u32>,
     /// Seed of the random numbers [default: that of the file, or 1]
     #[arg(long, value_name = "N")]
@@ -701,7 +699,7 @@ pub struct Sweep {
     #[arg(long, value_enum)]
     pub method: Option<Method>,
     /// Number of designs; for sobol_indices the number of pairs of designs [default: that of the file, or 1000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SWEPT)))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=SweepSettings::MOST as i64))]
     pub samples: Option<u32>,
     /// Seed of the random numbers [default: that of the file, or 1]
     #[arg(long, value_name = "N")]
@@ -806,7 +804,8 @@ pub enum TableForm {
 }
 
 /// Rule of the allocation of tolerances.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, Deserialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
 pub enum Allocate {
     Rss,
     WorstCase,

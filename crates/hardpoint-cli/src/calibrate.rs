@@ -1,15 +1,14 @@
 //! `hardpoint calibrate`.
 
 use std::io::Write;
+use std::num::NonZero;
 
-use hardpoint::model::VariableId;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::calibrate::{CalibrateFacts, CalibrationInputs};
-use hardpoint_report::figures::{number, some_of};
-use hardpoint_study::calibrate::{
-    Calibration, CalibrationError, CalibrationRequest, FitStatus, Loss, calibrate,
-};
+use hardpoint_report::figures::number;
+use hardpoint_study::calibrate::{Calibration, Error, Loss, Overrides, Request, Status, calibrate};
+use hardpoint_study::{Control, Progress, Step};
 
 use crate::args::{Calibrate, LossKind};
 use crate::folder::{Folder, WriteError};
@@ -29,30 +28,26 @@ const FILES: [&str; 4] = ["residuals.csv", "covariance.csv", "report.html", "sum
 
 fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
-    let variables = variables(session, &file, &options.variable)?;
     let sigmas = sigmas(session, &options.sigma)?;
     let measured = file.measured(&options.measured, &sigmas).map_err(|found| {
         session.not_read(&found);
         Outcome::BadModel
     })?;
+    let overrides = Overrides {
+        variables: options.variable.clone(),
+        loss: options.loss.of(),
+        formulation: options.common.formulation(),
+        iterations: Some(options.iterations.get()),
+    };
+    let request = Request::of(&file.model, &measured.measurements, &overrides)
+        .map_err(|error| session.refused(&file, &error))?;
     session.may_save(&options.common.model, options.save.as_deref())?;
-    session.can_save(&file, &variables, options.save.as_deref())?;
+    session.can_save(&file, &request.variables, options.save.as_deref())?;
     let folder = session.folder(options.output.as_deref())?;
 
     session.patient(true);
-    let loss = match options.loss {
-        LossKind::Squares => Loss::Squares,
-        LossKind::Huber => Loss::Huber,
-        LossKind::Cauchy => Loss::Cauchy,
-    };
-    let asked = CalibrationRequest {
-        measured: &measured.measurements,
-        variables: &variables,
-        loss,
-        formulation: options.common.formulation(),
-        iterations: options.iterations.get(),
-    };
-    let found = search(session, &file, &asked)?;
+    let found = search(session, &file, &request)?;
+    let loss = request.loss;
     let data = options.measured.display().to_string();
     let calibrated = CalibrationInputs { file: &file, measured: &measured, data: &data, loss, found: &found };
     let mut facts = CalibrateFacts::of(&calibrated);
@@ -93,38 +88,10 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
     }
     saved?;
     Ok(match found.status {
-        FitStatus::Interrupted => Outcome::Interrupted,
-        FitStatus::IterationLimit => Outcome::FellShort,
-        FitStatus::Found => Outcome::Done,
+        Status::Interrupted => Outcome::Interrupted,
+        Status::IterationLimit => Outcome::FellShort,
+        Status::Found => Outcome::Done,
     })
-}
-
-/// Variables with these names, or all.
-fn variables(session: &Session, file: &ModelFile, names: &[String]) -> Result<Vec<VariableId>, Outcome> {
-    let model = &file.model;
-    if model.variables.is_empty() {
-        let why = format!("`{}` has no design variables to fit; add `[design]`", file.file_name());
-        return Err(session.misunderstood(&why));
-    }
-    if names.is_empty() {
-        return Ok((0..model.variables.len()).map(VariableId).collect());
-    }
-    let mut found = Vec::new();
-    for name in names {
-        let Some(variable) = model.variable(name) else {
-            let all: Vec<&str> = model.variables.iter().map(|v| v.name.as_str()).collect();
-            let near = hardpoint::draft::did_you_mean(name, all.iter().copied());
-            let help = near.map_or(format!("there are {}", some_of(&all, ", ")), |near| {
-                format!("did you mean `{near}`?")
-            });
-            return Err(session
-                .misunderstood(&format!("`--variable {name}`: there is no such design variable; {help}")));
-        };
-        if !found.contains(&variable) {
-            found.push(variable);
-        }
-    }
-    Ok(found)
 }
 
 /// Names with their standard deviations.
@@ -146,29 +113,30 @@ fn sigmas(session: &Session, given: &[String]) -> Result<Vec<(String, f64)>, Out
 }
 
 /// Fits the design and reports every iteration.
-fn search(
-    session: &Session,
-    file: &ModelFile,
-    asked: &CalibrationRequest<'_>,
-) -> Result<Calibration, Outcome> {
+fn search(session: &Session, file: &ModelFile, request: &Request<'_>) -> Result<Calibration, Outcome> {
     session.line(&text::bold(&file.model.name));
-    let mut progress = |k: usize, objective: f64| {
-        session.line(&format!("{k:>4}  objective {}", number(objective)));
+    let mut progress = |Progress { step, done, .. }: Progress<'_>| {
+        if let Step::Fit(objective) = step {
+            session.line(&format!("{done:>4}  objective {}", number(objective)));
+        }
+        session.go_on()
     };
     let more = || session.go_on().is_continue();
-    calibrate(&file.model, asked, &mut progress, &more).map_err(|why| match why {
-        CalibrationError::Topology(fault) => session.cannot_be_driven(file, &fault),
-        CalibrationError::NothingReached(why) => {
-            session.misunderstood(&format!("no posture of the table can be reached; error on the path to the first: {why}"))
-        }
-        CalibrationError::NothingVaries => {
-            session.misunderstood("none of the variables to fit is admissible")
-        }
-        CalibrationError::TooFewReadings { readings, variables } => session.misunderstood(&format!(
-            "{readings} readings without standard deviations do not determine {variables} variables and their standard deviation; give `--sigma`, fit fewer \
-             with `--variable`, or measure more"
-        )),
+    let control = Control { threads: NonZero::<usize>::MIN, progress: &mut progress, more: &more };
+    calibrate(&file.model, request, control).map_err(|error| match error {
+        Error::Topology(fault) => session.cannot_be_driven(file, &fault),
+        Error::Request(error) => session.refused(file, &error),
     })
+}
+
+impl LossKind {
+    fn of(self) -> Loss {
+        match self {
+            Self::Squares => Loss::Squares,
+            Self::Huber => Loss::Huber,
+            Self::Cauchy => Loss::Cauchy,
+        }
+    }
 }
 
 /// Results to write.

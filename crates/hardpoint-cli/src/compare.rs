@@ -3,14 +3,13 @@
 use std::io::Write;
 
 use hardpoint::Run;
-use hardpoint::draft::did_you_mean;
 use hardpoint_file::ModelFile;
 use hardpoint_report::compare::{CompareFacts, SolvedModel, are_alike};
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
-use hardpoint_report::figures::some_of;
 use hardpoint_report::payload::{ChangedDesign, Request, report};
 use hardpoint_report::summary::Summary;
+use hardpoint_study::request::named;
 use hardpoint_study::whatif::{add_coordinates, variable_named};
 
 use crate::args::Compare;
@@ -74,12 +73,9 @@ fn compare_in(
         [SolvedModel { file: &file, solution: &today }, SolvedModel { file: &other, solution: &exact }];
     let facts = CompareFacts::of(both);
     let names: Vec<&str> = facts.measures.iter().map(|c| c.measure.as_str()).collect();
-    if let Some(name) = options.measure.iter().find(|name| !names.contains(&name.as_str())) {
-        let hint = match did_you_mean(name, names.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("both have: {}", some_of(&names, ", ")),
-        };
-        return Err(session.misunderstood(&format!("`{name}` is not a measure of both models; {hint}")));
+    for name in &options.measure {
+        named("measure of both models", name, names.iter().copied())
+            .map_err(|error| session.refused(&file, &error))?;
     }
     let measures = &options.measure;
     let wanted = |name: &str| match measures.is_empty() {

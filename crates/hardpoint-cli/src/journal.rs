@@ -8,7 +8,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use hardpoint_study::StudyCost;
-use hardpoint_study::sweep::{SweptBlock, SweptCurves, SweptFailure};
+use hardpoint_study::sweep;
 
 /// First bytes of a journal, with the version of the format.
 const HEAD: &[u8; 16] = b"hardpoint sweep1";
@@ -114,7 +114,7 @@ impl Journal {
     }
 
     /// Adds a block.
-    pub fn add(&mut self, block: &SweptBlock) -> io::Result<()> {
+    pub fn add(&mut self, block: &sweep::Block) -> io::Result<()> {
         let payload = encoded(block);
         let mut bytes = Vec::with_capacity(FRAME as usize + payload.len());
         bytes.extend((payload.len() as u64).to_le_bytes());
@@ -126,8 +126,8 @@ impl Journal {
         Ok(())
     }
 
-    /// Passes all blocks in order to `each`.
-    pub fn each(&self, mut see: impl FnMut(SweptBlock) -> io::Result<()>) -> io::Result<()> {
+    /// Passes all blocks in order to `see`.
+    pub fn each(&self, mut see: impl FnMut(sweep::Block) -> io::Result<()>) -> io::Result<()> {
         let mut file = &self.file;
         file.seek(SeekFrom::Start(self.blocks.first().map_or(self.end, |(at, _)| *at)))?;
         let mut reader = BufReader::with_capacity(1 << 20, file);
@@ -206,7 +206,7 @@ impl std::fmt::Write for Checksum {
     }
 }
 
-fn encoded(block: &SweptBlock) -> Vec<u8> {
+fn encoded(block: &sweep::Block) -> Vec<u8> {
     let mut out = Vec::new();
     let count = |out: &mut Vec<u8>, n: usize| out.extend((n as u64).to_le_bytes());
     let floats = |out: &mut Vec<u8>, of: &[f64]| of.iter().for_each(|x| out.extend(x.to_le_bytes()));
@@ -214,20 +214,20 @@ fn encoded(block: &SweptBlock) -> Vec<u8> {
         count(out, of.len());
         out.extend(of.as_bytes());
     };
-    let SweptBlock { numbers, metrics, curves, failures, cost } = block;
+    let sweep::Block { numbers, metrics, curves, failures, cost } = block;
     for n in [numbers.start, numbers.len(), cost.motions, cost.steps, metrics.len()] {
         count(&mut out, n);
     }
     metrics.iter().for_each(|column| floats(&mut out, column));
     count(&mut out, failures.len());
-    for SweptFailure { number, motion, code, why } in failures {
+    for sweep::Failure { number, motion, code, why } in failures {
         count(&mut out, *number);
         count(&mut out, *motion);
         text(&mut out, code);
         text(&mut out, why);
     }
     count(&mut out, curves.len());
-    for SweptCurves { steps, values } in curves {
+    for sweep::Curves { steps, values } in curves {
         steps.iter().for_each(|n| count(&mut out, *n as usize));
         count(&mut out, values.len());
         floats(&mut out, values);
@@ -236,23 +236,23 @@ fn encoded(block: &SweptBlock) -> Vec<u8> {
 }
 
 /// Decodes a block; `None` if it is invalid.
-fn decoded(bytes: &[u8]) -> Option<SweptBlock> {
+fn decoded(bytes: &[u8]) -> Option<sweep::Block> {
     let mut from = Decoder(bytes);
     let start = from.count()?;
     let [designs, motions, steps, metrics] = [from.count()?, from.count()?, from.count()?, from.count()?];
-    let mut block = SweptBlock { numbers: start..start.checked_add(designs)?, ..SweptBlock::default() };
+    let mut block = sweep::Block { numbers: start..start.checked_add(designs)?, ..sweep::Block::default() };
     block.cost = StudyCost { designs, motions, steps };
     for _ in 0..metrics {
         block.metrics.push(from.floats(designs)?);
     }
     for _ in 0..from.count()? {
         let [number, motion] = [from.count()?, from.count()?];
-        block.failures.push(SweptFailure { number, motion, code: from.text()?, why: from.text()? });
+        block.failures.push(sweep::Failure { number, motion, code: from.text()?, why: from.text()? });
     }
     for _ in 0..from.count()? {
         let steps = (0..designs).map(|_| from.count().map(|n| n as u32)).collect::<Option<_>>()?;
         let values = from.count()?;
-        block.curves.push(SweptCurves { steps, values: from.floats(values)? });
+        block.curves.push(sweep::Curves { steps, values: from.floats(values)? });
     }
     from.0.is_empty().then_some(block)
 }
@@ -286,15 +286,15 @@ impl<'b> Decoder<'b> {
 mod tests {
     use super::*;
 
-    fn block(first: usize) -> SweptBlock {
+    fn block(first: usize) -> sweep::Block {
         let failure =
-            |number| SweptFailure {
+            |number| sweep::Failure {
                 number, motion: 1, code: "HP0401".into(), why: "locks — würgt".into()
             };
-        SweptBlock {
+        sweep::Block {
             numbers: first..first + 3,
             metrics: vec![vec![first as f64, f64::MIN_POSITIVE, -0.0], vec![1e300, 0.1, f64::MAX]],
-            curves: vec![SweptCurves { steps: vec![2, 0, 1], values: vec![0.5; 6] }],
+            curves: vec![sweep::Curves { steps: vec![2, 0, 1], values: vec![0.5; 6] }],
             failures: (first == 3).then(|| failure(4)).into_iter().collect(),
             cost: StudyCost { designs: 3, motions: 6, steps: 3 },
         }
@@ -308,7 +308,7 @@ mod tests {
         }
     }
 
-    fn blocks(journal: &Journal) -> Vec<SweptBlock> {
+    fn blocks(journal: &Journal) -> Vec<sweep::Block> {
         let mut found = Vec::new();
         journal
             .each(|b| {
@@ -324,7 +324,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sweep.partial");
         let mut journal = opened(&path);
-        let all: Vec<SweptBlock> = [0, 3, 6].map(block).into();
+        let all: Vec<sweep::Block> = [0, 3, 6].map(block).into();
         let mut ends = vec![journal.end];
         for b in &all {
             journal.add(b).unwrap();

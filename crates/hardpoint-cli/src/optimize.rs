@@ -2,17 +2,14 @@
 
 use std::io::Write;
 use std::num::NonZero;
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::Solution;
 use hardpoint::model::OptimizationSettings;
 use hardpoint_file::ModelFile;
-use hardpoint_report::optimize::{OptimizeFacts, iteration_line, start_line, to_save};
-use hardpoint_study::Motions;
-use hardpoint_study::optimize::{
-    DesignAssessment, OptimizationRequest, OptimizationResult, SearchProgress, judge, optimize,
-};
+use hardpoint_report::optimize::{OptimizeFacts, progress_line, to_save};
+use hardpoint_study::optimize::{DesignAssessment, Optimization, Overrides, Request, judge, optimize};
+use hardpoint_study::{Control, Motions, Progress};
 
 use crate::args::Optimize;
 use crate::folder::{Folder, WriteError};
@@ -34,24 +31,25 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
         file.model = file.model.with_case_only(case);
     }
     let [starts, iterations] = [options.starts, options.iterations].map(|n| n.map(NonZero::get));
-    let asked = asked(session, &file, options.motions.case.as_deref(), [starts, iterations])?;
+    let overrides = Overrides { starts, iterations, ..Overrides::default() };
+    let request = Request::of(&file.model, overrides).map_err(|e| session.refused(&file, &e))?;
     session.may_save(&options.common.model, options.save.as_deref())?;
-    session.can_save(&file, &asked.variables, options.save.as_deref())?;
+    session.can_save(&file, &request.settings.variables, options.save.as_deref())?;
     let models = file.model.motions();
     let motions = Motions::of(&models, options.common.formulation());
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
     let folder = session.folder(options.output.as_deref())?;
 
     session.patient(true);
-    let mut search = Search::run(session, &file, &motions, &asked, options.threads);
+    let mut search = Search::run(session, &file, &motions, &request, options.threads);
 
     let mut saved = Ok(None);
     if let (Some(to), Some(design)) = (&options.save, search.to_save()) {
         match session.save_result(&file, &design, to) {
             Ok(()) => {
                 search.facts.files.push(to.display().to_string());
-                let judged = judged_as_written(to, options, &asked);
-                search.facts.check_saved(&to.display().to_string(), judged, asked.margin);
+                let judged = judged_as_written(to, options, &request.settings);
+                search.facts.check_saved(&to.display().to_string(), judged, request.settings.margin);
                 saved = Ok(Some(to));
             }
             Err((diagnostics, why, outcome)) => {
@@ -108,37 +106,12 @@ fn judged_as_written(
     judge(&file.model, &motions, wanted, &[]).map_err(|refused| refused.why)
 }
 
-/// Settings from the file, overridden by options: a single case, the number of starts and iterations.
-pub fn asked(
-    session: &Session,
-    file: &ModelFile,
-    case: Option<&str>,
-    [starts, iterations]: [Option<usize>; 2],
-) -> Result<OptimizationSettings, Outcome> {
-    let Some(asked) = &file.model.optimization else {
-        let why = format!(
-            "`{}` has no `[optimize]` table; add `[optimize.goals]` with the metrics to minimise, and `bounds` to the \
-             design variables that may change (docs/file-format.md)",
-            file.file_name()
-        );
-        return Err(session.misunderstood(&why));
-    };
-    if let Some(case) = case.filter(|_| asked.goals.is_empty()) {
-        let why = format!("`--case {case}`: `[optimize]` has no goal in this case; leave `--case` out");
-        return Err(session.misunderstood(&why));
-    }
-    let mut asked = asked.clone();
-    asked.starts = starts.unwrap_or(asked.starts);
-    asked.iterations = iterations.unwrap_or(asked.iterations);
-    Ok(asked)
-}
-
 /// A finished search.
 pub struct Search<'a> {
     file: &'a ModelFile,
     motions: &'a Motions<'a>,
     asked: &'a OptimizationSettings,
-    found: OptimizationResult,
+    found: Optimization,
     /// Facts of the result.
     pub facts: OptimizeFacts,
 }
@@ -149,30 +122,18 @@ impl<'a> Search<'a> {
         session: &Session,
         file: &'a ModelFile,
         motions: &'a Motions<'a>,
-        asked: &'a OptimizationSettings,
+        request: &'a Request,
         most_threads: Option<NonZero<usize>>,
     ) -> Self {
-        let (model, units) = (&file.model, file.units);
-        let many = asked.starts > 1;
+        let (model, units, asked) = (&file.model, file.units, &request.settings);
         session.line(&text::bold(&model.name));
-        let mut progress = |k: usize, event: SearchProgress<'_>| {
-            let line = match event {
-                SearchProgress::Iteration(iteration) if !many => {
-                    Some(iteration_line(model, units, iteration))
-                }
-                SearchProgress::End(search) if many => Some(start_line(k, search)),
-                _ => None,
-            };
-            line.iter().for_each(|line| session.line(line));
+        let mut progress = |progress: Progress<'_>| {
+            progress_line(model, units, &progress).iter().for_each(|line| session.line(line));
             session.go_on()
         };
-        let searching = OptimizationRequest {
-            progress: &mut progress,
-            more: &|| session.go_on() == ControlFlow::Continue(()),
-            threads: threads(most_threads),
-            first: 0,
-        };
-        let found = optimize(model, motions, asked, searching);
+        let more = || session.go_on().is_continue();
+        let control = Control { threads: threads(most_threads), progress: &mut progress, more: &more };
+        let found = optimize(model, motions, request, control);
         let mut facts = OptimizeFacts::of(file, asked, &found);
         facts.seconds = session.seconds();
         Self { file, motions, asked, found, facts }

@@ -9,15 +9,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use hardpoint::draft::did_you_mean;
 use hardpoint::model::{CaseId, VariableId};
 use hardpoint::motion::Execution;
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint::{Analysis, Footprint, Run, Solution};
 use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, ReadError};
 use hardpoint_report::course::{Course, Gathering};
-use hardpoint_report::figures::{bytes, some_of};
+use hardpoint_report::figures::bytes;
 use hardpoint_report::{GENERATOR, diagnose};
+use hardpoint_study::RequestError;
+use hardpoint_study::request::named;
 use serde_json::json;
 
 use crate::args::Motions;
@@ -241,21 +242,14 @@ impl Session {
     /// # Errors
     /// Fails if there is no such case, or if it is not a motion.
     pub fn case(&self, file: &ModelFile, name: &str) -> Result<CaseId, Outcome> {
-        if let Some(id) = file.model.case(name) {
-            return Ok(id);
-        }
-        let cases: Vec<&str> = file.model.cases.iter().map(|c| c.name.as_str()).collect();
-        let why = match &cases[..] {
-            _ if file.model.grids.iter().any(|grid| grid.name == name) => {
-                "it is a grid of positions, not a motion; `hardpoint run` solves it".to_owned()
-            }
-            [] => "there is no such case; the model has no cases".to_owned(),
-            _ => match did_you_mean(name, cases.iter().copied()) {
-                Some(near) => format!("there is no such case; did you mean `{near}`?"),
-                None => format!("there is no such case; its cases are {}", some_of(&cases, ", ")),
-            },
-        };
-        Err(self.misunderstood(&format!("`--case {name}`: {why}")))
+        let model = &file.model;
+        let found = named("case", name, model.cases.iter().map(|c| c.name.as_str())).map(CaseId);
+        found.map_err(|error| match model.grids.iter().any(|grid| grid.name == name) {
+            true => self.misunderstood(&format!(
+                "`--case {name}`: it is a grid of positions and no motion, which `hardpoint run` solves"
+            )),
+            false => self.refused(file, &error),
+        })
     }
 
     /// Indices of the motions for a command.
@@ -505,6 +499,13 @@ impl Session {
     /// Reports an invalid command line for this model.
     pub fn misunderstood(&self, why: &str) -> Outcome {
         self.refuse("HP0602", why, None, "nothing was solved", "see `hardpoint help`");
+        Outcome::Misunderstood
+    }
+
+    /// Reports an invalid request of a study.
+    pub fn refused(&self, file: &ModelFile, error: &RequestError) -> Outcome {
+        let message = format!("`{}`: {}", file.file_name(), error.message);
+        self.refuse("HP0602", &message, None, "nothing was solved", &error.help);
         Outcome::Misunderstood
     }
 

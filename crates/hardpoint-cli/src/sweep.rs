@@ -6,14 +6,13 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::Solution;
-use hardpoint::draft::did_you_mean;
-use hardpoint::model::{Model, SweepMethod, SweepRange, SweepSettings, VariableId};
+use hardpoint::model::{Model, SweepMethod, SweepSettings, VariableId};
 use hardpoint_file::ModelFile;
-use hardpoint_report::figures::some_of;
 use hardpoint_report::page::SweepPlot;
 use hardpoint_report::sweep::{SweepFacts, SweepInputs, Tally};
 use hardpoint_study::Motions;
-use hardpoint_study::sweep::{Sweep as Designs, SweepPlanError};
+use hardpoint_study::request::variable;
+use hardpoint_study::sweep::{self, Overrides, Request, Sweep as Designs};
 
 use crate::args::{Method, Sweep, TableForm};
 use crate::folder::{Folder, WriteError};
@@ -74,20 +73,22 @@ fn swept<X>(
     end: impl FnOnce(&Results<'_>, Option<Folder>) -> Result<(SweepFacts, X), Outcome>,
 ) -> Result<(SweepFacts, X), Outcome> {
     let numbers = session.numbers_of(file, &options.motions)?;
-    let asked = asked(session, file, options)?;
+    let overrides = overrides(session, file, options)?;
+    let request = Request::of(&file.model, overrides).map_err(|e| session.refused(file, &e))?;
+    let asked = &request.settings;
     let models = file.model.motions();
     let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
     let motions = Motions::of(&models, options.common.formulation());
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(file, &fault))?;
-    let designs = Designs::new(&file.model, &motions, &numbers, &asked);
-    let designs = designs.map_err(|why| session.misunderstood(&no_plan(why, file)))?;
+    let designs = Designs::new(&file.model, &motions, &numbers, &request);
+    let designs = designs.map_err(|e| session.refused(file, &e))?;
     let folder = session.folder(options.output.as_deref())?;
     let mut journal =
-        journal(session, folder.as_ref(), fingerprint(file, &numbers, &asked, options), options)?;
+        journal(session, folder.as_ref(), fingerprint(file, &numbers, asked, options), options)?;
 
     session.patient(true);
     solve(session, &designs, &mut journal, options)?;
-    let swept = SweepInputs { file, numbers: &numbers, asked: &asked, motions: &motions, sweep: &designs };
+    let swept = SweepInputs { file, numbers: &numbers, asked, motions: &motions, sweep: &designs };
     let results = Results { swept, journal: &journal, format: options.format.of() };
     let (facts, made) = end(&results, folder)?;
     if facts.status != "interrupted" {
@@ -96,113 +97,37 @@ fn swept<X>(
     Ok((facts, made))
 }
 
-/// Sweep request from the file and the command line.
-fn asked(session: &Session, file: &ModelFile, options: &Sweep) -> Result<SweepSettings, Outcome> {
-    let model = &file.model;
-    let mut asked = model.sweeping.clone().unwrap_or_else(|| SweepSettings::of_bounds(model));
-    if let Some(path) = &options.designs {
-        let (ranges, listed) = file.designs(path).map_err(|found| {
-            session.not_read(&found);
-            Outcome::BadModel
-        })?;
-        asked = SweepSettings { method: SweepMethod::Listed, ranges, listed, ..asked };
-    }
-    if asked.method == SweepMethod::Listed && options.method.is_some() {
-        let why = "`--method` and a list of designs exclude each other; leave out one of them";
-        return Err(session.misunderstood(why));
-    }
-    asked.method = options.method.map_or(asked.method, Method::of);
-    asked.samples = options.samples.map_or(asked.samples, |n| n as usize);
-    asked.seed = options.seed.map_or(asked.seed, u64::from);
-    if let Some(levels) = options.levels {
-        asked.ranges.iter_mut().for_each(|range| range.levels = levels as usize);
-    }
-    let mut given: Vec<SweepRange> = Vec::new();
-    for text in &options.range {
-        given.push(range(
-            session,
-            file,
-            text,
-            asked.ranges.first().map_or(SweepSettings::LEVELS, |r| r.levels),
-        )?);
-    }
-    if asked.method == SweepMethod::Listed && !given.is_empty() {
-        return Err(session.misunderstood("`--range` does not apply to a list of designs; leave it out"));
-    }
-    for one in given {
-        match asked.ranges.iter_mut().find(|r| r.variable == one.variable) {
-            Some(range) => *range = SweepRange { levels: range.levels, ..one },
-            None => asked.ranges.push(one),
-        }
-    }
-    for name in &options.curves {
-        let measures = || model.measures.iter().map(|m| m.name.as_str());
-        let Some(k) = measures().position(|m| m == name) else {
-            let close = did_you_mean(name, measures());
-            let names: Vec<&str> = measures().collect();
-            let help = close.map_or(format!("its measures are {}", some_of(&names, ", ")), |c| {
-                format!("did you mean `{c}`?")
-            });
-            return Err(
-                session.misunderstood(&format!("`--curves {name}`: there is no such measure; {help}"))
-            );
-        };
-        if !asked.curves.contains(&k) {
-            asked.curves.push(k);
-        }
-    }
-    if asked.metrics.is_empty() && asked.curves.is_empty() {
-        let why = format!(
-            "`{}` has no metrics to compare designs; declare some in `[metrics]`, or store curves with `--curves NAME`",
-            file.file_name()
-        );
-        return Err(session.misunderstood(&why));
-    }
-    Ok(asked)
+/// Options that override those of the file.
+fn overrides(session: &Session, file: &ModelFile, options: &Sweep) -> Result<Overrides, Outcome> {
+    let designs = options.designs.as_ref().map(|path| file.designs(path)).transpose();
+    let designs = designs.map_err(|found| {
+        session.not_read(&found);
+        Outcome::BadModel
+    })?;
+    Ok(Overrides {
+        designs,
+        method: options.method.map(Method::of),
+        samples: options.samples.map(|n| n as usize),
+        seed: options.seed.map(u64::from),
+        levels: options.levels.map(|n| n as usize),
+        ranges: options.range.iter().map(|text| range(session, file, text)).collect::<Result<_, _>>()?,
+        curves: options.curves.clone(),
+    })
 }
 
 /// `NAME=FROM..TO`, in the unit of the variable.
-fn range(session: &Session, file: &ModelFile, text: &str, levels: usize) -> Result<SweepRange, Outcome> {
+fn range(session: &Session, file: &ModelFile, text: &str) -> Result<(VariableId, [f64; 2]), Outcome> {
     let refuse = |why: &str| session.misunderstood(&format!("`--range {text}`: {why}"));
     let parts = text.split_once('=').and_then(|(name, ends)| Some((name.trim(), ends.split_once("..")?)));
     let Some((name, (from, to))) = parts else {
         return Err(refuse("write it as `NAME=FROM..TO`, for example `lca_front_z=-5..5`"));
     };
-    let names = || file.model.variables.iter().map(|v| v.name.as_str());
-    let Some(k) = names().position(|n| n == name) else {
-        let close = did_you_mean(name, names()).map_or(String::new(), |c| format!("; did you mean `{c}`?"));
-        return Err(refuse(&format!("there is no design variable named `{name}`{close}")));
-    };
-    let variable = VariableId(k);
+    let variable = variable(&file.model, name).map_err(|error| session.refused(file, &error))?;
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
     let [Some(from), Some(to)] = [from, to].map(number) else {
         return Err(refuse("both ends are numbers without units, in the units of the model file"));
     };
-    if from >= to {
-        return Err(refuse("the range is not increasing; give the lower end first"));
-    }
-    let quantity = file.model.variables[k].quantity;
-    let [low, high] = [from, to].map(|x| file.units.to_si(quantity, x) - file.model.nominal_value(variable));
-    Ok(SweepRange { variable, low, high, levels })
-}
-
-fn no_plan(why: SweepPlanError, file: &ModelFile) -> String {
-    match why {
-        SweepPlanError::NoRanges => format!(
-            "`{}` has no ranges of design variables; give them `bounds` in `[design]` or `[parameters]`, ranges in \
-             `[sweep.variables]`, or use `--range NAME=FROM..TO` (docs/sweep.md)",
-            file.file_name()
-        ),
-        SweepPlanError::NoDesigns => "there are no designs; give at least one with `--samples`".into(),
-        SweepPlanError::TooMany => format!(
-            "the sweep has more than {} designs; give fewer levels, fewer variables, or use `--method sobol --samples N`",
-            SweepSettings::MOST
-        ),
-        SweepPlanError::TooManyDimensions(most) => format!(
-            "Sobol's sequence is known for {most} variables, and for indices for {}; sweep over fewer, or use `--method latin-hypercube`",
-            most / 2
-        ),
-    }
+    Ok((variable, [from, to].map(|x| file.change_to(variable, x))))
 }
 
 /// Identity of a sweep: the meaning of the model, the designs, the stored results, and the program.
@@ -253,7 +178,7 @@ fn solve(
     let from = journal.designs();
     let mut meter = session.meter("solving", "designs").with_rate(from);
     let mut failure = None;
-    let mut done = |block: hardpoint_study::sweep::SweptBlock| {
+    let mut done = |block: sweep::Block| {
         if let Err(error) = journal.add(&block) {
             failure = Some(error);
             return ControlFlow::Break(());

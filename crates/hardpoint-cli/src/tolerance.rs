@@ -4,14 +4,11 @@ use std::io::Write;
 use std::num::NonZero;
 
 use hardpoint::Solution;
-use hardpoint::model::{AllocationRule, AllocationSettings, LimitTarget, Model, ToleranceSettings};
+use hardpoint::model::{AllocationRule, Model};
 use hardpoint_file::ModelFile;
-use hardpoint_report::diagnose;
-use hardpoint_report::figures::some_of;
-use hardpoint_report::optimize::case_name;
-use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs};
-use hardpoint_study::Motions;
-use hardpoint_study::tolerance::{ToleranceError, ToleranceResult, ToleranceStage, tolerance};
+use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs, nominal_stop};
+use hardpoint_study::tolerance::{Error, Overrides, Request, ToleranceResult, tolerance};
+use hardpoint_study::{Control, Motions, Progress, Step};
 
 use crate::args::{Allocate, Tolerance};
 use crate::folder::{Folder, WriteError};
@@ -29,9 +26,8 @@ pub fn run(options: &Tolerance) -> Outcome {
 fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
     let numbers = session.numbers_of(&file, &options.motions)?;
-    let asking =
-        ToleranceOverrides { samples: options.samples, seed: options.seed, allocate: options.allocate };
-    let asked = asked(session, &file, &asking)?;
+    let overrides = overrides(options.samples, options.seed, options.allocate);
+    let request = Request::of(&file.model, &overrides).map_err(|e| session.refused(&file, &e))?;
     let models = file.model.motions();
     let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
     let motions = Motions::of(&models, options.common.formulation());
@@ -39,8 +35,8 @@ fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outco
     let folder = session.folder(options.output.as_deref())?;
 
     session.patient(true);
-    let found = examine(session, &file, &motions, &numbers, &asked, options.threads)?;
-    let studied = ToleranceInputs { file: &file, numbers: &numbers, asked: &asked, found: &found };
+    let found = examine(session, &file, &motions, &numbers, &request, options.threads)?;
+    let studied = ToleranceInputs { file: &file, numbers: &numbers, asked: &request.settings, found: &found };
     let mut results = Results::of(session, studied, &motions);
     let mut written = None;
     if let Some(mut folder) = folder {
@@ -61,52 +57,13 @@ fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outco
 /// Result files; the summary is written last and marks them as complete.
 const FILES: [&str; 5] = ["metrics.csv", "contributions.csv", "bands.csv", "samples.csv", "summary.json"];
 
-/// Options that override the file.
-#[derive(Default)]
-pub struct ToleranceOverrides {
-    /// Number of Monte Carlo designs.
-    pub samples: Option<u32>,
-    /// Seed of the random numbers.
-    pub seed: Option<u32>,
-    /// Rule of the allocation of the loosest tolerances.
-    pub allocate: Option<Allocate>,
-}
-
-/// Settings from the file, overridden by options.
-pub fn asked(
-    session: &Session,
-    file: &ModelFile,
-    options: &ToleranceOverrides,
-) -> Result<ToleranceSettings, Outcome> {
-    let asked = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
-    let Some(mut asked) = asked else {
-        let why = format!(
-            "the design variables of `{}` have no tolerances; add `tolerance = 0.1` to some in `[design]` or \
-             `[parameters]` (docs/tolerance.md)",
-            file.file_name()
-        );
-        return Err(session.misunderstood(&why));
-    };
-    asked.samples = options.samples.map_or(asked.samples, |n| n as usize);
-    asked.seed = options.seed.map_or(asked.seed, u64::from);
-    if let Some(rule) = options.allocate {
-        let given = asked.allocation.map(|a| a.rule);
-        let rule = match (rule, given) {
-            (Allocate::Rss, Some(rule @ AllocationRule::Rss { .. })) => rule,
-            (Allocate::Rss, _) => AllocationRule::Rss { sigmas: ToleranceSettings::SIGMAS },
-            (Allocate::WorstCase, _) => AllocationRule::Worst,
-        };
-        asked.allocation = Some(AllocationSettings { rule });
+/// Options that override those of the file.
+pub fn overrides(samples: Option<u32>, seed: Option<u32>, allocate: Option<Allocate>) -> Overrides {
+    Overrides {
+        samples: samples.map(|n| n as usize),
+        seed: seed.map(u64::from),
+        allocate: allocate.map(|rule| AllocationRule::NAMES[rule as usize].into()),
     }
-    if asked.metrics.is_empty() && asked.curves.is_empty() && !has_metric_limits(&asked) {
-        let why = format!("`{}` has neither metrics nor measures to analyse", file.file_name());
-        return Err(session.misunderstood(&why));
-    }
-    Ok(asked)
-}
-
-fn has_metric_limits(asked: &ToleranceSettings) -> bool {
-    asked.limits.iter().any(|limit| matches!(limit.of, LimitTarget::Metric(_)))
 }
 
 /// Runs the study with progress.
@@ -115,42 +72,32 @@ pub fn examine(
     file: &ModelFile,
     motions: &Motions<'_>,
     numbers: &[usize],
-    asked: &ToleranceSettings,
+    request: &Request,
     most_threads: Option<NonZero<usize>>,
 ) -> Result<ToleranceResult, Outcome> {
     let mut derivatives = session.meter("differentiating", "variables");
     let mut designs = session.meter("solving", "designs");
-    let mut tell = |stage: ToleranceStage| {
-        match stage {
-            ToleranceStage::Derivatives(done, of) => derivatives.show(done, of),
-            ToleranceStage::Designs(done, of) => designs.show(done, of),
+    let mut progress = |Progress { step, done, total, .. }: Progress<'_>| {
+        match step {
+            Step::Variable => derivatives.show(done, total),
+            Step::Designs => designs.show(done, total),
+            Step::Iteration(_) | Step::Search(..) | Step::Fit(_) => {}
         }
         session.go_on()
     };
     let more = || session.go_on().is_continue();
-    let found = tolerance(&file.model, motions, numbers, asked, threads(most_threads), &mut tell, &more);
-    found.map_err(|failure| match failure {
-        ToleranceError::Nominal(rejection) if rejection.interrupted() => {
+    let control = Control { threads: threads(most_threads), progress: &mut progress, more: &more };
+    tolerance(&file.model, motions, numbers, request, control).map_err(|error| match error {
+        Error::Nominal(stopped) if stopped.interrupted() => {
             session.misunderstood("interrupted before the nominal design was solved");
             Outcome::Interrupted
         }
-        ToleranceError::Nominal(rejection) => {
-            let mut one = file.clone();
-            one.model = Model::clone(motions.model(rejection.motion));
-            let mut diagnostic = diagnose::stop(&one, &rejection.stop, 0, None);
-            if let Some(case) = case_name(&file.model, numbers[rejection.motion]) {
-                diagnostic.message = format!("case `{case}`: {}", diagnostic.message);
-            }
-            session.fail(&one, &[diagnostic]);
+        Error::Nominal(stopped) => {
+            let (of_motion, diagnostic) = nominal_stop(file, motions, numbers, &stopped);
+            session.fail(&of_motion, &[diagnostic]);
             Outcome::Stopped
         }
-        ToleranceError::NothingVaries => {
-            let names: Vec<&str> = asked.tolerances.iter().map(|t| t.name.as_str()).collect();
-            session.misunderstood(&format!(
-                "none of the variables with a tolerance is admissible: {}",
-                some_of(&names, ", ")
-            ))
-        }
+        Error::Request(error) => session.refused(file, &error),
     })
 }
 

@@ -8,7 +8,7 @@ use hardpoint_report::diagnose;
 use hardpoint_report::facts::Facts;
 use hardpoint_report::figures::{count, error, seconds};
 use hardpoint_report::verdict::{Differences, Outcome as Agrees, Verdict};
-use hardpoint_study::verify::{VerifyOptions, verify as verify_designs};
+use hardpoint_study::verify::{self, verify as verify_designs};
 
 use crate::args::Verify;
 use crate::folder::{Folder, of_case};
@@ -45,13 +45,13 @@ fn verify_in(
         .tell(&file, &diagnose::variables(&file, &Facts::new(&file, analysis.topology(), Some(&solution))));
 
     let started = Instant::now();
-    let mut sweep = VerifyOptions::new(options.differences.scheme());
+    let mut sweep = verify::Options::new(options.differences.scheme());
     if let Some(steps) = &options.steps {
         sweep.steps.clone_from(steps);
     }
     let mut meter = session.meter("re-solving designs", "variables");
-    let verification = verify_designs(&analysis, &solution, &sweep, |done| {
-        meter.show(done, file.model.variables.len());
+    let verification = verify_designs(&analysis, &solution, &sweep, |progress| {
+        meter.show(progress.done, progress.total);
         session.go_on()
     });
     drop(meter);

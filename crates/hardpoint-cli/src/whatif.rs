@@ -13,6 +13,7 @@ use hardpoint_report::metric::MetricChange;
 use hardpoint_report::payload::{ChangedDesign, Request, report};
 use hardpoint_report::summary::Summary;
 use hardpoint_report::whatif::{ChangeFact, WhatIfFacts};
+use hardpoint_study::request::named;
 use hardpoint_study::whatif::{add_coordinates, add_tilts, variable_named, variable_names, what_if};
 
 use crate::args::Whatif;
@@ -69,8 +70,10 @@ fn whatif_in(
             nearest = ChangeFact::all(&model, file.units, &found);
         }
     }
+    let outputs = hardpoint::measure::outputs(&file.model);
     for name in options.measure.iter().chain(&options.over) {
-        measure(&file.model, name).map_err(|why| session.misunderstood(&why))?;
+        named("measure", name, outputs.iter().map(|o| o.name.as_str()))
+            .map_err(|e| session.refused(&file, &e))?;
     }
     let folder = options.output.as_ref().map(|path| Folder::open(&of_case(path, case)));
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;
@@ -228,18 +231,4 @@ fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String> {
         (Quantity::Angle, ..) => Err(format!("it is an angle, but {unit} is not a unit of angle")),
         (Quantity::Number, ..) => Err(format!("it is dimensionless, but the unit `{unit}` was given")),
     }
-}
-
-/// Checks the name of a measure or of a point's component.
-fn measure(model: &Model, name: &str) -> Result<(), String> {
-    let names: Vec<String> = hardpoint::measure::outputs(model).into_iter().map(|o| o.name).collect();
-    if names.iter().any(|n| n == name) {
-        return Ok(());
-    }
-    let hint = did_you_mean(name, names.iter().map(String::as_str));
-    let hint = hint.map_or_else(
-        || format!("; there are: {}", hardpoint_report::figures::some_of(&names, ", ")),
-        |known| format!("; did you mean `{known}`?"),
-    );
-    Err(format!("`{name}` is not a measure of the model{hint}"))
 }

@@ -124,7 +124,7 @@ impl RunDocument<'_> {
     }
 
     fn about(&self, sheets: &[Sheet]) -> Result<Worksheet, XlsxError> {
-        let (model, summary) = (&self.file.model, self.summary);
+        let summary = self.summary;
         let mut page = Page::new("About")?;
         page.heading(&summary.model.name)?;
         for line in summary.model.description.iter().flat_map(|d| d.lines()) {
@@ -144,8 +144,7 @@ impl RunDocument<'_> {
         let notes = summary.diagnostics.iter().map(|d| vec![d.code.into(), d.message.as_str().into()]);
         page.table("Warnings", &[], notes)?;
         let variable = |(k, v): (usize, &VariableFact)| {
-            let value =
-                self.file.units.from_si(model.variables[k].quantity, model.nominal_value(VariableId(k)));
+            let value = self.file.value_of(VariableId(k), 0.0);
             let unit = if v.unit == "1" { "" } else { &v.unit };
             vec![
                 v.name.as_str().into(),

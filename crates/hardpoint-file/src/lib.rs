@@ -108,7 +108,22 @@ impl ModelFile {
         Self { model, case: Some(self.model.cases[case.0].name.clone()), ..self.clone() }
     }
 
-    /// Name of the file as given.
+    /// Value of a variable after a change in SI, in the file's units.
+    pub fn value_of(&self, variable: VariableId, change: f64) -> f64 {
+        let quantity = self.model.variables[variable.0].quantity;
+        self.units.from_si(quantity, change + self.model.nominal_value(variable))
+    }
+
+    /// Change, in SI, that gives a variable a value in the file's units; exactly 0 for its nominal value.
+    pub fn change_to(&self, variable: VariableId, value: f64) -> f64 {
+        if value == self.value_of(variable, 0.0) {
+            return 0.0;
+        }
+        let quantity = self.model.variables[variable.0].quantity;
+        self.units.to_si(quantity, value) - self.model.nominal_value(variable)
+    }
+
+    /// Name of the file, as given.
     pub fn file_name(&self) -> &str {
         &self.source.file
     }
@@ -165,12 +180,7 @@ impl ModelFile {
             }
             variables.push(VariableId(k));
         }
-        let in_si = |row: &Vec<f64>| {
-            let value = |(v, x): (&VariableId, &f64)| {
-                self.units.to_si(self.model.variables[v.0].quantity, *x) - self.model.nominal_value(*v)
-            };
-            variables.iter().zip(row).map(value).collect()
-        };
+        let in_si = |row: &Vec<f64>| variables.iter().zip(row).map(|(v, x)| self.change_to(*v, *x)).collect();
         let rows: Vec<Vec<f64>> = rows.iter().map(in_si).collect();
         Ok((SweepSettings::spanned(&variables, &rows), rows))
     }

@@ -9,7 +9,7 @@ use hardpoint::model::{DriverId, Model};
 use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{MeasuredData, ModelFile, Units};
 use hardpoint_study::calibrate::{
-    Calibration, FitStatus, FittedReading, Loss, NextReading, UnidentifiableChange,
+    Calibration, FittedReading, Loss, NextReading, Status, UnidentifiableChange,
 };
 use serde::Serialize;
 
@@ -384,10 +384,10 @@ impl CalibrateFacts {
             file: of.file.file_name().into(),
             data: of.data.into(),
             status: match found.status {
-                FitStatus::Found if certainty.unidentifiable.is_empty() => "found",
-                FitStatus::Found => "not_told",
-                FitStatus::IterationLimit => "iteration_limit",
-                FitStatus::Interrupted => "interrupted",
+                Status::Found if certainty.unidentifiable.is_empty() => "found",
+                Status::Found => "not_told",
+                Status::IterationLimit => "iteration_limit",
+                Status::Interrupted => "interrupted",
             },
             message: String::new(),
             objective: found.objective,

@@ -6,11 +6,11 @@ use hardpoint::model::{
     Change, DesignVariable, Dimension, LimitTarget, Model, OptimizationSettings, OutputSource,
 };
 use hardpoint_file::{Diagnostic, ModelFile, Units};
-use hardpoint_study::Motions;
 use hardpoint_study::optimize::{
-    ActiveConstraint, DesignAssessment, FailedDesign, Iteration, LIMIT_KEPT, OptimizationResult,
-    OptimizationStatus, SearchResult, judge,
+    ActiveConstraint, DesignAssessment, FailedDesign, Iteration, LIMIT_KEPT, Optimization, SearchResult,
+    Status, judge,
 };
+use hardpoint_study::{Motions, Progress, Step};
 use serde::Serialize;
 
 use crate::facts::variable_unit;
@@ -246,14 +246,14 @@ pub struct RefusedFact {
 }
 
 /// Word for a status in JSON.
-pub fn status_word(status: OptimizationStatus) -> &'static str {
+pub fn status_word(status: Status) -> &'static str {
     match status {
-        OptimizationStatus::Optimal => "optimal",
-        OptimizationStatus::Stuck => "stuck",
-        OptimizationStatus::LimitsNotKept => "limits_not_kept",
-        OptimizationStatus::IterationLimit => "iteration_limit",
-        OptimizationStatus::Interrupted => "interrupted",
-        OptimizationStatus::NoStart => "no_start",
+        Status::Optimal => "optimal",
+        Status::Stuck => "stuck",
+        Status::LimitsNotKept => "limits_not_kept",
+        Status::IterationLimit => "iteration_limit",
+        Status::Interrupted => "interrupted",
+        Status::NoStart => "no_start",
     }
 }
 
@@ -267,8 +267,17 @@ pub fn case_name(model: &Model, motion: usize) -> Option<String> {
     model.cases.get(motion).map(|case| case.name.clone())
 }
 
-/// Iteration as a line of text, shown during the search.
-pub fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
+/// Line of text on a counted step of an optimisation, shown during the search.
+pub fn progress_line(model: &Model, units: Units, progress: &Progress<'_>) -> Option<String> {
+    match progress.step {
+        Step::Iteration(iteration) if progress.is_counted => Some(iteration_line(model, units, iteration)),
+        Step::Search(k, search) if progress.is_counted => Some(start_line(k, search)),
+        Step::Iteration(_) | Step::Search(..) | Step::Variable | Step::Designs | Step::Fit(_) => None,
+    }
+}
+
+/// Iteration as a line of text.
+fn iteration_line(model: &Model, units: Units, i: &Iteration) -> String {
     let kept = match exceeded(i.violation) {
         Some(by) => format!("limits exceeded by {by}"),
         None => "limits kept".into(),
@@ -333,7 +342,7 @@ fn rounded_to(file: &ModelFile, asked: &OptimizationSettings, design: &[f64], fi
 }
 
 /// Line on a search that ended, without header.
-pub fn start_line(k: usize, search: &SearchResult) -> String {
+fn start_line(k: usize, search: &SearchResult) -> String {
     let from = if k == 0 { "nominal".into() } else { format!("start {k}") };
     let found = search.found.as_ref().map_or("-".into(), |f| number(f.objective));
     let status = in_words(search.status);
@@ -341,24 +350,24 @@ pub fn start_line(k: usize, search: &SearchResult) -> String {
 }
 
 /// A status in a few words.
-fn in_words(status: OptimizationStatus) -> &'static str {
+fn in_words(status: Status) -> &'static str {
     match status {
-        OptimizationStatus::Optimal => "an optimum",
-        OptimizationStatus::Stuck => "no further progress",
-        OptimizationStatus::LimitsNotKept => "limits not kept",
-        OptimizationStatus::IterationLimit => "iteration limit reached",
-        OptimizationStatus::Interrupted => "interrupted",
-        OptimizationStatus::NoStart => "cannot start",
+        Status::Optimal => "an optimum",
+        Status::Stuck => "no further progress",
+        Status::LimitsNotKept => "limits not kept",
+        Status::IterationLimit => "iteration limit reached",
+        Status::Interrupted => "interrupted",
+        Status::NoStart => "cannot start",
     }
 }
 
 impl OptimizeFacts {
     /// Collects the facts of an optimisation.
-    pub fn of(file: &ModelFile, asked: &OptimizationSettings, found: &OptimizationResult) -> Self {
+    pub fn of(file: &ModelFile, asked: &OptimizationSettings, found: &Optimization) -> Self {
         let (model, units) = (&file.model, file.units);
         let best = found.best.map(|k| &found.searches[k]);
         let judged = best.and_then(|b| b.found.as_ref());
-        let worst = found.searches.first().map_or(OptimizationStatus::NoStart, |s| s.status);
+        let worst = found.searches.first().map_or(Status::NoStart, |s| s.status);
         let status = best.map_or(worst, |b| b.status);
         let before_after = |of: fn(&DesignAssessment) -> f64| BeforeAfter {
             before: found.nominal.as_ref().map(of),
@@ -410,20 +419,20 @@ impl OptimizeFacts {
             seconds: 0.0,
         };
         facts.message = facts.sentence(model, status, found);
-        let begun = found.searches.iter().filter(|s| s.status != OptimizationStatus::Interrupted).count();
-        if begun < found.searches.len() && status != OptimizationStatus::Interrupted {
+        let begun = found.searches.iter().filter(|s| s.status != Status::Interrupted).count();
+        if begun < found.searches.len() && status != Status::Interrupted {
             let all = found.searches.len();
             facts.message = format!(
                 "interrupted with {begun} of {all} starts searched; the best so far: {}",
                 facts.message
             );
-            facts.status = status_word(OptimizationStatus::Interrupted);
+            facts.status = status_word(Status::Interrupted);
         }
         facts
     }
 
     /// Sentence about the end of a search, with an instruction.
-    fn sentence(&self, model: &Model, status: OptimizationStatus, found: &OptimizationResult) -> String {
+    fn sentence(&self, model: &Model, status: Status, found: &Optimization) -> String {
         let exceeded = || {
             let missed = |l: &&LimitFact| l.missed().is_some();
             let lines: Vec<String> = self.limits.iter().filter(missed).map(LimitFact::line).collect();
@@ -432,25 +441,25 @@ impl OptimizeFacts {
         let binding: Vec<&str> =
             self.variables.iter().filter(|v| v.binds.is_some()).map(|v| v.name.as_str()).collect();
         match status {
-            OptimizationStatus::Optimal if best_is_met(found) => "all goals are met: no improvement is possible".into(),
-            OptimizationStatus::Optimal if binding.is_empty() => "an optimum: no small change of the design is better".into(),
-            OptimizationStatus::Optimal => format!(
+            Status::Optimal if best_is_met(found) => "all goals are met: no improvement is possible".into(),
+            Status::Optimal if binding.is_empty() => "an optimum: no small change of the design is better".into(),
+            Status::Optimal => format!(
                 "optimum found; {} are at their bounds, and wider bounds would improve it",
                 some_of(&binding, ", ")
             ),
-            OptimizationStatus::Stuck => "no step makes progress, although it is not quite an optimum: try more `starts`, or more output times \
+            Status::Stuck => "no step makes progress, although it is not quite an optimum: try more `starts`, or more output times \
                 where a metric jumps"
                 .into(),
-            OptimizationStatus::LimitsNotKept => format!(
+            Status::LimitsNotKept => format!(
                 "no design was found that keeps all limits{}; they contradict each other or the bounds: widen one of them, or \
                  try more `starts`",
                 exceeded()
             ),
-            OptimizationStatus::IterationLimit => {
+            Status::IterationLimit => {
                 "the iteration limit was reached before an optimum: increase `max_iterations`".into()
             }
-            OptimizationStatus::Interrupted => "interrupted: the best design so far".into(),
-            OptimizationStatus::NoStart => {
+            Status::Interrupted => "interrupted: the best design so far".into(),
+            Status::NoStart => {
                 let drawn = found.nominal_failure.as_ref();
                 let case = drawn.and_then(|r| case_name(model, r.motion?));
                 let case = case.map_or(String::new(), |case| format!("case `{case}`: "));
@@ -722,7 +731,7 @@ fn goals(
     model: &Model,
     units: Units,
     asked: &OptimizationSettings,
-    found: &OptimizationResult,
+    found: &Optimization,
     judged: Option<&DesignAssessment>,
 ) -> Vec<GoalFact> {
     let some = found.nominal.as_ref().or(judged);
@@ -750,7 +759,7 @@ fn limits(
     model: &Model,
     units: Units,
     asked: &OptimizationSettings,
-    found: &OptimizationResult,
+    found: &Optimization,
     best: Option<&SearchResult>,
 ) -> Vec<LimitFact> {
     let judged = best.and_then(|b| b.found.as_ref());
@@ -829,7 +838,7 @@ fn nominal(file: &ModelFile, variable: &DesignVariable) -> Option<f64> {
 }
 
 /// True if the best search ended where all goals vanish.
-fn best_is_met(found: &OptimizationResult) -> bool {
+fn best_is_met(found: &Optimization) -> bool {
     found.best.is_some_and(|k| found.searches[k].optimality.met)
 }
 

@@ -3,11 +3,9 @@
 use std::io;
 
 use hardpoint::measure::Output;
-use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, SweepSettings, VariableId};
+use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, SweepSettings};
 use hardpoint_file::{ModelFile, Units};
-use hardpoint_study::sweep::{
-    Distribution, SobolIndex, Sweep, SweptBlock, SweptMetric, rank_correlation, sobol_indices,
-};
+use hardpoint_study::sweep::{self, Distribution, SobolIndex, Sweep, rank_correlation, sobol_indices};
 use hardpoint_study::{Motions, StudyCost};
 use serde::Serialize;
 
@@ -196,23 +194,17 @@ impl SweepInputs<'_> {
         case_name(self.model(), self.numbers[motion])
     }
 
-    fn dimension(&self, of: SweptMetric) -> Dimension {
+    fn dimension(&self, of: sweep::Metric) -> Dimension {
         self.model().metric_dimension(&self.model().metrics[of.metric])
-    }
-
-    /// Value of a variable in the file's units: of a parameter its value, otherwise the change.
-    fn shown(&self, variable: VariableId, change: f64) -> f64 {
-        let quantity = self.model().variables[variable.0].quantity;
-        self.units().from_si(quantity, change + self.model().nominal_value(variable))
     }
 
     /// Swept variables of a design, in the file's units.
     fn variables_of(&self, number: usize) -> Vec<f64> {
         let swept = self.sweep.plan().swept(number);
-        self.asked.ranges.iter().zip(swept).map(|(range, x)| self.shown(range.variable, x)).collect()
+        self.asked.ranges.iter().zip(swept).map(|(range, x)| self.file.value_of(range.variable, x)).collect()
     }
 
-    fn title(&self, of: SweptMetric) -> String {
+    fn title(&self, of: sweep::Metric) -> String {
         let name = &self.model().metrics[of.metric].name;
         self.case(of.motion).map_or(name.clone(), |case| format!("{case}.{name}"))
     }
@@ -224,7 +216,7 @@ impl SweepInputs<'_> {
             with_brackets(&variable.name, &variable_unit(self.model(), self.units(), variable))
         };
         let metric =
-            |of: &SweptMetric| with_brackets(&self.title(*of), &unit(self.units(), self.dimension(*of)));
+            |of: &sweep::Metric| with_brackets(&self.title(*of), &unit(self.units(), self.dimension(*of)));
         let numbers = self.asked.ranges.iter().map(variable).chain(self.sweep.metrics().iter().map(metric));
         let mut columns = vec![("design".to_owned(), Cells::Whole(Vec::new()))];
         columns.extend(numbers.map(|name| (name, Cells::Numbers(Vec::new()))));
@@ -233,12 +225,12 @@ impl SweepInputs<'_> {
     }
 
     /// Rows of a block of designs.
-    pub fn rows(&self, block: &SweptBlock) -> Vec<Cells> {
+    pub fn rows(&self, block: &sweep::Block) -> Vec<Cells> {
         let mut variables = vec![Vec::new(); self.asked.ranges.len()];
         for number in block.numbers.clone() {
             variables.iter_mut().zip(self.variables_of(number)).for_each(|(column, x)| column.push(x));
         }
-        let metric = |(of, values): (&SweptMetric, &Vec<f64>)| {
+        let metric = |(of, values): (&sweep::Metric, &Vec<f64>)| {
             let dimension = self.dimension(*of);
             values.iter().map(|x| self.units().from_si(dimension, *x)).collect()
         };
@@ -277,7 +269,7 @@ impl SweepInputs<'_> {
     }
 
     /// Rows of the curves of a block of designs.
-    pub fn curve_rows(&self, block: &SweptBlock) -> Vec<Cells> {
+    pub fn curve_rows(&self, block: &sweep::Block) -> Vec<Cells> {
         let (mut designs, mut cases, mut times) = (Vec::new(), Vec::new(), Vec::new());
         let mut values = vec![Vec::new(); self.asked.curves.len()];
         let of = |m: &usize| self.model().dimension(OutputSource::Measure(*m));
@@ -307,7 +299,7 @@ impl SweepInputs<'_> {
     }
 
     /// Adds a block to the totals.
-    pub fn tally(&self, tally: &mut Tally, block: &SweptBlock) {
+    pub fn tally(&self, tally: &mut Tally, block: &sweep::Block) {
         tally.designs = block.numbers.end;
         tally.cost += block.cost;
         let mut last = None;
@@ -432,10 +424,10 @@ impl SweepInputs<'_> {
             SweptVariable {
                 name: variable.name.clone(),
                 unit: variable_unit(&file.model, file.units, variable),
-                from: self.shown(range.variable, range.low),
-                to: self.shown(range.variable, range.high),
+                from: self.file.value_of(range.variable, range.low),
+                to: self.file.value_of(range.variable, range.high),
                 levels: (asked.method == SweepMethod::Factorial).then_some(range.levels),
-                start: self.shown(range.variable, 0.0),
+                start: self.file.value_of(range.variable, 0.0),
                 end: best.map(|b| b[k]),
             }
         };

@@ -5,13 +5,15 @@ use std::io::Write;
 use hardpoint::measure::Output;
 use hardpoint::model::{AllocationRule, Dimension, LimitTarget, Model, OutputSource, ToleranceSettings};
 use hardpoint_file::csv_table::CsvWriter;
-use hardpoint_file::{ModelFile, Units};
+use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::tolerance::{
     Allocation, AllocationError, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric, SpreadModel,
     ToleranceResult, Yield,
 };
+use hardpoint_study::{EvaluationError, Motions};
 use serde::{Serialize, Serializer};
 
+use crate::diagnose;
 use crate::facts::variable_unit;
 use crate::figures::{count, number, rounded, seconds, some_of, unit, with_unit};
 use crate::optimize::{BeforeAfter, Evaluations, case_name};
@@ -246,6 +248,22 @@ pub struct ToleranceInputs<'a> {
     pub asked: &'a ToleranceSettings,
     /// Result of the study.
     pub found: &'a ToleranceResult,
+}
+
+/// Diagnostic of a nominal design that does not reach the end of a motion, and the file with the model of that motion.
+pub fn nominal_stop(
+    file: &ModelFile,
+    motions: &Motions<'_>,
+    numbers: &[usize],
+    stopped: &EvaluationError,
+) -> (ModelFile, Diagnostic) {
+    let mut of_motion = file.clone();
+    of_motion.model = motions.model(stopped.motion).clone();
+    let mut diagnostic = diagnose::stop(&of_motion, &stopped.stop, 0, None);
+    if let Some(case) = case_name(&file.model, numbers[stopped.motion]) {
+        diagnostic.message = format!("case `{case}`: {}", diagnostic.message);
+    }
+    (of_motion, diagnostic)
 }
 
 impl ToleranceInputs<'_> {

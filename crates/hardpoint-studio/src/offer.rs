@@ -9,27 +9,23 @@ use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::facts::variable_unit;
 use hardpoint_report::figures::{number, order_unit, with_unit};
 use hardpoint_study::Motions;
+use hardpoint_study::optimize::{self, Overrides, Selection};
+use hardpoint_study::request::{named, variable};
 
 use crate::RequestError;
 use crate::protocol::{
-    DiagnosticMessage, OptimizeOffer, OptimizeRequest, SearchGoal, SearchVariable, ToleranceChoice,
-    ToleranceOffer,
+    OptimizeOffer, OptimizeRequest, SearchGoal, SearchVariable, ToleranceChoice, ToleranceOffer,
 };
-
-/// Default numbers of starts and iterations of an optimisation.
-const STARTS: usize = 1;
-const ITERATIONS: usize = 100;
 
 /// Returns the options of an optimisation.
 pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, RequestError> {
     let (model, units, settings) = (&file.model, file.units, file.model.optimization.as_ref());
+    let OptimizationSettings { starts, iterations, .. } = OptimizationSettings::default();
     let values = values(file);
     let variable = |(k, v): (usize, &hardpoint::model::DesignVariable)| SearchVariable {
         name: v.name.clone(),
         unit: variable_unit(model, units, v),
-        bounds: v
-            .bounds
-            .map(|b| b.map(|x| units.from_si(v.quantity, x + model.nominal_value(VariableId(k))))),
+        bounds: v.bounds.map(|b| b.map(|x| file.value_of(VariableId(k), x))),
         chosen: settings.is_some_and(|settings| settings.variables.contains(&VariableId(k))),
     };
     let goal = |(k, metric): (usize, &hardpoint::model::Metric)| {
@@ -51,8 +47,8 @@ pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, RequestError> 
         limits: settings.map_or(Vec::new(), |settings| {
             settings.limits.iter().map(|l| sentence(model, units, l)).collect()
         }),
-        starts: settings.map_or(STARTS, |settings| settings.starts),
-        iterations: settings.map_or(ITERATIONS, |settings| settings.iterations),
+        starts: settings.map_or(starts, |settings| settings.starts),
+        iterations: settings.map_or(iterations, |settings| settings.iterations),
     })
 }
 
@@ -97,60 +93,39 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
     }
 }
 
-/// Returns the settings of the model text with those of the request in their place, and sets the requested bounds in
-/// the model.
-pub(crate) fn merged_settings(
+/// Returns the request for an optimisation, and sets the requested bounds in the model.
+pub(crate) fn requested(
     file: &mut ModelFile,
     request: &OptimizeRequest,
-) -> Result<OptimizationSettings, RequestError> {
-    let units = file.units;
-    let unknown = |what: &str, name: &str| {
-        vec![DiagnosticMessage::plain(
-            "HP0704",
-            format!("the model has no {what} `{name}`"),
-            "open the pane again",
-        )]
-    };
-    let mut settings = file.model.optimization.clone().unwrap_or(OptimizationSettings {
-        variables: Vec::new(),
-        goals: Vec::new(),
-        limits: Vec::new(),
-        margin: None,
-        starts: STARTS,
-        iterations: ITERATIONS,
-    });
-    settings.variables.clear();
+) -> Result<optimize::Request, hardpoint_study::RequestError> {
+    let mut selection = Selection::default();
     for choice in &request.variables {
-        let v = file.model.variable(&choice.name).ok_or_else(|| unknown("design variable", &choice.name))?;
-        let nominal = file.model.nominal_value(v);
-        let variable = &mut file.model.variables[v.0];
-        variable.bounds = Some(choice.bounds.map(|x| units.to_si(variable.quantity, x) - nominal));
-        settings.variables.push(v);
+        let v = variable(&file.model, &choice.name)?;
+        file.model.variables[v.0].bounds = Some(choice.bounds.map(|x| file.change_to(v, x)));
+        selection.variables.push(v);
     }
-    let before = std::mem::take(&mut settings.goals);
+    let goals = file.model.optimization.as_ref().map_or(&[][..], |settings| &settings.goals);
     for goal in &request.goals {
-        let metric = file.model.metrics.iter().position(|m| m.name == goal.metric);
-        let metric = metric.ok_or_else(|| unknown("metric", &goal.metric))?;
-        let dimension = file.model.metric_dimension(&file.model.metrics[metric]);
-        let name = before.iter().find(|goal| goal.metric == metric).map_or(&goal.metric, |goal| &goal.name);
-        settings.goals.push(Goal {
-            name: name.clone(),
+        let metric = named("metric", &goal.metric, file.model.metrics.iter().map(|m| m.name.as_str()))?;
+        let unit = file.units.from_si(file.model.metric_dimension(&file.model.metrics[metric]), 1.0);
+        selection.goals.push(Goal {
+            name: goals
+                .iter()
+                .find(|goal| goal.metric == metric)
+                .map_or(&goal.metric, |goal| &goal.name)
+                .clone(),
             metric,
-            target: goal.target.map(|x| x / units.from_si(dimension, 1.0)),
-            weight: goal.weight * units.from_si(dimension, 1.0),
+            target: goal.target.map(|x| x / unit),
+            weight: goal.weight * unit,
         });
     }
-    if settings.variables.is_empty() || settings.goals.is_empty() {
-        let message = "an optimisation requires at least one variable and one goal".into();
-        return Err(vec![DiagnosticMessage::plain(
-            "HP0602",
-            message,
-            "select them in the pane, or add `[optimize.goals]` and `bounds`",
-        )]);
-    }
-    settings.starts = request.starts.max(1);
-    settings.iterations = request.iterations.max(1);
-    Ok(settings)
+    let overrides = Overrides {
+        starts: Some(request.starts),
+        iterations: Some(request.iterations),
+        selection: Some(selection),
+        ..Overrides::default()
+    };
+    optimize::Request::of(&file.model, overrides)
 }
 
 /// Returns the options of a tolerance study.

@@ -202,6 +202,10 @@ pub struct ToleranceRequest {
     pub samples: usize,
     /// Seed of the random numbers: the same seed gives the same designs.
     pub seed: u32,
+    /// Name of the rule by which the loosest tolerances are allocated; `null` for that of the model text.
+    #[serde(default)]
+    #[cfg_attr(test, ts(optional = nullable))]
+    pub allocate: Option<String>,
 }
 
 /// Change of a variable.

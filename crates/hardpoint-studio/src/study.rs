@@ -4,20 +4,20 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 
 use hardpoint::Analysis;
-use hardpoint::model::{Model, ToleranceSettings};
+use hardpoint::model::Model;
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
-use hardpoint_report::optimize::{OptimizeFacts, iteration_line, rounded, start_line};
+use hardpoint_report::optimize::{OptimizeFacts, progress_line, rounded};
 use hardpoint_report::page::{ModelText, Payload};
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
-use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs};
+use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs, nominal_stop};
 use hardpoint_report::validity::ValidityFact;
-use hardpoint_study::optimize::{OptimizationRequest, SearchProgress, optimize};
-use hardpoint_study::tolerance::{ToleranceError, ToleranceStage, tolerance};
-use hardpoint_study::{Motions, validity};
+use hardpoint_study::optimize::optimize;
+use hardpoint_study::tolerance::{self, Overrides, tolerance};
+use hardpoint_study::{Control, Motions, Progress, Step, validity};
 
 use crate::protocol::{
     DiagnosticMessage, OptimizeRequest, ProgressReply, StudyReply, ToleranceRequest, VariableSetting,
@@ -55,6 +55,11 @@ fn motions<'m>(
     })
 }
 
+/// Diagnostic of a study that cannot be requested.
+fn refused(error: hardpoint_study::RequestError) -> RequestError {
+    vec![DiagnosticMessage::plain("HP0602", error.message, &error.help)]
+}
+
 fn changes(file: &ModelFile, design: &[f64]) -> Vec<VariableSetting> {
     let changed = file.model.variables.iter().zip(design).filter(|(_, by)| **by != 0.0);
     changed
@@ -69,37 +74,31 @@ pub(crate) fn run_optimization(
     listener: &mut ProgressListener<'_>,
 ) -> Result<StudyReply, RequestError> {
     let mut file = parse_model(model)?;
-    let settings = offer::merged_settings(&mut file, request)?;
+    let request = offer::requested(&mut file, request).map_err(refused)?;
+    let settings = &request.settings;
     let models = file.model.motions();
     let motions = motions(&file, &models, model)?;
-    let (units, many, mut done) = (file.units, settings.starts > 1, 0);
-    let mut progress = |k: usize, event: SearchProgress<'_>| {
-        let reply = match event {
-            SearchProgress::Iteration(iteration) if !many => ProgressReply {
-                done: iteration.number,
-                total: Some(settings.iterations),
-                line: iteration_line(&file.model, units, iteration),
-                change: Some(changes(&file, &iteration.best)),
-            },
-            SearchProgress::End(search) if many => {
-                done += 1;
-                let change = search.found.as_ref().map(|found| changes(&file, &found.design));
-                ProgressReply { done, total: Some(settings.starts), line: start_line(k, search), change }
-            }
-            _ => return ControlFlow::Continue(()),
+    let mut progress = |progress: Progress<'_>| {
+        let design = match progress.step {
+            Step::Iteration(iteration) => Some(&iteration.best),
+            Step::Search(_, search) => search.found.as_ref().map(|found| &found.design),
+            Step::Variable | Step::Designs | Step::Fit(_) => None,
         };
-        listener(&reply)
+        match progress_line(&file.model, file.units, &progress) {
+            Some(line) => listener(&ProgressReply {
+                done: progress.done,
+                total: Some(progress.total),
+                line,
+                change: design.map(|design| changes(&file, design)),
+            }),
+            None => ControlFlow::Continue(()),
+        }
     };
-    let run = OptimizationRequest {
-        progress: &mut progress,
-        more: &|| true,
-        threads: NonZero::<usize>::MIN,
-        first: 0,
-    };
-    let found = optimize(&file.model, &motions, &settings, run);
-    let facts = OptimizeFacts::of(&file, &settings, &found);
+    let control = Control { threads: NonZero::<usize>::MIN, progress: &mut progress, more: &|| true };
+    let found = optimize(&file.model, &motions, &request, control);
+    let facts = OptimizeFacts::of(&file, settings, &found);
     let best = found.best.and_then(|k| found.searches[k].found.as_ref());
-    let design = best.map(|best| rounded(&file, &settings, &best.design));
+    let design = best.map(|best| rounded(&file, settings, &best.design));
     let text = design.as_ref().map(|design| file.edit(design)).transpose();
     let text = text.map_err(|all| -> RequestError {
         all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect()
@@ -124,43 +123,36 @@ pub(crate) fn run_tolerance(
     listener: &mut ProgressListener<'_>,
 ) -> Result<StudyReply, RequestError> {
     let file = parse_model(model)?;
-    let settings = file.model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(&file.model));
-    let Some(mut settings) = settings else {
-        let message = "the design variables have no tolerances".into();
-        let help = "add `tolerance = 0.1` to variables in `[design]` or `[parameters]`";
-        return Err(vec![DiagnosticMessage::plain("HP0602", message, help)]);
+    let overrides = Overrides {
+        samples: Some(request.samples),
+        seed: Some(request.seed.into()),
+        allocate: request.allocate.clone(),
     };
-    settings.samples = request.samples;
-    settings.seed = request.seed.into();
+    let request = tolerance::Request::of(&file.model, &overrides).map_err(refused)?;
     let models = file.model.motions();
     let motions = motions(&file, &models, model)?;
     let numbers: Vec<usize> = (0..models.len()).collect();
-    let mut on = |stage: ToleranceStage| {
-        let (done, of, line) = match stage {
-            ToleranceStage::Derivatives(done, of) => (done, of, "differentiating"),
-            ToleranceStage::Designs(done, of) => (done, of, "solving designs"),
+    let mut progress = |Progress { step, done, total, .. }: Progress<'_>| {
+        let line = match step {
+            Step::Variable => "differentiating",
+            Step::Designs => "solving designs",
+            Step::Iteration(_) | Step::Search(..) | Step::Fit(_) => return ControlFlow::Continue(()),
         };
-        listener(&ProgressReply { done, total: Some(of), line: line.into(), change: None })
+        listener(&ProgressReply { done, total: Some(total), line: line.into(), change: None })
     };
+    let control = Control { threads: NonZero::<usize>::MIN, progress: &mut progress, more: &|| true };
     let found =
-        tolerance(&file.model, &motions, &numbers, &settings, NonZero::<usize>::MIN, &mut on, &|| true);
-    let found = found.map_err(|failure| match failure {
-        ToleranceError::Nominal(rejection) => {
-            vec![DiagnosticMessage::of(&model.text, &diagnose::stop(&file, &rejection.stop, 0, None))]
-        }
-        ToleranceError::NothingVaries => {
-            let message = "none of the variables with a tolerance is admissible".into();
-            vec![DiagnosticMessage::plain(
-                "HP0602",
-                message,
-                "give tolerances to variables that the mechanism can follow",
-            )]
-        }
-    })?;
+        tolerance(&file.model, &motions, &numbers, &request, control).map_err(|error| match error {
+            tolerance::Error::Nominal(stopped) => {
+                let (_, diagnostic) = nominal_stop(&file, &motions, &numbers, &stopped);
+                vec![DiagnosticMessage::of(&model.text, &diagnostic)]
+            }
+            tolerance::Error::Request(error) => refused(error),
+        })?;
     let facts = ToleranceFacts::of(&ToleranceInputs {
         file: &file,
         numbers: &numbers,
-        asked: &settings,
+        asked: &request.settings,
         found: &found,
     });
     let rows = facts.rows().into_iter().map(|(what, how)| format!("{what}: {how}"));

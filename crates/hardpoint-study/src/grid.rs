@@ -1,4 +1,6 @@
 //! Map of two drivers over a grid: value and sensitivities of every measure at each pair of driver positions.
+//!
+//! Input: the grid of a model, driver positions in m or rad. Output: a [`GridMap`] in SI.
 
 use std::ops::ControlFlow;
 

@@ -8,9 +8,9 @@
 //! - [`verify`]: exact sensitivities against differences of re-solved designs.
 //! - [`whatif`]: outputs of changed designs, predicted and solved.
 //!
-//! A study solves all cases of a model as one [`Motions`] and counts its effort in [`StudyCost`]. Studies that have a request take
-//! it from the model ([`hardpoint::model::Model::optimization`] and its neighbours), report progress to the caller and can be
-//! ended by it.
+//! A study solves all cases of a model as one [`Motions`] and counts its effort in [`StudyCost`]. Its request is made of the
+//! settings of the model file and the caller's overrides ([`optimize::Request::of`] and its siblings), or refused with a
+//! [`RequestError`]; all defaults and rules are there. A [`Control`] receives the [`Progress`] and can end the study.
 //!
 //! # Example
 //!
@@ -21,7 +21,7 @@
 //! # use hardpoint::{draft::Draft, law::Law};
 //! use hardpoint::draft::{GoalDraft, MetricDraft, OptimizationSettingsDraft};
 //! use hardpoint::model::{Model, Reduction};
-//! use hardpoint_study::{Motions, optimize::{OptimizationRequest, optimize}};
+//! use hardpoint_study::{Control, Motions, optimize::{self, optimize}};
 //! use hardpoint::topology::Formulation;
 //! # fn pendulum() -> Draft {
 //! #     Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
@@ -60,13 +60,13 @@
 //! let model = Model::from_draft(&draft).unwrap();
 //! let models = model.motions();
 //! let motions = Motions::of(&models, Formulation::Relative).unwrap_or_else(|_| panic!("it can be driven"));
-//! let request = OptimizationRequest {
-//!     progress: &mut |_, _| ControlFlow::Continue(()),
-//!     more: &|| true,
+//! let request = optimize::Request::of(&model, optimize::Overrides::default()).unwrap();
+//! let control = Control {
 //!     threads: NonZero::<usize>::MIN,
-//!     first: 0,
+//!     progress: &mut |_| ControlFlow::Continue(()),
+//!     more: &|| true,
 //! };
-//! let result = optimize(&model, &motions, model.optimization.as_ref().unwrap(), request);
+//! let result = optimize(&model, &motions, &request, control);
 //! let best = result.searches[0].found.as_ref().unwrap();
 //! assert!((best.design[0] - (1.2 / 0.5_f64.sin() - 2.0)).abs() < 1e-6);
 //! ```
@@ -75,6 +75,7 @@ pub mod calibrate;
 pub mod difference;
 pub mod grid;
 pub mod optimize;
+pub mod request;
 pub mod sweep;
 pub mod tolerance;
 pub mod verify;
@@ -83,6 +84,7 @@ pub mod whatif;
 mod comparison;
 mod evaluation;
 mod magnitude;
+mod progress;
 mod random;
 mod samples;
 mod svd;
@@ -92,7 +94,9 @@ mod validity;
 pub use comparison::{Comparison, StepError};
 pub use evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};
 pub use magnitude::Magnitude;
+pub use progress::{Control, Progress, Step};
 pub use random::{Moments, design_stream, draw, moments};
+pub use request::RequestError;
 pub use samples::{BLOCK, SampleBlock, SampleRun};
 pub use validity::{Validity, validity};
 

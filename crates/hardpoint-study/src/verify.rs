@@ -1,6 +1,9 @@
 //! Verification of analytic sensitivities against re-solved designs over a range of steps (section 6 of the paper), for
 //! any model. The error must fall with the square of the step (central differences) or with the step itself (one-sided
 //! differences), then rise by round-off.
+//!
+//! Input: a solution with sensitivities, and [`Options`] with steps as parts of natural steps. Output: a
+//! [`Verification`] with relative errors per variable and quantity.
 
 use std::ops::ControlFlow;
 
@@ -10,6 +13,7 @@ use hardpoint::sensitivity::Admissibility;
 
 use super::comparison::{Comparison, StepError, UndecidedOutputs};
 use super::difference::{DifferenceScheme, finite_differences};
+use super::progress::{Progress, Step};
 
 /// Tolerance of central differences, relative to the largest sensitivity of the same kind: a quantity passes if it
 /// agrees to this at some step. In a well-conditioned mechanism central differences reach about (machine epsilon)^(2/3)
@@ -24,14 +28,14 @@ pub const PASS_ONE_SIDED: f64 = 4e-4;
 
 /// Options of a verification.
 #[derive(Clone, Debug)]
-pub struct VerifyOptions {
+pub struct Options {
     /// Scheme of the differences.
     pub scheme: DifferenceScheme,
     /// Steps as parts of [natural steps](hardpoint::model::Model::natural_step), from coarse to fine.
     pub steps: Vec<f64>,
 }
 
-impl VerifyOptions {
+impl Options {
     /// Options with half-decade steps from 1e-2 to where round-off dominates: 1e-6 for central differences, 1e-9 for
     /// one-sided ones.
     pub fn new(scheme: DifferenceScheme) -> Self {
@@ -40,7 +44,7 @@ impl VerifyOptions {
     }
 }
 
-impl Default for VerifyOptions {
+impl Default for Options {
     /// Central differences.
     fn default() -> Self {
         Self::new(DifferenceScheme::Central)
@@ -111,13 +115,13 @@ impl Verification {
 }
 
 /// Compares the sensitivities of a complete solution with re-solved designs, variable by variable. `progress` is called
-/// with the number of variables done and may end the study. An analysis that is
+/// after every variable and may end the study. An analysis that is
 /// [ended by its caller](Analysis::ended_by) also ends it within a variable, which is then left out.
 pub fn verify(
     analysis: &Analysis<'_>,
     solution: &Solution,
-    options: &VerifyOptions,
-    mut progress: impl FnMut(usize) -> ControlFlow<()>,
+    options: &Options,
+    mut progress: impl FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Verification {
     let mut checks = Vec::new();
     let mut interrupted = false;
@@ -127,7 +131,9 @@ pub fn verify(
         let check = check_variable(analysis, solution, options, variable);
         let is_whole = check.is_some();
         checks.extend(check);
-        if !is_whole || progress(k + 1).is_break() && k + 1 < variables {
+        if !is_whole
+            || progress(Progress::counted(Step::Variable, k + 1, variables)).is_break() && k + 1 < variables
+        {
             interrupted = true;
             break;
         }
@@ -139,7 +145,7 @@ pub fn verify(
 fn check_variable(
     analysis: &Analysis<'_>,
     solution: &Solution,
-    options: &VerifyOptions,
+    options: &Options,
     variable: VariableId,
 ) -> Option<VariableCheck> {
     if matches!(solution.sensitivities.admissibility[variable.0], Admissibility::CannotFollow { .. }) {
@@ -198,7 +204,7 @@ mod tests {
         let analysis = Analysis::new(&model).unwrap();
         let right = analysis.run();
         let outcome = |solution: &Solution| {
-            let options = VerifyOptions::new(DifferenceScheme::Central);
+            let options = Options::new(DifferenceScheme::Central);
             let found = verify(&analysis, solution, &options, |_| ControlFlow::Continue(()));
             found.checks[0].outcome.clone()
         };

@@ -243,7 +243,11 @@ samples: number,
 /**
  * Seed of the random numbers: the same seed gives the same designs.
  */
-seed: number, };
+seed: number,
+/**
+ * Name of the rule by which the loosest tolerances are allocated; `null` for that of the model text.
+ */
+allocate?: string | null, };
 
 /**
  * Change of a variable.

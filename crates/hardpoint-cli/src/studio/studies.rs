@@ -14,6 +14,7 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::page::Table;
 use hardpoint_report::tolerance::ToleranceInputs;
 use hardpoint_study::Motions;
+use hardpoint_study::optimize::{Overrides, Request};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use tokio::sync::broadcast;
@@ -72,14 +73,7 @@ pub struct Options {
     iterations: Option<NonZero<u16>>,
     samples: Option<u32>,
     seed: Option<u32>,
-    allocate: Option<Rule>,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Rule {
-    Rss,
-    WorstCase,
+    allocate: Option<Allocate>,
 }
 
 /// A running or finished study.
@@ -314,12 +308,14 @@ fn optimized(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Resul
         let case = session.case(&file, name)?;
         file.model = file.model.with_case_only(case);
     }
-    let numbers = [asked.options.starts, asked.options.iterations].map(|n| n.map(|n| usize::from(n.get())));
-    let wanted = optimize::asked(session, &file, asked.case.as_deref(), numbers)?;
+    let [starts, iterations] =
+        [asked.options.starts, asked.options.iterations].map(|n| n.map(|n| usize::from(n.get())));
+    let overrides = Overrides { starts, iterations, ..Overrides::default() };
+    let request = Request::of(&file.model, overrides).map_err(|e| session.refused(&file, &e))?;
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative);
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
-    let mut search = optimize::Search::run(session, &file, &motions, &wanted, None);
+    let mut search = optimize::Search::run(session, &file, &motions, &request, None);
     let edited = search.to_save().map(|design| file.edit(&design)).transpose();
     let mut diagnostics = Vec::new();
     // A result that cannot be written into the text is still shown.
@@ -341,18 +337,15 @@ fn optimized(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Resul
 fn examined(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result<End, Outcome> {
     let numbers = session.numbers_of(file, &args::Motions { case: asked.case.clone() })?;
     let Options { samples, seed, allocate, .. } = asked.options;
-    let allocate = allocate.map(|rule| match rule {
-        Rule::Rss => Allocate::Rss,
-        Rule::WorstCase => Allocate::WorstCase,
-    });
-    at_most(session, samples, args::MOST_DRAWN)?;
-    let wanted = tolerance::asked(session, file, &tolerance::ToleranceOverrides { samples, seed, allocate })?;
+    let overrides = tolerance::overrides(samples, seed, allocate);
+    let request = hardpoint_study::tolerance::Request::of(&file.model, &overrides)
+        .map_err(|error| session.refused(file, &error))?;
     let models = file.model.motions();
     let models: Vec<Model> = numbers.iter().map(|k| models[*k].clone()).collect();
     let motions = Motions::of(&models, Formulation::Relative);
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(file, &fault))?;
-    let found = tolerance::examine(session, file, &motions, &numbers, &wanted, None)?;
-    let studied = ToleranceInputs { file, numbers: &numbers, asked: &wanted, found: &found };
+    let found = tolerance::examine(session, file, &motions, &numbers, &request, None)?;
+    let studied = ToleranceInputs { file, numbers: &numbers, asked: &request.settings, found: &found };
     let results = tolerance::Results::of(session, studied, &motions);
     Ok(End {
         state: if found.interrupted { "cancelled" } else { "done" },
@@ -366,7 +359,6 @@ fn examined(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result
 
 fn swept(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result<End, Outcome> {
     let Options { samples, seed, .. } = asked.options;
-    at_most(session, samples, args::MOST_SWEPT)?;
     let motions = args::Motions { case: asked.case.clone() };
     let (facts, pages) =
         sweep::for_page(session, file, &args::Sweep { motions, samples, seed, ..args::Sweep::default() })?;
@@ -378,14 +370,4 @@ fn swept(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result<En
         tables: facts.tables(),
         pages,
     })
-}
-
-/// Applies the limit of the command line.
-fn at_most(session: &Session, samples: Option<u32>, most: u32) -> Result<(), Outcome> {
-    match samples {
-        Some(n) if n > most => {
-            Err(session.misunderstood(&format!("{n} samples are too many: {most} at most")))
-        }
-        _ => Ok(()),
-    }
 }

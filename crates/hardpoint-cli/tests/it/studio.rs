@@ -605,7 +605,7 @@ fn without_a_model_all_models_are_shown_and_no_other_files() {
     assert_eq!(about(&steer.body)["case"], "steer");
     assert_eq!(about(&steer.body)["cases"], serde_json::json!(["bump", "steer"]));
     let none = server.get("/?file=strut.toml&case=none");
-    assert!(none.body.contains("data-testid=\"trouble\"") && none.body.contains("there is no such case"));
+    assert!(none.body.contains("data-testid=\"trouble\"") && none.body.contains("there is no case named"));
 }
 
 #[test]

@@ -213,10 +213,10 @@ fn invalid_sweeps_are_rejected_with_help() {
         2,
         &["there is no design variable", "did you mean `lca_front_z`?"],
     );
-    refused(&["--range", "lca_front_z=5..-5"], 2, &["is not increasing"]);
+    refused(&["--range", "lca_front_z=5..-5"], 2, &["not in ascending order", "give the lower end first"]);
     refused(&["--range", "lca_front_z=-5mm..5mm"], 2, &["without units"]);
     refused(&["--range", "lca_front_z"], 2, &["NAME=FROM..TO"]);
-    refused(&["--curves", "tow"], 2, &["there is no such measure", "did you mean `toe`?"]);
+    refused(&["--curves", "tow"], 2, &["there is no measure named `tow`", "did you mean `toe`?"]);
     refused(&["--method", "factorial", "--levels", "1000"], 2, &["more than 1000000000 designs"]);
     refused(&["--designs", "none.csv"], 3, &["HP0111", "none.csv"]);
     let list = |text: &str, words: &[&str]| {

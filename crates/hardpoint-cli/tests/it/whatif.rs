@@ -100,7 +100,7 @@ fn invalid_changes_and_measures_are_rejected_with_suggestions() {
         (["--set", "tie_rod_outer.z"], "write NAME=CHANGE"),
         (["--set", "lca_pivot.tilt_y=1e400deg"], "is not finite"),
         (["--measure", "tow"], "did you mean `toe`?"),
-        (["--over", "nonsense"], "is not a measure of the model"),
+        (["--over", "nonsense"], "there is no measure named `nonsense`"),
     ] {
         let output = bench.run(&[&["whatif", "ride.toml"][..], &arguments].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

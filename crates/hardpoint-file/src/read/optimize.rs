@@ -1,6 +1,7 @@
 //! Settings of an optimisation.
 
 use hardpoint::draft::{GoalDraft, LimitDraft, LimitTargetDraft, OptimizationSettingsDraft, Section};
+use hardpoint::model::OptimizationSettings;
 
 use crate::format::{
     HARDPOINT, JOINT, Key, Kinds, METRIC, NUMBER, Shape, TWO_NUMBERS, Table, VARIABLE, keys, table,
@@ -10,10 +11,7 @@ use crate::tree::{Field, Fields, MOST_ENTRIES, Reader};
 
 use super::Raw;
 
-/// Maximum numbers of starts and iterations.
-const MOST_STARTS: u32 = 100_000;
-const MOST_ITERATIONS: u32 = 100_000;
-/// Maximum number of listed variables.
+/// Maximum number of variables that are read by name.
 const MOST_VARIABLES: usize = 10_000;
 pub(crate) const OPTIMIZE: Table = table! {
     /// Goals and limits of an optimisation.
@@ -26,10 +24,10 @@ pub(crate) const OPTIMIZE: Table = table! {
     may "limits": Shape::Entries("a metric", &Shape::Kinds(&LIMIT)), "{ rod = { length = \"tie_rod\", max = 300 } }";
     /// Minimum margin of all motions from singular positions, between 0 and 1. Default: none.
     may "min_margin": NUMBER, "0.02";
-    /// Number of starts of the search: the design of the file, and others spread within the bounds.
-    or("1") "starts": Shape::Count(MOST_STARTS), "8";
+    /// Number of designs from which the search starts: the nominal design, and others within the bounds.
+    or("1") "starts": Shape::Count(OptimizationSettings::MOST), "8";
     /// Maximum number of iterations of a search.
-    or("100") "max_iterations": Shape::Count(MOST_ITERATIONS), "100";
+    or("100") "max_iterations": Shape::Count(OptimizationSettings::MOST), "100";
 };
 pub(super) const GOAL: Table = table! {
     /// A metric to minimise, or to bring to a target.
@@ -139,8 +137,8 @@ impl Reader<'_> {
         let place = EntryPlace::of(&fields);
         let variables = self.given(&fields, "variables", |r, f| r.variables_of(&fields, f));
         let margin = self.number_of(&fields, "min_margin");
-        let starts = self.count_of(&fields, "starts", MOST_STARTS);
-        let iterations = self.count_of(&fields, "max_iterations", MOST_ITERATIONS);
+        let starts = self.count_of(&fields, "starts", OptimizationSettings::MOST);
+        let iterations = self.count_of(&fields, "max_iterations", OptimizationSettings::MOST);
         self.need(&fields, "goals");
         for key in ["goals", "limits"] {
             let table = fields.get(key).map(|f| f.value.get_ref().as_table());

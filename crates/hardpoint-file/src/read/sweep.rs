@@ -15,9 +15,9 @@ use crate::tree::{Fields, MOST_ENTRIES, Reader, Subject};
 use super::Raw;
 use super::data::{DataError, Wanted, delimiter, number, text_from, unquoted};
 
-/// Maximum number of designs.
-const MOST_SAMPLES: u32 = 1_000_000_000;
-/// Maximum number of values of one variable.
+/// Maximum number of designs that are read.
+const MOST_SAMPLES: u32 = SweepSettings::MOST as u32;
+/// Maximum number of values of a variable that are read.
 const MOST_LEVELS: u32 = 1_000_000;
 pub(crate) const SWEEP: Table = table! {
     /// Designs of a sweep, and the results that are stored.

@@ -14,8 +14,6 @@ use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject};
 
 use super::Raw;
 
-/// Maximum number of designs: metrics of more would not fit into memory.
-const MOST_SAMPLES: u32 = 10_000_000;
 /// Maximum number of names in a list.
 const MOST_NAMES: usize = 10_000;
 pub(crate) const TOLERANCE: Table = table! {
@@ -37,8 +35,8 @@ pub(crate) const TOLERANCE: Table = table! {
     may "curves": Shape::list(&OUTPUT), "[\"toe\"]";
     /// Limits of metrics.
     may "limits": Shape::Entries("a metric", &Shape::Table(&LIMIT)), "{ toe = { metric = \"toe_range\", max = 0.5 } }";
-    /// Number of Monte Carlo designs, solved exactly.
-    or("10000") "samples": Shape::Count(MOST_SAMPLES), "100000";
+    /// Number of designs that are drawn and solved exactly.
+    or("10000") "samples": Shape::Count(ToleranceSettings::MOST), "100000";
     /// Seed of the random numbers: the same seed gives the same designs.
     or("1") "seed": Shape::Count(u32::MAX), "7";
     /// Allocates the loosest tolerances that keep the limits, for variables with a `cost`.
@@ -106,7 +104,7 @@ impl Reader<'_> {
             |of: &mut Self, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
         let metrics = names(self, "metrics", "a list of names of metrics");
         let curves = names(self, "curves", "a list of names of measures");
-        let samples = self.count_of(&fields, "samples", MOST_SAMPLES);
+        let samples = self.count_of(&fields, "samples", ToleranceSettings::MOST);
         let seed = self.count_of(&fields, "seed", u32::MAX);
         let keep = self.number_of(&fields, "required_sigmas");
         let rule = fields.get("allocate").and_then(|_| self.word_of(&fields, "allocate"));

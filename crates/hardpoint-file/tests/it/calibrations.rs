@@ -1,16 +1,16 @@
 //! Calibration: compared with the normal equations, with known designs over many seeds, and with fits that include the
 //! proposed readings.
 
+use std::num::NonZero;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use hardpoint::model::{Measurements, Reading};
 use hardpoint::model::{Model, Scatter, VariableId};
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
-use hardpoint_study::calibrate::{
-    Calibration, CalibrationError, CalibrationRequest, FitStatus, Loss, calibrate, values_in_postures,
-};
-use hardpoint_study::{design_stream, draw};
+use hardpoint_study::calibrate::{Calibration, Error, Loss, Request, Status, calibrate, values_in_postures};
+use hardpoint_study::{Control, design_stream, draw};
 
 /// A slider-crank: `x = r cos a + sqrt(l^2 - (r sin a - e)^2)`.
 const CRANK: &str = r#"
@@ -54,10 +54,15 @@ fn fitted_by(
     measured: &Measurements,
     variables: &[VariableId],
     loss: Loss,
-) -> Result<Calibration, CalibrationError> {
-    let asked =
-        CalibrationRequest { measured, variables, loss, formulation: Formulation::Relative, iterations: 50 };
-    calibrate(model, &asked, &mut |_, _| {}, &|| true)
+) -> Result<Calibration, Error> {
+    let variables = variables.to_vec();
+    let request = Request { measured, variables, loss, formulation: Formulation::Relative, iterations: 50 };
+    let control = Control {
+        threads: NonZero::<usize>::MIN,
+        progress: &mut |_| ControlFlow::Continue(()),
+        more: &|| true,
+    };
+    calibrate(model, &request, control)
 }
 
 fn fitted(model: &Model, measured: &Measurements) -> Calibration {
@@ -109,7 +114,7 @@ fn the_fit_of_a_slider_crank_is_that_of_its_closed_form() {
         measured.readings.push(Reading { posture, output: 0, value, sigma: Some(sigma) });
     }
     let found = fitted(&model, &measured);
-    assert_eq!(found.status, FitStatus::Found);
+    assert_eq!(found.status, Status::Found);
     let drawn = [0.3, 0.02, 0.1];
     let values: Vec<f64> = (0..3).map(|k| drawn[k] + found.design[k]).collect();
     // The gradient of the sum of squares of the closed form is nothing there, and the covariance is that of its normal
@@ -176,7 +181,7 @@ fn undetermined_changes_are_listed_and_stay_nominal() {
     let model = crank();
     let measured = readings(&model, &[1e-3, 0.0, 0.0], &[vec![0.3]], &[0], 1e-5, &mut || 0.0);
     let found = fitted(&model, &measured);
-    assert_eq!((found.certainty.unidentifiable.len(), found.status), (2, FitStatus::Found));
+    assert_eq!((found.certainty.unidentifiable.len(), found.status), (2, Status::Found));
     assert!(found.certainty.sigmas.iter().all(Option::is_none));
     assert!(found.objective[1] < 1e-12, "{:?}", found.objective);
     // To first order no untold direction changes what was read.
@@ -216,7 +221,7 @@ fn a_robust_loss_resists_outliers() {
     // Those far off are known by what they count.
     let light: Vec<usize> = (0..30).filter(|k| cauchy.fitted[*k].unwrap().weight < 0.01).collect();
     assert_eq!(light, [3, 11, 20, 26]);
-    assert_eq!((huber.status, cauchy.status), (FitStatus::Found, FitStatus::Found));
+    assert_eq!((huber.status, cauchy.status), (Status::Found, Status::Found));
 }
 
 #[test]
@@ -261,7 +266,9 @@ fn without_standard_deviations_they_come_from_the_residuals() {
     }
     measured.readings.truncate(3);
     let few = fitted_by(&model, &measured, &all(&model), Loss::Squares);
-    assert!(matches!(few, Err(CalibrationError::TooFewReadings { readings: 3, variables: 3 })));
+    let Err(Error::Request(error)) = few else { panic!("{few:?}") };
+    let message = "3 readings without standard deviations do not determine 3 variables and their accuracy";
+    assert_eq!(error.message, message);
 }
 
 #[test]
@@ -307,11 +314,7 @@ fn recovered(
         variables.iter().for_each(|v| hidden[v.0] = hidden_by * noise());
         let measured = readings(model, &hidden, postures, outputs, sigma, &mut noise);
         let found = fitted_by(model, &measured, variables, Loss::Squares).unwrap_or_else(|e| panic!("{e:?}"));
-        assert_eq!(
-            (found.status, found.certainty.unidentifiable.len()),
-            (FitStatus::Found, 0),
-            "seed {seed}"
-        );
+        assert_eq!((found.status, found.certainty.unidentifiable.len()), (Status::Found, 0), "seed {seed}");
         let off: Vec<f64> = variables.iter().map(|v| found.design[v.0] - hidden[v.0]).collect();
         errors.extend(off.iter().zip(&found.certainty.sigmas).map(|(e, s)| e / s.unwrap()));
         chis.push(mahalanobis(&found.certainty.covariance, &off));

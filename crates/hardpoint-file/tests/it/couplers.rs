@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::{ModelFile, parse};
-use hardpoint_study::verify::{CheckOutcome, VerifyOptions, verify};
+use hardpoint_study::verify::{self, CheckOutcome, verify};
 
 /// Residual that the solver leaves of a coordinate, deg or mm.
 const SAME: f64 = 1e-8;
@@ -90,7 +90,7 @@ fn sensitivities_agree_with_moved_designs() {
     let file = read(GEARED);
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.solve(Run::new());
-    let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
     assert_eq!(report.checks.len(), 4);
     assert!(report.checks.iter().all(|c| c.outcome == CheckOutcome::Passed), "{report:?}");
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse};
-use hardpoint_study::verify::{CheckOutcome, VerifyOptions, verify};
+use hardpoint_study::verify::{self, CheckOutcome, verify};
 
 const BOTH: [Formulation; 2] = [Formulation::Relative, Formulation::Absolute];
 
@@ -220,7 +220,7 @@ fn verify_accepts_kinks_and_rejects_wrong_derivatives() {
     let analysis = Analysis::new(&file.model).unwrap();
     let right = analysis.run();
     let check = |solution: &Solution| {
-        verify(&analysis, solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()))
+        verify(&analysis, solution, &verify::Options::default(), |_| ControlFlow::Continue(()))
     };
     let report = check(&right);
     assert!(report.passed(), "{:#?}", report.checks.iter().map(|c| c.worst()).collect::<Vec<_>>());

@@ -15,7 +15,7 @@ use hardpoint::space::{Mat3, Vec3};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, read};
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::verify::{self, verify};
 
 /// Known facts of a model.
 struct Entry {
@@ -159,7 +159,7 @@ fn admissibility_of_every_variable_is_that_of_its_file_and_verify_passes() {
             .map(|(v, _)| v.name.as_str())
             .collect();
         assert_eq!(refused, e.refused, "{}", e.file);
-        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
         assert!(report.passed(), "{}: {:?}", e.file, report.checks);
         assert_eq!(report.checks.len(), file.model.variables.len(), "{}", e.file);
     }

@@ -26,6 +26,7 @@ mod path;
 mod planar;
 mod prescribed;
 mod published;
+mod requests;
 mod robustness;
 mod searches;
 mod shapes;

@@ -9,7 +9,7 @@ use hardpoint::motion::Execution;
 use hardpoint::space::Vec3;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, parse};
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::verify::{self, verify};
 
 const MEASURES: &str = r#"
 [measures.mu]
@@ -107,7 +107,7 @@ fn every_kind_agrees_with_designs_that_are_solved_anew() {
         file.model.times = (0..=12).map(|k| first + (last - first) * (f64::from(k) + 0.13) / 13.0).collect();
         let analysis = Analysis::new(&file.model).unwrap();
         let solution = analysis.run();
-        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
         assert!(report.passed(), "{}: {:#?}", model.0, report.checks);
         assert!(report.checks.iter().filter_map(|c| c.worst()).any(|worst| worst.error > 0.0));
     }
@@ -451,7 +451,7 @@ fn angles_of_orientations_agree_with_designs_that_are_solved_anew() {
     file.model.times = (0..=12).map(|k| first + (last - first) * (f64::from(k) + 0.13) / 13.0).collect();
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
-    let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
     assert!(report.passed(), "{:#?}", report.checks);
     for name in all.iter().flat_map(|name| [format!("own_lca_{name}"), format!("own_strut_{name}")]) {
         let m = solution.measured.index(&name).unwrap();

@@ -7,7 +7,7 @@ use hardpoint::joint::Quantity;
 use hardpoint::model::{Change, VariableId, change};
 use hardpoint::space::Vec3;
 use hardpoint_file::parse;
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::verify::{self, verify};
 
 /// Two swinging arms, left and right, and a screw; everything is given by parameters.
 const MODEL: &str = r#"
@@ -149,7 +149,7 @@ fn sensitivities_by_parameters_match_designs_that_are_solved_anew() {
             assert!(solution.measured.d(last, VariableId(v), measure)[0] != 0.0 || v == 1, "variable {v}");
         }
     }
-    let checks = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    let checks = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
     assert!(checks.passed(), "{:?}", checks.checks);
 }
 

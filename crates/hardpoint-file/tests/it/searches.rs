@@ -7,11 +7,8 @@ use std::path::Path;
 use hardpoint::model::{Limit, LimitTarget, OptimizationSettings};
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
-use hardpoint_study::optimize::{
-    ActiveConstraint, OptimizationRequest, OptimizationResult, OptimizationStatus, SearchProgress,
-    SearchResult, optimize,
-};
-use hardpoint_study::{Motions, StudyCost};
+use hardpoint_study::optimize::{ActiveConstraint, Optimization, Request, SearchResult, Status, optimize};
+use hardpoint_study::{Control, Motions, Progress, StudyCost};
 
 /// Remainder of the gradient at an optimum, relative to that at the start.
 const OPTIMAL: f64 = 1e-8;
@@ -21,7 +18,7 @@ fn model(name: &str) -> ModelFile {
     hardpoint_file::read(&models.join(name)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn searched_on(threads: usize, file: &ModelFile, asked: &OptimizationSettings) -> OptimizationResult {
+fn searched_on(threads: usize, file: &ModelFile, asked: &OptimizationSettings) -> Optimization {
     searched_from(0, threads, file, asked)
 }
 
@@ -31,20 +28,19 @@ fn searched_from(
     threads: usize,
     file: &ModelFile,
     asked: &OptimizationSettings,
-) -> OptimizationResult {
+) -> Optimization {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let mut progress = |_: usize, _: SearchProgress<'_>| ControlFlow::Continue(());
-    let threads = NonZero::new(threads).unwrap();
-    optimize(
-        &file.model,
-        &motions,
-        asked,
-        OptimizationRequest { progress: &mut progress, more: &|| true, threads, first },
-    )
+    let request = Request { settings: asked.clone(), first };
+    let control = Control {
+        threads: NonZero::new(threads).unwrap(),
+        progress: &mut |_| ControlFlow::Continue(()),
+        more: &|| true,
+    };
+    optimize(&file.model, &motions, &request, control)
 }
 
-fn searched(file: &ModelFile, asked: &OptimizationSettings) -> OptimizationResult {
+fn searched(file: &ModelFile, asked: &OptimizationSettings) -> Optimization {
     searched_on(1, file, asked)
 }
 
@@ -52,7 +48,7 @@ fn asked(file: &ModelFile) -> OptimizationSettings {
     file.model.optimization.clone().expect("the file says what is wanted")
 }
 
-fn best(found: &OptimizationResult) -> &SearchResult {
+fn best(found: &Optimization) -> &SearchResult {
     &found.searches[found.best.expect("something is found")]
 }
 
@@ -73,7 +69,7 @@ fn the_four_bar_of_a_known_motion_is_found() {
     let file = model("four_bar_inverse.toml");
     let found = searched(&file, &asked(&file));
     let search = best(&found);
-    assert_eq!(search.status, OptimizationStatus::Optimal);
+    assert_eq!(search.status, Status::Optimal);
     assert!(is_known(&file, search), "{:?}", search.found);
     assert!(search.cost.designs < PUBLISHED, "{} designs", search.cost.designs);
     assert!(search.optimality.left_of_start <= OPTIMAL, "{:e}", search.optimality.left_of_start);
@@ -95,9 +91,8 @@ fn it_is_found_from_everywhere_within_the_bounds_on_any_number_of_threads() {
     // Most linkages within these bounds cannot turn: their starts are drawn nearer until they do.
     assert!(found.searches.iter().any(|s| !s.refused.is_empty()));
     let again = searched_on(3, &file, &many);
-    let ends = |o: &OptimizationResult| {
-        o.searches.iter().map(|s| s.found.clone().unwrap().design).collect::<Vec<_>>()
-    };
+    let ends =
+        |o: &Optimization| o.searches.iter().map(|s| s.found.clone().unwrap().design).collect::<Vec<_>>();
     assert_eq!(ends(&found), ends(&again));
 }
 
@@ -106,16 +101,16 @@ fn a_search_that_is_interrupted_keeps_the_best_so_far() {
     let file = model("four_bar_inverse.toml");
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let mut evaluated = 0;
-    let mut progress = |_: usize, _: SearchProgress<'_>| {
-        evaluated += 1;
-        if evaluated < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    let mut told = 0;
+    let mut progress = |_: Progress<'_>| {
+        told += 1;
+        if told < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let threads = NonZero::<usize>::MIN;
-    let searching = OptimizationRequest { progress: &mut progress, more: &|| true, threads, first: 0 };
-    let asked = OptimizationSettings { starts: 3, ..asked(&file) };
-    let found = optimize(&file.model, &motions, &asked, searching);
-    assert!(found.searches.iter().all(|s| s.status == OptimizationStatus::Interrupted));
+    let control = Control { threads, progress: &mut progress, more: &|| true };
+    let request = Request { settings: OptimizationSettings { starts: 3, ..asked(&file) }, first: 0 };
+    let found = optimize(&file.model, &motions, &request, control);
+    assert!(found.searches.iter().all(|s| s.status == Status::Interrupted));
     let judged = best(&found).found.as_ref().unwrap();
     assert!(judged.objective < 0.1 * found.nominal.unwrap().objective);
 }
@@ -129,7 +124,7 @@ fn the_strut_gets_its_toe_curve_and_steers_no_worse() {
     let asked = asked(&file);
     let found = searched(&file, &asked);
     let search = best(&found);
-    assert_eq!(search.status, OptimizationStatus::Optimal);
+    assert_eq!(search.status, Status::Optimal);
     assert!(search.cost.designs < 20, "{} designs", search.cost.designs);
     assert!(search.optimality.left_of_start <= OPTIMAL, "{:e}", search.optimality.left_of_start);
     let judged = search.found.as_ref().unwrap();
@@ -156,7 +151,7 @@ fn the_front_axle_gets_the_toe_curve_of_a_published_example() {
     let file = model("studies/front_axle_toe.toml");
     let found = searched(&file, &asked(&file));
     let search = best(&found);
-    assert_eq!(search.status, OptimizationStatus::Optimal);
+    assert_eq!(search.status, Status::Optimal);
     assert!(search.optimality.left_of_start <= OPTIMAL, "{:e}", search.optimality.left_of_start);
     let [drawn, left] = [found.nominal.as_ref(), search.found.as_ref()].map(|j| j.unwrap().goals[0].2);
     assert!(drawn > 500.0 * FOLLOWED && left < FOLLOWED, "{drawn} {left}");
@@ -181,14 +176,14 @@ fn multipliers_of_active_constraints_are_the_gain_of_relaxing_them() {
     let least = 0.145 * deg;
     let middle = at(least);
     let search = best(&middle);
-    assert_eq!(search.status, OptimizationStatus::Optimal, "{:?}", search.iterations);
+    assert_eq!(search.status, Status::Optimal, "{:?}", search.iterations);
     let binding = &search.optimality.binding;
     let worth = binding
         .iter()
         .find(|(what, _)| matches!(what, ActiveConstraint::Least(0, Some(1))))
         .expect("it binds")
         .1;
-    let objective = |found: &OptimizationResult| best(found).found.as_ref().unwrap().objective;
+    let objective = |found: &Optimization| best(found).found.as_ref().unwrap().objective;
     let gained =
         (objective(&at(least + MOVED * deg)) - objective(&at(least - MOVED * deg))) / (2.0 * MOVED * deg);
     assert!((gained / worth - 1.0).abs() < AGREES, "{gained} and {worth}");
@@ -200,12 +195,12 @@ fn contradictory_limits_and_designs_that_lock_are_reported() {
     let far =
         OptimizationSettings { limits: vec![limit(LimitTarget::Metric(1), Some(0.5), None)], ..asked(&file) };
     let found = searched(&file, &far);
-    assert_eq!(best(&found).status, OptimizationStatus::LimitsNotKept);
+    assert_eq!(best(&found).status, Status::LimitsNotKept);
     assert!(best(&found).found.as_ref().unwrap().violation > 0.0);
     // No design keeps so far from singular positions: none can be judged, and each says why.
     let file = model("four_bar_inverse.toml");
     let found = searched(&file, &OptimizationSettings { margin: Some(0.99), ..asked(&file) });
-    assert_eq!((found.best, found.searches[0].status), (None, OptimizationStatus::NoStart));
+    assert_eq!((found.best, found.searches[0].status), (None, Status::NoStart));
     assert!(found.nominal_failure.unwrap().why.contains("margin"));
 }
 
@@ -219,7 +214,7 @@ fn a_restart_from_a_claimed_optimum_gains_nothing() {
         let wanted = OptimizationSettings { starts: 1, ..asked(&file) };
         let found = searched(&file, &wanted);
         let search = best(&found);
-        assert_eq!(search.status, OptimizationStatus::Optimal, "{name}");
+        assert_eq!(search.status, Status::Optimal, "{name}");
         let judged = search.found.as_ref().unwrap();
         let again = hardpoint_file::parse(&file.edit(&judged.design).unwrap(), name);
         // Files beside the model are not there: only what needs none is searched again.
@@ -240,7 +235,7 @@ fn no_start_of_a_published_problem_ends_at_a_false_optimum() {
     // 1e-9 of that at the start of the search.
     let file = model("synthesis/arc_five_points.toml");
     let found = searched_from(5, 1, &file, &OptimizationSettings { starts: 2, ..asked(&file) });
-    for search in found.searches.iter().filter(|s| s.status == OptimizationStatus::Optimal) {
+    for search in found.searches.iter().filter(|s| s.status == Status::Optimal) {
         let judged = search.found.as_ref().unwrap();
         let again = hardpoint_file::parse(&file.edit(&judged.design).unwrap(), "again.toml").unwrap();
         let restarted = searched(&again, &OptimizationSettings { starts: 1, ..asked(&again) });
@@ -249,7 +244,7 @@ fn no_start_of_a_published_problem_ends_at_a_false_optimum() {
     }
     // With enough iterations, the end of the valley is reached.
     let least = best(&found).found.as_ref().unwrap().objective;
-    assert!(best(&found).status == OptimizationStatus::Optimal && least < 1e-6, "{least:e}");
+    assert!(best(&found).status == Status::Optimal && least < 1e-6, "{least:e}");
 }
 
 /// Misfits of a path of 25 mm that are round-off, mm^2.
@@ -264,13 +259,13 @@ fn goals_that_can_all_be_met_are_met_along_limits() {
     let found = searched(&file, &asked(&file));
     let search = best(&found);
     let judged = search.found.as_ref().unwrap();
-    assert_eq!(search.status, OptimizationStatus::Optimal);
+    assert_eq!(search.status, Status::Optimal);
     assert!(search.optimality.met && judged.objective < MET, "{:e}", judged.objective);
     assert!(judged.violation <= 1e-8, "{:e}", judged.violation);
     assert!(search.cost.designs < 300, "{} designs", search.cost.designs);
     // A search with fewer iterations does not claim an optimum.
     let early = searched(&file, &OptimizationSettings { iterations: 60, ..asked(&file) });
-    assert_eq!(best(&early).status, OptimizationStatus::IterationLimit, "{:?}", best(&early).found);
+    assert_eq!(best(&early).status, Status::IterationLimit, "{:?}", best(&early).found);
 }
 
 #[test]
@@ -310,6 +305,6 @@ high = { target = 15 }
     assert!(values[3].value.is_none(), "there is no output time at 1 s");
     let found = searched(&file, &asked(&file));
     let judged = best(&found).found.as_ref().unwrap();
-    assert_eq!(best(&found).status, OptimizationStatus::Optimal);
+    assert_eq!(best(&found).status, Status::Optimal);
     near(judged.design[0], 0.03 - 0.02);
 }

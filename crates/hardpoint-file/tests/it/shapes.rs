@@ -8,7 +8,7 @@ use hardpoint::model::VariableId;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint_file::{ModelFile, parse};
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::verify::{self, verify};
 
 const SHAPES: &str = r#"
 [design.translated]
@@ -94,6 +94,6 @@ fn a_body_that_changes_its_shape_opens_no_joint_and_its_sensitivities_are_exact(
         let most = (0..solution.motion.len()).map(|k| solution.measured.d(k, VariableId(v), toe)[0].abs());
         assert!(most.fold(0.0, f64::max) > 1e-3, "{}", variable.name);
     }
-    let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
     assert!(report.passed(), "{:#?}", report.checks);
 }

@@ -8,7 +8,7 @@ use hardpoint::model::{Model, SweepMethod, SweepSettings};
 use hardpoint::run::metrics;
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, parse};
-use hardpoint_study::sweep::{Sweep, SweptBlock, sobol_indices};
+use hardpoint_study::sweep::{self, Request, Sweep, sobol_indices};
 use hardpoint_study::{BLOCK, Motions};
 
 /// A slider-crank: the slider's place over the crank's angle is `x = r cos a + sqrt(l^2 - (r sin a - e)^2)`.
@@ -35,11 +35,12 @@ fn file(text: &str) -> ModelFile {
     parse(text, "sweeps.toml").unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn swept_from(model: &Model, asked: &SweepSettings, from: usize, threads: usize) -> Vec<SweptBlock> {
+fn swept_from(model: &Model, asked: &SweepSettings, from: usize, threads: usize) -> Vec<sweep::Block> {
     let models = model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let numbers: Vec<usize> = (0..models.len()).collect();
-    let sweep = Sweep::new(model, &motions, &numbers, asked).unwrap();
+    let request = Request { settings: asked.clone() };
+    let sweep = Sweep::new(model, &motions, &numbers, &request).unwrap();
     let mut found = Vec::new();
     let mut done = |block| {
         found.push(block);
@@ -91,7 +92,8 @@ fn metrics_are_those_of_each_design_by_itself_on_any_threads_and_from_anywhere()
         }
         let models = model.motions();
         let motions = Motions::of(&models, Formulation::Relative).unwrap();
-        let sweep = Sweep::new(&model, &motions, &[0], &asked).unwrap();
+        let request = Request { settings: asked };
+        let sweep = Sweep::new(&model, &motions, &[0], &request).unwrap();
         for block in &blocks {
             for k in (0..block.numbers.len()).step_by(97) {
                 let design = sweep.plan().design(block.numbers.start + k);
@@ -115,7 +117,8 @@ fn a_latin_hypercube_has_a_design_in_every_slice() {
         SweepSettings { method: SweepMethod::LatinHypercube, samples: N, ..SweepSettings::of_bounds(&model) };
     let models = model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let sweep = Sweep::new(&model, &motions, &[0], &asked).unwrap();
+    let request = Request { settings: asked.clone() };
+    let sweep = Sweep::new(&model, &motions, &[0], &request).unwrap();
     for (d, range) in asked.ranges.iter().enumerate() {
         let slice =
             |n| ((sweep.plan().swept(n)[d] - range.low) / (range.high - range.low) * N as f64) as usize;

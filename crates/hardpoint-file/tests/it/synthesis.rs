@@ -10,10 +10,8 @@ use std::path::{Path, PathBuf};
 use hardpoint::model::{OptimizationSettings, Reduction};
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, read, schema};
-use hardpoint_study::Motions;
-use hardpoint_study::optimize::{
-    OptimizationRequest, OptimizationResult, OptimizationStatus, SearchResult, optimize,
-};
+use hardpoint_study::optimize::{Optimization, Request, SearchResult, Status, optimize};
+use hardpoint_study::{Control, Motions};
 
 /// Remainder of the gradient at an optimum, relative to that at the start.
 const STATIONARY: f64 = 1e-8;
@@ -45,16 +43,15 @@ fn every_problem_names_its_schema_and_fits_it() {
     }
 }
 
-fn search(file: &ModelFile, asked: &OptimizationSettings) -> OptimizationResult {
+fn search(file: &ModelFile, asked: &OptimizationSettings) -> Optimization {
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let searching = OptimizationRequest {
-        progress: &mut |_, _| ControlFlow::Continue(()),
-        more: &|| true,
+    let control = Control {
         threads: NonZero::<usize>::MIN,
-        first: 0,
+        progress: &mut |_| ControlFlow::Continue(()),
+        more: &|| true,
     };
-    optimize(&file.model, &motions, asked, searching)
+    optimize(&file.model, &motions, &Request { settings: asked.clone(), first: 0 }, control)
 }
 
 /// The sum of the squared distances from the published points, in the file's unit, of a design; the points are the
@@ -111,7 +108,7 @@ fn reaches(name: &str, points: usize, published: f64) -> (ModelFile, SearchResul
     assert!(error <= published, "{error:e} {published:e}");
     // What was minimised is what is published.
     assert!((best.objective - error).abs() <= 1e-9 * error, "{} {error}", best.objective);
-    assert_eq!(search.status, OptimizationStatus::Optimal);
+    assert_eq!(search.status, Status::Optimal);
     assert!(search.optimality.left_of_start <= STATIONARY, "{:e}", search.optimality.left_of_start);
     assert!(search.optimality.residual <= SCALED, "{:e}", search.optimality.residual);
     for v in &asked.variables {

@@ -8,9 +8,9 @@ use hardpoint::model::{AllocationRule, AllocationSettings, Limit, LimitTarget, M
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, parse};
 use hardpoint_study::tolerance::{
-    AllocationError, MetricSpread, MonteCarlo, ToleranceError, ToleranceResult, ToleranceStage, tolerance,
+    AllocationError, Error, MetricSpread, MonteCarlo, Overrides, Request, ToleranceResult, tolerance,
 };
-use hardpoint_study::{Motions, StudyCost};
+use hardpoint_study::{Control, Motions, Progress, Step, StudyCost};
 
 const THREADS: NonZero<usize> = NonZero::<usize>::MIN;
 
@@ -43,17 +43,16 @@ fn study(name: &str) -> ModelFile {
     hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn examined_on(
-    threads: usize,
-    model: &Model,
-    asked: &ToleranceSettings,
-) -> Result<ToleranceResult, ToleranceError> {
+fn examined_on(threads: usize, model: &Model, asked: &ToleranceSettings) -> Result<ToleranceResult, Error> {
     let models = model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
     let numbers: Vec<usize> = (0..models.len()).collect();
-    let mut tell = |_: ToleranceStage| ControlFlow::Continue(());
-    let threads = NonZero::new(threads).unwrap();
-    tolerance(model, &motions, &numbers, asked, threads, &mut tell, &|| true)
+    let control = Control {
+        threads: NonZero::new(threads).unwrap(),
+        progress: &mut |_| ControlFlow::Continue(()),
+        more: &|| true,
+    };
+    tolerance(model, &motions, &numbers, &Request { settings: asked.clone() }, control)
 }
 
 fn examined(file: &ModelFile, change: impl FnOnce(&mut ToleranceSettings)) -> ToleranceResult {
@@ -490,12 +489,13 @@ fn samples_before_an_interruption_are_kept() {
     let file = crank("[tolerance.variables]\nrod = 6");
     let models = file.model.motions();
     let motions = Motions::of(&models, Formulation::Relative).unwrap();
-    let mut tell = |stage: ToleranceStage| match stage {
-        ToleranceStage::Designs(done, _) if done >= 1000 => ControlFlow::Break(()),
-        _ => ControlFlow::Continue(()),
+    let mut progress = |Progress { step, done, .. }: Progress<'_>| {
+        let is_enough = matches!(step, Step::Designs) && done >= 1000;
+        if is_enough { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let asked = file.model.tolerancing.as_ref().unwrap();
-    let found = tolerance(&file.model, &motions, &[0], asked, THREADS, &mut tell, &|| true).unwrap();
+    let request = Request::of(&file.model, &Overrides::default()).unwrap();
+    let control = Control { threads: THREADS, progress: &mut progress, more: &|| true };
+    let found = tolerance(&file.model, &motions, &[0], &request, control).unwrap();
     assert!(found.interrupted);
     assert_eq!(sampled(&found).samples, 1024);
     assert_eq!(sampled(&found).metrics[0].values.len(), 1024);

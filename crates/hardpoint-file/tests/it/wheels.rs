@@ -8,7 +8,7 @@ use hardpoint::model::{VariableId, VehicleEnd, WheelMeasure, WheelRequirement};
 use hardpoint::space::Vec3;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, parse};
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::verify::{self, verify};
 
 /// The knuckle's top mount is on the chassis.
 const STRUT: &str = r#"
@@ -194,7 +194,7 @@ fn every_measure_agrees_with_resolved_designs_on_every_suspension() {
         let analysis = Analysis::new(&file.model).unwrap();
         let solution = analysis.run();
         assert!(solution.stop.is_none(), "{name}: {:?}", solution.stop);
-        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
         assert!(report.passed(), "{name}: {:#?}", report.checks);
         let worst = report.checks.iter().filter_map(|c| c.worst()).map(|s| s.error).fold(0.0, f64::max);
         println!("{name}: {} variables, worst {worst:.1e}", report.checks.len());
@@ -482,7 +482,7 @@ fn a_live_axle_has_the_measures_of_rear_wheels() {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
-    let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
     assert!(report.passed(), "{:#?}", report.checks);
     let index = |name: &str| solution.measured.index(name).unwrap();
     let felt = |name: &str| {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use hardpoint::Analysis;
 use hardpoint_studio::Engine;
+use hardpoint_study::{RequestError, optimize, request, tolerance};
 use serde_json::{Value, json};
 
 /// Relative tolerance: curves of the page are `f32`, and an optimised design is that of the edited text except for
@@ -182,6 +183,45 @@ fn failed_requests_are_reported() {
     assert_eq!(answer["failed"][0]["code"], "HP0704");
     let beside = ask(&mut engine, json!({ "ask": "beside", "model": named("rssr.toml") }));
     assert_eq!(beside["failed"][0]["code"], "HP0703");
+}
+
+/// The command and Python show the errors of the same requests.
+#[test]
+fn studies_that_cannot_be_requested_have_the_message_of_the_request() {
+    let failed = |request: Value| ask(&mut Engine::default(), request)["failed"][0].clone();
+    let expect = |found: &Value, error: &RequestError| {
+        assert_eq!((&found["code"], &found["message"]), (&"HP0602".into(), &error.message.as_str().into()));
+        assert_eq!(found["help"], error.help.as_str());
+    };
+    let strut = named("macpherson.toml");
+    let file = hardpoint_file::parse(strut["text"].as_str().unwrap(), "macpherson.toml").unwrap();
+    let error = tolerance::Request::of(&file.model, &tolerance::Overrides::default()).unwrap_err();
+    let asked = json!({ "samples": 10, "seed": 1 });
+    expect(&failed(json!({ "ask": "tolerance", "model": strut, "asked": asked })), &error);
+
+    let variable = json!({ "name": "ball_joint_z", "bounds": [-1, 1] });
+    let goal = json!({ "metric": "range", "weight": 1, "target": null });
+    let optimize = |variables: &[&Value], goals: &[&Value], starts: usize| {
+        let asked = json!({ "variables": variables, "goals": goals, "starts": starts, "iterations": 5 });
+        failed(json!({ "ask": "optimize", "model": strut, "asked": asked }))
+    };
+    let overrides = optimize::Overrides { selection: Some(Default::default()), ..Default::default() };
+    expect(&optimize(&[], &[], 1), &optimize::Request::of(&file.model, overrides).unwrap_err());
+    let unknown = json!({ "name": "ball_joint_q", "bounds": [-1, 1] });
+    expect(&optimize(&[&unknown], &[], 1), &request::variable(&file.model, "ball_joint_q").unwrap_err());
+    expect(
+        &optimize(&[&variable], &[&goal], 1),
+        &request::named("metric", "range", file.model.metrics.iter().map(|m| m.name.as_str())).unwrap_err(),
+    );
+
+    let tolerances =
+        model(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/studies/strut_tolerances.toml"));
+    let asked = json!({ "samples": 10_000_001, "seed": 1 });
+    let found = failed(json!({ "ask": "tolerance", "model": tolerances, "asked": asked }));
+    assert_eq!(found["message"], "10000001 samples are too many");
+    let asked = json!({ "samples": 10, "seed": 1, "allocate": "worst" });
+    let found = failed(json!({ "ask": "tolerance", "model": tolerances, "asked": asked }));
+    assert_eq!(found["message"], "there is no allocation rule named `worst`");
 }
 
 #[test]

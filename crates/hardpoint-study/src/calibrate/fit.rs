@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use basin::DenseMatrix;
 
 use crate::evaluation::StudyCost;
+use crate::request::RequestError;
 use crate::svd::{Singular, singular};
 use crate::trust_region::{Recent, TrustRegion};
 use hardpoint::measure::Output;
@@ -13,8 +14,7 @@ use hardpoint::run::Analysis;
 
 use super::posture::{ReachedPosture, solve_posture};
 use super::{
-    Calibration, CalibrationError, CalibrationRequest, Certainty, FitStatus, FittedReading, Loss,
-    NextReading, Reading, UnreachedPosture,
+    Calibration, Certainty, FittedReading, Loss, NextReading, Reading, Request, Status, UnreachedPosture,
 };
 
 /// Maximum change of a variable from the nominal design, in natural steps (each about the mechanism's size or a
@@ -31,7 +31,7 @@ const MEDIAN_OF_NORMAL: f64 = 0.6745;
 pub(super) struct FitWorkspace<'b> {
     pub model: &'b Model,
     pub analyses: &'b [Analysis<'b>],
-    pub request: &'b CalibrationRequest<'b>,
+    pub request: &'b Request<'b>,
     /// Fitted variables, without those that the mechanism cannot follow.
     pub variables: Vec<VariableId>,
     left_out: Vec<VariableId>,
@@ -48,7 +48,7 @@ pub(super) struct FitWorkspace<'b> {
 
 /// State of a search.
 pub(super) struct SearchResult {
-    pub status: FitStatus,
+    pub status: Status,
     /// Changes from the nominal design, in natural steps.
     pub x: Vec<f64>,
     /// Residuals, in the given standard deviations or in SI, and their derivatives by natural steps.
@@ -69,7 +69,7 @@ pub(super) struct Rows {
 }
 
 impl<'b> FitWorkspace<'b> {
-    pub fn new(model: &'b Model, analyses: &'b [Analysis<'b>], request: &'b CalibrationRequest<'b>) -> Self {
+    pub fn new(model: &'b Model, analyses: &'b [Analysis<'b>], request: &'b Request<'b>) -> Self {
         Self {
             model,
             analyses,
@@ -90,7 +90,7 @@ impl<'b> FitWorkspace<'b> {
     }
 
     /// Determines the reachable postures, and the variables that the mechanism can follow in them.
-    pub fn evaluate_nominal(&mut self) -> Result<(), CalibrationError> {
+    pub fn evaluate_nominal(&mut self) -> Result<(), RequestError> {
         for (posture, analysis) in self.analyses.iter().enumerate() {
             let found = solve_posture(analysis, &[], &mut self.cost.borrow_mut());
             if let Err(stop) = &found {
@@ -102,7 +102,10 @@ impl<'b> FitWorkspace<'b> {
         let follows = |v: &VariableId| reached().all(|p| p.follows(*v));
         (self.variables, self.left_out) = self.variables.iter().partition(|v| follows(v));
         if self.variables.is_empty() {
-            return Err(CalibrationError::NothingVaries);
+            return Err(RequestError::model(
+                "the mechanism can follow none of the fitted variables",
+                "fit variables that it can follow",
+            ));
         }
         self.steps = self.variables.iter().map(|v| self.model.natural_step(*v)).collect();
         let is_known =
@@ -110,11 +113,19 @@ impl<'b> FitWorkspace<'b> {
         self.compared = (0..self.readings().len()).filter(|k| is_known(&self.readings()[*k])).collect();
         if self.compared.is_empty() {
             let why = self.not_reached.first().map_or(String::new(), |n| n.why.clone());
-            return Err(CalibrationError::NothingReached(why));
+            return Err(RequestError::model(
+                format!("no posture of the table can be compared; on the way to the first: {why}"),
+                "measure postures that the nominal design reaches",
+            ));
         }
         let (readings, variables) = (self.compared.len(), self.variables.len());
         if !self.has_sigmas && readings <= variables {
-            return Err(CalibrationError::TooFewReadings { readings, variables });
+            return Err(RequestError::model(
+                format!(
+                    "{readings} readings without standard deviations do not determine {variables} variables and their accuracy"
+                ),
+                "give standard deviations (`sigma`), fit fewer variables, or measure more",
+            ));
         }
         Ok(())
     }
@@ -198,7 +209,7 @@ impl<'b> FitWorkspace<'b> {
         let mut scale = self.scale_of(&at.r, n);
         let mut weights = self.weights(&at.r, scale);
         let squares = |at: &Rows, w: &[f64]| at.r.iter().zip(w).map(|(r, w)| w * r * r).sum::<f64>();
-        let mut status = FitStatus::IterationLimit;
+        let mut status = Status::IterationLimit;
         let mut iterations = Vec::new();
         let first = at.clone();
         progress(0, squares(&at, &weights) / (scale * scale));
@@ -208,11 +219,11 @@ impl<'b> FitWorkspace<'b> {
             directions.truncate(determined);
             let step = self.step(&x, &at, &weights, &directions, more);
             if !more() {
-                status = FitStatus::Interrupted;
+                status = Status::Interrupted;
                 break;
             }
             let Some((next, rows)) = step.filter(|(_, rows)| squares(rows, &weights) < before) else {
-                status = FitStatus::Found;
+                status = Status::Found;
                 break;
             };
             let after = squares(&rows, &weights);
@@ -227,7 +238,7 @@ impl<'b> FitWorkspace<'b> {
                 && settled
                 && (scale - scaled_before).abs() <= SETTLED.sqrt() * scale
             {
-                status = FitStatus::Found;
+                status = Status::Found;
                 break;
             }
         }

@@ -1,6 +1,9 @@
 //! Calibration: fit of the geometry to measured data, with the accuracy of the result, unidentifiable changes, and
 //! proposed further readings.
 //!
+//! Input: a [`Request`] with readings of outputs in postures of the drivers, SI. Output: a [`Calibration`] with the
+//! fitted design and its covariance, m, rad or plain.
+//!
 //! A reading i of an output y in a posture, with standard deviation s_i, has the residual `r_i = (y(b) - m_i) / s_i`.
 //! The fit minimises the sum of their squares or of a robust loss. With the exact Jacobian `J = dr/db` of the readings,
 //!
@@ -15,16 +18,22 @@ mod certainty;
 mod fit;
 mod next;
 mod posture;
+mod request;
+
+use std::cell::Cell;
 
 use hardpoint::measure::{Output, outputs};
-use hardpoint::model::{Measurements, Model, Reading, VariableId};
+use hardpoint::model::{Model, Reading, VariableId};
 use hardpoint::run::Analysis;
 use hardpoint::topology::{Formulation, TopologyError};
 
 use super::evaluation::StudyCost;
+use super::progress::{Control, Progress, Step};
+use super::request::{RequestError, named};
 
 pub use certainty::{Certainty, UnidentifiableChange};
 pub use next::{Improvement, NextReading};
+pub use request::{Overrides, Request};
 
 /// Loss function of residuals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,6 +48,17 @@ pub enum Loss {
 }
 
 impl Loss {
+    /// Names of all of them.
+    pub const NAMES: [&str; 3] = ["squares", "huber", "cauchy"];
+
+    /// Loss function of a name.
+    ///
+    /// # Errors
+    /// A [`RequestError`] if there is none.
+    pub fn named(name: &str) -> Result<Self, RequestError> {
+        Ok([Self::Squares, Self::Huber, Self::Cauchy][named("loss function", name, Self::NAMES)?])
+    }
+
     /// Weight of a residual relative to least squares, from 0 to 1.
     pub fn weight(self, r: f64) -> f64 {
         // 95 % efficiency for normal residuals (Holland and Welsch 1977)
@@ -54,7 +74,7 @@ impl Loss {
 
 /// Status of a fit at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FitStatus {
+pub enum Status {
     /// No small change of the design improves the fit.
     Found,
     /// The iteration limit was reached.
@@ -89,7 +109,7 @@ pub struct FittedReading {
 #[derive(Clone, Debug)]
 pub struct Calibration {
     /// Status at the end of the fit.
-    pub status: FitStatus,
+    pub status: Status,
     /// Fitted variables.
     pub variables: Vec<VariableId>,
     /// Variables that the mechanism cannot follow. They keep their design values.
@@ -117,59 +137,36 @@ pub struct Calibration {
 
 /// Reason why nothing can be fitted.
 #[derive(Clone, Debug)]
-pub enum CalibrationError {
+pub enum Error {
     /// The mechanism cannot be driven.
     Topology(TopologyError),
-    /// The nominal design reaches none of the postures; contains the stop on the way to the first.
-    NothingReached(String),
-    /// The mechanism can follow none of the variables.
-    NothingVaries,
-    /// Without standard deviations there must be more readings than variables, since the accuracy cannot be estimated
-    /// otherwise.
-    TooFewReadings {
-        /// Number of compared readings.
-        readings: usize,
-        /// Number of variables.
-        variables: usize,
-    },
+    /// The measurements do not determine the variables.
+    Request(RequestError),
 }
 
-/// Measurements, variables and options of a calibration.
-#[derive(Clone, Copy, Debug)]
-pub struct CalibrationRequest<'a> {
-    /// Measurements to fit.
-    pub measured: &'a Measurements,
-    /// Variables to fit.
-    pub variables: &'a [VariableId],
-    /// Loss function of the residuals.
-    pub loss: Loss,
-    /// Formulation of the mechanism.
-    pub formulation: Formulation,
-    /// Maximum number of iterations.
-    pub iterations: usize,
-}
-
-/// Fits the design to measurements. `progress` is called with the objective after every iteration. `more` is called at
-/// every posture; if it returns false, the fit ends.
+/// Fits the design to measurements, on one thread. Reports the objective after every iteration. `more` is called at
+/// every posture.
 ///
 /// # Errors
-/// A [`CalibrationError`] if nothing can be fitted.
-pub fn calibrate(
-    model: &Model,
-    request: &CalibrationRequest<'_>,
-    progress: &mut dyn FnMut(usize, f64),
-    more: &dyn Fn() -> bool,
-) -> Result<Calibration, CalibrationError> {
+/// An [`Error`] if nothing can be fitted.
+pub fn calibrate(model: &Model, request: &Request<'_>, control: Control<'_>) -> Result<Calibration, Error> {
+    let Control { progress, more, .. } = control;
+    let ended = Cell::new(false);
+    let mut progress = |done: usize, objective: f64| {
+        let progressed = Progress::counted(Step::Fit(objective), done, request.iterations);
+        ended.set(ended.get() || progress(progressed).is_break());
+    };
+    let more = || !ended.get() && more();
     let models: Vec<Model> =
         request.measured.postures.iter().map(|p| posture::posture_model(model, p)).collect();
-    let analyses = posture::planned(&models, request.formulation).map_err(CalibrationError::Topology)?;
+    let analyses = posture::planned(&models, request.formulation).map_err(Error::Topology)?;
     let mut workspace = fit::FitWorkspace::new(model, &analyses, request);
-    workspace.evaluate_nominal()?;
-    let search = workspace.search(progress, more);
+    workspace.evaluate_nominal().map_err(Error::Request)?;
+    let search = workspace.search(&mut progress, &more);
     let directions = workspace.directions(&search);
     let certainty = workspace.certainty(&search, &directions);
     let next = match search.status {
-        FitStatus::Found => workspace.next(&search, &directions, &certainty),
+        Status::Found => workspace.next(&search, &directions, &certainty),
         _ => Vec::new(),
     };
     Ok(workspace.calibration(search, certainty, next, outputs(model)))

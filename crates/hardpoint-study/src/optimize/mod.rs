@@ -1,4 +1,11 @@
-//! Optimisation: the design that minimises weighted goals within bounds and limits.
+//! Optimisation: which design minimises weighted goals within bounds and limits?
+//!
+//! Input: a [`Request`] with bounded variables (m, rad or plain), goals and limits on metrics in SI. Output: an
+//! [`Optimization`] with the best design of every start, its active constraints and multipliers.
+//!
+//! ```text
+//! minimise sum of weight value, or (weight (value - target))^2,    subject to least <= limit <= most
+//! ```
 //!
 //! Goals and limits are metrics of the motions, with exact derivatives. If all goals are squares (a curve fitted, a
 //! target met) and only bounds limit the design, bounded least squares are used, otherwise sequential programming. For
@@ -9,10 +16,9 @@
 mod gauss_newton;
 mod optimality;
 mod problem;
+mod request;
 mod solver;
 
-use std::num::NonZero;
-use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -21,9 +27,11 @@ use sobol_burley::sample;
 use hardpoint::model::{Model, OptimizationSettings, VariableId};
 
 use super::evaluation::{Motions, StudyCost};
+use super::progress::{Control, Progress, Step};
 use gauss_newton::GaussNewton;
 pub use optimality::{ActiveConstraint, Optimality};
 use problem::{Point, Problem, Refusal};
+pub use request::{Overrides, Request, Selection};
 use solver::{Memory, Sequential, Solver, least_squares};
 
 /// A limit is satisfied if it is exceeded by less than this fraction of its scale: the rest is round-off of the search.
@@ -85,7 +93,7 @@ const MOST_DIMENSIONS: usize = 256;
 
 /// Result of an optimisation.
 #[derive(Clone, Debug)]
-pub struct OptimizationResult {
+pub struct Optimization {
     /// Nominal design; `None` if it cannot be evaluated.
     pub nominal: Option<DesignAssessment>,
     /// Reason why the nominal design cannot be evaluated.
@@ -122,7 +130,7 @@ pub struct SearchResult {
     /// Start values of all variables.
     pub start: Vec<f64>,
     /// Status at the end.
-    pub status: OptimizationStatus,
+    pub status: Status,
     /// Best design; `None` if the search could not start.
     pub found: Option<DesignAssessment>,
     /// Optimality of the best design, with its active constraints.
@@ -140,7 +148,7 @@ pub struct SearchResult {
 
 /// Status of a search at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OptimizationStatus {
+pub enum Status {
     /// Converged to an optimum.
     Optimal,
     /// No step makes progress, although the conditions of an optimum are not satisfied.
@@ -185,58 +193,44 @@ pub struct FailedDesign {
     pub why: String,
 }
 
-/// Progress reports of a search.
-#[derive(Clone, Copy, Debug)]
-pub enum SearchProgress<'s> {
-    /// An iteration was completed.
-    Iteration(&'s Iteration),
-    /// The search ended.
-    End(&'s SearchResult),
-}
-
-/// Options of an optimisation besides those of the model file.
-pub struct OptimizationRequest<'w> {
-    /// Receives every iteration and the end of every search, with the number of the search, and may end all searches.
-    pub progress: &'w mut (dyn FnMut(usize, SearchProgress<'_>) -> ControlFlow<()> + Send),
-    /// Called at every output time of every motion; returns false to end the searches.
-    pub more: &'w (dyn Fn() -> bool + Sync),
-    /// Number of threads. The results do not depend on it.
-    pub threads: NonZero<usize>,
-    /// Number of the first start: 0 is the nominal design. Starts can be distributed over several calls.
-    pub first: usize,
-}
-
-/// Minimises the goals over the design variables.
+/// Minimises the goals over the design variables. Reports every iteration and the end of every search; of several
+/// searches their ends are counted, of a single one its iterations.
 ///
 /// `motions` are those of the model ([`Model::motions`]), in order.
 pub fn optimize(
     model: &Model,
     motions: &Motions<'_>,
-    settings: &OptimizationSettings,
-    request: OptimizationRequest<'_>,
-) -> OptimizationResult {
+    request: &Request,
+    control: Control<'_>,
+) -> Optimization {
+    let Request { settings, first } = request;
     let problem = Problem::new(model, motions, settings);
-    let OptimizationRequest { progress, more, threads, first } = request;
+    let Control { progress, more, threads } = control;
     let mut cost = StudyCost::default();
     let (nominal, nominal_failure) = match problem.at(vec![0.0; model.variables.len()], &mut cost, more) {
         Ok(point) => (Some(assess(&problem, &point, &limit_scales(&problem, &point))), None),
         Err(refusal) => (None, Some(failed_design(vec![0.0; model.variables.len()], refusal))),
     };
-    let starts: Vec<Vec<f64>> = (0..settings.starts.max(1)).map(|k| start(&problem, first + k)).collect();
+    let starts: Vec<Vec<f64>> = (0..settings.starts).map(|k| start(&problem, first + k)).collect();
     let (next, ended) = (AtomicUsize::new(0), std::sync::atomic::AtomicBool::new(false));
-    let progress = Mutex::new(progress);
+    // Number of searches that have ended, or of iterations of the only one.
+    let progress = Mutex::new((0, progress));
+    let is_single = starts.len() == 1;
+    let total = if is_single { settings.iterations } else { starts.len() };
     let searches = Mutex::new(starts.iter().map(|_| None).collect::<Vec<Option<SearchResult>>>());
     let more = || !ended.load(Ordering::Relaxed) && more();
     let work = || {
         while let Some(k) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|k| *k < starts.len()) {
-            let tell = |of: SearchProgress<'_>| {
-                let flow = (progress.lock().expect("no telling before has panicked"))(k, of);
-                if flow.is_break() {
+            let report = |step: Step<'_>, is_counted: bool, counted: &dyn Fn(usize) -> usize| {
+                let (done, progress) = &mut *progress.lock().expect("no report before has panicked");
+                *done = if is_counted { counted(*done) } else { *done };
+                if progress(Progress { step, done: *done, total, is_counted }).is_break() {
                     ended.store(true, Ordering::Relaxed);
                 }
             };
-            let search = search(&problem, &starts[k], &mut |i| tell(SearchProgress::Iteration(i)), &more);
-            tell(SearchProgress::End(&search));
+            let mut iterated = |i: &Iteration| report(Step::Iteration(i), is_single, &|_| i.number);
+            let search = search(&problem, &starts[k], &mut iterated, &more);
+            report(Step::Search(k, &search), !is_single, &|done| done + 1);
             searches.lock().expect("no search before has panicked")[k] = Some(search);
         }
     };
@@ -248,7 +242,7 @@ pub fn optimize(
     let searches: Vec<SearchResult> =
         searches.into_iter().map(|s| s.expect("every start was searched from")).collect();
     searches.iter().for_each(|s| cost += s.cost);
-    OptimizationResult { nominal, nominal_failure, best: best(&searches), searches, cost }
+    Optimization { nominal, nominal_failure, best: best(&searches), searches, cost }
 }
 
 /// Evaluates the goals and limits of one design, given by the values of all variables of the model.
@@ -354,11 +348,7 @@ fn search(
     let point = starts.into_iter().find_map(judged_start);
     let mut search = SearchResult {
         start: problem.design(point.as_ref().map_or(start, |(start, _)| start)),
-        status: if memory.interrupted() {
-            OptimizationStatus::Interrupted
-        } else {
-            OptimizationStatus::NoStart
-        },
+        status: if memory.interrupted() { Status::Interrupted } else { Status::NoStart },
         found: None,
         optimality: Optimality { residual: f64::INFINITY, ..Optimality::default() },
         iterations: Vec::new(),
@@ -650,14 +640,14 @@ impl<'p> Descent<'p> {
         search.iterations.push(iteration);
     }
 
-    fn status(&self, search: &SearchResult) -> OptimizationStatus {
+    fn status(&self, search: &SearchResult) -> Status {
         let kept = self.violation(&self.best) <= KEPT;
         match () {
-            () if self.memory.interrupted() => OptimizationStatus::Interrupted,
-            () if kept && search.optimality.residual <= OPTIMAL => OptimizationStatus::Optimal,
-            () if self.ran_out => OptimizationStatus::IterationLimit,
-            () if kept => OptimizationStatus::Stuck,
-            () => OptimizationStatus::LimitsNotKept,
+            () if self.memory.interrupted() => Status::Interrupted,
+            () if kept && search.optimality.residual <= OPTIMAL => Status::Optimal,
+            () if self.ran_out => Status::IterationLimit,
+            () if kept => Status::Stuck,
+            () => Status::LimitsNotKept,
         }
     }
 }

@@ -65,7 +65,7 @@ const ROUND_OFF: f64 = 1e-12;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::SweepPlan;
+    use crate::sweep::Plan;
     use hardpoint::model::{SweepMethod, SweepRange, SweepSettings, VariableId};
 
     /// Values of a function in the designs of Sobol indices.
@@ -85,7 +85,7 @@ mod tests {
             metrics: Vec::new(),
             curves: Vec::new(),
         };
-        let plan = SweepPlan::of(&settings, ranges.len()).expect("a plan");
+        let plan = Plan::of(&settings, ranges.len()).expect("a plan");
         (0..plan.count()).map(|k| f(&plan.swept(k))).collect()
     }
 

@@ -1,7 +1,12 @@
 //! Sweep: exact metrics of many designs over the ranges of the variables.
+//!
+//! Input: a [`Request`] with ranges (changes in m, rad or plain) and a method, or a list of designs. Output: a
+//! [`Block`] of metrics and curves in SI per 512 designs; from these [`sobol_indices`] (Saltelli et al. 2010; Jansen
+//! 1999), [`Distribution`] and [`rank_correlation`].
 
 mod indices;
 mod plan;
+mod request;
 mod sobol;
 mod statistics;
 
@@ -12,17 +17,19 @@ use hardpoint::model::{Model, OutputSource, SweepSettings};
 use hardpoint::run::{Run, Solution};
 
 use super::evaluation::{Motions, StudyCost};
+use super::request::RequestError;
 use super::samples::{SampleBlock, SampleRun};
 use hardpoint::run::{metric_number, place_of};
 
 pub use indices::{SobolIndex, sobol_indices};
-pub use plan::{SweepPlan, SweepPlanError};
+pub use plan::Plan;
+pub use request::{Overrides, Request, method};
 pub(super) use statistics::quantile;
 pub use statistics::{Distribution, rank_correlation};
 
 /// A metric in one of the motions: a column of the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SweptMetric {
+pub struct Metric {
     /// Index of the metric in [`Model::metrics`] of the whole model.
     pub metric: usize,
     /// Index of the motion among those studied.
@@ -33,22 +40,22 @@ pub struct SweptMetric {
 
 /// Results of consecutive designs. SI.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SweptBlock {
+pub struct Block {
     /// Numbers of the designs.
     pub numbers: Range<usize>,
     /// Values of each metric in each design; NaN if it has none.
     pub metrics: Vec<Vec<f64>>,
     /// Curves of each motion; empty if not requested.
-    pub curves: Vec<SweptCurves>,
+    pub curves: Vec<Curves>,
     /// Designs that do not reach the end of a motion, motion by motion.
-    pub failures: Vec<SweptFailure>,
+    pub failures: Vec<Failure>,
     /// Cost of the designs.
     pub cost: StudyCost,
 }
 
 /// Curves of a block of designs in one motion.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SweptCurves {
+pub struct Curves {
     /// Number of solved output times of each design.
     pub steps: Vec<u32>,
     /// Values by design, output time and curve.
@@ -57,7 +64,7 @@ pub struct SweptCurves {
 
 /// A design that does not reach the end of a motion.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SweptFailure {
+pub struct Failure {
     /// Number of the design.
     pub number: usize,
     /// Index of the motion among those studied.
@@ -73,42 +80,43 @@ pub struct SweptFailure {
 pub struct Sweep<'a> {
     motions: &'a Motions<'a>,
     settings: &'a SweepSettings,
-    plan: SweepPlan<'a>,
-    metrics: Vec<SweptMetric>,
+    plan: Plan<'a>,
+    metrics: Vec<Metric>,
 }
 
 impl<'a> Sweep<'a> {
     /// Prepares the sweep over the designs of a model in some of its motions, given by `numbers`.
     ///
     /// # Errors
-    /// A [`SweepPlanError`] if the designs cannot be chosen.
+    /// A [`RequestError`] if the designs cannot be chosen.
     pub fn new(
         model: &Model,
         motions: &'a Motions<'a>,
         numbers: &[usize],
-        settings: &'a SweepSettings,
-    ) -> Result<Self, SweepPlanError> {
-        let plan = SweepPlan::new(settings, model)?;
+        request: &'a Request,
+    ) -> Result<Self, RequestError> {
+        let settings = &request.settings;
+        let plan = Plan::new(settings, model)?;
         let of_motion = |(metric, (motion, number)): (usize, (usize, &usize))| {
-            Some(SweptMetric { metric, motion, place: place_of(model, metric, *number)? })
+            Some(Metric { metric, motion, place: place_of(model, metric, *number)? })
         };
         let pairs = settings.metrics.iter().flat_map(|m| numbers.iter().enumerate().map(|n| (*m, n)));
         Ok(Self { motions, settings, plan, metrics: pairs.filter_map(of_motion).collect() })
     }
 
     /// Designs of the sweep.
-    pub fn plan(&self) -> &SweepPlan<'a> {
+    pub fn plan(&self) -> &Plan<'a> {
         &self.plan
     }
 
     /// Columns of the results.
-    pub fn metrics(&self) -> &[SweptMetric] {
+    pub fn metrics(&self) -> &[Metric] {
         &self.metrics
     }
 
     /// Results of the nominal design, as the only one of its block.
-    pub fn nominal(&self) -> SweptBlock {
-        let mut block = SweptBlock { numbers: 0..1, ..SweptBlock::default() };
+    pub fn nominal(&self) -> Block {
+        let mut block = Block { numbers: 0..1, ..Block::default() };
         for (motion, analysis) in self.motions.analyses().iter().enumerate() {
             let solution = analysis.solve(Run::new().without_sensitivities());
             self.see(&mut block, 0, motion, &solution);
@@ -123,28 +131,28 @@ impl<'a> Sweep<'a> {
         from: usize,
         threads: NonZero<usize>,
         more: &(dyn Fn() -> bool + Sync),
-        done: &mut (dyn FnMut(SweptBlock) -> ControlFlow<()> + Send),
+        done: &mut (dyn FnMut(Block) -> ControlFlow<()> + Send),
     ) {
         let design = |number: usize| self.plan.design(number);
-        let see = |block: &mut SweptBlock, number: usize, motion: usize, solution: &Solution| {
+        let see = |block: &mut Block, number: usize, motion: usize, solution: &Solution| {
             self.see(block, number, motion, solution);
         };
-        let mut report = |SampleBlock { numbers, found }: SampleBlock<SweptBlock>| {
+        let mut report = |SampleBlock { numbers, found }: SampleBlock<Block>| {
             let cost = StudyCost { designs: numbers.len(), ..found.cost };
-            done(SweptBlock { numbers, cost, ..found })
+            done(Block { numbers, cost, ..found })
         };
         let run = SampleRun { numbers: from..self.plan.count(), design: &design, threads, more };
         self.motions.sample(&run, &see, &mut report);
     }
 
-    fn see(&self, block: &mut SweptBlock, number: usize, motion: usize, solution: &Solution) {
+    fn see(&self, block: &mut Block, number: usize, motion: usize, solution: &Solution) {
         let model = self.motions.model(motion);
         block.metrics.resize_with(self.metrics.len(), Vec::new);
         block.cost.motions += 1;
         block.cost.steps += solution.motion.len();
         if let Some(stop) = &solution.stop {
             let (code, why) = (stop.code().to_owned(), stop.headline(model));
-            block.failures.push(SweptFailure { number, motion, code, why });
+            block.failures.push(Failure { number, motion, code, why });
         }
         for (k, of) in self.metrics.iter().enumerate().filter(|(_, of)| of.motion == motion) {
             // An incomplete motion has no metrics.
@@ -155,7 +163,7 @@ impl<'a> Sweep<'a> {
         if self.settings.curves.is_empty() {
             return;
         }
-        block.curves.resize_with(self.motions.len(), SweptCurves::default);
+        block.curves.resize_with(self.motions.len(), Curves::default);
         let curves = &mut block.curves[motion];
         let measured = &solution.measured;
         curves.steps.push(measured.len() as u32);

@@ -2,55 +2,57 @@
 
 use hardpoint::model::{Model, SweepMethod, SweepSettings};
 
+use crate::request::RequestError;
+
 use super::sobol::{Sobol, mixed};
 
 /// Designs of a sweep. A design depends only on its number.
 #[derive(Clone, Debug)]
-pub struct SweepPlan<'a> {
+pub struct Plan<'a> {
     settings: &'a SweepSettings,
     variables: usize,
     count: usize,
     sobol: Option<Sobol>,
 }
 
-/// Reason why the designs of a sweep cannot be chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SweepPlanError {
-    /// No variable has a range.
-    NoRanges,
-    /// The number of designs is zero.
-    NoDesigns,
-    /// The number of designs exceeds [`SweepSettings::MOST`].
-    TooMany,
-    /// Too many dimensions for a Sobol sequence; contains the maximum.
-    TooManyDimensions(usize),
-}
-
-impl<'a> SweepPlan<'a> {
+impl<'a> Plan<'a> {
     /// Plans the requested designs.
     ///
     /// # Errors
-    /// A [`SweepPlanError`] if the designs cannot be chosen.
-    pub fn new(settings: &'a SweepSettings, model: &Model) -> Result<Self, SweepPlanError> {
+    /// A [`RequestError`] if the designs cannot be chosen.
+    pub fn new(settings: &'a SweepSettings, model: &Model) -> Result<Self, RequestError> {
         Self::of(settings, model.variables.len())
     }
 
     /// Plans the designs of a model with a number of variables.
-    pub(super) fn of(settings: &'a SweepSettings, variables: usize) -> Result<Self, SweepPlanError> {
-        let count = settings.count().ok_or(SweepPlanError::TooMany)?;
+    pub(super) fn of(settings: &'a SweepSettings, variables: usize) -> Result<Self, RequestError> {
+        let count = settings.count().ok_or_else(|| {
+            RequestError::invalid(
+                format!("the sweep has more than {} designs", SweepSettings::MOST),
+                "give fewer levels or variables, or choose the method `sobol` with a number of samples",
+            )
+        })?;
         if settings.ranges.is_empty() {
-            return Err(SweepPlanError::NoRanges);
+            return Err(RequestError::model(
+                "no design variable has a range",
+                "give them `bounds` in `[design]` or `[parameters]`, ranges in `[sweep.variables]`, or ranges in the request \
+                 (docs/sweep.md)",
+            ));
         }
         if count == 0 {
-            return Err(SweepPlanError::NoDesigns);
+            return Err(RequestError::invalid("the sweep has no designs", "give at least one sample"));
         }
         let dimensions = match settings.method {
             SweepMethod::Sobol => settings.ranges.len(),
             SweepMethod::Indices => 2 * settings.ranges.len(),
-            _ => 0,
+            SweepMethod::Factorial | SweepMethod::LatinHypercube | SweepMethod::Listed => 0,
         };
         if dimensions > Sobol::MOST {
-            return Err(SweepPlanError::TooManyDimensions(Sobol::MOST));
+            let most = Sobol::MOST;
+            return Err(RequestError::invalid(
+                format!("a Sobol sequence has at most {most} variables, and {} for indices", most / 2),
+                "sweep over fewer, or choose the method `latin_hypercube`",
+            ));
         }
         let sobol = (dimensions > 0).then(|| Sobol::new(dimensions, settings.seed));
         Ok(Self { settings, variables, count, sobol })

@@ -1,7 +1,11 @@
 //! Tolerance study: effects of the tolerances of design variables on every metric and along whole curves.
 //!
-//! Derivatives give, without sampling: worst case, root sum square, second-order mean and variance, contributions of
-//! the variables, and yield (`docs/theory.md`, section on tolerances). Sampled designs that are solved exactly give the
+//! Input: a [`Request`] with tolerances (half widths in m, rad or plain), their distributions, and limits of metrics in
+//! SI. Output: a [`ToleranceResult`] in SI, with yields from 0 to 1.
+//!
+//! Derivatives give, without sampling: worst case, root sum square, second-order mean (37) and variance (38),
+//! contributions of the variables, and yield (`docs/theory.md`, section 12; Seber and Lee, *Linear Regression
+//! Analysis*, theorems 1.5 and 1.6). Sampled designs that are solved exactly give the
 //! same statistics and show the error of the derivatives. Allocation gives the loosest tolerances that satisfy the
 //! limits.
 
@@ -10,9 +14,9 @@ mod contributions;
 mod curves;
 mod deviations;
 mod monte_carlo;
+mod request;
 mod worst;
 
-use std::num::NonZero;
 use std::ops::ControlFlow;
 
 use hardpoint::model::{LimitTarget, Model, ToleranceSettings, VariableId};
@@ -22,12 +26,15 @@ use hardpoint::sensitivity::Admissibility;
 
 use super::evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};
 use super::magnitude::Magnitude;
+use super::progress::{Control, Progress, Step};
+use super::request::RequestError;
 pub use allocation::{AllocatedTolerance, Allocation, AllocationError};
 pub use contributions::{Contributions, SpreadModel};
 pub use curves::{BandPoint, CurveBands};
 use deviations::Deviations;
 use hardpoint::run::{metric_numbers, place_of};
 pub use monte_carlo::{FailureGroup, MonteCarlo, SampledCurve, SampledMetric, Yield};
+pub use request::{Overrides, Request};
 pub use worst::Extreme;
 
 /// Threshold for a warning about nonlinearity: second-order part of a deviation, or shift of its mean, relative to the
@@ -153,20 +160,11 @@ pub fn toleranced_designs(
 
 /// Reason why a tolerance study has no result.
 #[derive(Clone, Debug)]
-pub enum ToleranceError {
+pub enum Error {
     /// The nominal design does not reach the end of some motion, or the caller ended the study there.
     Nominal(EvaluationError),
     /// The mechanism can follow none of the variables with a tolerance.
-    NothingVaries,
-}
-
-/// Progress of a study.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ToleranceStage {
-    /// Number of differenced gradients, of the total.
-    Derivatives(usize, usize),
-    /// Number of sampled designs, of the total.
-    Designs(usize, usize),
+    Request(RequestError),
 }
 
 impl MetricSpread {
@@ -195,30 +193,29 @@ impl MetricSpread {
 }
 
 /// Studies the tolerances of a design in some motions of the mechanism, given by their numbers in [`Model::motions`].
-/// `tell` is called with the progress and may end the study; `more` is called at every output time of single designs.
 ///
 /// # Errors
-/// A [`ToleranceError`] if there is nothing to study.
+/// A [`Error`] if there is nothing to study.
 pub fn tolerance(
     model: &Model,
     motions: &Motions<'_>,
     numbers: &[usize],
-    settings: &ToleranceSettings,
-    threads: NonZero<usize>,
-    tell: &mut (dyn FnMut(ToleranceStage) -> ControlFlow<()> + Send),
-    more: &(dyn Fn() -> bool + Sync),
-) -> Result<ToleranceResult, ToleranceError> {
+    request: &Request,
+    control: Control<'_>,
+) -> Result<ToleranceResult, Error> {
+    let Request { settings } = request;
+    let Control { threads, progress, more } = control;
     let mut cost = StudyCost::default();
-    let nominal = motions.evaluate(&[], &mut cost, more).map_err(ToleranceError::Nominal)?;
+    let nominal = motions.evaluate(&[], &mut cost, more).map_err(Error::Nominal)?;
     let (deviations, left_out) = deviations(model, &nominal, settings);
     if deviations.variables.is_empty() {
-        return Err(ToleranceError::NothingVaries);
+        return Err(Error::Request(Request::nothing_varies(settings)));
     }
     let study = Study { model, motions, numbers, settings, deviations: &deviations, nominal: &nominal };
     let (studied, unknown) = study.studied();
     let mut interrupted = false;
-    let mut tell = |stage: ToleranceStage| {
-        let flow = tell(stage);
+    let mut tell = |progressed: Progress<'_>| {
+        let flow = progress(progressed);
         interrupted |= flow.is_break();
         flow
     };
@@ -336,7 +333,7 @@ impl Study<'_> {
         &self,
         studied: &[StudiedMetric],
         cost: &mut StudyCost,
-        tell: &mut dyn FnMut(ToleranceStage) -> ControlFlow<()>,
+        tell: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Vec<Option<Vec<Vec<f64>>>> {
         let variables = &self.deviations.variables;
@@ -345,7 +342,8 @@ impl Study<'_> {
         for (j, tolerated) in variables.iter().enumerate() {
             let h = STEP * self.model.natural_step(tolerated.variable);
             let sides = [h, -h].map(|by| {
-                if columns.iter().all(Option::is_none) || tell(ToleranceStage::Derivatives(j, n)).is_break() {
+                let is_known = columns.iter().any(Option::is_some);
+                if !is_known || tell(Progress::counted(Step::Variable, j, n)).is_break() {
                     return None;
                 }
                 self.motions.evaluate(&self.model.alone(tolerated.variable, by), cost, more).ok()

@@ -4,6 +4,7 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 
 use crate::evaluation::StudyCost;
+use crate::progress::{Progress, Step};
 use crate::samples::{SampleBlock, SampleRun};
 use crate::sweep::quantile;
 use crate::whatif::unwrapped_value;
@@ -14,7 +15,7 @@ use hardpoint::run::Solution;
 use hardpoint::run::{metric_numbers, place_of};
 
 use super::deviations::Deviations;
-use super::{CurveBands, MetricSpread, Study, ToleranceResult, ToleranceStage};
+use super::{CurveBands, MetricSpread, Study, ToleranceResult};
 
 /// Results of the Monte Carlo designs. SI.
 #[derive(Clone, Debug, Default)]
@@ -155,7 +156,7 @@ impl Study<'_> {
         deviations: &Deviations,
         found: &ToleranceResult,
         threads: NonZero<usize>,
-        tell: &mut (dyn FnMut(ToleranceStage) -> ControlFlow<()> + Send),
+        tell: &mut (dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send),
         more: &(dyn Fn() -> bool + Sync),
     ) -> MonteCarlo {
         let (seed, settings) = (self.settings.seed, self.settings.samples);
@@ -198,7 +199,7 @@ impl Study<'_> {
             for (all, some) in all.curves.iter_mut().zip(block.curves) {
                 all.iter_mut().zip(some).for_each(|(all, some)| all.join(&some));
             }
-            tell(ToleranceStage::Designs(samples, settings))
+            tell(Progress::counted(Step::Designs, samples, settings))
         };
         let run = SampleRun { numbers: 0..settings, design: &design, threads, more };
         self.motions.sample(&run, &see, &mut done);

@@ -20,6 +20,25 @@ pub struct OptimizationSettings {
     pub iterations: usize,
 }
 
+impl OptimizationSettings {
+    /// Maximum number of starts, and of iterations of a search.
+    pub const MOST: u32 = 100_000;
+}
+
+impl Default for OptimizationSettings {
+    /// No variables and no goals; one start.
+    fn default() -> Self {
+        Self {
+            variables: Vec::new(),
+            goals: Vec::new(),
+            limits: Vec::new(),
+            margin: None,
+            starts: 1,
+            iterations: 100,
+        }
+    }
+}
+
 /// A metric that is made small, or brought to a target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goal {

@@ -104,11 +104,16 @@ pub enum AllocationRule {
 impl AllocationRule {
     /// The names of both, as model files write them.
     pub const NAMES: [&str; 2] = ["rss", "worst_case"];
+
+    /// Those of these names, with the default number of standard deviations.
+    pub const NAMED: [Self; 2] = [Self::Rss { sigmas: ToleranceSettings::SIGMAS }, Self::Worst];
 }
 
 impl ToleranceSettings {
     /// Default number of designs: the standard deviation is then known to 1 %.
     pub const SAMPLES: usize = 10_000;
+    /// Maximum number of designs: the metrics of more would not fit into memory.
+    pub const MOST: u32 = 10_000_000;
     /// Default seed.
     pub const SEED: u64 = 1;
     /// A tolerance is that many standard deviations where nothing else is said: 0.27 % of the parts are beyond it.

@@ -5,7 +5,7 @@ use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::verify::{self, verify};
 
 use crate::workbench::*;
 
@@ -61,7 +61,12 @@ fn a_rod_that_is_too_long_turns_the_rocker_to_where_it_fits() {
         let turned = (c - Vec3::new(0.3, 0.0, 0.0)).norm().recip() * (c.x - 0.3);
         assert!((moved.angle - turned.asin()).abs() < 1e-9, "{moved:?}");
         let checks =
-            verify(&analysis, &solution, &VerifyOptions::default(), |_| std::ops::ControlFlow::Continue(()));
+            verify(
+                &analysis,
+                &solution,
+                &verify::Options::default(),
+                |_| std::ops::ControlFlow::Continue(()),
+            );
         assert!(checks.checks[0].worst().unwrap().error < 1e-8);
     }
 }

@@ -8,7 +8,7 @@ use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
 use hardpoint::{design::JointConstants, draft::*, model::*};
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::verify::{self, verify};
 
 use crate::workbench::*;
 
@@ -218,7 +218,7 @@ fn a_redundant_mechanism_follows_every_change_of_its_law() {
         for admissibility in &solution.sensitivities.admissibility {
             assert_eq!(*admissibility, Admissibility::Admissible, "{formulation:?}");
         }
-        let checks = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        let checks = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
         assert!(checks.passed(), "{:?}", checks.checks);
     }
 }

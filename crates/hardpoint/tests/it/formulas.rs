@@ -9,7 +9,7 @@ use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
 use hardpoint::{design::DesignVelocity, draft::*, model::*};
 use hardpoint::{expression::Expression, law::Law};
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::verify::{self, verify};
 
 use crate::workbench::*;
 
@@ -154,7 +154,7 @@ fn sensitivities_by_nonlinear_parameters_match_designs_that_are_solved_anew() {
                 assert!(!matches!(a, Admissibility::CannotFollow { .. }), "{}", v.name);
             }
             let checks =
-                verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+                verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
             assert!(checks.passed(), "{:?}", checks.checks);
         }
     }

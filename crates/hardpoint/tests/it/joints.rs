@@ -6,7 +6,7 @@ use hardpoint::joint::ALL;
 use hardpoint::topology::{Formulation, JointRole};
 use hardpoint::{Analysis, Solution};
 use hardpoint::{draft::*, model::*};
-use hardpoint_study::verify::{VerifyOptions, verify};
+use hardpoint_study::verify::{self, verify};
 
 use crate::workbench::*;
 
@@ -195,7 +195,7 @@ fn a_cam_and_a_slot_move_as_they_must_and_match_resolved_designs() {
         let analysis = Analysis::with(&model, formulation).unwrap();
         let solution = analysis.run();
         assert!(solution.stop.is_none(), "{:?}", solution.stop);
-        let report = verify(&analysis, &solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+        let report = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
         for check in report.checks.iter().filter(|c| c.worst().is_some()) {
             let worst = check.worst().unwrap();
             assert!(
@@ -242,7 +242,7 @@ const AS_DIFFERENCES_SEE: f64 = 5e-8;
 
 /// Every variable's sensitivities are those of designs that are solved anew, to this.
 fn assert_as_resolved(analysis: &Analysis<'_>, solution: &Solution, within: f64) {
-    let report = verify(analysis, solution, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    let report = verify(analysis, solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
     for check in &report.checks {
         let worst = check.worst().unwrap();
         assert!(worst.error < within, "{}: {worst:?}", analysis.model().variables[check.variable.0].name);

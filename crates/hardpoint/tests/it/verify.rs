@@ -15,7 +15,7 @@ use hardpoint::{
 };
 use hardpoint_study::Comparison;
 use hardpoint_study::difference::{DifferenceScheme, finite_differences, finite_differences_each};
-use hardpoint_study::verify::{CheckOutcome, Verification, VerifyOptions, verify};
+use hardpoint_study::verify::{self, CheckOutcome, Verification, verify};
 
 use crate::workbench::*;
 
@@ -28,7 +28,7 @@ const SCHEMES: [DifferenceScheme; 3] =
 const NOISE: f64 = 1e-12;
 
 fn verified(analysis: &Analysis<'_>, solution: &Solution, scheme: DifferenceScheme) -> Verification {
-    verify(analysis, solution, &VerifyOptions::new(scheme), |_| ControlFlow::Continue(()))
+    verify(analysis, solution, &verify::Options::new(scheme), |_| ControlFlow::Continue(()))
 }
 
 /// Two ways to one position differ by this part of it, which the step of a difference magnifies.
@@ -255,11 +255,11 @@ fn an_interrupted_analysis_ends_at_the_next_output_time() {
     for method in [GradientMethod::Direct, GradientMethod::Adjoint] {
         interrupted(analysis.gradients(&[], &[0], method).stop);
     }
-    let found = verify(&analysis, &nominal, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    let found = verify(&analysis, &nominal, &verify::Options::default(), |_| ControlFlow::Continue(()));
     assert!(found.interrupted && !found.passed() && found.checks.is_empty());
 
     // And not asked any more, it solves everything.
     flag.store(false, Ordering::Relaxed);
-    let found = verify(&analysis, &nominal, &VerifyOptions::default(), |_| ControlFlow::Continue(()));
+    let found = verify(&analysis, &nominal, &verify::Options::default(), |_| ControlFlow::Continue(()));
     assert!(!found.interrupted && found.checks.len() == variables);
 }
