@@ -1,4 +1,4 @@
-//! Formulas of measures, over any number type. Signs are in `docs/measures.md`, formulas of loads in `load/measures.rs`.
+//! Formulas of measures, over any number type. Signs are in `docs/measures.md`; loads are in `load/measures.rs`.
 
 use crate::constraint::Row;
 use crate::design::BodyFixed;
