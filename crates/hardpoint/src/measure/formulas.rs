@@ -1,4 +1,4 @@
-//! Formulas of measures, over any number type. Signs are in `docs/measures.md`, formulas of loads in `load/measures.rs`.
+//! Formulas of measures, over any number type. Signs are in `docs/measures.md`; loads are in `load/measures.rs`.
 
 use crate::constraint::Row;
 use crate::design::BodyFixed;
@@ -265,7 +265,14 @@ impl<'a, T: Real> Instant<'a, T> {
             // a_i . (P_j - P_i)
             Row::Dot2(k) => axis(0, k).dot(origin(1) - origin(0)),
             // abs(P_j - P_i)
-            _ => (origin(1) - origin(0)).norm(),
+            Row::Distance
+            | Row::Point(_)
+            | Row::PointOnBase(_)
+            | Row::Dot1(..)
+            | Row::Cosine
+            | Row::Offset
+            | Row::Contact
+            | Row::ConstantVelocity => (origin(1) - origin(0)).norm(),
         }
     }
 }
