@@ -157,7 +157,7 @@ def test_a_study_is_refused_with_the_message_of_the_command(command, arguments, 
     assert found["help"] == raised.value.help
 
 
-def test_a_list_of_designs_has_no_ranges_and_no_search_has_no_start(tmp_path, strut, toe):
+def test_a_list_of_designs_has_no_ranges_and_every_search_has_a_start(tmp_path, toe):
     path = tmp_path / "designs.csv"
     path.write_text("outer_z\n1\n")
     with pytest.raises(hardpoint.UsageError, match="a list of designs has no range"):
