@@ -278,7 +278,36 @@ impl<T: Real> TravellingWheel<T> {
             WheelMeasure::AntiLift | WheelMeasure::AntiSquat => {
                 -(self.reacting(what, v) * support::<T>(what, vehicle))
             }
-            _ => T::constant(f64::NAN),
+            WheelMeasure::Toe
+            | WheelMeasure::Camber
+            | WheelMeasure::CamberFront
+            | WheelMeasure::SteerAngle
+            | WheelMeasure::Caster
+            | WheelMeasure::KingpinInclination
+            | WheelMeasure::ScrubRadius
+            | WheelMeasure::SpindleOffset
+            | WheelMeasure::CasterTrail
+            | WheelMeasure::MechanicalTrail
+            | WheelMeasure::HubTrail
+            | WheelMeasure::WheelTravel
+            | WheelMeasure::WheelRecession
+            | WheelMeasure::HalfTrack
+            | WheelMeasure::HalfTrackChange
+            | WheelMeasure::ContactX
+            | WheelMeasure::ContactY
+            | WheelMeasure::ContactZ
+            | WheelMeasure::PlaneCentreFrontY
+            | WheelMeasure::PlaneCentreFrontZ
+            | WheelMeasure::PlaneCentreSideX
+            | WheelMeasure::PlaneCentreSideZ
+            | WheelMeasure::RollCentreHeightPlanes
+            | WheelMeasure::VirtualCaster
+            | WheelMeasure::VirtualKingpinInclination
+            | WheelMeasure::VirtualScrubRadius
+            | WheelMeasure::VirtualSpindleOffset
+            | WheelMeasure::VirtualCasterTrail
+            | WheelMeasure::VirtualMechanicalTrail
+            | WheelMeasure::VirtualHubTrail => T::constant(f64::NAN),
         }
     }
 }
