@@ -1,7 +1,7 @@
 //! What-if study: changed designs, predicted from the derivatives of the nominal design and solved exactly.
 //!
-//! Input: a change of every variable, m, rad or plain. Output: a [`WhatIf`] with the curves `y + y_b d + d y_bb d / 2` and
-//! the exact ones, SI (`docs/theory.md`, section 7).
+//! Input: a change of every variable, m, rad or plain. Output: a [`WhatIf`] with the curves
+//! `y + y_b d + d y_bb d / 2` and the exact ones, SI (`docs/theory.md`, section 7).
 
 use hardpoint::joint::Quantity;
 use hardpoint::model::{

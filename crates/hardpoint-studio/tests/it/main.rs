@@ -194,7 +194,8 @@ fn studies_that_cannot_be_requested_have_the_message_of_the_request() {
         assert_eq!(found["help"], error.help.as_str());
     };
     let strut = named("macpherson.toml");
-    let file = hardpoint_file::parse(strut["text"].as_str().unwrap(), "macpherson.toml").unwrap();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/macpherson.toml");
+    let file = hardpoint_file::read(&path).unwrap();
     let error = tolerance::Request::of(&file.model, &tolerance::Overrides::default()).unwrap_err();
     let asked = json!({ "samples": 10, "seed": 1 });
     expect(&failed(json!({ "ask": "tolerance", "model": strut, "asked": asked })), &error);
