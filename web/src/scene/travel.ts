@@ -37,8 +37,8 @@ export interface Arc {
 }
 
 /**
- * The arc of a hinge's travel: at least `minimum` long, as narrow as that allows. Whole turns have one head, in the sense
- * of the turn.
+ * The arc of a hinge's travel: at least `minimum` long, as narrow as that allows. Whole turns have one head, in the
+ * sense of the turn.
  */
 export function arcOf(
   low: number,
