@@ -5,10 +5,6 @@ use hardpoint::space::Vec3;
 
 /// Points of a body closer than this fraction of the mechanism size coincide.
 const SAME_PLACE: f64 = 1e-9;
-/// Joint types with a bearing at both hardpoints that define the axis.
-const HINGES: [&str; 2] = ["revolute", "cylindrical"];
-/// Joint types that are rods between their two points.
-const RODS: [&str; 3] = ["distance", "leg", "revolute_spherical"];
 
 /// Points of every body in its frame, m: joint locations, bearings of hinges, and named points.
 pub fn body_points(model: &Model) -> Vec<Vec<Vec3>> {
@@ -23,7 +19,8 @@ pub fn body_points(model: &Model) -> Vec<Vec<Vec3>> {
     };
     for (id, joint) in model.named_joints() {
         let bearings = match joint.axis {
-            Some(Direction::Through(a, b)) if HINGES.contains(&joint.kind.name) => vec![a, b],
+            // A bearing at both hardpoints that define the axis.
+            Some(Direction::Through(a, b)) if joint.kind.is_hinge => vec![a, b],
             _ => Vec::new(),
         };
         for end in 0..2 {
@@ -42,7 +39,7 @@ pub fn body_points(model: &Model) -> Vec<Vec<Vec3>> {
 /// Joints that are rods, each with its two end points in the frames of bodies i and j, m.
 pub fn rods(model: &Model) -> impl Iterator<Item = (&Joint, [Vec3; 2])> {
     let geometry = model.geometry(&[]);
-    let rods = model.named_joints().filter(|(_, joint)| RODS.contains(&joint.kind.name));
+    let rods = model.named_joints().filter(|(_, joint)| joint.kind.is_rod());
     rods.map(move |(id, joint)| (joint, [0, 1].map(|end| geometry.markers[id.0][end].r)))
 }
 

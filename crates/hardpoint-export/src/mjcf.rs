@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use hardpoint::constraint::Row;
+use hardpoint::joint::{Freedom, JointType};
 use hardpoint::model::Joint;
 use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
@@ -12,32 +14,37 @@ use crate::{ExportedModel, Format, escaped, number, numbers};
 /// MJCF format.
 pub const FORMAT: Format = Format { name: "mjcf", about: "MuJoCo model", endings: &["xml", "mjcf"], write };
 
-/// Joint of MJCF: its type, the axis of the joint frame that it uses, and the suffix of its name.
-type MjcfJoint = (&'static str, Along, &'static str);
+/// Freedoms of a tree joint that a sequence of MJCF joints has as well: turns and slides, or a single ball.
+fn freedoms(kind: &JointType) -> Option<&'static [Freedom]> {
+    let freedoms =
+        kind.freedoms.filter(|_| kind.places == 1 && kind.tree_rows.is_empty() && !kind.has_lead())?;
+    (freedoms.len() < 2 || !freedoms.contains(&Freedom::Ball)).then_some(freedoms)
+}
 
-/// Joint types that can carry a body (tree joints), each with its equivalent sequence of MJCF joints.
-const TYPES: [(&str, &[MjcfJoint]); 8] = [
-    ("revolute", &[("hinge", Along::Z, "")]),
-    ("translational", &[("slide", Along::Z, "")]),
-    ("spherical", &[("ball", Along::Z, "")]),
-    ("fixed", &[]),
-    ("universal", &[("hinge", Along::Z, "_1"), ("hinge", Along::X, "_2")]),
-    ("cylindrical", &[("slide", Along::Z, "_slide"), ("hinge", Along::Z, "_hinge")]),
-    ("pin_in_slot", &[("slide", Along::X, "_slide"), ("hinge", Along::Z, "_hinge")]),
-    ("planar", &[("slide", Along::X, "_x"), ("slide", Along::Y, "_y"), ("hinge", Along::Z, "_hinge")]),
-];
-/// Joint types that can close a loop (cut joints).
-const CLOSE: [&str; 4] = ["spherical", "revolute", "fixed", "distance"];
+/// Constraint of MJCF that closes a loop.
+enum Closure {
+    Connect,
+    Weld,
+    /// Two connected points of an axis.
+    Hinge,
+    /// A tendon of fixed length.
+    Rod,
+}
+
+impl Closure {
+    /// Constraint for a cut joint of this type.
+    fn of(kind: &JointType) -> Option<Self> {
+        match kind.freedoms {
+            Some([]) => Some(Self::Weld),
+            Some([Freedom::Turn(2)]) => Some(Self::Hinge),
+            Some(_) => kind.is_ball().then_some(Self::Connect),
+            None => (kind.rows == [Row::Distance]).then_some(Self::Rod),
+        }
+    }
+}
+
 /// Distance between the two points of its axis at which a cut hinge is connected, as a fraction of the mechanism size.
 const APART: f64 = 0.1;
-
-/// Axis of a joint's frame.
-#[derive(Clone, Copy)]
-enum Along {
-    X,
-    Y,
-    Z,
-}
 
 /// Point of a body that an equality refers to.
 struct Site {
@@ -48,7 +55,7 @@ struct Site {
 
 fn write(file: &ModelFile, out: &mut ExportedModel) {
     let model = &file.model;
-    let tree = Skeleton::new(model, &TYPES.map(|(own, _)| own), &CLOSE, out);
+    let tree = Skeleton::new(model, |kind| freedoms(kind).is_some(), |kind| Closure::of(kind).is_some(), out);
     let mut sites = Vec::new();
     let (equalities, tendons) = loops(&tree, &mut sites, out);
     out.text = format!(
@@ -93,15 +100,15 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
             let _ = writeln!(equalities, "    <{element} name=\"{name}\" {ends}/>");
         };
         let at = joint_points(model, joint);
-        match joint.kind.name {
-            "spherical" => meet("connect", &name, at),
-            "fixed" => meet("weld", &name, at),
-            "revolute" => {
+        match Closure::of(joint.kind) {
+            Some(Closure::Connect) => meet("connect", &name, at),
+            Some(Closure::Weld) => meet("weld", &name, at),
+            Some(Closure::Hinge) => {
                 let along = axis(joint) * (APART * model.size());
                 meet("connect", &name, at);
                 meet("connect", &format!("{name}_axis"), at.map(|p| p + along));
             }
-            "distance" => {
+            Some(Closure::Rod) => {
                 let [a, b] = site_at(sites, &name, [i, j], at);
                 let _ = writeln!(
                     tendons,
@@ -117,8 +124,9 @@ fn loops(tree: &Skeleton<'_>, sites: &mut Vec<Site>, out: &mut ExportedModel) ->
                 };
                 let _ = writeln!(equalities, "    <tendon name=\"{name}\" tendon1=\"{name}\"{constant}/>");
             }
-            other => {
-                let why = format!("MJCF has no equivalent of a joint of type {other} that closes a loop");
+            None => {
+                let kind = joint.kind.name;
+                let why = format!("MJCF has no equivalent of a joint of type {kind} that closes a loop");
                 out.report_unsupported("joint", &joint.name, why);
             }
         }
@@ -179,19 +187,30 @@ fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: 
 
 /// Writes the MJCF joints of a body for its tree joint; `backward` if the body is body i of the joint.
 fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut ExportedModel) {
-    let parts = TYPES.iter().find(|(own, _)| *own == joint.kind.name).map_or(&[][..], |(_, parts)| parts);
-    // Seen from body j, the order is reversed.
-    let order: Vec<_> = if backward { parts.iter().rev().collect() } else { parts.iter().collect() };
-    for (kind, along, ending) in order {
+    let parts = freedoms(joint.kind).unwrap_or_default();
+    let count = |is: fn(&Freedom) -> bool| parts.iter().filter(|f| is(f)).count();
+    let slides = count(|f| matches!(f, Freedom::Slide(_)));
+    let hinges = count(|f| matches!(f, Freedom::Turn(_)));
+    let parts = parts.iter().enumerate().map(|(n, freedom)| match freedom {
+        Freedom::Slide(k) if slides > 1 => ("slide", Some(*k), format!("_{}", ["x", "y", "z"][*k])),
+        Freedom::Slide(k) => ("slide", Some(*k), "_slide".into()),
+        Freedom::Turn(k) if hinges > 1 => ("hinge", Some(*k), format!("_{}", n + 1)),
+        Freedom::Turn(k) => ("hinge", Some(*k), "_hinge".into()),
+        Freedom::Ball => ("ball", None, String::new()),
+    });
+    let mut parts: Vec<(&str, Option<usize>, String)> = parts.collect();
+    if let [(.., ending)] = &mut parts[..] {
+        ending.clear();
+    }
+    if backward {
+        // Seen from body j, the order is reversed.
+        parts.reverse();
+    }
+    for (kind, along, ending) in &parts {
         let name = escaped(&joint.name);
-        let axis = match along {
-            Along::X => joint.frames[1].cols[0],
-            Along::Y => joint.frames[1].cols[1],
-            Along::Z => axis(joint),
-        };
-        let axis = if backward { -axis } else { axis };
-        let axis =
-            if *kind == "ball" { String::new() } else { format!(" axis=\"{}\"", numbers(axis.to_array())) };
+        let axis = along.map(|k| if k == 2 { axis(joint) } else { joint.frames[1].cols[k] });
+        let axis = axis.map(|axis| if backward { -axis } else { axis });
+        let axis = axis.map_or_else(String::new, |axis| format!(" axis=\"{}\"", numbers(axis.to_array())));
         let _ = writeln!(out.text, "{indent}  <joint name=\"{name}{ending}\" type=\"{kind}\"{axis}/>");
     }
     if parts.len() > 1 {

@@ -1,5 +1,6 @@
 //! Spanning tree of a mechanism for robot formats: the joint that carries each body, and the joints that close loops.
 
+use hardpoint::joint::JointType;
 use hardpoint::model::{Joint, Model};
 use hardpoint::space::Vec3;
 
@@ -38,30 +39,32 @@ pub fn axis(joint: &Joint) -> Vec3 {
 }
 
 impl<'m> Skeleton<'m> {
-    /// Creates the tree of a model. `carries` lists the types of joints that can carry a body, `closes` those that can
-    /// close a loop. Bodies and joints that cannot be written are reported.
-    pub fn new(model: &'m Model, carries: &[&str], closes: &[&str], out: &mut ExportedModel) -> Self {
+    /// Creates the tree of a model. `carries` is true of the types of joints that can carry a body, `closes` of those
+    /// that can close a loop. Bodies and joints that cannot be written are reported.
+    pub fn new(
+        model: &'m Model,
+        carries: impl Fn(&JointType) -> bool,
+        closes: impl Fn(&JointType) -> bool,
+        out: &mut ExportedModel,
+    ) -> Self {
         let mut tree =
             Self { model, carrier: vec![None; model.bodies.len()], order: vec![0], loops: Vec::new() };
         let named: Vec<usize> = model.named_joints().map(|(id, _)| id.0).collect();
         let bodies = |k: usize| model.joints[k].bodies.map(|b| b.0);
-        let is = |kinds: &[&str], k: usize| kinds.contains(&model.joints[k].kind.name);
-        let can_carry = |k: usize| is(carries, k) && is_closed(model, &model.joints[k]);
+        let can_close = |k: usize| closes(model.joints[k].kind);
+        let can_carry = |k: usize| carries(model.joints[k].kind) && is_closed(model, &model.joints[k]);
         // Order of preference: joints that cannot close a loop, in either direction; joints from body i to body j,
         // which keep the sign of the coordinate; joints from body j to body i; and last, floating bodies that cut
         // joints constrain.
         let rank = |tree: &Self, k: usize| {
             let [i, j] = bodies(k).map(|b| tree.has(b));
             let backward = j;
-            match (i != j, can_carry(k), is(closes, k)) {
-                (true, true, can_close) => Some((can_close, backward)),
-                _ => None,
-            }
+            (i != j && can_carry(k)).then(|| (can_close(k), backward))
         };
         loop {
             let ranked = named.iter().filter_map(|k| Some((rank(&tree, *k)?, *k)));
             let floating = || {
-                let mut ends = named.iter().filter(|k| is(closes, **k)).map(|k| bodies(*k));
+                let mut ends = named.iter().filter(|k| can_close(**k)).map(|k| bodies(*k));
                 ends.find(|[i, j]| tree.has(*i) != tree.has(*j)).map(|[i, j]| if tree.has(i) { j } else { i })
             };
             match (ranked.min(), floating()) {

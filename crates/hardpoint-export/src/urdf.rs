@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use hardpoint::joint::{Freedom, JointType};
 use hardpoint_file::ModelFile;
 
 use crate::skeleton::{Carrier, Skeleton, axis, followers, joint_points};
@@ -11,16 +12,28 @@ use crate::{ExportedModel, Format, escaped, numbers};
 pub const FORMAT: Format =
     Format { name: "urdf", about: "URDF robot description", endings: &["urdf"], write };
 
-/// Types of tree joints, with their names in URDF.
-const TYPES: [(&str, &str); 4] =
-    [("revolute", "continuous"), ("translational", "prismatic"), ("fixed", "fixed"), ("planar", "planar")];
+/// Joint type of URDF with the same freedoms; a `ball` can close a loop only.
+fn urdf_type(kind: &JointType) -> Option<&'static str> {
+    match kind.freedoms.filter(|_| kind.tree_rows.is_empty())? {
+        [Freedom::Turn(2)] => Some("continuous"),
+        [Freedom::Slide(2)] => Some("prismatic"),
+        [Freedom::Slide(0), Freedom::Slide(1), Freedom::Turn(2)] => Some("planar"),
+        [Freedom::Ball] => Some(BALL),
+        [] => Some("fixed"),
+        _ => None,
+    }
+}
 
-/// Joint types that can close a loop (cut joints).
-const CLOSE: [&str; 5] = ["spherical", "revolute", "translational", "fixed", "planar"];
+const BALL: &str = "ball";
 
 fn write(file: &ModelFile, out: &mut ExportedModel) {
     let model = &file.model;
-    let tree = Skeleton::new(model, &TYPES.map(|(own, _)| own), &CLOSE, out);
+    let tree = Skeleton::new(
+        model,
+        |kind| urdf_type(kind).is_some_and(|name| name != BALL),
+        |kind| urdf_type(kind).is_some(),
+        out,
+    );
     let name = |body: usize| if body == 0 { "world".to_owned() } else { escaped(&model.bodies[body].name) };
     let mut text = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(&model.name));
     for &body in &tree.order {
@@ -44,8 +57,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
         };
         let joint = &model.joints[k];
         let outer = tree.outer(body);
-        let kind =
-            TYPES.iter().find(|(own, _)| *own == joint.kind.name).map_or("fixed", |(_, theirs)| theirs);
+        let kind = urdf_type(joint.kind).unwrap_or("fixed");
         let _ = writeln!(text, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&joint.name));
         let _ =
             writeln!(text, "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>", name(outer), name(body));
@@ -73,18 +85,14 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     }
     for &k in &tree.loops {
         let joint = &model.joints[k];
-        let kind = match joint.kind.name {
-            "spherical" => "ball",
-            other => TYPES.iter().find(|(own, _)| *own == other).map_or("", |(_, theirs)| *theirs),
-        };
-        if kind.is_empty() {
+        let Some(kind) = urdf_type(joint.kind) else {
             out.report_unsupported(
                 "joint",
                 &joint.name,
                 format!("URDF has no equivalent of a joint of type {}", joint.kind.name),
             );
             continue;
-        }
+        };
         let _ = writeln!(text, "  <loop_joint name=\"{}\" type=\"{kind}\">", escaped(&joint.name));
         for (e, at) in joint_points(model, joint).into_iter().enumerate() {
             let body = joint.bodies[e].0;

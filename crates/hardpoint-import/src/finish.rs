@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use hardpoint::joint::ALL;
+use hardpoint::joint::JointType;
 use hardpoint::model::JointId;
 use hardpoint::sensitivity::Admissibility;
 use hardpoint::space::Vec3;
@@ -118,8 +118,7 @@ pub fn remark_undriven(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
 /// Closes open joints in the design configuration if the mechanism does not assemble, since undriven motions are fixed
 /// there.
 fn close_as_nominal(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
-    let rods = ["distance", "leg", "revolute_spherical"];
-    let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !rods.contains(&j.kind));
+    let is_open = |j: &Joint| j.length.is_some() || (j.at.len() > 1 && !j.is(JointType::is_rod));
     let gap = |j: &Joint| match j.at[..] {
         [a, b] if j.length.is_none() => (a - b).norm(),
         [a, b] => j.length.map_or(0.0, |l| (l - (a - b).norm()).abs()),
@@ -136,7 +135,7 @@ fn close_as_nominal(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) {
     for joint in closed.joints.iter_mut().filter(|j| is_open(j)) {
         names.push(format!("`{}`", joint.name));
         joint.length = None;
-        if !rods.contains(&joint.kind) {
+        if !joint.is(JointType::is_rod) {
             joint.at.drain(..1);
         }
     }
@@ -178,7 +177,7 @@ pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
             let [i, j] = joint.bodies;
             for (from, to) in [(i, j), (j, i)] {
                 let Some((length, _)) = chains[from] else { continue };
-                let length = length + usize::from(joint.kind != "fixed");
+                let length = length + usize::from(!joint.is(|t| t.freedoms == Some(&[])));
                 if chains[to].is_none_or(|(known, _)| length < known) {
                     chains[to] = Some((length, k));
                     settled = false;
@@ -202,7 +201,7 @@ pub fn end_point(m: &mut Mechanism, notes: &mut ImportLog) {
         .fold(carried, |best, at| if (at - carried).norm() > (best - carried).norm() { at } else { best });
     // A point on a body that rotates about ground has to be off the axis.
     let arm = carried_by.axis.map_or(at - carried, |axis| (at - carried).cross(axis));
-    let slides = ["translational", "cylindrical", "planar"].contains(&carried_by.kind);
+    let slides = carried_by.is(JointType::slides);
     if length == 1 && !slides && arm.norm() <= OFF * m.size() {
         return;
     }
@@ -406,7 +405,7 @@ impl FixableMotion {
 
 /// Returns the coordinates of a joint type.
 fn coordinates(joint: &Joint) -> &'static [hardpoint::joint::CoordinateType] {
-    ALL.iter().find(|k| k.name == joint.kind).map_or(&[], |k| k.coordinates)
+    joint.joint_type().map_or(&[], |t| t.coordinates)
 }
 
 /// All three axes, and the combinations that are fixed together.
@@ -419,12 +418,12 @@ const TOGETHER: [&[usize]; 4] = [ALL_AXES, &[0, 1], &[0, 2], &[1, 2]];
 fn candidates<'m>(m: &'m Mechanism, left: &'m FreeMotions) -> impl Iterator<Item = FixableMotion> + 'm {
     let joints = &left.joints;
     let free = joints.iter().flat_map(move |&joint| {
-        let constant = ["distance", "revolute_spherical"].contains(&m.joints[joint].kind);
+        let constant = m.joints[joint].is(|t| t.is_rod() && !t.rows.is_empty());
         let all = coordinates(&m.joints[joint]).iter().filter(move |_| !constant);
         let open = all.filter(move |c| !m.is_driven(Coordinate { joint, name: c.name }));
         open.map(move |c| FixableMotion::Coordinate(joint, c.name))
     });
-    let balls = joints.iter().filter(|j| left.count > 1 && m.joints[**j].kind == "spherical");
+    let balls = joints.iter().filter(|j| left.count > 1 && m.joints[**j].is(JointType::is_ball));
     fn each(list: &[usize], held: fn(usize, usize) -> FixableMotion) -> impl Iterator<Item = FixableMotion> {
         list.iter().flat_map(move |&k| (0..AXES.len()).map(move |axis| held(k, axis)))
     }

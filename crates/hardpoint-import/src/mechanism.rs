@@ -3,6 +3,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use hardpoint::joint;
+use hardpoint::joint::JointType;
 use hardpoint::model::{Vehicle, VehicleEnd};
 use hardpoint::space::{Mat3, Pose, Vec3};
 
@@ -470,6 +472,16 @@ impl Mechanism {
 }
 
 impl Joint {
+    /// Type of the joint; `None` if there is no such type.
+    pub fn joint_type(&self) -> Option<&'static JointType> {
+        joint::named(self.kind)
+    }
+
+    /// True if this holds for the type of the joint.
+    pub fn is(&self, property: fn(&JointType) -> bool) -> bool {
+        self.joint_type().is_some_and(property)
+    }
+
     /// Creates a joint at one location.
     pub fn new(name: &str, note: String, kind: &'static str, bodies: [usize; 2], at: Vec3) -> Self {
         Self {

@@ -218,7 +218,7 @@ impl<'m> Writer<'m> {
             let mut t = Table::new();
             t["type"] = value(joint.kind);
             t["bodies"] = value(joint.bodies.iter().map(|b| m.bodies[*b].name.as_str()).collect::<Array>());
-            let kind = hardpoint::joint::ALL.iter().find(|k| k.name == joint.kind);
+            let kind = joint.joint_type();
             // Joints that only constrain directions need no location.
             if kind.is_none_or(|k| k.places > 0) {
                 match joint.at[..] {

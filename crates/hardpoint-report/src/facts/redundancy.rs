@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hardpoint::joint;
+use hardpoint::joint::JointType;
 use hardpoint::model::{JointId, MeasureKind, Model};
 use hardpoint::topology::{Formulation, JointRole, Redundancy, Topology};
 use serde::Serialize;
@@ -131,13 +131,8 @@ impl RelaxedModel {
                 return None;
             }
             let kind = self.model.joints[j].kind;
-            let instead = match (kind.name, redundant) {
-                ("revolute" | "translational", 1) => &joint::CYLINDRICAL,
-                ("revolute", 2) | ("universal" | "constant_velocity", 1) | ("fixed", 3) => &joint::SPHERICAL,
-                ("revolute" | "translational", 3) | ("cylindrical", 2) => &joint::INLINE,
-                ("planar", 2) => &joint::INPLANE,
-                _ => return None,
-            };
+            let is_enough = |t: &&JointType| t.rows.len() + redundant == kind.rows.len();
+            let instead = kind.relaxations.iter().copied().find(is_enough)?;
             self.model.joints[j].kind = instead;
             let plan = Topology::of(&self.model, topology.formulation);
             let left = self.redundant - redundant;

@@ -1,7 +1,7 @@
 //! Coulomb friction in a hinge or ball joint, and viscous friction besides.
 
 use crate::draft::{CheckElement, ElementCheck};
-use crate::joint::Quantity;
+use crate::joint::{Freedom, Quantity, Slide};
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Compliance, ForceProperties, Friction, JointFriction, Properties};
 use crate::model::{Dimension, ElementId, Model};
@@ -41,11 +41,11 @@ impl ForceProperties for Friction {
 
 impl CheckElement for Friction {
     fn check(&self, c: &mut ElementCheck<'_, '_>) {
-        let kind = c.model().joints[self.joint.0].kind.name;
-        if !["revolute", "cylindrical", "spherical"].contains(&kind) {
-            let help = match kind {
-                "translational" => "write `type = \"slide_friction\"` for a slide",
-                "universal" => {
+        let kind = c.model().joints[self.joint.0].kind;
+        if !kind.is_hinge && !kind.is_ball() {
+            let help = match (kind.slide, kind.freedoms) {
+                (Slide::Block, _) => "write `type = \"slide_friction\"` for a slide",
+                (_, Some([Freedom::Turn(_), Freedom::Turn(_)])) => {
                     "replace the universal joint by two revolute joints with a body between them; for viscous friction alone use the `damping` of a `torsion_spring`"
                 }
                 _ => {
@@ -53,7 +53,7 @@ impl CheckElement for Friction {
                 }
             };
             c.report_friction_joint(self.joint, "hinge or ball joint", help);
-        } else if let (Some(_), "spherical") = (self.length, kind) {
+        } else if self.length.is_some() && kind.is_ball() {
             let message = format!("`{}` has a `length`, which does not apply to a spherical joint", c.name);
             c.fault("HP0251", "length", message).help("remove `length`");
         }

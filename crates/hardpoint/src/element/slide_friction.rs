@@ -1,7 +1,7 @@
 //! Coulomb friction in a slide, and viscous friction besides.
 
 use crate::draft::{CheckElement, ElementCheck};
-use crate::joint::Quantity;
+use crate::joint::{Quantity, Slide};
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Compliance, ForceProperties, JointFriction, Properties, SlideFriction};
 use crate::model::{Dimension, ElementId, Model};
@@ -44,13 +44,11 @@ impl ForceProperties for SlideFriction {
 impl CheckElement for SlideFriction {
     fn check(&self, c: &mut ElementCheck<'_, '_>) {
         let joint = &c.model().joints[self.joint.0];
-        let kind = joint.kind.name;
-        if !["translational", "cylindrical"].contains(&kind) {
-            let help = match kind {
-                "revolute" | "spherical" => "write `type = \"friction\"` for a hinge or ball joint",
-                _ => {
-                    "name a translational or cylindrical joint; for viscous friction of others use the `damping` of a `joint_spring`"
-                }
+        if joint.kind.slide != Slide::Block {
+            let help = if joint.kind.is_hinge || joint.kind.is_ball() {
+                "write `type = \"friction\"` for a hinge or ball joint"
+            } else {
+                "name a translational or cylindrical joint; for viscous friction of others use the `damping` of a `joint_spring`"
             };
             c.report_friction_joint(self.joint, "slide", help);
         } else if self.ignored_direction.is_some_and(|n| n.cross(joint.frames[0].cols[2]).norm() < ACROSS) {

@@ -4,7 +4,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, Need, VectorKind};
+use super::{JointType, Need, Slide, VectorKind};
 
 /// z_i . z_j has its design value: one constraint.
 pub static ANGLE: JointType = JointType {
@@ -16,6 +16,9 @@ pub static ANGLE: JointType = JointType {
     axis2: Need::OnBodyJ,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Cosine],

@@ -5,7 +5,7 @@
 use crate::constraint::Row;
 use crate::joint::Quantity;
 
-use super::{CoordinateType, JointType, Need, VectorKind};
+use super::{CoordinateType, JointType, Need, Slide, VectorKind};
 
 /// No constraint, and not among the [types of model files](super::ALL): it carries the coordinate of a driver that
 /// prescribes a measured angle, like the toe of a wheel. The angle is that of `axis2` on body j, relative to its
@@ -19,6 +19,9 @@ pub static COURSE: JointType = JointType {
     axis2: Need::OnBodyJ,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: None,
     tree_rows: &[],
     rows: &[],

@@ -4,7 +4,7 @@
 
 use crate::constraint::{ON_LINE, PARALLEL_Z};
 
-use super::{Freedom, JointType, Need, VectorKind, angle, displacement};
+use super::{Freedom, INLINE, JointType, Need, Slide, VectorKind, angle, displacement};
 
 /// z_j parallel to z_i and d parallel to z_i: four constraints, one displacement and one angle.
 pub static CYLINDRICAL: JointType = JointType {
@@ -16,6 +16,9 @@ pub static CYLINDRICAL: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[&INLINE],
+    is_hinge: true,
+    slide: Slide::Block,
     freedoms: Some(&[Freedom::Slide(2), Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &[ON_LINE[0], ON_LINE[1], PARALLEL_Z[0], PARALLEL_Z[1]],

@@ -4,7 +4,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, LENGTH, Need, VectorKind};
+use super::{JointType, LENGTH, Need, Slide, VectorKind};
 
 /// d| = design length: one constraint.
 pub static DISTANCE: JointType = JointType {
@@ -16,6 +16,9 @@ pub static DISTANCE: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Distance],

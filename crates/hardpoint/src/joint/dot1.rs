@@ -4,7 +4,7 @@
 
 use crate::constraint::Row;
 
-use super::{Freedom, JointType, Need, VectorKind};
+use super::{Freedom, JointType, Need, Slide, VectorKind};
 
 /// z_i . x_j = 0: one constraint (paper Eq. 4.1).
 pub static DOT1: JointType = JointType {
@@ -16,6 +16,9 @@ pub static DOT1: JointType = JointType {
     axis2: Need::Required,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: Some(&[
         Freedom::Slide(0),
         Freedom::Slide(1),

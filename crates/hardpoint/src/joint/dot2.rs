@@ -4,7 +4,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, Need, VectorKind};
+use super::{JointType, Need, Slide, VectorKind};
 
 /// z_i . d = 0: one constraint (paper Eq. 4.4).
 pub static DOT2: JointType = JointType {
@@ -16,6 +16,9 @@ pub static DOT2: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Dot2(2)],

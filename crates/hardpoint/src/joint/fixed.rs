@@ -4,7 +4,7 @@
 
 use crate::constraint::{COINCIDE, PARALLEL_FRAMES, Row};
 
-use super::{JointType, Need, VectorKind};
+use super::{JointType, Need, SPHERICAL, Slide, VectorKind};
 
 /// d = 0 and no relative rotation: six constraints.
 pub static FIXED: JointType = JointType {
@@ -16,6 +16,9 @@ pub static FIXED: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[&SPHERICAL],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: Some(&[]),
     tree_rows: &[],
     rows: &{

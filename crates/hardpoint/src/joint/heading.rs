@@ -5,7 +5,7 @@
 use crate::constraint::Row;
 use crate::joint::Quantity;
 
-use super::{CoordinateType, JointType, Need, VectorKind};
+use super::{CoordinateType, JointType, Need, Slide, VectorKind};
 
 /// No constraint; a driver prescribes the angle (a platform's roll), or a measure reads it. `axis2` is the direction on
 /// body j whose angle it is.
@@ -18,6 +18,9 @@ pub static HEADING: JointType = JointType {
     axis2: Need::Optional,
     vector_kinds: [VectorKind::Axial, VectorKind::Polar],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: None,
     tree_rows: &[],
     rows: &[],

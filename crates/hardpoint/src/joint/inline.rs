@@ -4,7 +4,7 @@
 
 use crate::constraint::ON_LINE;
 
-use super::{Freedom, JointType, Need, VectorKind, displacement};
+use super::{Freedom, JointType, Need, Slide, VectorKind, displacement};
 
 /// P_j on the line through P_i along z_i: two constraints.
 pub static INLINE: JointType = JointType {
@@ -16,6 +16,9 @@ pub static INLINE: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::Line(2),
     freedoms: Some(&[Freedom::Slide(2), Freedom::Ball]),
     tree_rows: &[],
     rows: &ON_LINE,

@@ -4,7 +4,7 @@
 
 use crate::constraint::Row;
 
-use super::{Freedom, JointType, Need, VectorKind, displacement_along};
+use super::{Freedom, JointType, Need, Slide, VectorKind, displacement_along};
 
 /// P_j on the plane through P_i normal to z_i: one constraint.
 pub static INPLANE: JointType = JointType {
@@ -16,6 +16,9 @@ pub static INPLANE: JointType = JointType {
     axis2: Need::Optional,
     vector_kinds: [VectorKind::Axial, VectorKind::Polar],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::Plane,
     freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Ball]),
     tree_rows: &[],
     rows: &[Row::Dot2(2)],

@@ -2,7 +2,7 @@
 //!
 //! Coordinate: length from P_i to P_j, m.
 
-use super::{JointType, LENGTH, Need, VectorKind};
+use super::{JointType, LENGTH, Need, Slide, VectorKind};
 
 /// No constraint; the length is a coordinate.
 pub static LEG: JointType = JointType {
@@ -14,6 +14,9 @@ pub static LEG: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: None,
     tree_rows: &[],
     rows: &[],

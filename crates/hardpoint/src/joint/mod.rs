@@ -112,6 +112,12 @@ pub struct JointType {
     pub vector_kinds: [VectorKind; 2],
     /// True if `axis` defaults to the normal of the plane in a planar model.
     pub normal_in_plane: bool,
+    /// Types with fewer constraints that may replace this one where constraints are redundant.
+    pub relaxations: &'static [&'static JointType],
+    /// True if a pin or bearings along `axis` connect the bodies.
+    pub is_hinge: bool,
+    /// Straight guide between the bodies.
+    pub slide: Slide,
     /// Motions of body j relative to body i, in order from i to j; `None` if the joint is always cut.
     pub freedoms: Option<&'static [Freedom]>,
     /// Elementary constraints that the freedoms of the tree joint do not satisfy by themselves.
@@ -120,6 +126,19 @@ pub struct JointType {
     pub rows: &'static [Row],
     /// Coordinates that drivers and measures can use.
     pub coordinates: &'static [CoordinateType],
+}
+
+/// Straight guide of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slide {
+    /// No guide.
+    None,
+    /// A block or sleeve along z; either body may be the rail.
+    Block,
+    /// A point or pin of body j on a line of body i along axis 0 or 2 (x, z) of its marker.
+    Line(usize),
+    /// A point of body j in a plane of body i.
+    Plane,
 }
 
 /// Requirement for an axis of a joint type.
@@ -303,6 +322,11 @@ impl JointType {
         matches!(self.freedoms, Some([] | [Freedom::Slide(_)]))
     }
 
+    /// True if a body slides on the other.
+    pub fn slides(&self) -> bool {
+        self.freedoms.is_some_and(|f| f.iter().any(|f| matches!(f, Freedom::Slide(_))))
+    }
+
     /// True if the distance of its two points is constant, or a coordinate.
     pub fn is_rod(&self) -> bool {
         self.coordinates.iter().any(|c| c.row == Row::Distance)
@@ -338,12 +362,51 @@ mod tests {
     }
 
     #[test]
+    fn relaxations_have_fewer_constraints_and_other_numbers_of_them() {
+        for t in ALL {
+            let rows: Vec<usize> = t.relaxations.iter().map(|other| other.rows.len()).collect();
+            assert!(rows.first().is_none_or(|first| *first < t.rows.len()), "{}", t.name);
+            assert!(rows.is_sorted_by(|a, b| a > b), "{}", t.name);
+        }
+    }
+
+    #[test]
+    fn guides_are_along_freedoms() {
+        for t in ALL {
+            let along = |k: usize| t.freedoms.is_some_and(|f| f.contains(&Freedom::Slide(k)));
+            let has_freedom = match t.slide {
+                Slide::None => true,
+                Slide::Block => along(2),
+                Slide::Line(k) => along(k),
+                Slide::Plane => along(0) && along(1),
+            };
+            assert!(has_freedom, "{}", t.name);
+            assert!(!t.is_hinge || t.freedoms.is_some_and(|f| f.contains(&Freedom::Turn(2))), "{}", t.name);
+        }
+    }
+
+    #[test]
     fn what_is_asked_of_joints_is_true_of_those_that_it_is_meant_for() {
         let those = |is: fn(&JointType) -> bool| -> Vec<&str> {
             ALL.iter().copied().filter(|t| is(t)).map(|t| t.name).collect()
         };
         assert_eq!(those(JointType::is_ball), ["spherical"]);
         assert_eq!(those(JointType::turns_as_one), ["fixed", "translational"]);
+        assert_eq!(
+            those(JointType::slides),
+            [
+                "translational",
+                "cylindrical",
+                "planar",
+                "pin_in_slot",
+                "screw",
+                "inline",
+                "inplane",
+                "orientation",
+                "parallel",
+                "dot1"
+            ]
+        );
         assert_eq!(those(JointType::is_rod), ["distance", "revolute_spherical", "leg"]);
         assert_eq!(those(JointType::follows_curve), ["point_on_curve"]);
         assert_eq!(those(JointType::has_lead), ["screw"]);

@@ -4,7 +4,7 @@
 
 use crate::constraint::PARALLEL_FRAMES;
 
-use super::{Freedom, JointType, Need, VectorKind};
+use super::{Freedom, JointType, Need, Slide, VectorKind};
 
 /// No relative rotation: three constraints.
 pub static ORIENTATION: JointType = JointType {
@@ -16,6 +16,9 @@ pub static ORIENTATION: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Slide(2)]),
     tree_rows: &[],
     rows: &PARALLEL_FRAMES,

@@ -4,7 +4,7 @@
 
 use crate::constraint::PARALLEL_Z;
 
-use super::{Freedom, JointType, Need, VectorKind, angle};
+use super::{Freedom, JointType, Need, Slide, VectorKind, angle};
 
 /// z_j parallel to z_i: two constraints.
 pub static PARALLEL: JointType = JointType {
@@ -16,6 +16,9 @@ pub static PARALLEL: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Axial, VectorKind::Polar],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Slide(2), Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &PARALLEL_Z,

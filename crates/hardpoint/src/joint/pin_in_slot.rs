@@ -4,7 +4,7 @@
 
 use crate::constraint::{PARALLEL_Z, Row};
 
-use super::{Freedom, JointType, Need, VectorKind, angle, displacement_along};
+use super::{Freedom, JointType, Need, Slide, VectorKind, angle, displacement_along};
 
 /// d along x_i, the slot, and z_j, the pin, parallel to z_i: four constraints, one displacement and one angle.
 /// Equivalent to a revolute and a translational joint in series, without the intermediate block.
@@ -17,6 +17,9 @@ pub static PIN_IN_SLOT: JointType = JointType {
     axis2: Need::Required,
     vector_kinds: [VectorKind::Axial, VectorKind::Polar],
     normal_in_plane: true,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::Line(0),
     freedoms: Some(&[Freedom::Slide(0), Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &[PARALLEL_Z[0], PARALLEL_Z[1], Row::Dot2(1), Row::Dot2(2)],

@@ -4,7 +4,7 @@
 
 use crate::constraint::{PARALLEL_Z, Row};
 
-use super::{Freedom, JointType, Need, VectorKind, angle, displacement_along};
+use super::{Freedom, INPLANE, JointType, Need, Slide, VectorKind, angle, displacement_along};
 
 /// z_j parallel to z_i and P_j on the plane through P_i: three constraints. x_i is along `axis2`, y_i perpendicular to
 /// it.
@@ -17,6 +17,9 @@ pub static PLANAR: JointType = JointType {
     axis2: Need::Optional,
     vector_kinds: [VectorKind::Axial, VectorKind::Polar],
     normal_in_plane: true,
+    relaxations: &[&INPLANE],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: Some(&[Freedom::Slide(0), Freedom::Slide(1), Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &[PARALLEL_Z[0], PARALLEL_Z[1], Row::Dot2(2)],

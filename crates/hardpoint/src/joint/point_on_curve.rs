@@ -4,7 +4,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, Need, VectorKind};
+use super::{JointType, Need, Slide, VectorKind};
 
 /// Seen along z_i, P_j has a constant distance from a curve of body i: zero for a pin in a slot, the radius of the
 /// roller for a cam. One constraint. The first location is that of the curve, the second is the point.
@@ -17,6 +17,9 @@ pub static POINT_ON_CURVE: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: true,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Contact],

@@ -4,7 +4,7 @@
 
 use crate::constraint::{COINCIDE, PARALLEL_Z};
 
-use super::{Freedom, JointType, Need, VectorKind, angle};
+use super::{CYLINDRICAL, Freedom, INLINE, JointType, Need, SPHERICAL, Slide, VectorKind, angle};
 
 /// d = 0 and z_j parallel to z_i: five constraints, one angle.
 pub static REVOLUTE: JointType = JointType {
@@ -16,6 +16,9 @@ pub static REVOLUTE: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Axial, VectorKind::Polar],
     normal_in_plane: true,
+    relaxations: &[&CYLINDRICAL, &SPHERICAL, &INLINE],
+    is_hinge: true,
+    slide: Slide::None,
     freedoms: Some(&[Freedom::Turn(2)]),
     tree_rows: &[],
     rows: &[COINCIDE[0], COINCIDE[1], COINCIDE[2], PARALLEL_Z[0], PARALLEL_Z[1]],

@@ -4,7 +4,7 @@
 
 use crate::constraint::Row;
 
-use super::{JointType, LENGTH, Need, VectorKind};
+use super::{JointType, LENGTH, Need, Slide, VectorKind};
 
 /// d| and z_i . d have their design values: P_j moves on a circle about the axis of the hinge. Two constraints.
 pub static REVOLUTE_SPHERICAL: JointType = JointType {
@@ -16,6 +16,9 @@ pub static REVOLUTE_SPHERICAL: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: true,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: None,
     tree_rows: &[],
     rows: &[Row::Distance, Row::Offset],

@@ -4,7 +4,7 @@
 
 use crate::constraint::{ON_LINE, PARALLEL_Z};
 
-use super::{Freedom, JointType, Need, VectorKind, angle, displacement};
+use super::{Freedom, JointType, Need, Slide, VectorKind, angle, displacement};
 
 /// A cylindrical joint whose displacement is coupled to its angle by `lead`, the advance per turn: five constraints,
 /// the last of which is a coupler ([`crate::model::Coupler`]).
@@ -17,6 +17,9 @@ pub static SCREW: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: Some(&[Freedom::Turn(2), Freedom::Slide(2)]),
     tree_rows: &[],
     rows: &[PARALLEL_Z[0], PARALLEL_Z[1], ON_LINE[0], ON_LINE[1]],

@@ -4,7 +4,7 @@
 
 use crate::constraint::COINCIDE;
 
-use super::{Freedom, JointType, Need, VectorKind};
+use super::{Freedom, JointType, Need, Slide, VectorKind};
 
 /// d = 0: three constraints.
 pub static SPHERICAL: JointType = JointType {
@@ -16,6 +16,9 @@ pub static SPHERICAL: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: Some(&[Freedom::Ball]),
     tree_rows: &[],
     rows: &COINCIDE,

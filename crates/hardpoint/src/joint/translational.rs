@@ -4,7 +4,7 @@
 
 use crate::constraint::{ON_LINE, PARALLEL_FRAMES};
 
-use super::{Freedom, JointType, Need, VectorKind, displacement};
+use super::{CYLINDRICAL, Freedom, INLINE, JointType, Need, Slide, VectorKind, displacement};
 
 /// P_j on the line through P_i along z_i, and no relative rotation: five constraints, one displacement.
 pub static TRANSLATIONAL: JointType = JointType {
@@ -16,6 +16,9 @@ pub static TRANSLATIONAL: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[&CYLINDRICAL, &INLINE],
+    is_hinge: false,
+    slide: Slide::Block,
     freedoms: Some(&[Freedom::Slide(2)]),
     tree_rows: &[],
     rows: &[ON_LINE[0], ON_LINE[1], PARALLEL_FRAMES[0], PARALLEL_FRAMES[1], PARALLEL_FRAMES[2]],

@@ -5,7 +5,7 @@
 use crate::constraint::Row;
 use crate::joint::Quantity;
 
-use super::{CoordinateType, JointType, Need, VectorKind};
+use super::{CoordinateType, JointType, Need, Slide, VectorKind};
 
 /// No constraint; a driver prescribes the displacement of the point (wheel travel), or a measure reads it.
 pub static TRAVEL: JointType = JointType {
@@ -17,6 +17,9 @@ pub static TRAVEL: JointType = JointType {
     axis2: Need::Unused,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
+    relaxations: &[],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: None,
     tree_rows: &[],
     rows: &[],

@@ -4,7 +4,7 @@
 
 use crate::constraint::{COINCIDE, Row};
 
-use super::{CoordinateType, Freedom, JointType, Need, Quantity, VectorKind, angle};
+use super::{CoordinateType, Freedom, JointType, Need, Quantity, SPHERICAL, Slide, VectorKind, angle};
 
 /// d = 0 and z_i perpendicular to x_j: four constraints. `axis` is the pin on body i (z_i), `axis2` that on body j
 /// (x_j); `angle` is the rotation about the first, `angle2` about the second.
@@ -17,6 +17,9 @@ pub static UNIVERSAL: JointType = JointType {
     axis2: Need::Required,
     vector_kinds: [VectorKind::Axial; 2],
     normal_in_plane: false,
+    relaxations: &[&SPHERICAL],
+    is_hinge: false,
+    slide: Slide::None,
     freedoms: Some(&[Freedom::Turn(2), Freedom::Turn(0)]),
     tree_rows: &[],
     rows: &[COINCIDE[0], COINCIDE[1], COINCIDE[2], Row::Dot1(2, 0)],
