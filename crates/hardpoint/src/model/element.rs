@@ -459,7 +459,7 @@ pub enum Compliance {
     None,
     /// It deflects: its force depends on the position.
     Element,
-    /// Its joint deflects, with these stiffnesses along and about the joint's axes; rigid without one.
+    /// The joint deflects, with these stiffnesses along and about the joint's axes; rigid without one.
     Joint(JointId, [[Option<NumberId>; 3]; 2]),
 }
 

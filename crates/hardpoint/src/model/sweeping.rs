@@ -31,7 +31,7 @@ pub enum SweepMethod {
     LatinHypercube,
     /// Points that fill the ranges uniformly for any number of designs: a scrambled Sobol sequence.
     Sobol,
-    /// Pairs of such points, and for every variable the first of a pair with that variable of the second, for estimating
+    /// Pairs of such points, and for every variable the first of a pair with that variable of the second, to estimate
     /// Sobol indices.
     Indices,
     /// The listed designs.

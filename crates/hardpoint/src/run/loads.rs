@@ -47,8 +47,10 @@ pub struct Loads {
     pub joints: Vec<JointLoad>,
     /// `drivers[k * n + d]`: load of driver d of n at time k.
     pub drivers: Vec<DriverLoad>,
-    /// `pushes[k * n + i]`: applied force at point i of n of [`Model::points_of_application`](crate::model::Model::points_of_application) on its body
-    /// at time k, global, N.
+    /// `pushes[k * n + i]`: applied force at point i of n of [`Model::points_of_application`] on its body at time k,
+    /// global, N.
+    ///
+    /// [`Model::points_of_application`]: crate::model::Model::points_of_application
     pub pushes: Vec<Vec3>,
     /// Friction elements whose friction is undetermined at some time because redundant constraints share their normal
     /// force. No load is determined then.
@@ -72,7 +74,9 @@ impl Loads {
         &self.drivers[k * n..(k + 1) * n]
     }
 
-    /// Applied forces at all points of [`Model::points_of_application`](crate::model::Model::points_of_application) at output time k, global, N.
+    /// Applied forces at all points of [`Model::points_of_application`] at output time k, global, N.
+    ///
+    /// [`Model::points_of_application`]: crate::model::Model::points_of_application
     pub fn pushes_at(&self, k: usize) -> &[Vec3] {
         let n = self.pushes.len() / self.times.len().max(1);
         &self.pushes[k * n..(k + 1) * n]
