@@ -246,7 +246,7 @@ impl Session {
         let found = named("case", name, model.cases.iter().map(|c| c.name.as_str())).map(CaseId);
         found.map_err(|error| match model.grids.iter().any(|grid| grid.name == name) {
             true => self.misunderstood(&format!(
-                "`--case {name}`: it is a grid of positions and no motion, which `hardpoint run` solves"
+                "`--case {name}`: it is a grid of positions, not a motion; `hardpoint run` solves it"
             )),
             false => self.refused(file, &error),
         })

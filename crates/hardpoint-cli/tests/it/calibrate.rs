@@ -87,7 +87,7 @@ fn invalid_calibrations_are_rejected() {
     assert_rejected(&["strut_measured.csv", "--sigma", "toe"], 2, "--sigma toe=0.02");
     assert_rejected(&["strut_measured.csv", "--save", "strut_calibrate.toml"], 2, "the model file itself");
     bench.put("few.csv", "strut_drive,toe\n0,0.2\n10,0.1\n");
-    assert_rejected(&["few.csv"], 2, "give `--sigma`");
+    assert_rejected(&["few.csv"], 2, "give standard deviations (`sigma`)");
     bench.put("far.csv", "strut_drive,toe\n4000,0.2\n");
     assert_rejected(&["far.csv", "--sigma", "toe=0.1"], 2, "no posture of the table can be reached");
 }

@@ -81,7 +81,7 @@ fn an_optimisation_is_that_of_the_file_with_overrides() {
     expect(
         Request::of(&of_no_case, Overrides::default()),
         Fault::Override,
-        "no goal of `[optimize]` is of this case",
+        "`[optimize]` has no goal in this case",
     );
 
     // Variables and goals of a page, with or without settings in the file.

@@ -67,7 +67,7 @@ impl Request {
             (settings.variables, settings.goals) = (variables, goals);
         } else if settings.goals.is_empty() {
             return Err(RequestError::invalid(
-                "no goal of `[optimize]` is of this case",
+                "`[optimize]` has no goal in this case",
                 "choose another case, or optimise all of them",
             ));
         }
