@@ -87,7 +87,7 @@ fn what_cannot_be_calibrated_is_told() {
     told(&["strut_measured.csv", "--sigma", "toe"], 2, "--sigma toe=0.02");
     told(&["strut_measured.csv", "--save", "strut_calibrate.toml"], 2, "the model file itself");
     bench.put("few.csv", "strut_drive,toe\n0,0.2\n10,0.1\n");
-    told(&["few.csv"], 2, "give `--sigma`");
+    told(&["few.csv"], 2, "give standard deviations (`sigma`), fit fewer variables");
     bench.put("far.csv", "strut_drive,toe\n4000,0.2\n");
     told(&["far.csv", "--sigma", "toe=0.1"], 2, "no posture of the table can be compared");
 }

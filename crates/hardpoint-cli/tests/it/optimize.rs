@@ -95,7 +95,11 @@ fn what_cannot_be_searched_or_saved_is_told() {
     refused(&["optimize", "four_bar.toml"], 2, &["`four_bar.toml`", "[optimize.goals]", "bounds"]);
     let onto_itself = ["optimize", "four_bar_inverse.toml", "--save", "four_bar_inverse.toml"];
     refused(&onto_itself, 2, &["the model file itself", "another name"]);
-    refused(&["run", "four_bar.toml", "--case", "bump"], 2, &["--case bump", "has no cases"]);
+    refused(
+        &["run", "four_bar.toml", "--case", "bump"],
+        2,
+        &["there is no case named `bump`", "has no cases"],
+    );
     let few = bench.run(&["optimize", "four_bar_inverse.toml", "--iterations", "2"]);
     assert_eq!(few.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&few.stdout).contains("increase `max_iterations`"));
