@@ -74,7 +74,7 @@ fn compare_in(
     let facts = CompareFacts::of(both);
     let names: Vec<&str> = facts.measures.iter().map(|c| c.measure.as_str()).collect();
     for name in &options.measure {
-        named("measure of both models", name, names.iter().copied())
+        named("common measure", name, names.iter().copied())
             .map_err(|error| session.refused(&file, &error))?;
     }
     let measures = &options.measure;

@@ -96,9 +96,9 @@ pub use comparison::{Comparison, StepError};
 pub use evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};
 pub use magnitude::Magnitude;
 pub use progress::{Control, Progress, Step};
-pub use random::{Moments, design_stream, draw, moments};
+pub use random::{design_stream, draw};
 pub use request::RequestError;
-pub use samples::{BLOCK, SampleBlock, SampleRun};
+pub use samples::BLOCK;
 pub use validity::{Validity, validity};
 
 #[cfg(test)]

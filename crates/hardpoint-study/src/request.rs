@@ -62,7 +62,7 @@ pub fn named<'n>(
     known.iter().position(|k| *k == name).ok_or_else(|| {
         let help = match did_you_mean(name, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
-            None if known.is_empty() => "the model has none".into(),
+            None if known.is_empty() => format!("the model has no {what}s"),
             None => format!("there are {}", some_of(&known, ", ", LISTED)),
         };
         RequestError::invalid(format!("there is no {what} named `{name}`"), help)

@@ -49,7 +49,7 @@ impl Motions<'_> {
     ///
     /// # Panics
     /// If `see` or `done` panics.
-    pub fn sample<A: Default + Send>(
+    pub(crate) fn sample<A: Default + Send>(
         &self,
         run: &SampleRun<'_>,
         see: &(dyn Fn(&mut A, usize, usize, &Solution) + Sync),

@@ -97,7 +97,7 @@ fn invalid_searches_are_rejected() {
     refused(
         &["run", "four_bar.toml", "--case", "bump"],
         2,
-        &["there is no case named `bump`", "the model has none"],
+        &["there is no case named `bump`", "has no cases"],
     );
     let few = bench.run(&["optimize", "four_bar_inverse.toml", "--iterations", "2"]);
     assert_eq!(few.status.code(), Some(1));
