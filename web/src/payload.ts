@@ -158,7 +158,7 @@ files: { [key in string]: string },
  */
 case: string | null,
 /**
- * Detail of the motion on the page; as much as fits if not given.
+ * Detail of the motion on the page; by default the highest that fits.
  */
 shown: Detail | null, };
 
