@@ -174,8 +174,8 @@ fn bend(bends: &mut [f64], [plus, nominal, minus]: [Rows<'_>; 3]) {
 }
 
 fn body_quotient(p: &BodyState, m: &BodyState, k: f64) -> BodySensitivity {
-    // dA/db A^T is skew; its vector is half the sum of the columns' cross products.
-    // e x e' summed over the three axes is 2 pi', with e the mean of both designs' and e' the quotient of their difference
+    // dA/db A^T is skew; its vector is half the sum of the columns' cross products. e x e' summed over the three axes
+    // is 2 pi', with e the mean of both designs' and e' the quotient of their difference
     let columns = |c: usize| (p.rotation.cols[c] + m.rotation.cols[c]) * 0.5;
     let turned = |c: usize| columns(c).cross(p.rotation.cols[c] - m.rotation.cols[c]);
     let dpi: Vec3 = (turned(0) + turned(1) + turned(2)) * (0.5 * k);

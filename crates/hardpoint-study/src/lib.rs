@@ -8,10 +8,10 @@
 //! - [`verify`]: exact sensitivities against differences of re-solved designs.
 //! - [`whatif`]: outputs of changed designs, predicted and solved.
 //!
-//! A study solves all cases of a model as one [`Motions`] and counts its effort in [`StudyCost`]. Its request is made of
-//! the settings of the model file and the caller's overrides ([`optimize::Request::of`] and its siblings), or refused
-//! with a [`RequestError`]; all defaults and rules are there. A [`Control`] receives the [`Progress`] and can end the
-//! study.
+//! A study solves all cases of a model as one [`Motions`] and counts its effort in [`StudyCost`]. Its request is made
+//! of the settings of the model file and the caller's overrides ([`optimize::Request::of`] and its siblings), or
+//! refused with a [`RequestError`]; all defaults and rules are there. A [`Control`] receives the [`Progress`] and can
+//! end the study.
 //!
 //! # Example
 //!

@@ -50,8 +50,8 @@ pub fn validity(
     }
     let followed: Vec<usize> =
         (0..variables).filter(|v| solution.sensitivities.at(0, *v).is_some()).collect();
-    // The largest sensitivity of each output over the motion, and how far that takes it with a natural step of the variable.
-    // max over the motion of abs(y_b)
+    // The largest sensitivity of each output over the motion, and how far that takes it with a natural step of the
+    // variable. max over the motion of abs(y_b)
     let first = |v: usize, m: usize| {
         let d = (0..measured.len()).map(|k| measured.derivative(k, VariableId(v), m, 0).abs());
         d.fold(0.0, f64::max)

@@ -47,7 +47,8 @@
 //! - [`Analysis`] is a model with its plan of solution ([`topology::Topology`]), ready to be run.
 //! - [`Run`] is a request, and [`Solution`] its result: [`motion::Motion`], [`sensitivity::Sensitivities`] and
 //!   [`measure::MeasureResults`].
-//! - [`run`] has what else is computed at one design: [`run::Loads`], [`run::Gradients`], [`run::SecondDerivatives`], metrics.
+//! - [`run`] has what else is computed at one design: [`run::Loads`], [`run::Gradients`], [`run::SecondDerivatives`],
+//!   metrics.
 //! - The crate `hardpoint-study` has the analyses that need many runs: optimisation, tolerances, calibration, sweeps,
 //!   verification.
 //!
@@ -197,8 +198,8 @@
 //! assert!((heights[9] - 2.9 * 0.5_f64.sin()).abs() < 1e-12);
 //! ```
 //!
-//! Studies (optimisation, tolerances, calibration, sweeps, verification) are in the crate `hardpoint-study`; model files are
-//! read by the crate `hardpoint-file`.
+//! Studies (optimisation, tolerances, calibration, sweeps, verification) are in the crate `hardpoint-study`; model
+//! files are read by the crate `hardpoint-file`.
 
 mod blocks;
 pub mod constraint;

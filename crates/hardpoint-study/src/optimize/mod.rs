@@ -39,7 +39,7 @@ pub const LIMIT_KEPT: f64 = 1e-8;
 use LIMIT_KEPT as KEPT;
 /// Optimality residual below which a design is an optimum.
 const OPTIMAL: f64 = 1e-6;
-/// A search that comes to rest above this residual, relative to the scale of the goals or to the gradient at the start,
+/// A search that ends above this residual, relative to the scale of the goals or to the gradient at the start,
 /// is restarted from its best design ...
 const SHARP: f64 = 5e-9;
 /// ... at most this number of times.

@@ -13,8 +13,8 @@ pub struct SobolIndex {
 }
 
 /// Indices of a metric with respect to each variable, from its values in the designs of
-/// [`SweepMethod::Indices`](hardpoint::model::SweepMethod::Indices), NaN for designs without a value. `None` if the metric
-/// does not vary, or fewer than two pairs have it.
+/// [`SweepMethod::Indices`](hardpoint::model::SweepMethod::Indices), NaN for designs without a value. `None` if the
+/// metric does not vary, or fewer than two pairs have it.
 ///
 /// ```text
 /// f0 = mean of f_A and f_B,   V = mean of ((f_A - f0)^2 + (f_B - f0)^2) / 2

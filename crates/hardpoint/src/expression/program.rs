@@ -31,7 +31,7 @@ pub(crate) enum Operation {
     Powf(f64),
     /// x, x0, h0, x1, h1
     Step,
-    /// Of a, b, x, y: x if the comparison of a with b is true, else y.
+    /// For a, b, x, y: x if the comparison of a with b is true, else y.
     Select(Relation),
     /// Drops the time derivatives of an operand that depends on parameters only.
     Settle,

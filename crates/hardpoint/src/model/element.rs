@@ -445,7 +445,7 @@ impl ActsOn {
         match self {
             Self::Line(points) | Self::Points(points) => points.map(Some),
             Self::Point(point) => [Some(point), None],
-            // Its contact point wanders.
+            // The contact point moves over the wheel.
             Self::Wheel(wheel) => [Some(model.wheels[wheel.0].centre), None],
             Self::Body(_) | Self::Coordinate(..) | Self::Joint(_) => [None; 2],
         }

@@ -35,7 +35,7 @@ impl Solid {
     /// or inward orientation does not matter; a shell within another one with the opposite orientation is a cavity.
     ///
     /// # Errors
-    /// Why it bounds nothing.
+    /// Reason why it encloses no volume.
     pub fn of(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, OpenSurface> {
         let mut edges: BTreeMap<[u32; 2], i64> = BTreeMap::new();
         for [a, b, c] in triangles.iter().copied() {

@@ -58,8 +58,8 @@ pub fn metric_number(metric: &Metric, solution: &Solution) -> Option<f64> {
     take(metric, &y, &x).map(|(value, _)| value)
 }
 
-/// Returns the index of a metric of the whole model among the metrics of one of its motions ([`Model::motions`]); `None` if the
-/// metric is taken of another motion.
+/// Returns the index of a metric of the whole model among the metrics of one of its motions ([`Model::motions`]);
+/// `None` if the metric is taken of another motion.
 pub fn place_of(model: &Model, metric: usize, number: usize) -> Option<usize> {
     let counts =
         |m: &usize| model.metrics[*m].case.is_none_or(|case| model.cases.is_empty() || case.0 == number);
