@@ -114,7 +114,7 @@ impl<'b> FitWorkspace<'b> {
         if self.compared.is_empty() {
             let why = self.not_reached.first().map_or(String::new(), |n| n.why.clone());
             return Err(RequestError::model(
-                format!("no posture of the table can be compared; on the way to the first: {why}"),
+                format!("no posture of the table can be reached; error on the path to the first: {why}"),
                 "measure postures that the nominal design reaches",
             ));
         }
