@@ -120,7 +120,7 @@ test('a server that was killed is missed, and found again when it is back', asyn
   await stop()
   const note = page.getByTestId('note-server')
   await note.waitFor()
-  expect(await note.innerText()).toContain('your changes are kept in the page')
+  expect(await note.innerText()).toContain('Your changes are kept in the page')
   expect(await note.innerText()).toContain(`--token ${TOKEN}`)
   await start(Number(new URL(address).port))
   await note.waitFor({ state: 'detached' })
