@@ -1,0 +1,61 @@
+//! Springs and dampers on a joint's coordinate: along a sliding one, and about an axis.
+
+use crate::draft::{CheckElement, ElementCheck};
+use crate::joint::Quantity;
+use crate::load::{AppliedLoads, ForceFormula};
+use crate::model::element::{ActsOn, Compliance, ForceProperties, JointSpring, Properties, TorsionSpring};
+use crate::model::{Dimension, ElementId, Model};
+use crate::space::{Real, Wrench};
+
+/// Implements a spring on coordinates of a quantity; `$other` is the type for the other quantity.
+macro_rules! coordinate_spring {
+    ($type:ident, $dimension:expr, $quantity:expr, $other:literal) => {
+        impl ForceProperties for $type {
+            #[inline]
+            fn properties(&self, _: &Model) -> Properties<'_> {
+                Properties {
+                    acts_on: ActsOn::Coordinate(self.joint, self.coordinate),
+                    dimension: $dimension,
+                    given: [None; 3],
+                    table: None,
+                    law: None,
+                    is_arithmetic: true,
+                    compliance: Compliance::Element,
+                    friction: None,
+                }
+            }
+        }
+
+        impl CheckElement for $type {
+            fn check(&self, c: &mut ElementCheck<'_, '_>) {
+                c.check_coordinate((self.joint, self.coordinate), $quantity, $other);
+            }
+        }
+
+        impl ForceFormula for $type {
+            fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, out: &mut [Wrench<T>]) {
+                // tau works on the coordinate
+                at.apply_between(self.joint, at.unit((self.joint, self.coordinate)), self.size(at, e), out);
+            }
+
+            fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> T {
+                let Self { joint, coordinate, stiffness, equilibrium, damping } = self;
+                let now = at.coordinate(e, (*joint, *coordinate));
+                at.on_coordinate(now, stiffness.0, equilibrium.map(|n| n.0), damping.map(|n| n.0))
+            }
+
+            fn deflections<T: Real>(
+                &self,
+                at: &AppliedLoads<'_, T>,
+                e: ElementId,
+                mut each: impl FnMut(T, T),
+            ) {
+                let [value, _] = at.coordinate(e, (self.joint, self.coordinate));
+                each(value, at.number(self.stiffness.0));
+            }
+        }
+    };
+}
+
+coordinate_spring!(JointSpring, Dimension::FORCE, Quantity::Length, "torsion_spring");
+coordinate_spring!(TorsionSpring, Dimension::MOMENT, Quantity::Angle, "joint_spring");
