@@ -149,7 +149,7 @@ impl ModelFile {
 
     /// Reads designs from a CSV file in any folder: its first line names design variables, each line below has their
     /// values in the file's units (values of parameters, changes for all others). The result has changes in SI, as in
-    /// [`SweepSettings`](hardpoint::model::SweepSettings).
+    /// [`SweepSettings`].
     ///
     /// # Errors
     /// Returns the errors of the file.

@@ -2,8 +2,8 @@
 
 use std::io::Write;
 
+use hardpoint::load::Loads;
 use hardpoint::model::{Dimension, Model};
-use hardpoint::run::Loads;
 use hardpoint::space::Vec3;
 use hardpoint_file::Units;
 use hardpoint_file::csv_table::CsvWriter;

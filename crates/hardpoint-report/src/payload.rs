@@ -299,7 +299,7 @@ impl Detail {
     }
 }
 
-/// Stride of the marks among the shown output times, rounded so that the number of marks is nearest to [`MARKS`].
+/// Stride of the marks among the shown output times, rounded so that the number of marks is nearest to 36.
 pub fn stride_of_marks(steps: usize) -> usize {
     ((steps + MARKS / 2) / MARKS).max(1)
 }

@@ -47,8 +47,8 @@
 //! - [`Analysis`] is a model with its plan of solution ([`topology::Topology`]), ready to be run.
 //! - [`Run`] is a request, and [`Solution`] its result: [`motion::Motion`], [`sensitivity::Sensitivities`] and
 //!   [`measure::MeasureResults`].
-//! - [`run`] has what else is computed at one design: [`run::Loads`], [`run::Gradients`], [`run::SecondDerivatives`],
-//!   metrics.
+//! - [`load::Loads`], [`run::Gradients`], [`run::SecondDerivatives`], [`run::Jerks`] and metrics ([`run::metrics`]) are
+//!   other results of one design.
 //! - The crate `hardpoint-study` has the analyses that need many runs: optimisation, tolerances, calibration, sweeps,
 //!   verification.
 //!
@@ -65,7 +65,7 @@
 //!
 //! # Not supported
 //!
-//! - Dynamics: the motion follows from the drivers. Loads are computed along it ([`run::Loads`]), and small
+//! - Dynamics: the motion follows from the drivers. Loads are computed along it ([`load::Loads`]), and small
 //!   deflections about it (compliance).
 //! - Flexible bodies.
 //! - Contacts that open and close.

@@ -1,8 +1,8 @@
 //! Forces on bodies, for drawing.
 
 use hardpoint::Analysis;
+use hardpoint::load::Loads;
 use hardpoint::model::Model;
-use hardpoint::run::Loads;
 use hardpoint::space::Vec3;
 
 use crate::course::settled;

@@ -172,7 +172,7 @@ pub fn calibrate(model: &Model, request: &Request<'_>, control: Control<'_>) -> 
     Ok(workspace.calibration(search, certainty, next, outputs(model)))
 }
 
-/// Values of all outputs of a design in postures of the drivers, given as in [`Measurements::postures`], SI; the reason
+/// Values of all outputs of a design in postures of the drivers, given as in [`Measurements::postures`](hardpoint::model::Measurements::postures), SI; the reason
 /// for each posture that is not reached.
 ///
 /// # Errors

@@ -638,7 +638,7 @@ pub enum LimitTargetDraft {
     Length(String),
 }
 
-/// Settings of a tolerance study; see [`ToleranceSettings`](crate::model::ToleranceSettings).
+/// Settings of a tolerance study; see [`ToleranceSettings`].
 #[derive(Clone, Debug)]
 pub struct ToleranceSettingsDraft {
     /// Tolerances of single variables, by their names or by the name of the entry that defines them. All other

@@ -4,18 +4,20 @@
 //! wrenches of its bodies follow from pose, velocity and acceleration. Joint reactions and driver loads solve the
 //! transposed equation of order n, with the factors that the motion has computed.
 //!
+//! [`Analysis::loads`](crate::Analysis::loads) returns [`Loads`]; measures of loads have sensitivities as all others.
+//!
 //! | here | theory | meaning |
 //! |---|---|---|
-//! | [`acting`] | F = f - g | per body, required wrench minus applied wrench |
-//! | [`carry`] | T, mu, nu | reactions of joints and driver loads, and their derivatives by the design |
-//! | [`solver`] | | loads step after step |
-//! | [`program`] | | loads as part of a step's program |
-//! | [`inertia`] | M | spatial inertia per body, and derivatives of the inertial wrench |
-//! | [`compliance`] | C = Y K^-1 Y^T | deflections with elastic joints |
-//! | [`gradient`] | dy/db | gradient of one load by all variables |
-//! | [`virtual_motion`] | Y | virtual motion of a load |
-//! | [`friction`] | M = -c N(T) | Coulomb friction in joints |
-//! | [`measures`] | | evaluation of load measures |
+//! | `acting` | F = f - g | per body, required wrench minus applied wrench |
+//! | `carry` | T, mu, nu | reactions of joints and driver loads, and their derivatives by the design |
+//! | `solver` | | loads step after step |
+//! | `program` | | loads as part of a step's program |
+//! | `inertia` | M | spatial inertia per body, and derivatives of the inertial wrench |
+//! | `compliance` | C = Y K^-1 Y^T | deflections with elastic joints |
+//! | `gradient` | dy/db | gradient of one load by all variables |
+//! | `virtual_motion` | Y | virtual motion of a load |
+//! | `friction` | M = -c N(T) | Coulomb friction in joints |
+//! | `measures` | | evaluation of load measures |
 //!
 //! `acting`, `carry`, `virtual_motion` and `measures` are generic over the number type.
 
@@ -27,6 +29,7 @@ mod gradient;
 mod inertia;
 mod measures;
 mod program;
+mod results;
 mod solver;
 mod turns;
 mod virtual_motion;
@@ -35,4 +38,5 @@ pub(crate) use acting::{AppliedLoads, ForceFormula, MassFormula, Solid, Spread};
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
 pub(crate) use program::{RecordedLoads, hindrance};
+pub use results::{DriverLoad, JointLoad, Loads};
 pub(crate) use solver::LoadSolver;

@@ -30,8 +30,8 @@ pub(crate) struct MeasuredDesign<'a> {
     pub laws: &'a [Law],
 }
 
-/// Evaluates all outputs over a motion, and their derivatives by the variables that it has sensitivities for; by a
-/// program, if there is one, but for what it cannot tell.
+/// Evaluates all outputs over a motion, and their derivatives by the variables with sensitivities. A program computes
+/// them, if there is one, except for outputs that it does not support.
 pub(crate) fn evaluate(
     design: &MeasuredDesign<'_>,
     topology: &Topology,
@@ -48,8 +48,8 @@ pub(crate) fn evaluate(
         let times = first..usize::min(first + LANES, motion.len());
         let asked = loop {
             if let Some(run) = &mut run {
-                // Eight output times at once; what the program cannot tell is listed, and asked of the formulas one by
-                // one.
+                // Eight output times at once; outputs that the program does not support are listed, and evaluated by
+                // their formulas one by one.
                 run.at(first, motion, sensitivities, measured);
             }
             let asked = formulas.fill(times.clone(), run.as_ref(), measured);
@@ -139,8 +139,8 @@ impl<'a> FormulaEvaluator<'a> {
         }
     }
 
-    /// Evaluates what a program does not tell at these output times, which are a block of eight, and counts all angles
-    /// there; says how many outputs that are.
+    /// Evaluates the outputs that a program does not support at a block of eight output times, and counts all angles
+    /// there; returns the number of these outputs.
     fn fill(
         &mut self,
         times: Range<usize>,
@@ -185,7 +185,7 @@ impl<'a> FormulaEvaluator<'a> {
             whole_turns[m].0[0] = whole;
         });
         if self.counts {
-            // The formula of measures asks for angles with their turns, so these are found first.
+            // Formulas of measures use angles with their turns, so these are computed first.
             self.counted.extend(whole_turns.iter().map(|turns| turns.0[0]));
             let instant = Instant { whole_turns, ..instant };
             for &(_, m) in left.iter().filter(|(_, m)| is_formula(model, *m)) {
@@ -199,7 +199,7 @@ impl<'a> FormulaEvaluator<'a> {
 pub(crate) struct Context<'a> {
     /// Values of the measures that depend on a driver.
     pub slopes: &'a StepValues,
-    /// By time and measure: the whole turns of its angle, rad; empty where no formula asks for them.
+    /// By time and measure: the whole turns of its angle, rad; empty if no formula uses them.
     pub whole_turns: &'a [f64],
 }
 
@@ -226,7 +226,7 @@ pub(crate) fn derivatives(
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
     for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
-        // d/db of what is fixed in the bodies; that of the poses is W at this time, by `with_sensitivity`.
+        // d/db of body-fixed data; the derivative of the poses is W at this time, by `with_sensitivity`.
         values[b] = Dual::variable(values[b].v);
         let fixed = design_map.fixed(&values);
         let fixed = fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });

@@ -10,7 +10,7 @@ use crate::space::{Pose, Vec3};
 
 use super::wheel::{WheelAt, camber, toe};
 
-/// Everything that a measure can ask for at one time, as numbers that carry whatever derivatives are wanted.
+/// Input data of measures at one time, as numbers with the requested derivatives.
 #[derive(Clone, Copy)]
 pub(crate) struct Instant<'a, T> {
     pub(super) model: &'a Model,
@@ -78,8 +78,8 @@ impl<'a, T: Real> Instant<'a, T> {
             }
             MeasureKind::Angle { from, to, about } => {
                 let [a, b] = self.rays(k, [from, to]);
-                // atan2(abs(a x b), a . b); about n, of what is seen along it: atan2(n . (a x b), a . b - (n . a) (n .
-                // b))
+                // atan2(abs(a x b), a . b); about n, for the projections along it:
+                // atan2(n . (a x b), a . b - (n . a) (n . b))
                 let (across, along) = (a.cross(b), a.dot(b));
                 let within = match about {
                     None => across.norm().atan2(along),
@@ -111,8 +111,8 @@ impl<'a, T: Real> Instant<'a, T> {
             MeasureKind::Curvature { point, about } => {
                 let v = self.point(*point).map(T::rate);
                 let a = v.map(T::rate);
-                // n . (v x a) / abs(v)^3, or abs(v x a) / abs(v)^3; none where v^2 <= 1e-12 abs(a) size, a point that
-                // comes from rest
+                // n . (v x a) / abs(v)^3, or abs(v x a) / abs(v)^3; NaN if v^2 <= 1e-12 abs(a) size, for a point that
+                // starts from rest
                 let (turn, speed) = (v.cross(a), v.norm());
                 let turn = about.map_or_else(|| turn.norm(), |about| about.spread().dot(turn));
                 let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.fixed.size));

@@ -69,8 +69,8 @@ impl MeasureResults {
         std::array::from_fn(|order| finite(row.get(3 * m + order)))
     }
 
-    /// Their derivatives by variable b; those of a variable that the mechanism cannot follow are NaN and
-    /// mean nothing: ask [`Sensitivities::admissibility`] first.
+    /// Derivatives by variable b; NaN if the variable is not admissible, see
+    /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility).
     pub fn d(&self, k: usize, b: VariableId, m: usize) -> [f64; 3] {
         if self.unknown[b.0] {
             return [f64::NAN; 3];
@@ -140,8 +140,8 @@ impl MeasureResults {
         }
     }
 
-    /// Takes over what the walk has found of the measures that need more of a step than where the bodies are, at the
-    /// eight output times from k on. Their rates are not known; of a program they stand there as such.
+    /// Copies measures that need more of a step than the motion of its bodies, at the eight output times from k on.
+    /// Their rates are unknown; a program has stored them as such.
     pub(super) fn take_given(&mut self, k: usize, given: &StepValues, by_program: bool) {
         let Some(block) = given.block(k) else { return };
         let outputs = self.outputs.len();

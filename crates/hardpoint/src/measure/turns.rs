@@ -108,7 +108,7 @@ pub(super) fn unwrap_angles(
         let Some(turns_of) = turns_of else { continue };
         let [now, rate, acceleration] = measured.value(k, m);
         let near = match *turns_of {
-            // About f(t), q of the tree, or what the path has counted
+            // Near f(t), q of the tree, or the angle that was counted along the path
             Turns::Driver(d) => laws[d.0].at(motion.times[k]).value(),
             Turns::Coordinate(q) => motion.coordinates.row(k).get(q.0),
             Turns::Path(PathTurns { angle: Some(at), .. }) => motion.counted[k * at.of + at.place],

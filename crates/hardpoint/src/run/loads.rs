@@ -1,87 +1,8 @@
-//! Loads of joints and drivers over a motion.
+//! Loads of joints and drivers over the motion of a design.
 
 use super::{Analysis, Walk};
-use crate::load::LoadSolver;
+use crate::load::{DriverLoad, JointLoad, LoadSolver, Loads};
 use crate::model::{Axes, ElementId, JointId};
-use crate::motion::Stop;
-use crate::space::Vec3;
-
-/// Reaction wrench of a joint on body j, global components.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointLoad {
-    /// Point of application on body j, m.
-    pub place: Vec3,
-    /// Force, N, including forces of drivers on the joint's coordinates.
-    pub force: Vec3,
-    /// Moment about that point, N m.
-    pub moment: Vec3,
-    /// True for determined components of force and moment. With redundant constraints some components depend on
-    /// stiffness, and the values here are one of many solutions.
-    pub known: [[bool; 3]; 2],
-    /// Force, N, and moment, N m, in axes that coincide with the global axes in the design configuration and turn with
-    /// body j.
-    pub in_body: [Vec3; 2],
-    /// True for determined components of `in_body`.
-    pub known_in_body: [[bool; 3]; 2],
-    /// Determined part of the force, N, global: the force without its components along undetermined directions.
-    pub known_force: Vec3,
-    /// Number of directions in which the force is determined; 3 if it is fully determined.
-    pub known_directions: usize,
-}
-
-/// Load of a driver.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DriverLoad {
-    /// Force, N, or moment, N m; positive if it does positive work when the driven coordinate increases.
-    pub force: f64,
-    /// Prescribed speed, m/s or rad/s. Force times speed is the power, W.
-    pub speed: f64,
-}
-
-/// Loads of all joints and drivers over a motion.
-#[derive(Clone, Debug, Default)]
-pub struct Loads {
-    /// Output times that were solved, s.
-    pub times: Vec<f64>,
-    /// `joints[k * n + j]`: load of joint j of n at time k.
-    pub joints: Vec<JointLoad>,
-    /// `drivers[k * n + d]`: load of driver d of n at time k.
-    pub drivers: Vec<DriverLoad>,
-    /// `pushes[k * n + i]`: applied force at point i of n of [`Model::points_of_application`] on its body at time k,
-    /// global, N.
-    ///
-    /// [`Model::points_of_application`]: crate::model::Model::points_of_application
-    pub pushes: Vec<Vec3>,
-    /// Friction elements whose friction is undetermined at some time because redundant constraints share their normal
-    /// force. No load is determined then.
-    pub shared_friction: Vec<ElementId>,
-    /// Friction elements with more than one solution at some time. No load is determined then.
-    pub ambiguous_friction: Vec<ElementId>,
-    /// Reason why the run ended before the last output time, if it did.
-    pub stop: Option<Stop>,
-}
-
-impl Loads {
-    /// Loads of all joints at output time k.
-    pub fn joints_at(&self, k: usize) -> &[JointLoad] {
-        let n = self.joints.len() / self.times.len().max(1);
-        &self.joints[k * n..(k + 1) * n]
-    }
-
-    /// Loads of all drivers at output time k.
-    pub fn drivers_at(&self, k: usize) -> &[DriverLoad] {
-        let n = self.drivers.len() / self.times.len().max(1);
-        &self.drivers[k * n..(k + 1) * n]
-    }
-
-    /// Applied forces at all points of [`Model::points_of_application`] at output time k, global, N.
-    ///
-    /// [`Model::points_of_application`]: crate::model::Model::points_of_application
-    pub fn pushes_at(&self, k: usize) -> &[Vec3] {
-        let n = self.pushes.len() / self.times.len().max(1);
-        &self.pushes[k * n..(k + 1) * n]
-    }
-}
 
 impl Analysis<'_> {
     /// Loads of all joints and drivers over the motion of the design with variable k at `design[k]`; all zero for a

@@ -24,7 +24,6 @@ pub use analysis::Analysis;
 pub use driver_rates::DriverRates;
 pub use gradient::{GradientMethod, Gradients};
 pub use jerk::Jerks;
-pub use loads::{DriverLoad, JointLoad, Loads};
 pub use metric::{
     MetricParts, MetricValue, metric_number, metric_numbers, metrics, metrics_beside, misfits, peaks,
     place_of,

@@ -30,7 +30,7 @@ pub struct NearestAdmissible {
 ///
 /// It is the least-squares projection onto the null space of these conditions. The projection uses the requested
 /// variables and all others of the model that move one coordinate of a hardpoint or tilt one joint
-/// ([`add_coordinates`](super::add_coordinates), [`add_tilts`](super::add_tilts)), each scaled by its
+/// (`add_coordinates` and `add_tilts` of `hardpoint-study`), each scaled by its
 /// [natural step](crate::model::Model::natural_step). Requested values are kept as long as other variables can
 /// compensate.
 pub fn nearest_admissible(analysis: &Analysis<'_>, change: &[f64]) -> NearestAdmissible {
