@@ -2,7 +2,7 @@ import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
 import { launch, visit, type Visit } from './browser'
 import { examine, paper } from './desk'
-import { curve, drawn, frames, picture, scrub, slide, text, VIEW } from './person'
+import { curve, drawn, frames, picture, scrub, settled, slide, text, VIEW } from './person'
 
 const { models } = inject('samples')
 
@@ -282,12 +282,10 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
     // The pointer leaves the view, so that nothing else is named.
     await page.locator('h1').click()
     await drawn(page)
-    const before = await view.screenshot()
+    const before = await settled(view)
     await page.keyboard.press('l')
-    await drawn(page)
-    expect((await view.screenshot()).equals(before)).toBe(false)
+    await expect.poll(async () => (await view.screenshot()).equals(before)).toBe(false)
     await page.keyboard.press('l')
-    // The colour of the pressed button fades.
     await expect.poll(async () => (await view.screenshot()).equals(before)).toBe(true)
   })
 

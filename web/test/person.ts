@@ -1,4 +1,5 @@
-import type { Page } from 'playwright-core'
+import type { Locator, Page } from 'playwright-core'
+import { expect } from 'vitest'
 
 /** The canvas of the 3D view. */
 export const VIEW = '[data-testid=view-canvas]'
@@ -15,6 +16,19 @@ export function frames(page: Page, count: number): Promise<void> {
 
 /** Waits until the requested state is on the screen: one frame to draw, one to be sure that it was drawn. */
 export const drawn = (page: Page) => frames(page, 2)
+
+/** Picture of a part of the page that no longer changes, as a PNG. */
+export async function settled(part: Locator): Promise<Buffer> {
+  let last = await part.screenshot()
+  await expect
+    .poll(async () => {
+      const before = last
+      last = await part.screenshot()
+      return last.equals(before)
+    })
+    .toBe(true)
+  return last
+}
 
 /** Present picture of the view, as a PNG. */
 export async function picture(page: Page): Promise<Buffer> {
