@@ -172,8 +172,8 @@ pub fn calibrate(model: &Model, request: &Request<'_>, control: Control<'_>) -> 
     Ok(workspace.calibration(search, certainty, next, outputs(model)))
 }
 
-/// Values of all outputs of a design in postures of the drivers, given as in [`Measurements::postures`](hardpoint::model::Measurements::postures), SI; the reason
-/// for each posture that is not reached.
+/// Values of all outputs of a design in postures of the drivers, SI; the reason for each posture that is not reached.
+/// Postures are given as in [`Measurements`](hardpoint::model::Measurements).
 ///
 /// # Errors
 /// A [`TopologyError`] if the mechanism cannot be driven.
