@@ -608,9 +608,9 @@ const AFTER_CALIBRATE: &str = "\
 The measured file is a CSV table. Its first line names drivers, outputs (measures, and
 points as P.x) and their standard deviations (`sigma toe`); each line below is a posture,
 in the units of the model file. Empty cells were not measured; a name that begins with #
-leaves its column out. Drivers count like their laws; those that the table does not name
-were in the design configuration. If no reading has a standard deviation, it is estimated
-from the residuals (docs/calibration.md).
+leaves its column out. Values of a driver have the zero, sign and unit of its law; a driver
+without a column is at its position in the design configuration. If no reading has a standard
+deviation, it is estimated from the residuals (docs/calibration.md).
 
 With --output it writes into the folder:
   residuals.csv    a row for each reading: measured, nominal, fitted, difference
@@ -657,9 +657,9 @@ pub struct Calibrate {
 pub enum LossKind {
     /// Square: best for normal errors
     Squares,
-    /// Linear beyond 1.345 standard deviations: for some inaccurate readings
+    /// Linear beyond 1.345 standard deviations: for a few outliers
     Huber,
-    /// Nearly constant for large residuals: for some wrong readings
+    /// Nearly constant for large residuals: for gross errors
     Cauchy,
 }
 

@@ -2,12 +2,12 @@
 //!
 //! Hardpoint solves mechanisms that are driven by prescribed motions (suspensions, linkages, parallel robots) for
 //! position, velocity and acceleration, and differentiates all of them exactly with respect to the *design*: the
-//! positions of the joints and the directions of their axes. No changed design is solved for that, and nothing is
-//! re-assembled.
+//! positions of the joints and the directions of their axes. The derivatives follow from the nominal solution: no
+//! changed design is solved, so that there are no errors of finite differences.
 //!
 //! # Example
 //!
-//! Does the slider of an inclined crank drive move faster if the pivot of its crank moves up? A crank of length 3 and a
+//! Does the slider of a slider-crank move faster if the pivot of its crank moves up? A crank of length 3 and a
 //! rod of length 5 drive a slider along x. In the design configuration the crank is upright and the slider at x = 4.
 //!
 //! ```
@@ -36,7 +36,7 @@
 //!
 //! let up = model.variable("O up").unwrap();
 //! let [_, d_speed, _] = solution.measured.d(0, up, stroke);
-//! assert!((d_speed + 1.0).abs() < 1e-12); // the crank is shorter by 1 per unit
+//! assert!((d_speed + 1.0).abs() < 1e-12); // speed = angular speed x crank length, which shrinks
 //! ```
 //!
 //! # Primary types
@@ -44,7 +44,7 @@
 //! - [`draft::Draft`] is a mechanism as written, with names for references. [`model::Model::from_draft`] checks it.
 //! - [`model::Model`] is the checked mechanism. It is immutable; a changed design is a vector with one value per
 //!   [`model::DesignVariable`].
-//! - [`Analysis`] is a model with its plan of solution ([`topology::Topology`]), ready to be run.
+//! - [`Analysis`] is a model with its solution plan ([`topology::Topology`]), ready to be run.
 //! - [`Run`] is a request, and [`Solution`] its result: [`motion::Motion`], [`sensitivity::Sensitivities`] and
 //!   [`measure::MeasureResults`].
 //! - [`load::Loads`], [`run::Gradients`], [`run::SecondDerivatives`], [`run::Jerks`] and metrics ([`run::metrics`]) are
@@ -52,16 +52,19 @@
 //! - The crate `hardpoint-study` has the analyses that need many runs: optimisation, tolerances, calibration, sweeps,
 //!   verification.
 //!
-//! Numerical outcomes are values with figures, not errors: [`motion::Stop`] describes why a run ended early,
-//! [`sensitivity::Admissibility`] why a mechanism cannot follow a design variable. Errors are for input that has no
-//! meaning: [`draft::DraftError`], [`topology::TopologyError`], [`law::LawError`].
+//! An early end of a run is part of its result, not an error: [`motion::Stop`] describes the reason.
+//! [`sensitivity::Admissibility`] describes why a mechanism does not assemble when a design variable changes. Errors
+//! are for invalid input and for mechanisms that cannot be driven: [`draft::DraftError`],
+//! [`topology::TopologyError`], [`law::LawError`].
 //!
 //! # Conventions
 //!
-//! SI units and radians; global components unless stated otherwise. Design variables are zero in the nominal design.
-//! Joint angles and displacements are those of body j relative to body i and zero in the design configuration; see
-//! [`joint`]. Derivatives are total derivatives at fixed time. Functions do not panic on any input unless their
-//! documentation has a section *Panics*.
+//! SI units and radians; global components unless stated otherwise. A *design* is one value per design variable, the
+//! change from the *nominal design*, in which all are zero. The *design configuration* is the posture in which the
+//! hardpoints are given. Joint angles and displacements are those of body j relative to body i and zero in the design
+//! configuration; see [`joint`]. A *measure* is a scalar over time; an *output* is a measure or a component of a point;
+//! a *metric* reduces an output to one number. Derivatives are total derivatives at fixed time. Functions do not panic
+//! on any input unless their documentation has a section *Panics*.
 //!
 //! # Not supported
 //!
@@ -74,7 +77,7 @@
 //!
 //! # Cookbook
 //!
-//! The examples share this pendulum, which turns about z by one radian per second:
+//! The examples share this pendulum, which turns about z at one radian per second:
 //!
 //! ```
 //! # use hardpoint::{draft::Draft, law::Law};
