@@ -92,6 +92,8 @@ impl Model {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let (file, motions) = (&self.whole, self.motions()?);
+        let rule = allocate.as_deref().map(tolerance::allocation_rule);
+        let allocate = rule.transpose().map_err(Failure::from)?;
         let overrides = tolerance::Overrides { samples, seed, allocate };
         let request = tolerance::Request::of(&file.model, &overrides).map_err(Failure::from)?;
         let numbers: Vec<usize> = (0..motions.len()).collect();

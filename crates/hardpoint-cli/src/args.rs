@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use hardpoint::model::{SweepSettings, ToleranceSettings};
+use hardpoint::model::{AllocationRule, SweepSettings, ToleranceSettings};
 use hardpoint::space::Angles;
 use hardpoint::topology::Formulation;
 use hardpoint_study::difference::DifferenceScheme;
@@ -809,6 +809,15 @@ pub enum TableForm {
 pub enum Allocate {
     Rss,
     WorstCase,
+}
+
+impl Allocate {
+    pub fn rule(self) -> AllocationRule {
+        match self {
+            Self::Rss => AllocationRule::Rss { sigmas: ToleranceSettings::SIGMAS },
+            Self::WorstCase => AllocationRule::Worst,
+        }
+    }
 }
 
 fn step(text: &str) -> Result<f64, String> {

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::num::NonZero;
 
 use hardpoint::Solution;
-use hardpoint::model::{AllocationRule, Model};
+use hardpoint::model::Model;
 use hardpoint_file::ModelFile;
 use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs, nominal_stop};
 use hardpoint_study::tolerance::{Error, Overrides, Request, ToleranceResult, tolerance};
@@ -62,7 +62,7 @@ pub fn overrides(samples: Option<u32>, seed: Option<u32>, allocate: Option<Alloc
     Overrides {
         samples: samples.map(|n| n as usize),
         seed: seed.map(u64::from),
-        allocate: allocate.map(|rule| AllocationRule::NAMES[rule as usize].into()),
+        allocate: allocate.map(Allocate::rule),
     }
 }
 

@@ -109,7 +109,9 @@ impl RunDocument<'_> {
         let ended = match (&summary.stop, summary.status) {
             (_, RunStatus::Complete) => "at its last output time".into(),
             (Some(stop), RunStatus::Stopped) => format!("early, {}: {}", stop.code, stop.message),
-            _ => "early: interrupted by the user; the part before it is included".into(),
+            (None, RunStatus::Stopped) | (_, RunStatus::Interrupted) => {
+                "early: interrupted by the user; the part before it is included".into()
+            }
         };
         let units = format!("{}, {}, s", self.file.units.length.symbol(), self.file.units.angle.symbol());
         let mut facts = vec![("model file", summary.model.file.clone())];

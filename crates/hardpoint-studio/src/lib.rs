@@ -39,7 +39,7 @@ pub struct Engine {
 }
 
 /// Diagnostics in place of a reply; never empty.
-type RequestError = Vec<DiagnosticMessage>;
+type EngineError = Vec<DiagnosticMessage>;
 
 impl Engine {
     /// Returns the reply to a JSON request.
@@ -70,7 +70,7 @@ impl Engine {
         &mut self,
         request: Request,
         listener: &mut ProgressListener<'_>,
-    ) -> Result<Vec<u8>, RequestError> {
+    ) -> Result<Vec<u8>, EngineError> {
         match request {
             Request::Check { model } => Ok(json(&check(&model))),
             Request::Open { model } => {
@@ -104,7 +104,7 @@ impl Engine {
         }
     }
 
-    fn open_model(&mut self) -> Result<&mut OpenModel, RequestError> {
+    fn open_model(&mut self) -> Result<&mut OpenModel, EngineError> {
         let nothing =
             || vec![DiagnosticMessage::plain("HP0702", "no model is open".into(), "open one first")];
         self.open.as_mut().ok_or_else(nothing)
@@ -112,7 +112,7 @@ impl Engine {
 }
 
 /// Parses a model in the requested case, or in its first case if there is no such case.
-fn parse_in_case(model: &ModelText) -> Result<ModelFile, RequestError> {
+fn parse_in_case(model: &ModelText) -> Result<ModelFile, EngineError> {
     let file = parse_model(model)?;
     let Some(name) = &model.case else { return Ok(first_case(file)) };
     match file.model.cases.iter().position(|case| case.name == *name) {
@@ -122,7 +122,7 @@ fn parse_in_case(model: &ModelText) -> Result<ModelFile, RequestError> {
 }
 
 /// Parses a model with all its cases.
-fn parse_model(model: &ModelText) -> Result<ModelFile, RequestError> {
+fn parse_model(model: &ModelText) -> Result<ModelFile, EngineError> {
     parse_with(&model.text, &model.file, &model.files)
         .map_err(|all| all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect())
 }

@@ -12,13 +12,13 @@ use hardpoint_study::Motions;
 use hardpoint_study::optimize::{self, Overrides, Selection};
 use hardpoint_study::request::{named, variable};
 
-use crate::RequestError;
+use crate::EngineError;
 use crate::protocol::{
     OptimizeOffer, OptimizeRequest, SearchGoal, SearchVariable, ToleranceChoice, ToleranceOffer,
 };
 
 /// Returns the options of an optimisation.
-pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, RequestError> {
+pub(crate) fn optimize(file: &ModelFile) -> Result<OptimizeOffer, EngineError> {
     let (model, units, settings) = (&file.model, file.units, file.model.optimization.as_ref());
     let OptimizationSettings { starts, iterations, .. } = OptimizationSettings::default();
     let values = values(file);
@@ -129,7 +129,7 @@ pub(crate) fn requested(
 }
 
 /// Returns the options of a tolerance study.
-pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, RequestError> {
+pub(crate) fn tolerance(file: &ModelFile) -> Result<ToleranceOffer, EngineError> {
     let (model, units) = (&file.model, file.units);
     let settings = model.tolerancing.clone().or_else(|| ToleranceSettings::of_variables(model));
     let scattered = |t: &hardpoint::model::Tolerance| {

@@ -17,7 +17,7 @@ use hardpoint_study::whatif::{add_coordinates, coordinate, variable_named};
 use crate::protocol::{
     Coordinate, DesignReply, DiagnosticMessage, MovableHardpoint, OpenReply, VariableSetting,
 };
-use crate::{RequestError, first_case, parse_in_case, parse_model};
+use crate::{EngineError, first_case, parse_in_case, parse_model};
 
 /// Maximum number of bisections of the path to a design that cannot be reached; the last step is a thousandth of the
 /// path.
@@ -43,7 +43,7 @@ pub(crate) struct OpenModel {
 
 impl OpenModel {
     /// Opens a model, and returns its cases, hardpoints and frames.
-    pub fn new(model: &ModelText) -> Result<(Self, OpenReply), RequestError> {
+    pub fn new(model: &ModelText) -> Result<(Self, OpenReply), EngineError> {
         let mut all_cases = parse_model(model)?;
         add_coordinates(&mut all_cases.model);
         let file = match all_cases.model.cases.iter().position(|c| Some(&c.name) == model.case.as_ref()) {
@@ -95,7 +95,7 @@ impl OpenModel {
         &mut self,
         change: &[VariableSetting],
         from: Option<&[VariableSetting]>,
-    ) -> Result<DesignReply, RequestError> {
+    ) -> Result<DesignReply, EngineError> {
         let target = self.values(change)?;
         let start = from.map(|from| self.values(from)).transpose()?;
         let (mut solution, mut why) = self.solve(&target);
@@ -133,7 +133,7 @@ impl OpenModel {
     }
 
     /// Solves another model for comparison. Both models must have the same bodies, measures, metrics and output times.
-    pub fn compare(&mut self, model: &ModelText) -> Result<DesignReply, RequestError> {
+    pub fn compare(&mut self, model: &ModelText) -> Result<DesignReply, EngineError> {
         let other = parse_in_case(model)?;
         let same = |a: &Model, b: &Model| {
             let bodies = |m: &Model| m.bodies.iter().map(|b| b.name.clone()).collect::<Vec<_>>();
@@ -160,7 +160,7 @@ impl OpenModel {
     }
 
     /// Returns the model text with some changes.
-    pub fn text(&self, change: &[VariableSetting]) -> Result<String, RequestError> {
+    pub fn text(&self, change: &[VariableSetting]) -> Result<String, EngineError> {
         let values = self.values(change)?;
         self.all_cases.edit(&values).map_err(|all| {
             all.list().iter().map(|d| DiagnosticMessage::of(self.all_cases.text(), d)).collect()
@@ -168,7 +168,7 @@ impl OpenModel {
     }
 
     /// Returns the values of all variables, SI.
-    fn values(&self, change: &[VariableSetting]) -> Result<Vec<f64>, RequestError> {
+    fn values(&self, change: &[VariableSetting]) -> Result<Vec<f64>, EngineError> {
         let model = &self.file.model;
         let mut values = vec![0.0; model.variables.len()];
         for VariableSetting { name, by } in change {
@@ -220,7 +220,7 @@ impl OpenModel {
 }
 
 /// Creates an analysis that owns its model.
-fn owned_analysis(file: &ModelFile, model: &ModelText) -> Result<Analysis<'static>, RequestError> {
+fn owned_analysis(file: &ModelFile, model: &ModelText) -> Result<Analysis<'static>, EngineError> {
     Analysis::new(Arc::new(file.model.clone())).map_err(|fault: TopologyError| {
         vec![DiagnosticMessage::of(&model.text, &diagnose::topology_fault(file, &fault))]
     })

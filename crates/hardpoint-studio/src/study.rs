@@ -22,10 +22,10 @@ use hardpoint_study::{Control, Motions, Progress, Step, validity};
 use crate::protocol::{
     DiagnosticMessage, OptimizeRequest, ProgressReply, StudyReply, ToleranceRequest, VariableSetting,
 };
-use crate::{ProgressListener, RequestError, offer, parse_in_case, parse_model};
+use crate::{EngineError, ProgressListener, offer, parse_in_case, parse_model};
 
 /// Returns the whole page of a model.
-pub(crate) fn page(model: &ModelText) -> Result<Payload, RequestError> {
+pub(crate) fn page(model: &ModelText) -> Result<Payload, EngineError> {
     let file = parse_in_case(model)?;
     let fault = |fault: TopologyError| {
         vec![DiagnosticMessage::of(&model.text, &diagnose::topology_fault(&file, &fault))]
@@ -45,18 +45,14 @@ pub(crate) fn page(model: &ModelText) -> Result<Payload, RequestError> {
 }
 
 /// Creates the analyses of all motions of a file.
-fn motions<'m>(
-    file: &ModelFile,
-    models: &'m [Model],
-    model: &ModelText,
-) -> Result<Motions<'m>, RequestError> {
+fn motions<'m>(file: &ModelFile, models: &'m [Model], model: &ModelText) -> Result<Motions<'m>, EngineError> {
     Motions::of(models, Formulation::Relative).map_err(|(_, fault)| {
         vec![DiagnosticMessage::of(&model.text, &diagnose::topology_fault(file, &fault))]
     })
 }
 
 /// Diagnostic of a study that cannot be requested.
-fn refused(error: hardpoint_study::RequestError) -> RequestError {
+fn refused(error: hardpoint_study::RequestError) -> EngineError {
     vec![DiagnosticMessage::plain("HP0602", error.message, &error.help)]
 }
 
@@ -72,7 +68,7 @@ pub(crate) fn run_optimization(
     model: &ModelText,
     request: &OptimizeRequest,
     listener: &mut ProgressListener<'_>,
-) -> Result<StudyReply, RequestError> {
+) -> Result<StudyReply, EngineError> {
     let mut file = parse_model(model)?;
     let request = offer::requested(&mut file, request).map_err(refused)?;
     let settings = &request.settings;
@@ -100,7 +96,7 @@ pub(crate) fn run_optimization(
     let best = found.best.and_then(|k| found.searches[k].found.as_ref());
     let design = best.map(|best| rounded(&file, settings, &best.design));
     let text = design.as_ref().map(|design| file.edit(design)).transpose();
-    let text = text.map_err(|all| -> RequestError {
+    let text = text.map_err(|all| -> EngineError {
         all.list().iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect()
     })?;
     Ok(StudyReply {
@@ -121,12 +117,13 @@ pub(crate) fn run_tolerance(
     model: &ModelText,
     request: &ToleranceRequest,
     listener: &mut ProgressListener<'_>,
-) -> Result<StudyReply, RequestError> {
+) -> Result<StudyReply, EngineError> {
     let file = parse_model(model)?;
+    let allocate = request.allocate.as_deref().map(tolerance::allocation_rule);
     let overrides = Overrides {
         samples: Some(request.samples),
         seed: Some(request.seed.into()),
-        allocate: request.allocate.clone(),
+        allocate: allocate.transpose().map_err(refused)?,
     };
     let request = tolerance::Request::of(&file.model, &overrides).map_err(refused)?;
     let models = file.model.motions();

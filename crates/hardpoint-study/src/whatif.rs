@@ -65,7 +65,7 @@ pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> What
             variables.filter(alone).collect()
         }
         Admissibility::CannotFollow { .. } => variables.collect(),
-        _ => Vec::new(),
+        Admissibility::Admissible | Admissibility::Reassembled { .. } | Admissibility::Unknown => Vec::new(),
     };
     let field = analysis.design_map().field_along(&direction, &model.whole(&[]));
     let part = |(v, by): (usize, &f64)| by.abs() / model.natural_step(VariableId(v));

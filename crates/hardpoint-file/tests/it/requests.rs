@@ -142,7 +142,8 @@ fn a_tolerance_study_is_that_of_the_file_with_overrides() {
     );
 
     let rule = |model: &Model, name: &str| {
-        let overrides = Overrides { allocate: Some(name.into()), ..Overrides::default() };
+        let allocate = Some(tolerance::allocation_rule(name)?);
+        let overrides = Overrides { allocate, ..Overrides::default() };
         Request::of(model, &overrides).map(|request| request.settings.allocation)
     };
     let allocation = |rule| Ok(Some(AllocationSettings { rule }));

@@ -167,7 +167,7 @@ pub fn calibrate(model: &Model, request: &Request<'_>, control: Control<'_>) -> 
     let certainty = workspace.certainty(&search, &directions);
     let next = match search.status {
         Status::Found => workspace.next(&search, &directions, &certainty),
-        _ => Vec::new(),
+        Status::IterationLimit | Status::Interrupted => Vec::new(),
     };
     Ok(workspace.calibration(search, certainty, next, outputs(model)))
 }

@@ -34,7 +34,7 @@ pub use curves::{BandPoint, CurveBands};
 use deviations::Deviations;
 use hardpoint::run::{metric_numbers, place_of};
 pub use monte_carlo::{FailureGroup, MonteCarlo, SampledCurve, SampledMetric, Yield};
-pub use request::{Overrides, Request};
+pub use request::{Overrides, Request, allocation_rule};
 pub use worst::Extreme;
 
 /// Threshold for a warning about nonlinearity: second-order part of a deviation, or shift of its mean, relative to the

@@ -19,8 +19,17 @@ pub struct Overrides {
     pub samples: Option<usize>,
     /// Seed of the random numbers.
     pub seed: Option<u64>,
-    /// Allocates the loosest tolerances by the rule of this name, of [`AllocationRule::NAMES`].
-    pub allocate: Option<String>,
+    /// Rule of the allocation. A root sum of squares keeps the number of standard deviations of the model file, if that
+    /// has one.
+    pub allocate: Option<AllocationRule>,
+}
+
+/// Rule of a name, of [`AllocationRule::NAMES`], with the default number of standard deviations.
+///
+/// # Errors
+/// A [`RequestError`] if there is none.
+pub fn allocation_rule(name: &str) -> Result<AllocationRule, RequestError> {
+    Ok(AllocationRule::NAMED[named("allocation rule", name, AllocationRule::NAMES)?])
 }
 
 /// Number of names in a message.
@@ -46,14 +55,14 @@ impl Request {
         if settings.samples > 0 {
             RequestError::unless_counted("samples", settings.samples, ToleranceSettings::MOST)?;
         }
-        if let Some(rule) = &overrides.allocate {
-            let index = named("allocation rule", rule, AllocationRule::NAMES)?;
-            // The number of standard deviations remains that of the model file.
-            let rule = match settings.allocation {
-                Some(AllocationSettings { rule: rule @ AllocationRule::Rss { .. } }) if index == 0 => rule,
-                Some(_) | None => AllocationRule::NAMED[index],
+        if let Some(rule) = overrides.allocate {
+            settings.allocation = match (rule, settings.allocation) {
+                (
+                    AllocationRule::Rss { .. },
+                    given @ Some(AllocationSettings { rule: AllocationRule::Rss { .. } }),
+                ) => given,
+                (AllocationRule::Rss { .. } | AllocationRule::Worst, _) => Some(AllocationSettings { rule }),
             };
-            settings.allocation = Some(AllocationSettings { rule });
         }
         let has_metric_limits =
             settings.limits.iter().any(|limit| matches!(limit.of, LimitTarget::Metric(_)));

@@ -27,6 +27,7 @@ impl CheckElement for Mesh {
 impl MassFormula for Mesh {
     fn solid<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Solid<T> {
         let Self { body, mesh, density } = self;
+        let mass = self.mass(|n| at.number(n), |_, _| T::zero());
         let density = at.number(density.0);
         let (pose, frame) = (at.bodies[body.0].pose, at.model.bodies[body.0].frame);
         let place = if mesh.in_body { mesh.centre } else { frame.inverse().point(mesh.centre) };
@@ -34,6 +35,6 @@ impl MassFormula for Mesh {
         let cols = mesh.inertia().map(|col| col.spread() * density);
         let inertia = Spread::Matrix(axes, Mat3 { cols });
         let centre = pose.point(place.spread());
-        Solid { body: *body, mass: density * T::constant(mesh.volume), centre, inertia }
+        Solid { body: *body, mass, centre, inertia }
     }
 }

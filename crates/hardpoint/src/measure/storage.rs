@@ -29,7 +29,9 @@ impl Output {
             (OutputSource::Point(..), Some((point, axis))) => {
                 format!("{point}.{}{axis}", ["", "v", "a"][order])
             }
-            _ => format!("{} {}", self.name, ["", "rate", "acceleration"][order]),
+            (OutputSource::Measure(_), _) | (OutputSource::Point(..), None) => {
+                format!("{} {}", self.name, ["", "rate", "acceleration"][order])
+            }
         }
     }
 }
