@@ -97,6 +97,31 @@ export function atFixedAbscissa(dy: Curve, dx: Curve, slope: Curve): Curve {
   return dy.map((value, k) => value - slope[k] * dx[k])
 }
 
+/** A curve with its abscissa; none if that is time, which is the same for all designs. */
+type OverAbscissa = readonly [y: Curve, x?: Curve]
+
+/**
+ * Change of a curve to another one at the same abscissa: interpolated on the other's nearest stretch around it, NaN
+ * beyond its ends.
+ */
+export function changeFrom([y, x]: OverAbscissa, [before, at]: OverAbscissa): Curve {
+  if (!x || !at || x === at) return y.map((value, k) => value - before[k])
+  return y.map((value, k) => value - nearStep(before, at, x[k], k))
+}
+
+/** The value of a curve where its abscissa is `x`, on the stretch nearest to a step. */
+function nearStep(y: Curve, x: Curve, value: number, step: number): number {
+  if (x[step] === value) return y[step]
+  for (let away = 0; away < x.length; away++) {
+    for (const k of [step - away, step + 1 + away]) {
+      if (!(k > 0 && k < x.length) || !((x[k - 1] - value) * (x[k] - value) <= 0)) continue
+      const part = (value - x[k - 1]) / (x[k] - x[k - 1] || 1)
+      return y[k - 1] + part * (y[k] - y[k - 1])
+    }
+  }
+  return NaN
+}
+
 /** The step whose value is nearest to `value`; of equals the one nearest to `step`. */
 export function nearestStep(curve: Curve, value: number, step: number): number {
   let best = 0

@@ -41,16 +41,32 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return element
 }
 
-/** A custom property of the style sheet, for drawing on a canvas. */
+const properties = new Map<string, string>()
+let scheme = ''
+
+/** A custom property of the style sheet, for drawing on a canvas; read once per colour scheme, since it costs a layout. */
 export function css(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim()
+  const root = document.documentElement
+  const now = `${matchMedia(DARK).matches} ${root.classList.contains('printing')}`
+  if (now !== scheme) properties.clear()
+  scheme = now
+  let value = properties.get(name)
+  if (value === undefined) properties.set(name, (value = getComputedStyle(root).getPropertyValue(name).trim()))
+  return value
 }
+
+/** Sets the text of an element if it differs: an unchanged one costs no layout. */
+export function setText(element: Element, text: string): void {
+  if (element.textContent !== text) element.textContent = text
+}
+
+const DARK = '(prefers-color-scheme: dark)'
 
 /**
  * Calls back when what is drawn on a canvas needs other colours, until the signal; paper is light, whatever the screen.
  */
 export function onSchemeChange(callback: () => void, signal?: AbortSignal): void {
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', callback, { signal })
+  matchMedia(DARK).addEventListener('change', callback, { signal })
   for (const [event, printing] of [
     ['beforeprint', true],
     ['afterprint', false],
@@ -67,7 +83,7 @@ export function onSchemeChange(callback: () => void, signal?: AbortSignal): void
 }
 
 /**
- * Categorical colours that colour-blind readers can distinguishes (Okabe and Ito), tuned per scheme in the style sheet.
+ * Categorical colours that colour-blind readers can distinguish (Okabe and Ito), tuned per scheme in the style sheet.
  */
 const HUES = 8
 

@@ -1,4 +1,4 @@
-import { groups, type Order, type Report, type Sensitivity, type Variable } from './report'
+import { type Order, type Report, type Sensitivity, type Variable } from './report'
 import { rounded } from './rounding'
 
 /** Effect of a variable on the selected quantity. */
@@ -42,9 +42,4 @@ export function effects(report: Report, quantity: number, order: Order): Effect[
       b.share - a.share ||
       a.variable.index - b.variable.index,
   )
-}
-
-/** The quantity that the page opens on: the one given, else the first offered, measures first. */
-export function firstQuantity(report: Report): number {
-  return report.first ?? groups(report)[0]?.[1][0].index ?? 0
 }

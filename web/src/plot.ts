@@ -1,57 +1,37 @@
 import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
-import { css, el, keepFocus, prose, svg } from './dom'
+import { css, el, keepFocus, prose, setText, svg } from './dom'
 import { number, pretty, titled } from './format'
+import { abscissaOf, type Content, drawnRange, drawnSteps, type Line } from './content'
 import { decades, nearestStep, padded, positive, stepAt, valueAt, type Curve, withGaps } from './curve'
-import { extent } from './export/axis'
+import { extent, linearAxis } from './export/axis'
 import type { State } from './state'
-import { atLeast, between, moved, ordinates, type Part, scaled, within, Zoom } from './zoom'
+import { atLeast, between, moved, type Part, scaled, within, Zoom } from './zoom'
 
 /** Default width of a plot, minimum height, and size on paper, px. */
 const USUAL = 400
-const LEAST = 120
+const LEAST = 180
 const PAPER = { width: 330, height: 190 }
 /** Wide enough for `−1.234e-5`, and the same for all plots, so that their time axes line up. */
 const AXIS = 66
+/** Room below the curves for the numbers and the label of the abscissa, px. */
+const ABSCISSA = 48
 /** With more powers of ten than this along an axis, every other one has a number. */
 const MOST_POWERS = 6
+/** An ordinate has a number on about so many pixels, and never less than this number of them. */
+const TICK = 34
+const FEWEST_TICKS = 3
 
-/** A magnifying glass with a plus. */
+/** A magnifying glass with a plus; arrows to the corners. */
 const GLASS = 'M6.5 2a4.5 4.5 0 1 0 0 9a4.5 4.5 0 1 0 0 -9M10 10l4 4M4.5 6.5h4M6.5 4.5v4'
+const CORNERS = 'M9.5 2.5h4v4M13.5 2.5l-4.5 4.5M6.5 13.5h-4v-4M2.5 13.5l4.5 -4.5'
 /** A press that moves by less than this is a click, px. */
 const CLICK = 4
 /** Factor of a zoom step, and step of a shift as a fraction of the visible range. */
 const CLOSER = 0.5
 const ASIDE = 0.25
-
-export interface Line {
-  label: string
-  color: string
-  curve: Curve
-  /** Thinned values drawn as circles instead of a line. */
-  marks?: (number | null)[]
-  width?: number
-  dash?: number[]
-  pick?: () => void
-}
-
-export interface Content {
-  title: string
-  /** Unit of the vertical axis, empty for a pure number. */
-  unit: string
-  lines: Line[]
-  /** From a power of ten to another; values that are not positive are left out. */
-  logarithmic?: boolean
-  /** Abscissa of the curves instead of time. */
-  over?: { label: string; unit: string; curve: Curve }
-  /** Visible part of the abscissa; all of it if undefined. */
-  part?: Part
-  caption?: string
-  /** Targets of the values: at one abscissa, or everywhere. */
-  wanted?: { low: number | null; high: number | null; at?: number }[]
-  /** Shown in place of the plot. */
-  message?: string
-}
+/** Length of a line's sample in the legend, px. */
+const SAMPLE = 24
 
 /** Overlay on the curves of a plot that moves with them. */
 export interface Overlay {
@@ -65,8 +45,8 @@ export interface Overlay {
 
 /**
  * Curves over time or over another quantity, with a legend above that reads the values under the pointer, or at the
- * moment shown; dragging moves the time. Dragging along the horizontal axis, or with Shift, shows that part of the
- * abscissa: of time in all plots that share a `Zoom`, of another quantity in this one.
+ * moment shown; dragging moves the time. Dragging along an axis, or with Shift, shows that part of it: of time in all
+ * plots that share a `Zoom`, of another quantity or of the ordinate in this one. A double click maximises the plot.
  */
 export class Plot {
   readonly element: HTMLElement
@@ -78,30 +58,27 @@ export class Plot {
   #title = el('h3')
   #legend = el('ul', { class: 'legend' })
   #caption = el('p', { class: 'caption' })
-  #moment = el('li', { class: 'moment' })
+  #moment = el('p', { class: 'moment' })
   #marker = el('div', { class: 'now' })
   #pointer = el('div', { class: 'pointer', hidden: true })
   #uplot?: uPlot
-  #readings: { curve: Curve; output: HTMLElement }[] = []
-  #pointed?: number
+  /** Keys of the drawn axes and series, and of the legend: what is the same stays. */
+  #drawn = ''
+  #listed = ''
+  #readings: { line: Line; output: HTMLElement }[] = []
   #band = el('div', { class: 'band', hidden: true })
-  /** Start of a drag that selects the visible part, px. */
-  #from?: number
-  /** The left end of the curves on the screen, px; requested once where the pointer comes in. */
-  #left?: number
-  /** Visible part if the curves are over another quantity. */
+  /** Start of a drag that selects the visible part: the axis, and the position along it, px. */
+  #from?: { upright: boolean; at: number }
+  /** Corner of the curves on the screen, px; requested once where the pointer comes in. */
+  #corner?: { left: number; top: number }
+  /** Visible part if the curves are over another quantity, and of the ordinate. */
   #own = new Zoom()
-  #closer = el(
-    'button',
-    {
-      type: 'button',
-      class: 'icon',
-      'data-testid': 'closer',
-      title: 'Zoom in (+); drag along the axis, or with Shift, to select a range',
-      'aria-label': 'zoom in',
-      onclick: () => this.#scale(CLOSER),
-    },
-    svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: GLASS })),
+  #upright = new Zoom()
+  /** False while the plot is scrolled out of sight: it is drawn when it comes back. */
+  #seen = true
+  #stale = false
+  #closer = button('closer', 'Zoom in (+); drag along an axis, or with Shift, to select a range', GLASS, () =>
+    this.#scale(CLOSER),
   )
   #whole = el(
     'button',
@@ -111,25 +88,35 @@ export class Plot {
       'data-testid': 'whole',
       title: 'Reset zoom (0)',
       'aria-label': 'reset zoom',
-      onclick: () => this.#see(undefined),
+      onclick: () => this.#reset(),
     },
     'whole',
   )
+  #large = button('maximise', 'Maximise (double click, Enter); Escape restores', CORNERS, () => this.maximise())
   /** Size of the area, px, from its observer. */
   #extent?: { width: number; height: number }
 
+  /** `head` goes next to the title, `tools` next to the zoom. */
   constructor(
     private readonly state: State,
     testId: string,
     head: HTMLElement[] = [],
     private readonly time = new Zoom(),
+    tools: HTMLElement[] = [],
   ) {
     const caption = el('figcaption', {}, this.#title, ...head)
+    this.#large.setAttribute('aria-pressed', 'false')
     this.element = el(
       'figure',
       { class: 'plot', 'data-testid': testId },
       caption,
-      el('div', { class: 'above' }, this.#legend, el('span', { class: 'zoom' }, this.#closer, this.#whole)),
+      el(
+        'div',
+        { class: 'above' },
+        this.#moment,
+        el('span', { class: 'zoom' }, this.#whole, ...tools, this.#closer, this.#large),
+      ),
+      this.#legend,
       this.area,
       this.#caption,
     )
@@ -137,47 +124,118 @@ export class Plot {
       this.#extent = { width: Math.round(contentRect.width), height: Math.round(contentRect.height) }
       this.#uplot?.setSize(this.#size())
     }).observe(this.area)
-    this.area.addEventListener('keydown', (event) => this.#key(event))
+    new IntersectionObserver((all) => {
+      this.#seen = all.at(-1)!.isIntersecting
+      if (this.#seen && this.#stale) this.#render()
+    }).observe(this.element)
+    this.element.addEventListener('keydown', (event) => this.#key(event))
     state.onTime(() => this.#showTime())
-    for (const zoom of [this.time, this.#own]) zoom.onChange(() => this.#zoomed())
+    state.onHover(() => this.#showTime())
+    for (const zoom of [this.time, this.#own, this.#upright]) zoom.onChange(() => this.#zoomed())
   }
 
   /** The canvas of the curves, where there are any. */
   get canvas(): HTMLCanvasElement | undefined {
+    if (this.#stale) this.#render()
     return this.#uplot?.ctx.canvas
   }
 
+  /** Visible parts of abscissa and ordinate, to be shown again later. */
+  get parts(): { across?: Part; upright?: Part } {
+    return { across: this.#own.part, upright: this.#upright.part }
+  }
+
+  set parts({ across, upright }: { across?: Part; upright?: Part }) {
+    this.#own.show(across)
+    this.#upright.show(upright)
+  }
+
   show(content: Content): void {
-    this.#uplot?.destroy()
-    this.#uplot = undefined
-    if (content.over?.label !== this.content.over?.label) this.#own.show(undefined)
-    this.content = { ...content, part: (content.over ? this.#own : this.time).part }
-    this.#pointed = this.#left = this.#from = undefined
-    this.#title.textContent = titled(content.title, content.message ? '' : content.unit)
-    this.#caption.replaceChildren(...prose(content.caption ?? ''))
-    this.area.replaceChildren()
-    this.#readings = []
-    const [first, last] = this.#all()
-    this.#closer.hidden = content.message !== undefined || first === last
-    this.#whole.hidden = this.content.part === undefined || this.#closer.hidden
-    if (content.message) {
-      for (const name of ['role', 'tabindex', 'aria-label']) this.area.removeAttribute(name)
-      this.#legend.replaceChildren()
-      this.area.append(el('p', { class: 'message' }, ...prose(content.message)))
-      return
+    const { over, unit } = this.content
+    if (this.content.title !== '') {
+      if (content.over?.label !== over?.label) this.#own.show(undefined)
+      if (content.unit !== unit) this.#upright.show(undefined)
     }
+    this.content = { ...content, part: (content.over ? this.#own : this.time).part, upright: this.#upright.part }
+    if (this.#seen || document.documentElement.classList.contains('printing')) this.#render()
+    else this.#stale = true
+  }
+
+  #render(): void {
+    const { content } = this
+    this.#stale = false
+    setText(this.#title, titled(content.title, content.message ? '' : content.unit))
+    if (this.#caption.dataset.text !== (content.caption ?? '')) {
+      this.#caption.dataset.text = content.caption ?? ''
+      this.#caption.replaceChildren(...prose(content.caption ?? ''))
+    }
+    const [first, last] = this.#all()
+    this.#closer.hidden = this.#large.hidden = content.message !== undefined || first === last
+    this.#whole.hidden = (content.part ?? content.upright) === undefined || this.#closer.hidden
+    if (content.message) return this.#showMessage(content.message)
     this.area.setAttribute('role', 'application')
     this.area.tabIndex = 0
     const axes = `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}`
-    this.area.setAttribute('aria-label', `${axes}: plus and minus zoom, 0 resets the zoom`)
-    const entries = content.lines.map((line) => this.#entry(line))
-    keepFocus(this.#legend, () => this.#legend.replaceChildren(this.#moment, ...entries))
-    const all = content.over ? faceted(content.over.curve, content) : data(this.state, content)
-    this.#uplot = new uPlot(this.#options(this.content), all, this.area)
+    this.area.setAttribute('aria-label', `${axes}: plus and minus zoom, 0 resets the zoom, Enter maximises`)
+    this.#list(content.lines)
+    const lines = content.lines.filter(({ hidden }) => !hidden)
+    const { unit, over, logarithmic } = content
+    const shapes = lines.map(({ marks }) => marks !== undefined)
+    const key = JSON.stringify([unit, over?.label, over?.unit, logarithmic, shapes, css('--muted'), css('--rule')])
+    const values = this.#data(lines)
+    if (this.#uplot && key === this.#drawn) {
+      lines.forEach(({ width, dash, marks }, k) =>
+        Object.assign(this.#uplot!.series[k + 1], { width: marks ? MARK : (width ?? USUAL_LINE), dash }),
+      )
+      this.#uplot.setData(values)
+      return
+    }
+    this.#drawn = key
+    this.#uplot?.destroy()
+    this.#corner = this.#from = undefined
+    this.area.replaceChildren()
+    this.#uplot = new uPlot(this.#options(lines), values, this.area)
     this.#uplot.over.append(this.#band, this.#marker, this.#pointer)
     this.#follow(this.#uplot)
     this.overlay?.onto(this.#uplot)
     this.#showTime()
+  }
+
+  #showMessage(message: string): void {
+    this.#uplot?.destroy()
+    this.#uplot = undefined
+    this.#drawn = this.#listed = ''
+    for (const name of ['role', 'tabindex', 'aria-label']) this.area.removeAttribute(name)
+    this.#legend.replaceChildren()
+    setText(this.#moment, '')
+    this.#readings = []
+    this.area.replaceChildren(el('p', { class: 'message' }, ...prose(message)))
+  }
+
+  /** Entries of the legend, made anew if they differ in more than their readings. */
+  #list(lines: Line[]): void {
+    const key = JSON.stringify(
+      lines.map(({ label, color, width, dash, hidden, marks, about, pick }) => {
+        return [label, color, width, dash, hidden, marks !== undefined, about, pick !== undefined]
+      }),
+    )
+    if (key !== this.#listed) {
+      this.#listed = key
+      this.#readings = []
+      const entries = lines.map((line, k) => this.#entry(line, k))
+      keepFocus(this.#legend, () => this.#legend.replaceChildren(...entries))
+    } else this.#readings.forEach((reading, k) => (reading.line = lines[k]))
+  }
+
+  #data(lines: Line[]): uPlot.AlignedData {
+    const { content } = this
+    const values = ({ marks, curve }: Line) => marks ?? (content.logarithmic ? positive(curve) : withGaps(curve))
+    const { times } = this.state.report
+    const pairs = lines.map((line) => {
+      const [first, last] = drawnSteps(line, content, times)
+      return [abscissaOf(line, content, times), values(line)].map((all) => all.slice(first, last + 1))
+    })
+    return [null, ...pairs] as unknown as uPlot.AlignedData
   }
 
   /** Puts something over the curves, or takes it away. */
@@ -186,6 +244,14 @@ export class Plot {
     if (!this.#uplot) return
     overlay?.onto(this.#uplot)
     this.#uplot.setData(this.#uplot.data)
+  }
+
+  /** Fills the page with the plot, or returns it to its place. */
+  maximise(wanted = !this.element.classList.contains('maximised')): void {
+    if (wanted === this.element.classList.contains('maximised')) return
+    this.element.classList.toggle('maximised', wanted)
+    this.#large.setAttribute('aria-pressed', String(wanted))
+    this.area.focus({ preventScroll: true })
   }
 
   /** Takes no further part in the page. */
@@ -201,71 +267,97 @@ export class Plot {
     return { width: width || USUAL, height: Math.max(height, LEAST) }
   }
 
-  #options(content: Content): uPlot.Options {
+  #options(lines: Line[]): uPlot.Options {
     const { units } = this.state.report
-    const ink = css('--muted')
+    const { over, logarithmic, unit } = this.content
     const grid = { stroke: css('--rule'), width: 1 }
     const axis = {
-      stroke: ink,
+      stroke: css('--muted'),
       grid,
       ticks: { ...grid, size: 4 },
       font: css('--plot-font'),
       labelFont: css('--plot-font'),
     }
     const values = (_: uPlot, splits: number[]) => splits.map((value) => number(value, 6))
-    const { over, logarithmic } = content
-    const across = (low: number | null, high: number | null) =>
-      this.content.part ?? (over ? padded(low, high) : [low, high])
-    // uPlot finds whole steps only, and over another quantity among all of them.
-    const upright = (low: number | null, high: number | null) => {
-      const [minimum, maximum] = (this.content.part && this.#ordinates()) ?? [low, high]
-      if (logarithmic) return decades(minimum, maximum)
-      const range = padded(...reaching(minimum, maximum, content))
-      return this.overlay?.reach(...range) ?? range
+    const splits = (u: uPlot, _: number, low: number, high: number) => {
+      const count = Math.max(FEWEST_TICKS, Math.floor(u.bbox.height / devicePixelRatio / TICK))
+      return ticks([low, high], count)
     }
     const abscissa = over ? titled(over.label, over.unit) : titled('time', units.time)
     return {
-      mode: over ? 2 : 1,
+      mode: 2,
+      pxAlign: 0,
       hooks: {
-        drawClear: [(u: uPlot) => drawWanted(u, content)],
+        drawClear: [(u: uPlot) => drawWanted(u, this.content)],
         draw: [() => (this.#showTime(), this.overlay?.drawn())],
       },
       ...this.#size(),
       legend: { show: false },
       cursor: { show: false, drag: { x: false, y: false, setScale: false } },
       scales: {
-        x: { time: false, range: (_, low, high) => [...across(low, high)] },
-        y: { ...(logarithmic && LOGARITHMIC), range: (_, low, high) => upright(low, high) },
+        x: { time: false, range: () => [...this.#ranges().x] },
+        y: { ...(logarithmic && LOGARITHMIC), range: () => [...this.#ranges().y] },
       },
       axes: [
         { ...axis, values, size: 30, label: abscissa, labelSize: 18, labelGap: 0, gap: 3 },
         {
           ...axis,
-          values: logarithmic ? powers : values,
+          ...(logarithmic ? { values: powers } : { values, splits }),
           size: AXIS,
-          label: pretty(content.unit) || '1',
+          label: pretty(unit) || '–',
           labelSize: 18,
           gap: 4,
         },
       ],
-      series: [{}, ...content.lines.map(over ? facets : series)],
+      series: [
+        {},
+        ...lines.map((line, k) => facets(line, () => this.#lineAt(k)?.color ?? line.color)),
+      ] as uPlot.Series[],
     }
   }
 
-  #entry(line: Line): HTMLElement {
+  /** Line number `k` of those drawn. */
+  #lineAt(k: number): Line | undefined {
+    return this.content.lines.filter(({ hidden }) => !hidden)[k]
+  }
+
+  /** Ranges of both axes. */
+  #ranges(): { x: Part; y: Part } {
+    const { part, upright, logarithmic, equal } = this.content
+    const x = part ?? this.#all()
+    const [low, high] = drawnRange(this.content, this.state.report.times) ?? [null, null]
+    if (logarithmic) return { x, y: upright ?? decades(low, high) }
+    const usual = padded(...reaching(low, high, this.content))
+    const y = upright ?? this.overlay?.reach(...usual) ?? usual
+    if (!equal || part || upright || this.overlay) return { x, y }
+    const { width, height } = this.#size()
+    const [across, up] = [width - AXIS, height - ABSCISSA]
+    const perPixel = Math.max((x[1] - x[0]) / across, (y[1] - y[0]) / up)
+    const about = ([low, high]: Part, size: number): Part => {
+      const middle = (low + high) / 2
+      return [middle - (perPixel * size) / 2, middle + (perPixel * size) / 2]
+    }
+    return { x: about(x, across), y: about(y, up) }
+  }
+
+  #entry(line: Line, index: number): HTMLElement {
     const output = el('output')
-    this.#readings.push({ curve: line.curve, output })
-    const kind = line.marks ? 'ring' : !line.dash ? '' : line.dash[0] < 3 ? 'dotted' : 'dashed'
-    const swatch = el('span', { class: `swatch ${kind}`, style: `--swatch: ${line.color}` })
-    const parts = [swatch, el('span', { class: 'label' }, line.label), output]
-    const selected = line.pick && (line.width ?? 0) > 2
+    this.#readings.push({ line, output })
+    const parts = [sample(line), el('span', { class: 'label' }, line.label), output]
+    const selected = (line.width ?? 0) > 2
+    const title = [line.label, line.about].filter(Boolean).join(': ')
     return el(
       'li',
-      {},
+      { class: line.hidden ? 'off' : undefined, title },
       line.pick
         ? el(
             'button',
-            { type: 'button', name: line.label, onclick: line.pick, 'aria-pressed': String(!!selected) },
+            {
+              type: 'button',
+              name: line.label,
+              onclick: () => this.content.lines[index]?.pick?.(),
+              'aria-pressed': String(line.hidden === undefined ? selected : !line.hidden),
+            },
             ...parts,
           )
         : el('span', {}, ...parts),
@@ -274,77 +366,114 @@ export class Plot {
 
   /** The pointer reads the curves; pressed, it moves the time, or selects the visible range. */
   #follow({ over, root }: uPlot): void {
-    const axis = root.querySelector<HTMLElement>('.u-axis')!
-    axis.classList.add('abscissa')
-    for (const part of [over, axis]) {
-      part.addEventListener('pointerenter', () => (this.#left = undefined))
+    const [abscissa, ordinate] = root.querySelectorAll<HTMLElement>('.u-axis')
+    abscissa.classList.add('abscissa')
+    ordinate.classList.add('ordinate')
+    for (const part of [over, abscissa, ordinate]) {
+      part.addEventListener('pointerenter', () => (this.#corner = undefined))
       part.addEventListener('pointerdown', (event) => {
         part.setPointerCapture(event.pointerId)
         if (event.button !== 0) return
-        if (part === axis || event.shiftKey) this.#from = this.#across(event)
+        const upright = part === ordinate
+        if (part !== over || event.shiftKey) this.#from = { upright, at: this.#at(event)[upright ? 'top' : 'left'] }
         else this.#move(event)
       })
       part.addEventListener('pointermove', (event) => {
-        if (this.#from !== undefined) this.#stretch(this.#across(event))
+        if (this.#from !== undefined) this.#stretch(this.#at(event))
         else if (part === over) this.#move(event)
       })
-      part.addEventListener('pointerup', (event) => this.#let(this.#across(event)))
+      part.addEventListener('pointerup', (event) => this.#let(this.#at(event)))
       part.addEventListener('pointercancel', () => this.#let())
-      part.addEventListener('dblclick', () => this.#see(undefined))
     }
-    over.addEventListener('pointerleave', () => {
-      this.#pointed = undefined
-      this.#showTime()
+    over.addEventListener('dblclick', () => this.maximise())
+    abscissa.addEventListener('dblclick', () => this.#see(undefined))
+    ordinate.addEventListener('dblclick', () => this.#upright.show(undefined))
+    ordinate.addEventListener('wheel', (event) => {
+      event.preventDefault()
+      this.#scaleUpright(
+        event.deltaY < 0 ? CLOSER ** 0.5 : CLOSER ** -0.5,
+        this.#uplot!.posToVal(this.#at(event).top, 'y'),
+      )
     })
+    over.addEventListener('pointerleave', () => this.state.hover(undefined))
   }
 
-  /** Horizontal position of the pointer, px from the left end of the curves. */
-  #across({ clientX }: PointerEvent): number {
-    return clientX - (this.#left ??= this.#uplot?.over.getBoundingClientRect().left ?? 0)
+  /** Position of the pointer, px from the corner of the curves. */
+  #at({ clientX, clientY }: MouseEvent): { left: number; top: number } {
+    const { left, top } = (this.#corner ??= this.#uplot?.over.getBoundingClientRect() ?? { left: 0, top: 0 })
+    return { left: clientX - left, top: clientY - top }
   }
 
   #move(event: PointerEvent): void {
     if (!this.#uplot) return
-    const x = this.#uplot.posToVal(this.#across(event), 'x')
-    const { over } = this.content
+    const { left, top } = this.#at(event)
+    const { over, equal, lines } = this.content
     const { times } = this.state.report
-    const step = over ? nearestStep(over.curve, x, this.state.step) : stepAt(times, x)
-    this.#pointed = event.buttons === 1 ? undefined : step
+    const x = this.#uplot.posToVal(left, 'x')
+    const along = equal && lines[0]
+    const step = along
+      ? nearestOf(this.#uplot, abscissaOf(along, this.content, times), along.curve, left, top)
+      : over
+        ? nearestStep(over.curve, x, this.state.step)
+        : stepAt(times, x)
     if (event.buttons === 1) {
       this.state.pause()
       this.state.goToStep(step)
-    } else this.#showTime()
+    } else this.state.hover(step)
   }
 
   /** Shows the range that releasing the pointer selects. */
-  #stretch(to: number): void {
-    const [left, right] = between(this.#from!, to)
-    this.#band.hidden = right - left < CLICK
-    Object.assign(this.#band.style, { left: `${left}px`, width: `${right - left}px` })
+  #stretch(at: { left: number; top: number }): void {
+    const { upright, at: from } = this.#from!
+    const [low, high] = between(from, upright ? at.top : at.left)
+    this.#band.hidden = high - low < CLICK
+    const [side, size] = [`${low}px`, `${high - low}px`]
+    Object.assign(
+      this.#band.style,
+      upright
+        ? { left: '0', width: '100%', top: side, height: size }
+        : { left: side, width: size, top: '0', height: '100%' },
+    )
   }
 
-  #let(to?: number): void {
+  #let(to?: { left: number; top: number }): void {
     const from = this.#from
     this.#from = undefined
     this.#band.hidden = true
-    if (from === undefined || to === undefined || Math.abs(to - from) < CLICK) return
-    const value = (at: number) => this.#uplot!.posToVal(at, 'x')
-    this.#see(between(value(from), value(to)))
+    if (from === undefined || to === undefined) return
+    const end = from.upright ? to.top : to.left
+    if (Math.abs(end - from.at) < CLICK) return
+    const value = (at: number) => this.#uplot!.posToVal(at, from.upright ? 'y' : 'x')
+    const part = between(value(from.at), value(end))
+    if (from.upright) this.#upright.show(part)
+    else this.#see(part)
   }
 
   #key(event: KeyboardEvent): void {
     const action = event.ctrlKey || event.metaKey || event.altKey ? undefined : this.#action(event)
-    if (!action || !this.#uplot) return
+    if (!action || !this.#uplot || event.defaultPrevented) return
     event.preventDefault()
+    event.stopPropagation()
     action()
   }
 
-  #action({ key, shiftKey }: KeyboardEvent): (() => void) | undefined {
+  #action({ key, shiftKey, target }: KeyboardEvent): (() => void) | undefined {
+    if (key === 'Escape' && this.element.classList.contains('maximised')) return () => this.maximise(false)
+    if (target !== this.area) return undefined
+    if (key === 'Enter') return () => this.maximise()
     if (key === '+' || key === '=') return () => this.#scale(CLOSER)
     if (key === '-' || key === '_') return () => this.#scale(1 / CLOSER)
-    if (key === '0') return () => this.#see(undefined)
+    if (key === '0') return () => this.#reset()
+    if (!shiftKey) return undefined
+    if (key === 'ArrowUp') return () => this.#scaleUpright(CLOSER)
+    if (key === 'ArrowDown') return () => this.#scaleUpright(1 / CLOSER)
     const share = { ArrowLeft: -ASIDE, ArrowRight: ASIDE }[key]
-    return shiftKey && share ? () => this.content.part && this.#see(moved(this.content.part, share)) : undefined
+    return share ? () => this.content.part && this.#see(moved(this.content.part, share)) : undefined
+  }
+
+  #reset(): void {
+    this.#upright.show(undefined)
+    this.#see(undefined)
   }
 
   /** Scales the visible range of the abscissa, about the moment shown where it is visible. */
@@ -355,11 +484,23 @@ export class Plot {
     this.#see(scaled(part, factor, low <= now && now <= high ? now : (low + high) / 2))
   }
 
+  /** Scales the visible range of the ordinate about a value, by default its middle; never beyond all of it. */
+  #scaleUpright(factor: number, about?: number): void {
+    const { min, max } = this.#uplot!.scales.y
+    if (this.content.logarithmic || min == null || max == null) return
+    const part = scaled([min, max], factor, about ?? (min + max) / 2)
+    const [low, high] = drawnRange(this.content, this.state.report.times) ?? [min, max]
+    const whole = padded(low, high)
+    this.#upright.show(part[1] - part[0] < whole[1] - whole[0] ? part : undefined)
+  }
+
   /** The whole abscissa. */
   #all(): Part {
-    const { over } = this.content
-    const [low, high] = extent([over?.curve ?? this.state.report.times]) ?? [0, 0]
-    return over ? padded(low, high) : [low, high]
+    const { over, lines } = this.content
+    const { times } = this.state.report
+    if (!over) return extent([times]) ?? [0, 0]
+    const drawn = lines.filter(({ hidden }) => !hidden).map((line) => abscissaOf(line, this.content, times))
+    return padded(...(extent([over.curve, ...drawn]) ?? [0, 0]))
   }
 
   #see(part: Part | undefined): void {
@@ -369,43 +510,87 @@ export class Plot {
   }
 
   #zoomed(): void {
-    if (!this.#uplot) return
     this.content.part = (this.content.over ? this.#own : this.time).part
+    this.content.upright = this.#upright.part
+    if (!this.#uplot) return
     // A button that goes takes the focus with it.
     if (document.activeElement === this.#whole) this.#closer.focus()
-    this.#whole.hidden = this.content.part === undefined
+    this.#whole.hidden = (this.content.part ?? this.content.upright) === undefined
     this.#uplot.setData(this.#uplot.data)
   }
 
-  #ordinates(): [number, number] | undefined {
-    const { lines, over, part, logarithmic } = this.content
-    return ordinates(
-      lines.map(({ curve, marks }) => marks ?? curve),
-      over?.curve ?? this.state.report.times,
-      part,
-      logarithmic,
-    )
-  }
-
   #showTime(): void {
-    if (!this.#uplot) return
+    if (!this.#uplot || !this.#seen) return
     const { over, unit } = this.content
-    const at = (step: number) => (over ? valueAt(over.curve, step) : valueAt(this.state.report.times, step))
+    const { times, units } = this.state.report
+    const at = (step: number) => valueAt(over?.curve ?? times, step)
     const [low, high] = this.content.part ?? [-Infinity, Infinity]
+    const { hovered } = this.state
     const place = (element: HTMLElement, step: number | undefined) => {
       const x = step === undefined ? NaN : at(step)
       element.hidden = !(low <= x && x <= high)
       if (!element.hidden) element.style.left = `${this.#uplot!.valToPos(x, 'x')}px`
     }
     place(this.#marker, this.state.step)
-    place(this.#pointer, this.#pointed)
-    const step = this.#pointed ?? this.state.step
-    this.#moment.textContent = over
-      ? `${over.label} ${figure4(at(step), over.unit)}`
-      : figure4(at(step), this.state.report.units.time)
-    this.#moment.classList.toggle('pointed', this.#pointed !== undefined)
-    for (const { curve, output } of this.#readings) output.textContent = figure4(valueAt(curve, step), unit)
+    place(this.#pointer, hovered)
+    const step = hovered ?? this.state.step
+    setText(this.#moment, over ? `${over.label} ${figure4(at(step), over.unit)}` : figure4(at(step), units.time))
+    this.#moment.classList.toggle('pointed', hovered !== undefined)
+    for (const { line, output } of this.#readings) {
+      const value = line.free ? interpolated(line, at(step)) : valueAt(line.curve, step)
+      setText(output, figure4(value, unit))
+    }
   }
+}
+
+function button(testId: string, title: string, path: string, onclick: () => void): HTMLButtonElement {
+  const [label] = title.toLowerCase().split(/[;(]/)
+  return el(
+    'button',
+    { type: 'button', class: 'icon', 'data-testid': testId, title, 'aria-label': label.trim(), onclick },
+    svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: path })),
+  )
+}
+
+/** A piece of the line, as it is drawn. */
+function sample({ color, dash, width, marks }: Line): SVGElement {
+  const style = {
+    stroke: color,
+    'stroke-width': Math.min(width ?? USUAL_LINE, 3),
+    'stroke-dasharray': dash?.join(' ') ?? '',
+  }
+  const shape = marks
+    ? svg('circle', { cx: SAMPLE / 2, cy: 5, r: RADIUS, ...style })
+    : svg('path', { d: `M0 5H${SAMPLE}`, ...style })
+  return svg('svg', { class: 'sample', width: SAMPLE, height: 10, 'aria-hidden': 'true' }, shape)
+}
+
+/** Round numbers of an ordinate, at least three. */
+export function ticks(range: [number, number], count: number): number[] {
+  for (let wanted = count; ; wanted++) {
+    const found = linearAxis(range, 0, 1, wanted).ticks.map(({ value }) => value)
+    if (found.length >= FEWEST_TICKS || wanted > 4 * count) return found
+  }
+}
+
+/** The step of a path that is nearest to a position, px. */
+function nearestOf(u: uPlot, xs: Curve, ys: Curve, left: number, top: number): number {
+  const away = (k: number) => Math.hypot(u.valToPos(xs[k], 'x') - left, u.valToPos(ys[k], 'y') - top)
+  let [best, least] = [0, Infinity]
+  for (let k = 0; k < xs.length; k++) {
+    const distance = away(k)
+    if (distance < least) [best, least] = [k, distance]
+  }
+  return best
+}
+
+/** The value of a line with its own points at an abscissa; NaN beyond its ends. */
+function interpolated({ over, curve }: Line, x: number): number {
+  const xs = over ?? new Float32Array()
+  for (let k = 1; k < xs.length; k++)
+    if ((xs[k - 1] - x) * (xs[k] - x) <= 0)
+      return curve[k - 1] + ((curve[k] - curve[k - 1]) * (x - xs[k - 1])) / (xs[k] - xs[k - 1] || 1)
+  return NaN
 }
 
 /** Four digits with the unit. */
@@ -445,28 +630,22 @@ function drawWanted(u: uPlot, { wanted = [] }: Content): void {
   ctx.restore()
 }
 
-function series(line: Line): uPlot.Series {
-  const width = line.width ?? 1.8
-  if (!line.marks) return { stroke: line.color, width, dash: line.dash, points: { show: false } }
-  return {
-    stroke: line.color,
-    paths: () => null,
-    points: { show: true, size: 7, width: 1.5, stroke: line.color, fill: css('--page') },
-  }
-}
-
-function data(state: State, { lines, logarithmic }: Content): uPlot.AlignedData {
-  const values = ({ marks, curve }: Line) => marks ?? (logarithmic ? positive(curve) : withGaps(curve))
-  return [Array.from(state.report.times), ...lines.map(values)]
-}
+/** Widths of lines and of the circles of marks, px. */
+const USUAL_LINE = 1.8
+const MARK = 1.5
+/** Radius of the circles, px. */
+const RADIUS = 3.5
 
 /** A line over an abscissa that may go back and forth. */
-function facets(line: Line): uPlot.Series {
+function facets(line: Line, color: () => string): uPlot.Series {
   const auto = ['x', 'y'].map((scale) => ({ scale, auto: true }))
   const marks = line.marks !== undefined
   const paths: uPlot.Series.PathBuilder = (u, index) => {
     const [xs, ys] = u.data[index] as unknown as [Curve, (number | null)[]]
     const path = new Path2D()
+    const across = placer(u, 'x')
+    const up = placer(u, 'y')
+    const radius = RADIUS * devicePixelRatio
     let drawing = false
     for (let k = 0; k < xs.length; k++) {
       const y = ys[k]
@@ -474,8 +653,8 @@ function facets(line: Line): uPlot.Series {
         drawing = false
         continue
       }
-      const [left, top] = [u.valToPos(xs[k], 'x', true), u.valToPos(y, 'y', true)]
-      if (marks) path.moveTo(left + RADIUS, top), path.arc(left, top, RADIUS, 0, 2 * Math.PI)
+      const [left, top] = [across(xs[k]), up(y)]
+      if (marks) path.moveTo(left + radius, top), path.arc(left, top, radius, 0, 2 * Math.PI)
       else if (drawing) path.lineTo(left, top)
       else path.moveTo(left, top)
       drawing = true
@@ -483,8 +662,8 @@ function facets(line: Line): uPlot.Series {
     return { stroke: path }
   }
   return {
-    stroke: line.color,
-    width: marks ? 1.5 : (line.width ?? 1.8),
+    stroke: color,
+    width: marks ? MARK : (line.width ?? USUAL_LINE),
     dash: line.dash,
     paths,
     facets: auto,
@@ -492,12 +671,13 @@ function facets(line: Line): uPlot.Series {
   }
 }
 
-/** Radius of the circles over another quantity than time, px. */
-const RADIUS = 3.5
-
-function faceted(over: Curve, { lines }: Content): uPlot.AlignedData {
-  const pair = ({ marks, curve }: Line) => [over, marks ?? withGaps(curve)]
-  return [null, ...lines.map(pair)] as unknown as uPlot.AlignedData
+/** From values to positions on the canvas, px: a linear axis needs two positions only. */
+function placer(u: uPlot, name: 'x' | 'y'): (value: number) => number {
+  const { min, max, distr } = u.scales[name]
+  if (distr === LOGARITHMIC.distr || min == null || max == null) return (value) => u.valToPos(value, name, true)
+  const from = u.valToPos(min, name, true)
+  const factor = (u.valToPos(max, name, true) - from) / (max - min)
+  return (value) => from + factor * (value - min)
 }
 
 const LOGARITHMIC: uPlot.Scale = { distr: 3, log: 10 }

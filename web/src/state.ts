@@ -1,8 +1,9 @@
 import { valueAt, stepAt, type Curve } from './curve'
-import { effects, firstQuantity } from './effect'
+import { effects } from './effect'
 import type { VariableSetting } from './engine/protocol'
 import type { Design, Order, Report } from './report'
 import type { Part } from './scene/drawable'
+import { abscissaNamed, type Sheet, sheetOf } from './sheet'
 
 export interface Choice {
   quantity: number
@@ -22,6 +23,21 @@ export interface Choice {
   forces: boolean
   /** The design that the present one is compared with; the one as loaded where there is none. */
   compared?: number
+  /** Further designs in the plots: indices into the state's designs. */
+  overlays?: readonly number[]
+}
+
+/** Choices by names, which hold for another text of the model. */
+export interface ChoiceMemory {
+  quantity?: string
+  over?: string
+  variable?: string
+  order: Order
+  labels: boolean
+  forces: boolean
+  /** Names of the body and the hardpoint. */
+  trace?: [body: string, point: string]
+  time: number
 }
 
 /**
@@ -53,6 +69,8 @@ export class State {
   #onChoice: (() => void)[] = []
   #onTime: (() => void)[] = []
   #onPoint: (() => void)[] = []
+  #onHover: (() => void)[] = []
+  #hovered?: number
   #onChange: (() => void)[] = []
   #pointed?: number
   #solved?: Design
@@ -71,15 +89,60 @@ export class State {
     this.#ending.abort()
   }
 
+  /** Plots that the page opens with. */
+  readonly sheet: Sheet
+
   constructor(readonly report: Report) {
-    const quantity = firstQuantity(report)
+    const sheet = sheetOf(report)
+    const quantity = sheet.plots[0]?.y[0] ?? 0
     const variable =
       effects(report, quantity, 0)[0]?.variable.index ??
       report.variables.find(({ sensitivities }) => sensitivities.size > 0)?.index ??
       0
     const exact = report.designs.find(({ kind }) => kind === 'exact')
     this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
-    this.choice = { quantity, variable, order: 0, over: report.over ?? undefined, labels: false, forces: true }
+    this.sheet = sheet
+    this.choice = {
+      quantity,
+      variable,
+      order: 0,
+      over: sheet.plots[0]?.over,
+      labels: false,
+      forces: true,
+    }
+  }
+
+  /** Choices, to be made again on another page. */
+  get memory(): ChoiceMemory {
+    const { quantities, variables, bodies } = this.report
+    const { quantity, variable, order, over, labels, forces, trace } = this.choice
+    return {
+      quantity: quantities[quantity]?.name,
+      over: over === undefined ? undefined : quantities[over]?.name,
+      variable: variables[variable]?.name,
+      ...{ order, labels, forces },
+      trace: trace && [bodies[trace[0]].name, bodies[trace[0]].labels[trace[1]]],
+      time: this.time,
+    }
+  }
+
+  /** Makes the choices of another page that are possible here, before anything of this one is shown. */
+  recall({ quantity, over, variable, order, labels, forces, trace, time }: ChoiceMemory): void {
+    const { quantities, variables, bodies } = this.report
+    const named = (list: readonly { name: string }[], name: string | undefined, otherwise: number) => {
+      const found = list.findIndex((one) => one.name === name)
+      return found < 0 ? otherwise : found
+    }
+    const body = bodies.findIndex(({ name }) => name === trace?.[0])
+    const point = bodies[body]?.labels.indexOf(trace?.[1] ?? '') ?? -1
+    Object.assign(this.choice, {
+      quantity: named(quantities, quantity, this.choice.quantity),
+      variable: named(variables, variable, this.choice.variable),
+      over: abscissaNamed(this.report, over),
+      ...{ order, labels, forces },
+      trace: point >= 0 ? [body, point] : undefined,
+    })
+    this.step = stepAt(this.report.times, time)
   }
 
   get lastStep(): number {
@@ -101,6 +164,31 @@ export class State {
       this.changes[index] === 0 ? [] : [{ name, by: this.changes[index] }],
     )
     return [...changed, ...[...this.moves].map(([name, by]) => ({ name, by }))]
+  }
+
+  /**
+   * Name of the design that the numbers of `sensitivityReport` belong to, if it is not the present one: they stand
+   * under this heading.
+   */
+  get outdated(): string | undefined {
+    if (this.hasCurrentSensitivities) return undefined
+    return this.#sensitivities ? 'Design before the last change' : 'Original design'
+  }
+
+  /** Step under the pointer in some plot; all plots read it. */
+  get hovered(): number | undefined {
+    return this.#hovered
+  }
+
+  /** The pointer is at a step of some plot, or leaves it. */
+  hover(step: number | undefined): void {
+    if (step === this.#hovered) return
+    this.#hovered = step
+    for (const listener of this.#onHover) listener()
+  }
+
+  onHover(listener: () => void): void {
+    this.#onHover.push(listener)
   }
 
   /** Indicates one drawn design from another. */

@@ -20,6 +20,13 @@ export const inflated = (base64: string): Promise<Uint8Array<ArrayBuffer>> => in
 /** The bytes that were deflated and written in base 85, as `crates/hardpoint-report/build.rs` does. */
 export const inflatedOf85 = (text: string): Promise<Uint8Array<ArrayBuffer>> => inflate(bytesOf85(text))
 
+/** A text, deflated and written in base64. */
+export async function deflated(text: string): Promise<string> {
+  const packed = new Blob([text]).stream().pipeThrough(new CompressionStream('deflate-raw'))
+  const bytes = new Uint8Array(await new Response(packed).arrayBuffer())
+  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''))
+}
+
 async function inflate(deflated: Uint8Array<ArrayBuffer>): Promise<Uint8Array<ArrayBuffer>> {
   const plain = new Blob([deflated]).stream().pipeThrough(new DecompressionStream('deflate-raw'))
   return new Uint8Array(await new Response(plain).arrayBuffer())

@@ -84,18 +84,25 @@ export function stepsWithin(abscissa: Curve, [low, high]: Part): Set<number> {
   return steps
 }
 
-/** Least and largest of the values that are seen; where there are none, of all. */
-export function ordinates(
-  curves: ArrayLike<number | null>[],
-  abscissa: Curve,
+/**
+ * Least and largest of the values that are seen, each list with its abscissas; where there are none, of all.
+ */
+export function seenRange(
+  curves: readonly (readonly [values: ArrayLike<number | null>, abscissa: Curve])[],
   part: Part | undefined,
   positive = false,
 ): [number, number] | undefined {
   const seen =
     part &&
     extent(
-      curves.map((values) => inside(values, abscissa, part)),
+      curves.map(([values, abscissa]) => inside(values, abscissa, part)),
       positive,
     )
-  return seen ?? extent(curves, positive)
+  return (
+    seen ??
+    extent(
+      curves.map(([values]) => values),
+      positive,
+    )
+  )
 }

@@ -58,6 +58,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   beforeAll(async () => {
     visited = await visit(browser, models[name], { engine: false })
     page = visited.page
+    await page.getByTestId('plot-0').getByTestId('over').selectOption('')
   })
   afterAll(() => page?.context().close())
 

@@ -38,6 +38,8 @@ export async function picture(page: Page): Promise<Buffer> {
 
 /** Contents of a curve's canvas: number of colours, and a sum that changes with the picture. */
 export async function curve(page: Page, id: string): Promise<{ colours: number; sum: number }> {
+  // A plot out of sight is drawn when it is seen again.
+  await page.getByTestId(id).scrollIntoViewIfNeeded()
   await drawn(page)
   return page
     .getByTestId(id)

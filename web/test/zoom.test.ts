@@ -1,5 +1,5 @@
 import { expect, test, vi } from 'vitest'
-import { atLeast, between, inside, moved, ordinates, scaled, stepsWithin, within, Zoom } from '../src/zoom'
+import { atLeast, between, inside, moved, seenRange, scaled, stepsWithin, within, Zoom } from '../src/zoom'
 
 const curve = (...values: number[]) => Float32Array.from(values)
 
@@ -44,11 +44,21 @@ test('values within a part are those of its steps and those at its edges', () =>
 
 test('the vertical axis is that of what is seen; of everything where nothing is', () => {
   const [x, y] = [curve(0, 1, 2, 3), curve(1, 2, 50, NaN)]
-  expect(ordinates([y], x, undefined)).toEqual([1, 50])
-  expect(ordinates([y], x, [0, 1])).toEqual([1, 2])
-  expect(ordinates([y], x, [2.5, 2.9])).toEqual([1, 50])
-  expect(ordinates([curve(-1, 2, 3, 4)], x, [0, 1], true)).toEqual([2, 2])
-  expect(ordinates([[null, 2, null, null]], x, [0.5, 1.5])).toEqual([2, 2])
+  expect(seenRange([[y, x]], undefined)).toEqual([1, 50])
+  expect(seenRange([[y, x]], [0, 1])).toEqual([1, 2])
+  expect(seenRange([[y, x]], [2.5, 2.9])).toEqual([1, 50])
+  expect(seenRange([[curve(-1, 2, 3, 4), x]], [0, 1], true)).toEqual([2, 2])
+  expect(seenRange([[[null, 2, null, null], x]], [0.5, 1.5])).toEqual([2, 2])
+  // Each curve has its own abscissa.
+  expect(
+    seenRange(
+      [
+        [y, x],
+        [curve(7, 8), curve(0.5, 20)],
+      ],
+      [0, 1],
+    ),
+  ).toEqual([1, 7 + 0.5 / 19.5])
 })
 
 test('the steps of a part are those whose stretches are seen', () => {

@@ -1,7 +1,6 @@
 import { type Curve, decades, padded } from '../curve'
 import { pretty, titled } from '../format'
-import type { Content, Line } from '../plot'
-import { ordinates } from '../zoom'
+import { abscissaOf, type Content, drawnRange, drawnSteps, type Line } from '../content'
 import { type Axis, extent, linearAxis, logarithmicAxis } from './axis'
 import { escaped, round, svgFile, tag } from './markup'
 
@@ -27,19 +26,21 @@ const FONT = 'system-ui, sans-serif'
 const RADIUS = 3
 
 /** A plot as vectors with text: the same content as on the page, at a size that suits a document. */
-export function plotSvg(content: Content, times: Curve, timeUnit: string, paper: Paper): Blob {
-  const abscissa = content.over?.curve ?? times
+export function plotSvg(shown: Content, times: Curve, timeUnit: string, paper: Paper): Blob {
+  const content = { ...shown, lines: shown.lines.filter(({ hidden }) => !hidden) }
+  const { lines } = content
+  const all = lines.length > 0 ? lines.map((line) => abscissaOf(line, content, times)) : [content.over?.curve ?? times]
   const label = content.over ? titled(content.over.label, content.over.unit) : titled('time', timeUnit)
-  const keys = legend(content.lines)
+  const keys = legend(lines)
   const bottom = HEIGHT - BOTTOM
   const height = HEIGHT + keys.height
-  const [first, last] = extent([abscissa]) ?? NOTHING
+  const [first, last] = extent(content.over ? all : [times]) ?? NOTHING
   const whole =
     first === null || last === null || content.over || first === last
       ? padded(first, last)
       : ([first, last] as [number, number])
   const x = linearAxis(content.part ? [...content.part] : whole, LEFT, WIDTH - RIGHT, 8)
-  const y = vertical(content, abscissa, bottom)
+  const y = vertical(content, times, bottom)
 
   const text = (at: [number, number], words: string, more: Record<string, string | number> = {}) =>
     tag('text', { x: at[0], y: at[1], fill: paper.muted, ...more }, escaped(words))
@@ -64,7 +65,7 @@ export function plotSvg(content: Content, times: Curve, timeUnit: string, paper:
         text([LEFT - 6, y.at(value) + 4], words, { 'text-anchor': 'end' }),
       ]),
       text([(LEFT + WIDTH - RIGHT) / 2, bottom + 36], label, { 'text-anchor': 'middle' }),
-      text([16, middle], pretty(content.unit) || '1', {
+      text([16, middle], pretty(content.unit) || '–', {
         'text-anchor': 'middle',
         transform: `rotate(-90 16 ${round(middle)})`,
       }),
@@ -77,7 +78,7 @@ export function plotSvg(content: Content, times: Curve, timeUnit: string, paper:
           height: bottom - TOP,
           viewBox: `${LEFT} ${TOP} ${WIDTH - LEFT - RIGHT} ${bottom - TOP}`,
         },
-        ...content.lines.map((line) => drawn(line, abscissa, x, y)),
+        ...lines.map((line) => drawn(line, abscissaOf(line, content, times), drawnSteps(line, content, times), x, y)),
       ),
       tag('rect', {
         x: LEFT,
@@ -87,7 +88,7 @@ export function plotSvg(content: Content, times: Curve, timeUnit: string, paper:
         fill: 'none',
         stroke: paper.rule,
       }),
-      ...content.lines.map((line, k) => {
+      ...lines.map((line, k) => {
         const [left, top] = [keys.places[k][0], HEIGHT + keys.places[k][1]]
         return drawnKey(line, left, top) + text([left + SWATCH + 6, top + 4], line.label, { fill: paper.text })
       }),
@@ -95,24 +96,25 @@ export function plotSvg(content: Content, times: Curve, timeUnit: string, paper:
   )
 }
 
-function vertical({ lines, part, logarithmic }: Content, abscissa: Curve, bottom: number): Axis {
-  const [low, high] =
-    ordinates(
-      lines.map(({ curve, marks }) => marks ?? curve),
-      abscissa,
-      part,
-      logarithmic,
-    ) ?? NOTHING
+function vertical(content: Content, times: Curve, bottom: number): Axis {
+  const { logarithmic, upright } = content
+  const [low, high] = upright ?? drawnRange(content, times) ?? NOTHING
   if (logarithmic) return logarithmicAxis(decades(low, high), bottom, TOP)
-  return linearAxis(padded(low, high), bottom, TOP, 6)
+  return linearAxis(upright ? [...upright] : padded(low, high), bottom, TOP, 6)
 }
 
 /** A curve with gaps where it has no value. */
-function drawn({ color, curve, marks, width, dash }: Line, abscissa: Curve, x: Axis, y: Axis): string {
+function drawn(
+  { color, curve, marks, width, dash }: Line,
+  abscissa: Curve,
+  [first, last]: [number, number],
+  x: Axis,
+  y: Axis,
+): string {
   let path = ''
   let drawing = false
   const circles: string[] = []
-  for (let k = 0; k < abscissa.length; k++) {
+  for (let k = first; k <= last; k++) {
     const value = marks ? marks[k] : curve[k]
     const [left, top] = [x.at(abscissa[k]), y.at(value ?? NaN)]
     if (!Number.isFinite(left + top)) {

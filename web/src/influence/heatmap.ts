@@ -2,6 +2,8 @@ import './influence.css'
 import { css, el, onSchemeChange } from '../dom'
 import { number, pretty } from '../format'
 import { derivativeUnit, ORDERS, type Quantity } from '../report'
+import { originHeading } from '../page/checks'
+import { whileSeen } from '../page/tabs'
 import type { State } from '../state'
 import { Cells, grid, knownGroups, type Grid } from './cells'
 import { Scale, strong } from './colours'
@@ -51,6 +53,8 @@ class HeatMap {
   /** Under the pointer, or where the arrow keys went. */
   #pointed?: Place
   #frame = 0
+  /** Key of the choices that were drawn. */
+  #shown = ''
 
   constructor(private readonly state: State) {
     const known = knownGroups(state.report)
@@ -88,6 +92,7 @@ class HeatMap {
       'section',
       { class: 'heat', 'data-testid': 'heat' },
       el('h2', {}, 'Sensitivity map', this.#title),
+      originHeading(state),
       el(
         'p',
         { class: 'lead' },
@@ -107,7 +112,12 @@ class HeatMap {
       this.#size = { width: contentRect.width, height: contentRect.height }
       this.#layOut()
     }).observe(this.#window)
-    state.onChoice(() => this.#chosen())
+    whileSeen(
+      this.element,
+      (listener) => state.onChoice(listener),
+      () => this.#chosen(),
+      state.ended,
+    )
     onSchemeChange(() => {
       this.#scale = undefined
       this.#draw()
@@ -116,7 +126,10 @@ class HeatMap {
   }
 
   #chosen(): void {
-    const { order } = this.state.choice
+    const { order, quantity, variable } = this.state.choice
+    const key = `${order} ${quantity} ${variable}`
+    if (key === this.#shown && this.#cells.report === this.state.sensitivityReport) return
+    this.#shown = key
     if (order !== this.#cells.order || this.#cells.report !== this.state.sensitivityReport)
       this.#cells = new Cells(this.state.sensitivityReport, order)
     this.#layOut()

@@ -3,6 +3,8 @@ import { el, keepFocus, prose } from '../dom'
 import { figure } from '../format'
 import { derivativeUnit, orderedName, ranking, type Variable } from '../report'
 import type { State } from '../state'
+import { originHeading } from '../page/checks'
+import { whileSeen } from '../page/tabs'
 import { badge } from '../variables'
 
 /** Height of a row, px; the style sheet holds rows to it. */
@@ -35,12 +37,18 @@ export function rankingTable(state: State): HTMLElement {
   const [above, below] = [el('div'), el('div')]
   let rows: Ranking[] = []
   let range = [0, 0]
+  /** Key of the shown rows. */
+  let shown = ''
+  let shownReport = state.sensitivityReport
   /** Scroll position and height of the window, px. */
   let top = 0
   let height = FIRST_ROWS * ROW
   let frame = 0
 
   const show = () => {
+    const key = [choice.quantity, choice.order, choice.variable, filter.value].join(' ')
+    if (key === shown && shownReport === state.sensitivityReport) return
+    ;[shown, shownReport] = [key, state.sensitivityReport]
     const quantity = report.quantities[choice.quantity]
     heading.textContent = quantity ? `Sensitivities of ${orderedName(quantity, choice.order)}` : ''
     const words = filter.value.toLowerCase()
@@ -79,16 +87,18 @@ export function rankingTable(state: State): HTMLElement {
     height = contentRect.height
     place()
   }).observe(scroll)
-  state.onChoice(show)
   show()
-  return el(
+  const element = el(
     'section',
     { class: 'ranking', 'data-testid': 'ranking' },
     heading,
+    originHeading(state),
     el('p', { class: 'lead' }, 'Largest magnitude over time; bars compare variables of the same unit.'),
     report.variables.length > FIRST_ROWS && el('label', { class: 'field' }, el('span', {}, 'Filter'), filter),
     scroll,
   )
+  whileSeen(element, (listener) => state.onChoice(listener), show, state.ended)
+  return element
 }
 
 /** Within each unit the largest first; then those that cannot be followed. */

@@ -1,49 +1,95 @@
-import { el } from '../dom'
-import { number, pretty } from '../format'
+import { slope, slopeAlone, stepAt } from '../curve'
+import { el, setText } from '../dom'
+import { extent } from '../export/axis'
+import { number, per, pretty } from '../format'
+import { aboutQuantity } from '../glossary'
 import type { Value } from '../payload'
+import type { Report } from '../report'
 import { noise, rounded } from '../rounding'
+import { hasOneFreedom, isTravel, onSideOf } from '../sheet'
 import type { State } from '../state'
+import { moverOf } from './contents'
 import { pointing } from './pointing'
 
 type Target = [low: number | null, high: number | null]
 
 /** Digits of a number on a card. */
 const DIGITS = 4
+/** With more cards than this, those of quantities that the sheet does not show are behind a button. */
+const MANY = 14
+/** Kinds of values that are taken at one position of the whole motion. */
+const STATIC = ['design configuration', 'at the start']
+
+/** A value with its element. */
+interface Card {
+  element: HTMLElement
+  show: () => void
+}
 
 /**
- * Metrics of the design, each with its change and its target; a click selects their quantity.
+ * Metrics of the design, then its measures with their range over the motion and their slope over wheel travel, each with
+ * the change to the reference design and the target; a click selects the quantity.
  */
 export function cards(state: State): HTMLElement {
-  const shown = state.report.values.map((value, index) => card(state, value, index))
-  const sync = () => {
-    for (const { show } of shown) show()
+  const { values } = state.report
+  const shown = values.map((value, index) => card(state, value, index))
+  const sheet = new Set(state.sheet.plots.flatMap(({ y }) => y))
+  const minor = values.map((value) => isStatic(value) && !value.target && !sheet.has(value.quantity ?? -1))
+  const count = minor.filter(Boolean).length
+  const more = el('button', {
+    type: 'button',
+    class: 'card more',
+    'data-testid': 'more-cards',
+    onclick: () => unfold(more.getAttribute('aria-expanded') !== 'true'),
+  })
+  const unfold = (all: boolean) => {
+    minor.forEach((isMinor, k) => (shown[k].element.hidden = isMinor && !all))
+    more.setAttribute('aria-expanded', String(all))
+    more.textContent = all ? 'fewer' : `+ ${count} more`
+    sync()
   }
+  const sync = () => {
+    for (const { show, element } of shown) if (!element.hidden) show()
+  }
+  const folds = values.length > MANY && count > 0 && count < values.length
+  more.hidden = !folds
+  unfold(!folds)
   state.onChoice(sync)
-  sync()
+  const order = [...shown.keys()].sort((a, b) => Number(minor[a]) - Number(minor[b]) || a - b)
   return el(
     'section',
     { class: 'values', 'aria-label': 'Values', 'data-testid': 'values', tabindex: -1 },
-    ...shown.map(({ element }) => element),
+    ...order.map((k) => shown[k].element),
+    more,
   )
 }
 
-function card(state: State, value: Value, index: number): { element: HTMLElement; show: () => void } {
+/** True for the value of a measure at one position, whose curve says more. */
+function isStatic({ what, quantity }: Value): boolean {
+  return quantity !== null && STATIC.includes(what)
+}
+
+function card(state: State, value: Value, index: number): Card {
   const unit = pretty(value.unit)
   const figure = el('span', { class: 'figure-now', 'data-testid': 'card-value' })
   const change = el('span', { class: 'delta', 'data-testid': 'card-change' })
   const scale = el('span', { class: 'target', 'data-testid': 'card-target', 'aria-hidden': 'true' })
   const verdict = el('span', { class: 'hidden' })
+  const motion = el('span', { class: 'card-motion', 'data-testid': 'card-motion' })
+  const what = whatOf(state.report, value)
+  const about = value.quantity === null ? undefined : aboutQuantity(state.report.quantities[value.quantity].name)
   const element = el(
     'button',
     {
       type: 'button',
       class: 'card',
       'data-testid': `card-${value.name}`,
-      title: `${value.name}, ${value.what}`,
+      title: `${value.name} ${what}${about ? `: ${about}` : ''}`,
       onclick: () => select(state, value),
     },
-    el('span', { class: 'card-name' }, el('b', {}, value.name), ` ${value.what}`),
+    el('span', { class: 'card-name' }, el('b', {}, value.name), ` ${what}`),
     el('span', { class: 'card-figures' }, figure, el('span', { class: 'unit' }, unit), change),
+    isStatic(value) ? motion : undefined,
     value.target ? scale : undefined,
     verdict,
   )
@@ -51,16 +97,64 @@ function card(state: State, value: Value, index: number): { element: HTMLElement
   const show = () => {
     const now = state.value(index)
     const before = state.former ? (state.former.values[index] ?? null) : value.value
-    figure.textContent = now === null ? '–' : number(rounded(now), DIGITS)
+    setText(figure, now === null ? '–' : number(rounded(now), DIGITS))
     const by = now === null || before === null ? null : now - before
-    const known = state.isCompared && by !== null
+    const known = state.isCompared && by !== null && (!isStatic(value) || Math.abs(by) > noise(now!))
     change.hidden = !known
     change.className = 'delta'
     if (known) showChange(change, now!, by!, value.target)
+    if (isStatic(value)) setText(motion, motionText(state, value))
     element.setAttribute('aria-pressed', String(value.quantity !== null && value.quantity === state.choice.quantity))
-    if (value.target) verdict.textContent = showTarget(scale, value.target, now)
+    if (value.target) setText(verdict, showTarget(scale, value.target, now))
   }
   return { element, show }
+}
+
+/** `at ride height` for a wheel, `at design position` for a linkage; other kinds as they are. */
+function whatOf({ wheels }: Report, { what }: Value): string {
+  if (what !== STATIC[0]) return what
+  return wheels.length > 0 ? 'at ride height' : 'at design position'
+}
+
+/** Minimum and maximum over the motion with their changes, and the slope over wheel travel. */
+function motionText(state: State, { quantity, time, unit }: Value): string {
+  const index = quantity!
+  const range = extent([state.curve(index, 0)])
+  if (!range) return ''
+  const reference = state.former?.quantities[index]?.[0] ?? state.report.quantities[index].curves[0]
+  const before = state.isCompared ? extent([reference]) : undefined
+  const size = Math.max(...range.map(Math.abs))
+  const end = (value: number, former: number | undefined) => {
+    const by = former === undefined ? 0 : value - former
+    const changed = Math.abs(by) > noise(size) ? ` (${by > 0 ? '+' : ''}${number(by, 2)})` : ''
+    return `${number(rounded(value, size), 3)}${changed}`
+  }
+  const ends = range[1] - range[0] > noise(size) ? `${end(range[0], before?.[0])} … ${end(range[1], before?.[1])}` : ''
+  const gradient = slopeText(state, index, time ?? 0, unit)
+  return [ends, gradient].filter(Boolean).join(' · ')
+}
+
+/**
+ * Slope of a quantity over wheel travel at a time: of the motion itself if it has one degree of freedom, else while the
+ * driver that moves the wheel moves alone, as far as that is known of the present design.
+ */
+function slopeText(state: State, index: number, time: number, unit: string): string {
+  const { report, sensitivityReport } = state
+  const travel = report.quantities.find(({ name }) => isTravel(name))?.index
+  const over = travel === undefined ? undefined : onSideOf(report, travel, index)
+  if (over === undefined || over === index) return ''
+  const step = Math.round(stepAt(report.times, time))
+  let value = NaN
+  if (hasOneFreedom(report)) {
+    const orders = (quantity: number) => [0, 1, 2].map((order) => state.curve(quantity, order as 0))
+    const [y, x] = [orders(index), orders(over)]
+    if (y[1].length > 0 && y[2].length > 0) value = slope([y[0], y[1], y[2]], [x[0], x[1], x[2]])[step]
+  } else if (state.outdated === undefined) {
+    const alone = moverOf(sensitivityReport, over)?.alone
+    if (alone?.[index]?.length && alone[over]?.length) value = slopeAlone(alone[index], alone[over])[step]
+  }
+  if (!Number.isFinite(value)) return ''
+  return `slope ${number(rounded(value), 3)} ${per(unit, report.quantities[over].units[0])}`
 }
 
 function select(state: State, { quantity, time }: Value): void {
@@ -72,13 +166,10 @@ function select(state: State, { quantity, time }: Value): void {
 
 /** Better and worse are said only against a target, by colour and arrow. */
 function showChange(change: HTMLElement, now: number, by: number, target: Target | null): void {
-  if (Math.abs(by) <= noise(now)) {
-    change.textContent = '±0'
-    return
-  }
+  if (Math.abs(by) <= noise(now)) return setText(change, '±0')
   const closer = target ? miss(now - by, target) - miss(now, target) : 0
   const verdict = closer > 0 ? 'better' : closer < 0 ? 'worse' : ''
-  change.textContent = `${by > 0 ? '+' : ''}${number(by, 3)}${verdict ? ` ${verdict}` : ''}`
+  setText(change, `${by > 0 ? '+' : ''}${number(by, 3)}${verdict ? ` ${verdict}` : ''}`)
   if (verdict) change.classList.add(verdict)
 }
 

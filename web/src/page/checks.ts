@@ -1,19 +1,64 @@
-import { css, el, onSchemeChange, prose } from '../dom'
+import { css, el, onSchemeChange, prose, setText } from '../dom'
 import { Plot } from '../plot'
 import type { Table } from '../payload'
+import type { Report } from '../report'
 import type { State } from '../state'
+import { whileSeen } from './tabs'
 
 /** Tables up to this long are open from the start. */
 const SHORT = 12
 
 /**
  * Checks of the run: status, figures of the solver, notes, margin from singular positions, and facts about the model.
+ * They are those of the present design as soon as it is solved with its sensitivities; until then they have a heading
+ * that names their design.
  */
 export function checks(state: State): HTMLElement {
-  const { status, summary, notes, checks, description, generator, file } = state.report
-  return el(
+  const heading = originHeading(state)
+  const facts = el('div')
+  const margin = state.report.margin && marginPlot(state)
+  const element = el(
     'section',
     { class: 'checks', 'data-testid': 'checks', 'aria-label': 'Checks' },
+    heading,
+    facts,
+    margin?.element,
+  )
+  let shown: Report | undefined
+  const render = () => {
+    margin?.show()
+    if (shown === state.sensitivityReport) return
+    shown = state.sensitivityReport
+    const open = new Set([...element.querySelectorAll('details[open] summary')].map(titleOf))
+    const closed = new Set([...element.querySelectorAll('details:not([open]) summary')].map(titleOf))
+    const tables = shown.checks.map(factTable)
+    for (const table of tables) {
+      const title = titleOf(table.querySelector('summary')!)
+      if (open.has(title) || closed.has(title)) table.open = open.has(title)
+    }
+    element.replaceChildren(heading, facts, ...(margin ? [margin.element] : []), ...tables)
+    facts.replaceChildren(...factsOf(shown))
+  }
+  whileSeen(element, (listener) => state.onChoice(listener), render, state.ended)
+  // uPlot measures its place, so it has to be in the page first.
+  queueMicrotask(render)
+  return element
+}
+
+/** Heading over numbers of another design than the present one; hidden otherwise. */
+export function originHeading(state: State): HTMLElement {
+  const heading = el('p', { class: 'of-design', role: 'status', 'data-testid': 'of-design' })
+  const sync = () => {
+    heading.hidden = state.outdated === undefined
+    setText(heading, state.outdated ?? '')
+  }
+  state.onChoice(sync)
+  sync()
+  return heading
+}
+
+function factsOf({ status, summary, notes, description, generator, file }: Report): Node[] {
+  const nodes = [
     description !== '' && el('p', { class: 'lead' }, description),
     el('p', { class: 'status', 'data-testid': 'status' }, ...prose(status.message)),
     el('p', { class: 'origin' }, el('code', {}, file), ` · ${generator}`),
@@ -24,12 +69,11 @@ export function checks(state: State): HTMLElement {
     ),
     notes.length > 0 &&
       el('ul', { class: 'notes', 'data-testid': 'notes' }, ...notes.map((note) => el('li', {}, ...prose(note)))),
-    state.report.margin && marginPlot(state),
-    ...checks.map(factTable),
-  )
+  ]
+  return nodes.filter((node) => node !== false)
 }
 
-function marginPlot(state: State): HTMLElement {
+function marginPlot(state: State): { element: HTMLElement; show: () => void } {
   const plot = new Plot(state, 'plot-margin')
   const show = () => {
     const { margin } = state.report
@@ -40,16 +84,21 @@ function marginPlot(state: State): HTMLElement {
       Object.assign(lines[0], { color: css('--former'), dash: [6, 4] })
       lines.unshift({ label: 'current design', color: css('--trace'), curve: present })
     }
-    plot.show({ title: 'distance from a singular position', unit: '', lines, caption: margin.note, logarithmic: true })
+    const { outdated, sensitivityReport } = state
+    const note = sensitivityReport.margin?.note ?? ''
+    const caption = outdated && note ? `${outdated}: ${note}` : note
+    plot.show({ title: 'distance from a singular position', unit: '', lines, caption, logarithmic: true })
   }
-  state.onChoice(show)
-  onSchemeChange(show)
-  queueMicrotask(show)
-  return plot.element
+  onSchemeChange(show, state.ended)
+  return { element: plot.element, show }
+}
+
+function titleOf(summary: Element): string {
+  return summary.firstChild?.textContent ?? ''
 }
 
 /** Facts about the model in rows; long ones are opened by a press. */
-export function factTable(table: Table): HTMLElement {
+export function factTable(table: Table): HTMLDetailsElement {
   return el(
     'details',
     { open: table.rows.length <= SHORT },

@@ -1,11 +1,34 @@
-import { atFixedAbscissa, peak, quiet, slope, slopeAlone, withGaps, type Curve } from '../curve'
+import {
+  atFixedAbscissa,
+  changeFrom,
+  peak,
+  quiet,
+  slope,
+  slopeAlone,
+  stepAt,
+  valueAt,
+  withGaps,
+  type Curve,
+} from '../curve'
 import { css, hue } from '../dom'
 import { effects } from '../effect'
 import { extent } from '../export/axis'
 import { figure, number } from '../format'
-import type { Content, Line } from '../plot'
-import { derivativeName, derivativeUnit, orderedName, type Driver, type Order, type Report } from '../report'
+import type { Content, Line } from '../content'
+import { aboutQuantity } from '../glossary'
+import {
+  derivativeName,
+  derivativeUnit,
+  type Design,
+  type Driver,
+  type Order,
+  orderedName,
+  type Quantity,
+  type Report,
+} from '../report'
+import { hasOneFreedom, onSideOf } from '../sheet'
 import type { State } from '../state'
+import type { Measured } from './measured'
 
 /** Subject of a figure. */
 export interface Subject {
@@ -13,67 +36,154 @@ export interface Subject {
   order: Order
   /** Quantity on the abscissa; time by default. */
   over?: number
+  /** Further quantities of the same unit. */
+  also?: readonly number[]
+  /** True for changes to the reference design instead of values. */
+  difference?: boolean
+  /** True for a path, with equal scales. */
+  path?: boolean
+  /** Curves that were read from files. */
+  measured?: readonly Measured[]
 }
 
 /** Number of sensitivities that are drawn with that of the selected variable. */
 const FEW = 5
 const DASHED = [7, 5]
 const DOTTED = [2, 4]
+const DASH_DOTTED = [9, 4, 2, 4]
+/** Patterns by which lines differ without their colours; the first is solid. */
+const PATTERNS = [undefined, [10, 4], [3, 3], [10, 3, 2, 3], [6, 2], [2, 2, 6, 2], [14, 4], [4, 6]]
 
-/** Lines of the present design, of the one that it is compared with, of predictions, and of targets. */
-export function valueContent(state: State, { quantity: index, order, over }: Subject): Content {
-  const { report, former, present } = state
+/** A design with the role of its lines. */
+interface Drawn {
+  /** Empty for the only design, whose lines are named after their quantities. */
+  name: string
+  curve: (quantity: number, order: Order) => Curve
+  dash?: number[]
+  width: number
+  color?: string
+}
+
+/** Lines of the present design, of those that it is compared with, of predictions, targets, and measured data. */
+export function valueContent(state: State, subject: Subject): Content {
+  const { quantity: index, order, over, also = [], difference = false, measured = [] } = subject
+  const { report, present } = state
   const quantity = report.quantities[index]
-  const title = orderedName(quantity, order)
-  const content: Content = { title, unit: quantity.units[order], lines: [] }
-  const scale = largest(state, index, order)
-  const own = quantity.curves[order]
-  if (own.length === 0) return { ...content, message: unknown(title) }
-  const label = state.isPredicted
-    ? 'predicted to first order'
-    : (present?.name ?? (state.isCompared ? 'current design' : title))
-  content.lines.push({ label, color: css('--trace'), curve: quiet(state.curve(index, order), scale), width: 2.4 })
-  if (state.isCompared) {
-    const curve = former ? (former.quantities[index]?.[order] ?? new Float32Array()) : own
-    content.lines.push({
-      label: former?.name ?? 'original',
-      color: css('--former'),
-      curve: quiet(curve, scale),
-      width: 1.8,
-      dash: DASHED,
-    })
+  const name = orderedName(quantity, order)
+  const content: Content = {
+    title: difference ? `Δ ${name}` : name,
+    unit: quantity.units[order],
+    lines: [],
+    equal: subject.path,
   }
+  if (quantity.curves[order].length === 0) return { ...content, message: unknown(name) }
+  const quantities = [index, ...also.filter((k) => k !== index)].map((k) => report.quantities[k])
+  const several = quantities.length > 1
+  const [reference, ...others] = comparedDesigns(state)
+  const drawn = [presentDesign(state), ...(difference ? [] : [reference]), ...others].filter((design) => design)
+  const scale = largest(state, index, order)
+  for (const [k, one] of quantities.entries()) {
+    const abscissa = (design: Drawn) =>
+      over === undefined ? undefined : design.curve(onSideOf(report, over, one.index), 0)
+    for (const design of drawn as Drawn[]) {
+      const all = quiet(design.curve(one.index, order), scale)
+      const x = abscissa(design)
+      const base = reference ?? presentDesign(state)
+      const curve = difference
+        ? changeFrom([all, x], [quiet(base.curve(one.index, order), scale), abscissa(base)])
+        : all
+      const plain = design === drawn[0]
+      const own = several ? orderedName(one, order) : ''
+      const alone = design.name || orderedName(one, order)
+      const label = !several ? alone : plain ? own : `${own}, ${design.name}`
+      const color = several ? hue(k) : (design.color ?? css('--former'))
+      const dash = several && plain ? PATTERNS[k % PATTERNS.length] : design.dash
+      content.lines.push({ label, color, curve, over: x, width: design.width, dash, about: aboutQuantity(one.name) })
+    }
+  }
+  if (difference) content.caption = differenceCaption(state, reference)
+  else addPredictions(state, subject, content, scale)
   const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
   // Over another quantity, which has a tolerance itself, bands would have another meaning.
   if (over !== undefined && bands.length > 0)
     content.caption = 'The tolerance band is known over time only: choose time to show it.'
-  for (const band of over === undefined ? bands : []) {
+  for (const band of over === undefined && !difference ? bands : []) {
     const curve = quiet(band.quantities[index]![order], scale)
     content.lines.push({ label: band.name, color: css('--former'), curve, width: 1.3, dash: DOTTED })
   }
-  const predictions = present
-    ? report.designs.filter(({ kind }) => kind.endsWith('_order')).filter((design) => design !== former)
-    : []
-  predictions.forEach((design, k) => {
-    const curve = design.quantities[index]?.[order]
-    if (curve?.length)
-      content.lines.push({
-        label: design.name,
-        color: hue(k + 1),
-        curve: quiet(curve, scale),
-        width: 1.8,
-        dash: DOTTED,
-      })
-  })
-  if (order === 0)
-    content.lines.push({ label: 'target', color: css('--good'), curve: quantity.wanted, width: 2.4, dash: DOTTED })
+  if (order === 0 && !difference) addTargets(state, quantity, content, present, over)
+  for (const [k, { label, x, y }] of measured.entries())
+    content.lines.push({ label, color: hue(k + 5), curve: y, over: x, free: true, marks: withGaps(y) })
   content.lines = content.lines.filter(({ curve }) => curve.length > 0)
-  if (order === 0 && over === undefined) {
-    content.wanted = report.values
-      .filter(({ quantity, target, time }) => quantity === index && target && time !== null)
-      .map(({ target, time }) => ({ low: target![0], high: target![1], at: time! }))
-  }
   return overOther(state, over, content)
+}
+
+function presentDesign(state: State): Drawn {
+  const { present, isPredicted, isCompared } = state
+  const name = isPredicted ? 'predicted to first order' : (present?.name ?? (isCompared ? 'current design' : ''))
+  return { name, curve: (quantity, order) => state.curve(quantity, order), width: 2.4, color: css('--trace') }
+}
+
+/** The reference design, if the present one differs from it, then the other designs in the plots. */
+function comparedDesigns(state: State): (Drawn | undefined)[] {
+  const { former, choice, report, designs } = state
+  const curveOf = (design: Design) => (quantity: number, order: Order) =>
+    design.quantities[quantity]?.[order] ?? new Float32Array()
+  const original = (quantity: number, order: Order) => report.quantities[quantity].curves[order]
+  const reference: Drawn | undefined = state.isCompared
+    ? { name: former?.name ?? 'original', curve: former ? curveOf(former) : original, dash: DASHED, width: 1.8 }
+    : undefined
+  const overlays = (choice.overlays ?? []).filter((k) => designs[k] && k !== choice.compared)
+  return [
+    reference,
+    ...overlays.map((index, k): Drawn => {
+      const design = designs[index]
+      return { name: design.name, curve: curveOf(design), dash: DASH_DOTTED, width: 1.6, color: hue(k + 1) }
+    }),
+  ]
+}
+
+function differenceCaption({ isCompared }: State, reference: Drawn | undefined): string {
+  if (!isCompared || !reference) return 'Nothing is changed yet.'
+  return `Change to: ${reference.name}.`
+}
+
+/** Designs of the report that were predicted, next to the solved one. */
+function addPredictions(state: State, { quantity, order, over }: Subject, content: Content, scale: number): void {
+  const { present, former, report } = state
+  if (!present) return
+  const predictions = report.designs.filter(({ kind }) => kind.endsWith('_order')).filter((design) => design !== former)
+  predictions.forEach((design, k) => {
+    const curve = design.quantities[quantity]?.[order]
+    if (!curve?.length) return
+    const x = over === undefined ? undefined : design.quantities[over]?.[0]
+    content.lines.push({
+      label: design.name,
+      color: hue(k + 1),
+      curve: quiet(curve, scale),
+      over: x?.length ? x : undefined,
+      width: 1.8,
+      dash: DOTTED,
+    })
+  })
+}
+
+/** Target curve and gates of the metrics of a quantity. */
+function addTargets(
+  { report }: State,
+  { index, wanted }: Quantity,
+  content: Content,
+  present: Design | undefined,
+  over?: number,
+): void {
+  content.lines.push({ label: 'target', color: css('--good'), curve: wanted, width: 2.4, dash: DOTTED })
+  const gates = report.values.filter(({ quantity, target, time }) => quantity === index && target && time !== null)
+  const at = (time: number) => {
+    if (over === undefined) return time
+    const x = present?.quantities[over]?.[0] ?? report.quantities[over].curves[0]
+    return valueAt(x, stepAt(report.times, time))
+  }
+  content.wanted = gates.map(({ target, time }) => ({ low: target![0], high: target![1], at: at(time!) }))
 }
 
 /**
@@ -106,11 +216,13 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   let k = 0
   content.lines = shown.map(({ variable, sensitivity }): Line => {
     const chosen = variable === selected
+    const rank = chosen ? 0 : ++k
     return {
       label: variable.name,
-      color: chosen ? css('--chosen') : hue(k++),
+      color: chosen ? css('--chosen') : hue(rank - 1),
+      dash: PATTERNS[rank % PATTERNS.length],
       curve: quiet(seen(sensitivity.curves[order], variable.index, false), scale),
-      width: chosen ? 2.6 : 1.3,
+      width: chosen ? 2.6 : 1.5,
       pick: () => state.choose({ variable: variable.index }),
     }
   })
@@ -126,27 +238,37 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const curve = seen(differences.curves[order], selected.index, true)
   content.lines.push({ label: 'finite differences', color: css('--ink'), curve, marks: withGaps(curve) })
   const caption =
-    `${rest} Rings: checked by re-solving at ±${figure(Number(differences.step.toPrecision(2)), differences.unit)}, ` +
-    `maximum difference ${number(differences.worst[order], 2)}.`
+    `${rest} ○ checked by re-solving at ±${figure(Number(differences.step.toPrecision(2)), differences.unit)} ` +
+    `(max. difference ${number(differences.worst[order], 2)}).`
   return overOther(state, subject.over, { ...content, caption: caption.trimStart() })
 }
 
+/** Largest magnitudes among quantities of the same unit, by report, unit and order. */
+const scales = new WeakMap<Report, Map<string, number>>()
+
 /** Maximum among quantities of the same unit, the scale for rounding. */
 function largest({ report }: State, index: number, order: Order): number {
+  const known = scales.get(report) ?? new Map<string, number>()
+  scales.set(report, known)
   const unit = report.quantities[index].units[order]
-  return Math.max(
-    ...report.quantities.filter(({ units }) => units[order] === unit).map(({ curves }) => peak(curves[order])),
-  )
+  const key = `${order} ${unit}`
+  const found = known.get(key)
+  if (found !== undefined) return found
+  const same = report.quantities.filter(({ units }) => units[order] === unit)
+  const maximum = Math.max(...same.map(({ curves }) => peak(curves[order])))
+  known.set(key, maximum)
+  return maximum
 }
 
 function unknown(title: string): string {
   return `No ${title}: motions are solved up to accelerations, measures of a single driver up to their values.`
 }
 
-function overOther({ report }: State, over: number | undefined, content: Content): Content {
+function overOther(state: State, over: number | undefined, content: Content): Content {
   if (over === undefined || content.message) return content
-  const { name, units, curves } = report.quantities[over]
-  return { ...content, over: { label: name, unit: units[0], curve: curves[0] } }
+  const { name, units } = state.report.quantities[over]
+  const once = !content.equal && hasOneFreedom(state.report)
+  return { ...content, over: { label: name, unit: units[0], curve: state.curve(over, 0) }, once }
 }
 
 /** Sensitivities as they are shown, and a sentence on that. */
@@ -181,7 +303,7 @@ function atAbscissa({ sensitivityReport: report }: State, { quantity, order, ove
 }
 
 /** Among several moving drivers, the one that moves the quantity most. */
-function moverOf({ drivers }: Report, quantity: number): Driver | undefined {
+export function moverOf({ drivers }: Report, quantity: number): Driver | undefined {
   const reach = ({ alone, travel }: Driver) => {
     const [minimum, maximum] = extent([travel]) ?? [0, 0]
     return alone[quantity]?.length ? peak(alone[quantity]) * (maximum - minimum) : 0

@@ -1,46 +1,99 @@
 import { el, onSchemeChange } from '../dom'
 import { Plot } from '../plot'
-import { groups, ORDERS, type Order } from '../report'
+import { groups, ORDERS, type Order, type Report } from '../report'
 import type { State } from '../state'
-import type { Zoom } from '../zoom'
+import type { Part, Zoom } from '../zoom'
 import { sensitivityContent, valueContent, type Subject } from './contents'
+import { type Measured, measuredOf } from './measured'
 import { pointing } from './pointing'
+import { ValueTable } from './value_table'
 
 export type FigureKind = 'value' | 'sensitivity'
+
+/** Choices of a figure, by names, so that they hold for another text of the model. */
+export interface FigureMemory {
+  kind: FigureKind
+  /** Fixed quantity; the selected one where there is none. */
+  quantity?: string
+  order: Order
+  over?: string
+  also: string[]
+  hidden: string[]
+  difference: boolean
+  path: boolean
+  table: boolean
+  abscissas?: number[]
+  across?: Part
+  upright?: Part
+}
 
 /** Options of a figure. */
 interface FigureOptions {
   /** Fixed quantity; the selected one where there is none. */
   quantity?: number
+  over?: number
+  also?: readonly number[]
+  path?: boolean
   shown: FigureKind
   testId: string
   /** The first figure controls the selection; others may follow it, and can be removed. */
   leads: boolean
 }
 
-/** A plot with selectors of its quantity, its abscissa, and values or sensitivities. */
+/** Actions of the curves on a figure. */
+interface FigureActions {
+  onRemove: (figure: Figure) => void
+  onAdd: () => void
+  tool?: (figure: Figure) => HTMLElement | undefined
+}
+
+/** A plot with selectors of its quantities, its abscissa, and values, changes or sensitivities. */
 export class Figure {
   readonly plot: Plot
   #quantity?: number
   #order: Order = 0
   #over?: number
+  #also: number[]
+  /** The quantity that further curves and the path belong to, if the figure follows the selection. */
+  #alsoOf?: number
+  #hidden = new Set<string>()
+  #difference = false
+  #path: boolean
   #shown: FigureKind
+  #measured: Measured[] = []
+  #table = new ValueTable()
+  #delta = toggle('difference', 'Show changes to the reference design', 'Δ', () => {
+    this.#difference = !this.#difference
+    this.show()
+  })
+  #values = toggle('values-at', 'Table of values', '▦', () => {
+    this.#table.element.hidden = !this.#table.element.hidden
+    this.show()
+  })
+  #file = el('input', {
+    type: 'file',
+    accept: '.csv,.txt,text/csv',
+    hidden: true,
+    'data-testid': 'measured-file',
+    'aria-label': 'measured data',
+    onchange: () => void this.#load(this.#file.files?.[0]),
+  })
+  #failure = el('p', { class: 'caption missed', role: 'status' })
 
   constructor(
     private readonly state: State,
     private readonly options: FigureOptions,
     time: Zoom,
-    {
-      onRemove,
-      onAdd,
-      tool,
-    }: { onRemove: (figure: Figure) => void; onAdd: () => void; tool?: (figure: Figure) => HTMLElement | undefined },
+    { onRemove, onAdd, tool }: FigureActions,
   ) {
     this.#quantity = options.quantity
+    this.#over = options.over
+    this.#also = [...(options.also ?? [])]
+    this.#path = options.path ?? false
     this.#shown = options.shown
     const { report } = state
     const first = options.leads ? [] : [el('option', { value: '' }, 'selected quantity')]
-    const quantity = select('quantity', 'Quantity', () => this.#pick(quantity.value), ...first, ...offered(state))
+    const quantity = select('quantity', 'Quantity', () => this.#pick(quantity.value), ...first, ...offered(report))
     const over = select(
       'over',
       'Over',
@@ -56,6 +109,7 @@ export class Figure {
       () => this.#choose({ order: Number(order.value) as Order }),
       ...ORDERS.map((name, k) => el('option', { value: k }, name)),
     )
+    const also = select('also', 'Add a curve', () => this.#add(also.value))
     const able = report.variables.some(({ sensitivities }) => sensitivities.size > 0)
     const shown = el(
       'button',
@@ -75,21 +129,38 @@ export class Figure {
       ? icon('add-curve', 'Add a plot', '+', onAdd)
       : icon('remove', 'Remove plot', '×', () => onRemove(this))
     const controls = el('div', { class: 'controls' }, quantity, over, order, able ? shown : undefined, last)
-    this.plot = new Plot(state, options.testId, [controls], time)
+    this.plot = new Plot(state, options.testId, [controls], time, [also, this.#delta, this.#values])
+    this.plot.element.append(this.#failure, this.#table.element, this.#file)
     this.plot.element.classList.toggle('leads', options.leads)
+    this.#takeFiles()
     pointing(state, this.plot.element, () => this.subject.quantity)
     let extra: HTMLElement | undefined
+    let listed = ''
     this.show = () => {
       const subject = this.subject
+      const values = this.#shown === 'value'
       // The studio adds its parts when it has loaded.
       if (!extra && (extra = tool?.(this))) controls.lastElementChild!.before(extra)
       quantity.value = this.#follows && !options.leads ? '' : String(subject.quantity)
       over.value = subject.over === undefined ? '' : String(subject.over)
       order.value = String(subject.order)
+      const key = `${subject.quantity} ${this.#also}`
+      if (listed !== key) also.replaceChildren(...this.#offeredCurves())
+      listed = key
+      also.hidden = this.#delta.hidden = !values
       // The field beside it names the quantity already.
-      this.plot.element.classList.toggle('untitled', !this.#follows || options.leads ? this.#shown === 'value' : false)
-      shown.setAttribute('aria-pressed', String(this.#shown === 'sensitivity'))
-      this.plot.show(this.#shown === 'value' ? valueContent(state, subject) : sensitivityContent(state, subject))
+      this.plot.element.classList.toggle('untitled', !this.#follows || options.leads ? values : false)
+      shown.setAttribute('aria-pressed', String(!values))
+      this.#delta.setAttribute('aria-pressed', String(this.#difference))
+      this.#values.setAttribute('aria-pressed', String(!this.#table.element.hidden))
+      const content = values ? valueContent(state, subject) : sensitivityContent(state, subject)
+      if (values)
+        for (const line of content.lines) {
+          line.hidden = this.#hidden.has(line.label)
+          line.pick = () => this.#toggle(line.label)
+        }
+      this.plot.show(content)
+      this.#table.show(content, report.times, report.units.time)
     }
     onSchemeChange(() => this.show(), state.ended)
   }
@@ -99,9 +170,51 @@ export class Figure {
   /** Subject of the figure. */
   get subject(): Subject {
     const { quantity, order, over } = this.state.choice
+    if (this.#follows) this.#accompany(quantity)
+    const own = { also: this.#also, difference: this.#difference, measured: this.#measured, path: this.#path }
     return this.#follows
-      ? { quantity, order, over }
-      : { quantity: this.#quantity!, order: this.#order, over: this.#over }
+      ? { ...own, quantity, order, over }
+      : { ...own, quantity: this.#quantity!, order: this.#order, over: this.#over }
+  }
+
+  /** With another selected quantity come the curves that the sheet shows with it. */
+  #accompany(quantity: number): void {
+    if (this.#alsoOf === quantity) return
+    if (this.#alsoOf !== undefined || !this.options.also) {
+      const plot = this.state.sheet.plots.find(({ y }) => y[0] === quantity)
+      this.#also = this.options.leads ? (plot?.y.slice(1) ?? []) : []
+      this.#path = false
+    }
+    this.#alsoOf = quantity
+  }
+
+  /** Choices of the figure, to be made again on another page. */
+  get memory(): FigureMemory {
+    const { quantities } = this.state.report
+    const { order, over, also = [], difference = false, path = false } = this.subject
+    return {
+      kind: this.#shown,
+      quantity: this.#follows ? undefined : quantities[this.#quantity!].name,
+      order,
+      over: over === undefined ? undefined : quantities[over].name,
+      also: also.map((index) => quantities[index].name),
+      hidden: [...this.#hidden],
+      difference,
+      path,
+      table: !this.#table.element.hidden,
+      abscissas: this.#table.abscissas,
+      ...this.plot.parts,
+    }
+  }
+
+  /** Makes the choices again that do not depend on the selection. */
+  recall({ order, hidden, difference, table, abscissas, across, upright }: FigureMemory): void {
+    this.#order = order
+    this.#hidden = new Set(hidden)
+    this.#difference = difference
+    this.#table.element.hidden = !table
+    this.#table.abscissas = abscissas
+    this.plot.parts = { across, upright }
   }
 
   get #follows(): boolean {
@@ -109,6 +222,7 @@ export class Figure {
   }
 
   #pick(value: string): void {
+    this.#path = false
     if (this.options.leads) return this.state.choose({ quantity: Number(value) })
     const { order, over } = this.subject
     this.#quantity = value === '' ? undefined : Number(value)
@@ -118,9 +232,74 @@ export class Figure {
   }
 
   #choose(part: { order?: Order; over?: number }): void {
+    if ('over' in part) this.#path = false
     if (this.#follows) return this.state.choose(part)
     if ('order' in part) this.#order = part.order!
     else this.#over = part.over
+    this.show()
+  }
+
+  /** Quantities of the same unit as the first, and measured data. */
+  #offeredCurves(): HTMLElement[] {
+    const { quantities } = this.state.report
+    const { quantity } = this.subject
+    const { units } = quantities[quantity]
+    const same = quantities.filter((one) => one.index !== quantity && one.units[0] === units[0])
+    const name = (index: number) => `${this.#also.includes(index) ? '✓ ' : ''}${quantities[index].name}`
+    return [
+      el('option', { value: '' }, '+ curve'),
+      el('option', { value: 'file' }, 'measured data (CSV)…'),
+      ...(this.#measured.length > 0 ? [el('option', { value: 'none' }, 'remove measured data')] : []),
+      ...same.map(({ index }) => el('option', { value: index }, name(index))),
+    ]
+  }
+
+  #add(value: string): void {
+    if (value === 'file') this.#file.click()
+    else if (value === 'none') this.#measured = []
+    else if (value !== '') {
+      const index = Number(value)
+      const at = this.#also.indexOf(index)
+      if (at < 0) this.#also.push(index)
+      else this.#also.splice(at, 1)
+    }
+    this.plot.element.querySelector<HTMLSelectElement>('[data-testid=also]')!.value = ''
+    this.show()
+  }
+
+  /** Shows or hides a line. */
+  #toggle(label: string): void {
+    if (!this.#hidden.delete(label)) this.#hidden.add(label)
+    this.show()
+  }
+
+  /** A file that is dropped onto the plot is read. */
+  #takeFiles(): void {
+    const { element } = this.plot
+    element.addEventListener('dragover', (event) => {
+      if (event.dataTransfer?.types.includes('Files')) event.preventDefault()
+    })
+    element.addEventListener('drop', (event) => {
+      const file = event.dataTransfer?.files[0]
+      if (!file) return
+      event.preventDefault()
+      void this.#load(file)
+    })
+  }
+
+  async #load(file: File | undefined): Promise<void> {
+    this.#file.value = ''
+    if (!file) return
+    const { quantities } = this.state.report
+    const { quantity, also = [], over } = this.subject
+    const names = [quantity, ...also].map((index) => quantities[index].name)
+    try {
+      const subject = { names, over: over === undefined ? 'time' : quantities[over].name }
+      this.#measured.push(...measuredOf(await file.text(), file.name, subject))
+      this.#failure.textContent = ''
+    } catch (error) {
+      this.#failure.textContent = error instanceof Error ? error.message : String(error)
+    }
     this.show()
   }
 }
@@ -129,17 +308,23 @@ function select(testId: string, label: string, onchange: () => void, ...options:
   return el('select', { 'data-testid': testId, 'aria-label': label, title: label, onchange }, ...options)
 }
 
-function offered(state: State): HTMLElement[] {
+function offered(report: Report): HTMLElement[] {
   const plural = (group: string) => (group === 'body' ? 'bodies' : `${group}s`)
-  return groups(state.report).map(([name, members]) =>
+  return groups(report).map(([name, members]) =>
     el('optgroup', { label: plural(name) }, ...members.map(({ index, name }) => el('option', { value: index }, name))),
   )
 }
 
-function icon(testId: string, title: string, sign: string, onclick: () => void): HTMLElement {
+function icon(testId: string, title: string, sign: string, onclick: () => void): HTMLButtonElement {
   return el(
     'button',
     { type: 'button', class: 'icon', 'data-testid': testId, title, 'aria-label': title, onclick },
     sign,
   )
+}
+
+function toggle(testId: string, title: string, sign: string, onclick: () => void): HTMLButtonElement {
+  const button = icon(testId, title, sign, onclick)
+  button.setAttribute('aria-pressed', 'false')
+  return button
 }

@@ -1,10 +1,9 @@
 import { el, prose } from '../dom'
 import { heatMap } from '../influence/heatmap'
 import { rankingTable } from '../influence/table'
-import type { View } from '../scene/view'
+import type { Pose, View } from '../scene/view'
 import { forcePaths } from '../loads/polar'
 import { driverMap } from '../maps/map'
-import type { Report } from '../report'
 import type { State } from '../state'
 import { sweepPlot } from '../sweep/scatter'
 import { bar } from './bar'
@@ -12,19 +11,32 @@ import { cards } from './cards'
 import { checks } from './checks'
 import { Curves } from './curves'
 import { exports } from './exports'
-import type { Figure } from './figure'
+import type { Figure, FigureMemory } from './figure'
 import { find } from './find'
+import { firstSteps } from './first_steps'
 import { help } from './help'
 import type { Item } from './menu'
 import { listenToKeys } from './keys'
-import { navigation } from './navigation'
+import { navigation, type Section } from './navigation'
 import { stage } from './stage'
 import { tabs, type Tab } from './tabs'
 import { transport } from './transport'
-import { variables } from './variables'
+import { variables as variableList } from './variables'
+
+/** Tabs that the page of a study opens on. */
+const OPENS_ON = ['designs', 'maps']
+
+/** Choices of a page beyond its state, to be made again on another one. */
+export interface PageMemory {
+  figures: FigureMemory[]
+  tab: string
+  pose?: Pose
+}
 
 /** Parts of the page in addition to the report. */
 export interface Tools {
+  /** Choices of the page before. */
+  memory?: PageMemory
   /** Element in the bar. */
   bar?: HTMLElement
   /** More that can be exported. */
@@ -38,25 +50,36 @@ export interface Tools {
 export interface PageParts {
   view?: View
   bar: HTMLElement
+  /** Notices above the values. */
+  notices: HTMLElement
+  readonly memory: PageMemory
 }
 
-/** Builds the page: bar, values, view and time, curves, variables, and tables behind tabs. */
+/** Builds the page: bar, values, view and time, curves, and variables, tables and checks behind tabs. */
 export function page(root: HTMLElement, state: State, tools: Tools = {}): PageParts {
   const { report } = state
   const hasQuantities = report.quantities.length > 0
   const hasVariables = report.variables.length > 0
   const search = hasQuantities ? find(state) : undefined
   const keys = help()
-  const scene = stage(state)
-  const curves = hasQuantities ? new Curves(state, tools.figure) : undefined
-  const sections: [name: string, element: HTMLElement | undefined][] = [
-    ['variables', hasVariables ? variables(state) : undefined],
-    ['curves', curves?.element],
-    ['tables', tabs('Tables and checks', tableTabs(state))],
+  const scene = stage(state, tools.memory?.pose)
+  const curves = hasQuantities ? new Curves(state, tools.figure, tools.memory?.figures) : undefined
+  const all = tableTabs(state)
+  const tables = tabs('Variables, tables and checks', all)
+  const opened = tools.memory?.tab ?? all.find(({ name }) => OPENS_ON.includes(name))?.name
+  if (opened) tables.show(opened)
+  const table = all.find(({ name }) => name !== 'variables')!.name
+  const sections: Section[] = [
+    ...(curves ? [{ name: 'curves', element: curves.element }] : []),
+    ...(hasVariables ? [{ name: 'variables', element: tables.element, open: () => tables.show('variables') }] : []),
+    {
+      name: 'tables',
+      element: tables.element,
+      open: () => tables.shown === 'variables' && tables.show(table),
+    },
   ]
-  const shown = sections.flatMap(([name, element]) => (element ? [{ name, element }] : []))
-  for (const { name, element } of shown) element.classList.add(`area-${name}`)
-  root.classList.toggle('no-variables', !hasVariables)
+  curves?.element.classList.add('area-curves')
+  tables.element.classList.add('area-tables')
   root.classList.toggle('no-curves', !hasQuantities)
   const head = bar(state, {
     find: search?.element,
@@ -64,16 +87,16 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
     help: () => keys.showModal(),
   })
   if (tools.bar) slot(head, tools.bar)
+  const steps = report.model ? firstSteps(state, () => tools.grips?.()) : undefined
+  const notices = el('div', { class: 'notices' }, banner(state), steps)
   root.append(
     head,
-    ...(report.status.complete ? [] : [banner(report)]),
+    notices,
     ...(report.values.length > 0 ? [cards(state)] : []),
     el('div', { class: 'scene' }, scene.element, transport(state)),
-    ...shown.map(({ element }) => element),
-    navigation(
-      shown.map(({ name, element }) => ({ name, element })),
-      () => keys.showModal(),
-    ),
+    ...(curves ? [curves.element] : []),
+    tables.element,
+    navigation(sections, () => keys.showModal()),
     keys,
   )
   listenToKeys(state, {
@@ -83,24 +106,33 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
     help: () => keys.showModal(),
     grips: () => tools.grips?.(),
   })
-  return { view: scene.view, bar: head }
+  return {
+    view: scene.view,
+    bar: head,
+    notices,
+    get memory() {
+      return { figures: curves?.memory ?? [], tab: tables.shown, pose: scene.view?.pose }
+    },
+  }
 }
 
 /** Tabs for which the report has data; the checks are always shown. */
 function tableTabs(state: State): Tab[] {
   const { sweep, maps, quantities, variables, loads } = state.report
   const all: Tab[] = []
+  if (variables.length > 0) all.push({ name: 'variables', title: 'Variables', content: variableList(state) })
   if (sweep) {
     const title = sweep.what === 'design' ? 'Designs' : 'Residuals'
-    all.push({ name: 'designs', title, content: sweepPlot(sweep) })
+    all.push({ name: 'designs', title, content: el('div', {}, recordHeading(state), sweepPlot(sweep)) })
   }
   if (maps.length > 0) {
     const selected = quantities[state.choice.quantity]?.name ?? ''
-    all.push({ name: 'maps', title: 'Maps', content: el('div', {}, ...maps.map((map) => driverMap(map, selected))) })
+    const drawn = maps.map((map) => driverMap(map, selected))
+    all.push({ name: 'maps', title: 'Maps', content: el('div', {}, recordHeading(state), ...drawn) })
   }
   if (quantities.length > 0 && variables.length > 0) {
     const content = el('div', { class: 'influence' }, rankingTable(state), heatMap(state))
-    all.push({ name: 'table', title: 'Table', content })
+    all.push({ name: 'table', title: 'Influence', content })
   }
   if (loads.length > 0) all.push({ name: 'loads', title: 'Forces', content: forcePaths(state) })
   return [...all, { name: 'checks', title: 'Checks', content: checks(state) }]
@@ -111,11 +143,33 @@ export function slot(head: HTMLElement, tools: HTMLElement): void {
   head.querySelector('.space')!.after(tools)
 }
 
-function banner({ status }: Report): HTMLElement {
-  return el(
+/** Heading over what is solved once, for the design as loaded. */
+function recordHeading(state: State): HTMLElement {
+  const heading = el('p', { class: 'of-design' }, 'Original design')
+  const sync = () => (heading.hidden = !state.changed)
+  state.onChoice(sync)
+  sync()
+  return heading
+}
+
+/** States that the motion is incomplete, and of which design. */
+function banner(state: State): HTMLElement {
+  const words = el('span')
+  const element = el(
     'p',
     { class: 'banner', role: 'status', 'data-testid': 'banner' },
     el('strong', {}, 'This motion is incomplete. '),
-    ...prose(status.message),
+    words,
   )
+  let shown = ''
+  const sync = () => {
+    const { status } = state.sensitivityReport
+    element.hidden = status.complete
+    const message = [state.outdated, status.message].filter(Boolean).join(': ')
+    if (message !== shown) words.replaceChildren(...prose(message))
+    shown = message
+  }
+  state.onChoice(sync)
+  sync()
+  return element
 }

@@ -1,5 +1,5 @@
 import { el } from '../dom'
-import { hasWebGL, View } from '../scene/view'
+import { hasWebGL, type Pose, View } from '../scene/view'
 import type { State } from '../state'
 
 /** The view with its buttons; without WebGL a message, and no view. */
@@ -11,7 +11,7 @@ interface Stage {
 }
 
 /** The mechanism in 3D with its standard views, or a plain message where there is no WebGL. */
-export function stage(state: State): Stage {
+export function stage(state: State, pose?: Pose): Stage {
   if (!hasWebGL()) {
     const message = 'The 3D view needs WebGL, which this browser does not provide. Curves and tables are complete.'
     return { element: el('div', { class: 'view', 'data-testid': 'no-webgl' }, el('p', { class: 'message' }, message)) }
@@ -26,7 +26,9 @@ export function stage(state: State): Stage {
     view.look(chosen.name)
     buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(k === index)))
   }
-  buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(k === 0)))
+  if (pose) view.restore(pose)
+  const { look: first } = view.pose
+  buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(view.looks[k].name === first)))
   const labels = el(
     'button',
     {
@@ -113,5 +115,11 @@ function tracer(state: State): HTMLElement {
         ),
       ),
   )
+  const sync = () => {
+    const { trace } = state.choice
+    select.value = trace ? trace.join(' ') : ''
+  }
+  state.onChoice(sync)
+  sync()
   return select
 }

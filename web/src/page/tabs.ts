@@ -6,8 +6,20 @@ export interface Tab {
   content: HTMLElement
 }
 
+/** Panels behind tabs. */
+export interface Tabs {
+  element: HTMLElement
+  /** Name of the shown panel. */
+  readonly shown: string
+  /** Shows a panel by its name, if there is one. */
+  show(name: string): void
+}
+
+/** Event of the page when another panel or section comes to the front. */
+export const FRONT = 'front'
+
 /** Panels of which one is shown; arrow keys go from tab to tab. */
-export function tabs(label: string, list: Tab[]): HTMLElement {
+export function tabs(label: string, list: Tab[]): Tabs {
   const buttons = list.map(({ name, title }, index) =>
     el(
       'button',
@@ -42,12 +54,47 @@ export function tabs(label: string, list: Tab[]): HTMLElement {
       button.tabIndex = index === chosen ? 0 : -1
     })
     panels.forEach((panel, index) => panel.classList.toggle('away', index !== chosen))
+    front = chosen
+    dispatchEvent(new Event(FRONT))
   }
+  let front = 0
   show(0)
-  return el(
+  const element = el(
     'section',
     { class: 'tabs', 'aria-label': label },
     el('div', { role: 'tablist', 'aria-label': label }, ...buttons),
     ...panels,
   )
+  return {
+    element,
+    get shown() {
+      return list[front].name
+    },
+    show: (name) => {
+      const index = list.findIndex((tab) => tab.name === name)
+      if (index >= 0) show(index)
+    },
+  }
+}
+
+/**
+ * Renders the content of a tab whenever `listen` calls back while it is seen, and else when it comes to the front or is
+ * printed: what is not seen costs nothing while a point is dragged.
+ */
+export function whileSeen(
+  content: HTMLElement,
+  listen: (render: () => void) => void,
+  render: () => void,
+  signal: AbortSignal,
+): void {
+  let stale = false
+  const update = () => {
+    stale = content.closest('.away, .behind') !== null && !document.documentElement.classList.contains('printing')
+    if (!stale) render()
+  }
+  const catchUp = () => {
+    if (stale) update()
+  }
+  listen(update)
+  for (const event of [FRONT, 'beforeprint']) addEventListener(event, catchUp, { signal })
 }

@@ -64,14 +64,22 @@ export function variables(state: State): HTMLElement {
       const effect = all[place.get(item.variable.index) ?? -1]
       item.rank(effect, quantity ? derivativeUnit(quantity, choice.order, item.variable) : '')
     }
-    // Under the hand that changes one of them, they keep their places.
-    if (again) return
     const rank = ({ variable }: Row) =>
       place.get(variable.index) ?? rows.length + Number(variable.admissibility === 'cannot_follow')
     order = [...rows].sort((a, b) => rank(a) - rank(b) || a.variable.index - b.variable.index)
-    list.replaceChildren(...order.map(({ element }) => element))
-    list.scrollTop = 0
+    sorted = false
+    sort(!again)
   }
+  let sorted = true
+  /** Puts the rows in order; under the hand that changes one of them, they keep their places. */
+  const sort = (atOnce = false) => {
+    if (sorted || (!atOnce && (list.matches(':hover') || list.contains(document.activeElement)))) return
+    sorted = true
+    const { scrollTop } = list
+    list.replaceChildren(...order.map(({ element }) => element))
+    list.scrollTop = atOnce ? 0 : scrollTop
+  }
+  for (const event of ['pointerleave', 'focusout']) list.addEventListener(event, () => setTimeout(sort))
   let shown = -1
   const sync = () => {
     arrange()
@@ -96,7 +104,7 @@ export function variables(state: State): HTMLElement {
   })
   state.onChoice(sync)
   sync()
-  const head = el('div', { class: 'head' }, el('h2', {}, 'Variables'), about, search, resetAll)
+  const head = el('div', { class: 'head' }, el('h2', { class: 'hidden' }, 'Variables'), about, search, resetAll)
   return el('section', { class: 'variables', 'aria-label': 'Variables', 'data-testid': 'variables' }, head, list, note)
 }
 

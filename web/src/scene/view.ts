@@ -27,6 +27,14 @@ const ROOM = 2
 /** Numbers of marks start here, far above those of matter. */
 const MARK_NUMBERS = 1 << 15
 
+/** Position of the camera, to be taken again. */
+export interface Pose {
+  look: string
+  position?: number[]
+  target?: number[]
+  zoom?: number
+}
+
 export function hasWebGL(): boolean {
   const context = document.createElement('canvas').getContext('webgl2')
   // Browsers limit the number of contexts.
@@ -68,6 +76,8 @@ export class View {
   #look: Look
   /** True if the reader turned or moved the view since it was fitted. */
   #turned = false
+  /** Position to take as soon as the view has a size. */
+  #wanted?: Pose
   #stale = false
   #moved = true
   #pending = false
@@ -181,6 +191,30 @@ export class View {
     this.#controls.dispose()
     this.#renderer.dispose()
     this.#renderer.forceContextLoss()
+  }
+
+  /** Position of the camera, if the reader turned or moved it; and the standard view. */
+  get pose(): Pose {
+    const free = { position: this.camera.position.toArray(), target: this.#controls.target.toArray() }
+    return { look: this.#look.name, ...(this.#turned && { ...free, zoom: this.camera.zoom }) }
+  }
+
+  /** Takes the position of another view of the same mechanism. */
+  restore(pose: Pose): void {
+    const { look, position, target, zoom } = pose
+    this.#look = this.looks.find(({ name }) => name === look) ?? this.looks[0]
+    // Without a size there is nothing to fit into yet.
+    this.#wanted = this.#extent.width === 0 ? pose : undefined
+    if (this.#wanted) return
+    this.fit()
+    if (!position || !target) return
+    this.camera.position.fromArray(position)
+    this.#controls.target.fromArray(target)
+    this.camera.zoom = zoom ?? 1
+    this.camera.updateProjectionMatrix()
+    this.#turned = true
+    this.#controls.update()
+    this.#draw()
   }
 
   /** Shows a standard view by its name. */
@@ -456,7 +490,8 @@ export class View {
     const { width, height } = this.#extent
     if (width === 0 || height === 0) return
     this.#size(Math.min(devicePixelRatio, 2))
-    if (this.#turned) shapeTo(this.camera, width / height)
+    if (this.#wanted) this.restore(this.#wanted)
+    else if (this.#turned) shapeTo(this.camera, width / height)
     else this.fit()
     this.#render()
   }

@@ -24,6 +24,7 @@ const MAX_STEPS = 200
 export class History {
   readonly #steps: Step[]
   readonly #snapshots: Snapshot[] = []
+  #compared: readonly Snapshot[] = []
   readonly #listeners: (() => void)[] = []
   #at = 0
   /** Source of the last step, as long as it may be continued. */
@@ -58,6 +59,17 @@ export class History {
 
   get snapshots(): readonly Snapshot[] {
     return this.#snapshots
+  }
+
+  /** Named designs that are compared with the present one; the last is the reference. */
+  get compared(): readonly Snapshot[] {
+    return this.#compared
+  }
+
+  /** Compares with these designs and no others. */
+  compareWith(compared: readonly Snapshot[]): void {
+    this.#compared = compared
+    this.#notify()
   }
 
   /** Called whenever anything of it is another. */
@@ -114,9 +126,9 @@ export class History {
   }
 
   /** Gives the present design a name; `design 1` and so on where none is given. */
-  save(name = ''): Snapshot {
+  save(name = '', step = this.present): Snapshot {
     this.#named++
-    const snapshot = { id: this.#named, name: name.trim() || this.#free(), step: this.present }
+    const snapshot = { id: this.#named, name: this.#free(name.trim()), step }
     this.#snapshots.push(snapshot)
     this.#notify()
     return snapshot
@@ -128,21 +140,25 @@ export class History {
     return this.present
   }
 
-  /** Without a name it keeps the one that it has. */
+  /** Without a name it keeps the one that it has; a name that another design has gets a number. */
   rename(snapshot: Snapshot, name: string): void {
-    snapshot.name = name.trim() || snapshot.name
+    if (name.trim() !== snapshot.name) snapshot.name = name.trim() ? this.#free(name.trim()) : snapshot.name
     this.#notify()
   }
 
   remove(snapshot: Snapshot): void {
     const at = this.#snapshots.indexOf(snapshot)
     if (at >= 0) this.#snapshots.splice(at, 1)
+    this.#compared = this.#compared.filter((one) => one !== snapshot)
     this.#notify()
   }
 
-  #free(): string {
+  /** The name, with a number if it is taken; `design 1` and so on without one. */
+  #free(name: string): string {
     const taken = new Set(this.#snapshots.map(({ name }) => name))
-    for (let k = 1; ; k++) if (!taken.has(`design ${k}`)) return `design ${k}`
+    if (name !== '' && !taken.has(name)) return name
+    const stem = name || 'design'
+    for (let k = name === '' ? 1 : 2; ; k++) if (!taken.has(`${stem} ${k}`)) return `${stem} ${k}`
   }
 
   #move(by: number): Step | undefined {

@@ -6,8 +6,8 @@ import './studio.css'
 export interface HistoryActions {
   /** Shows another design. */
   show: (step: Step) => void
-  /** Compares with a design that was given a name, or with none of them any more. */
-  compare: (snapshot: Snapshot | undefined) => void
+  /** Compares with designs that were given a name, the last of them as the reference; with none of them if empty. */
+  compare: (snapshots: readonly Snapshot[]) => void
 }
 
 /** An arrow that turns back, and the same that turns forth. */
@@ -90,7 +90,6 @@ function stepOf({ key, ctrlKey, metaKey, altKey, shiftKey }: KeyboardEvent): 'un
 
 /** A button that opens the named designs: save the current one; open, compare, rename and delete others. */
 function snapshots(history: History, { show, compare }: HistoryActions): HTMLElement {
-  let compared: Snapshot | undefined
   const name = el('input', {
     type: 'text',
     placeholder: 'name of this design',
@@ -112,25 +111,27 @@ function snapshots(history: History, { show, compare }: HistoryActions): HTMLEle
     button.setAttribute('aria-expanded', String(wanted))
     if (wanted) name.focus()
   }
-  const choose = (snapshot: Snapshot | undefined) => {
-    compared = snapshot
-    compare(snapshot)
-    render()
+  const toggle = (snapshot: Snapshot) => {
+    const { compared } = history
+    const others = compared.filter((one) => one !== snapshot)
+    history.compareWith(others.length < compared.length ? others : [...others, snapshot])
+    compare(history.compared)
   }
   const row = (snapshot: Snapshot): HTMLElement =>
-    snapshotRow(snapshot, compared === snapshot, {
+    snapshotRow(snapshot, history.compared.includes(snapshot), {
       rename: (text) => history.rename(snapshot, text),
       open: () => (show(history.restore(snapshot)), open(false), button.focus()),
-      compare: () => choose(compared === snapshot ? undefined : snapshot),
+      compare: () => toggle(snapshot),
       remove: () => {
-        if (compared === snapshot) choose(undefined)
+        if (history.compared.includes(snapshot)) toggle(snapshot)
         history.remove(snapshot)
         name.focus()
       },
     })
   let shown = ''
   const render = () => {
-    const key = [compared?.id, ...history.snapshots.map(({ id }) => id)].join()
+    const ids = (all: readonly Snapshot[]) => all.map(({ id }) => id).join()
+    const key = `${ids(history.compared)} ${ids(history.snapshots)}`
     if (key === shown) return
     shown = key
     const focused = (document.activeElement as HTMLButtonElement | null)?.name
@@ -196,7 +197,7 @@ function snapshotRow(
     )
   const actions = [
     action('Open this design', 'Open', open),
-    action('Compare the current design with it', 'Compare', compare),
+    action('Draw this design together with the current one', 'Compare', compare),
     action('Delete this design', 'Delete', remove),
   ]
   actions[1].setAttribute('aria-pressed', String(isCompared))

@@ -7,11 +7,11 @@ import type { CheckReply, OpenReply, VariableSetting, DesignReply, Text } from '
 import { type Answer, RequestError } from '../engine/answer'
 import { Solver } from '../engine/solver'
 import { save } from '../export/save'
-import { page, type PageParts, slot } from '../page'
+import { page, type PageMemory, type PageParts, slot } from '../page'
 import type { Item } from '../page/menu'
 import type { Design as WireDesign, ModelText, Payload } from '../payload'
 import { design, read, type Design, type Report } from '../report'
-import { State } from '../state'
+import { type ChoiceMemory, State } from '../state'
 import type { Figure } from '../page/figure'
 import { targetButton } from './draw_target'
 import { Drawer } from './drawer'
@@ -20,11 +20,20 @@ import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
 import { connect } from './server'
 import { serverBar } from './server_bar'
+import { linkedSession, linkOf, type SavedDesign, type Session, Storage } from './session'
 import { optimizePane, type StudyPane, tolerancePane } from './studies'
 import { Workers } from './workers'
 
 /** Milliseconds without a change after which text and sensitivities follow the design. */
 const REST = 200
+/** Milliseconds between a change and its being kept by the browser. */
+const SAVE = 400
+
+/** Choices of a page. */
+interface Choices {
+  choices: ChoiceMemory
+  page: PageMemory
+}
 
 /**
  * The page as a studio: designs are solved by the engine as the reader makes them. What is shown is the model's text
@@ -55,6 +64,16 @@ export class Studio {
   #next?: string
   /** Counts the requests, so that an outdated answer is ignored. */
   #version = 0
+  /** Index of each compared design among those of the page. */
+  readonly #solved = new Map<Snapshot, number>()
+  /** Choices by case, for when it is shown again; and those that the next page is to make. */
+  readonly #choices = new Map<string | null, Choices>()
+  #recalled?: Choices
+  readonly #storage: Storage
+  #saving?: ReturnType<typeof setTimeout>
+  /** Stored work that the reader has not decided about, and the offer to restore it. */
+  #stored?: Session
+  #offer?: HTMLElement
 
   constructor(
     module: WebAssembly.Module,
@@ -70,7 +89,15 @@ export class Studio {
     this.history = new History({ text: model.text, settings: [], label: 'original' })
     const bar = historyBar(this.history, {
       show: (step) => void this.#showStep(step),
-      compare: (snapshot) => void this.#compare(snapshot),
+      compare: () => void this.#compare(),
+    })
+    this.#storage = new Storage(model.file, model.text)
+    this.#stored = this.#storage.load()
+    this.history.onChange(() => this.#saveSoon())
+    addEventListener('pagehide', () => this.#save())
+    addEventListener('beforeunload', (event) => {
+      this.#save()
+      if (this.#storage.failed && this.history.changed) event.preventDefault()
     })
     const host = {
       studies: new Workers(module, (text) => ({ ...this.model, text })),
@@ -102,7 +129,15 @@ export class Studio {
     document.body.append(this.#drawer.element)
     slot(made.bar, this.#tools)
     this.#attach()
-    void this.#open()
+    void this.#begin()
+  }
+
+  /** Opens the model, then the design of the address, or the offer to restore stored work. */
+  async #begin(): Promise<void> {
+    const linked = await linkedSession()
+    await this.#open()
+    if (linked) await this.#resume(linked, 'link')
+    else if (this.#stored) this.#offerStored(this.#stored)
   }
 
   /** The text of the present design. */
@@ -126,6 +161,7 @@ export class Studio {
 
   /** Items for export in addition to those of the report. */
   readonly exports = (): Item[] => [
+    { name: 'Link to this design', testId: 'export-link', run: () => this.#link() },
     {
       name: 'Model as TOML',
       testId: 'export-toml',
@@ -168,6 +204,79 @@ export class Studio {
       this.#recordStep()
       this.#scheduleUpdate()
     })
+    state.onChoice(() => this.#saveSoon())
+  }
+
+  /** The work so far. */
+  get #session(): Session {
+    const { first, present, snapshots, compared } = this.history
+    const saved = ({ text, settings }: Step) => ({ text: text === first.text ? undefined : text, settings })
+    return {
+      design: saved(present),
+      named: snapshots.map(({ name, step }) => ({ name, ...saved(step) })),
+      compared: compared.map(({ name }) => name),
+      choices: this.state.memory,
+      page: this.made.memory,
+      saved: Date.now(),
+    }
+  }
+
+  #saveSoon(): void {
+    this.#saving ??= setTimeout(() => this.#save(), SAVE)
+  }
+
+  /** Keeps the work in the browser; what is not changed needs no keeping, unless older work is still on offer. */
+  #save(): void {
+    clearTimeout(this.#saving)
+    this.#saving = undefined
+    const { changed, snapshots } = this.history
+    if (changed || snapshots.length > 0) this.#storage.save(this.#session)
+    else if (!this.#stored) this.#storage.clear()
+  }
+
+  #offerStored(session: Session): void {
+    const end = () => {
+      this.#offer?.remove()
+      this.#offer = this.#stored = undefined
+    }
+    const button = (name: string, run: () => void) =>
+      el('button', { type: 'button', 'data-testid': name.toLowerCase(), onclick: () => (end(), run()) }, name)
+    const { settings, text } = session.design
+    const count = `${settings.length} change${settings.length === 1 ? '' : 's'}`
+    const what = [text !== undefined && 'an edited model', settings.length > 0 && count].filter(Boolean).join(', ')
+    const when = new Date(session.saved).toLocaleString([], { dateStyle: 'medium', timeStyle: 'short' })
+    this.#offer = el(
+      'div',
+      { class: 'restore', role: 'status', 'data-testid': 'restore-bar' },
+      el('span', {}, `Unsaved work of ${when}${what ? `: ${what}` : ''}.`),
+      button('Restore', () => void this.#resume(session, 'restored')),
+      button('Discard', () => this.#save()),
+    )
+    this.made.notices.append(this.#offer)
+  }
+
+  /** Goes on with stored or linked work. */
+  async #resume({ design, named, compared, choices, page }: Session, label: string): Promise<void> {
+    const { history } = this
+    const step = ({ text, settings }: SavedDesign, label: string): Step => ({
+      text: text ?? history.first.text,
+      settings,
+      label,
+    })
+    const snapshots = named.map((one) => history.save(one.name, step(one, one.name)))
+    history.compareWith(compared.flatMap((name) => snapshots.find((one) => one.name === name) ?? []))
+    this.#recalled = { choices, page }
+    const { text, settings } = step(design, label)
+    history.go({ text, settings, label })
+    await this.#openModel({ ...this.model, text }, [...settings])
+  }
+
+  /** Puts a link with the present design into the address and the clipboard. */
+  async #link(): Promise<void> {
+    const link = await linkOf(this.#session)
+    history.replaceState(null, '', link)
+    await navigator.clipboard?.writeText(link).catch(() => undefined)
+    this.#showStatus('The address of this page now carries the design.')
   }
 
   /** Opens the model in the engine; from then on changes are solved. */
@@ -209,7 +318,7 @@ export class Studio {
         'aria-label': 'Case',
         title: 'Case',
         'data-testid': 'case',
-        onchange: () => void this.#openModel({ ...this.model, text: this.#text, case: select.value }, []),
+        onchange: () => void this.#openModel({ ...this.model, case: select.value }, this.state.settings),
       },
       ...cases.map((name) => el('option', { value: name, selected: name === (this.model.case ?? cases[0]) }, name)),
     )
@@ -331,11 +440,13 @@ export class Studio {
     this.#sensing.stop()
     try {
       const { json, decode } = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...model, shown: null } })
+      const former = this.model.case
       this.model = json.model ?? model
       this.#next = undefined
-      this.#show(read(json, decode))
+      this.#show(read(json, decode), former)
       this.#setText(this.model.text)
       await this.#open()
+      if (this.history.compared.length > 0) await this.#compare()
       if (settings.length > 0) this.state.setDesign(settings)
       else this.root.dataset.settled = 'yes'
     } catch (error) {
@@ -344,60 +455,80 @@ export class Studio {
     }
   }
 
-  /** Rebuilds the page with the former selection. */
-  #show(report: Report): void {
+  /** Rebuilds the page with the former choices; another case has its own, if it was shown before. */
+  #show(report: Report, former: string | null): void {
     const before = this.state
     const { view } = this.made
     const on = this.#grips?.on ?? false
+    const choices = { choices: before.memory, page: this.made.memory }
+    this.#choices.set(former, choices)
+    const own = former === this.model.case ? undefined : this.#choices.get(this.model.case)
+    const recalled = this.#recalled ?? own ?? choices
+    this.#recalled = undefined
     before.end()
     view?.dispose()
     keepMeshes(before.report, report)
     const state = new State(report)
-    state.choice.quantity =
-      named(report.quantities, before.report.quantities[before.choice.quantity]) ?? state.choice.quantity
-    state.choice.variable =
-      named(report.variables, before.report.variables[before.choice.variable]) ?? state.choice.variable
-    state.choice.order = before.choice.order
-    state.choice.labels = before.choice.labels
-    const time = before.time
+    state.recall({ ...recalled.choices, time: before.time })
     this.root.replaceChildren()
     this.state = state
+    this.#solved.clear()
     this.made = page(this.root, state, {
       bar: this.#tools,
+      memory: recalled.page,
       exports: this.exports,
       grips: () => this.grips(),
       figure: (figure) => this.target(figure),
     })
-    state.goToTime(time)
+    if (this.#offer) this.made.notices.append(this.#offer)
+    state.goToStep(state.step)
     this.#grips = undefined
     this.#attach()
     if (on) queueMicrotask(() => (this.#grips as Grips | undefined)?.toggle())
   }
 
-  /** Draws a named design together with the present one. */
-  async #compare(snapshot: Snapshot | undefined): Promise<void> {
-    if (!snapshot) return this.state.choose({ compared: undefined })
-    const { text, settings } = snapshot.step
+  /** Draws the compared designs together with the present one. */
+  async #compare(): Promise<void> {
+    const { state } = this
     try {
-      let answer: Answer<DesignReply>
-      if (text === this.model.text) {
-        answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: [...settings], from: null })
-      } else {
-        await this.#sensing.ask<OpenReply>({ ask: 'open', model: { ...this.model, text } })
-        const { json } = await this.#sensing.ask<Text>({ ask: 'text', change: [...settings] })
-        answer = await this.#drags.ask<DesignReply>({ ask: 'beside', model: { ...this.model, text: json.text } })
+      for (const snapshot of this.history.compared) {
+        if (this.#solved.has(snapshot)) continue
+        const found = await this.#solveSnapshot(snapshot)
+        if (state !== this.state) return
+        if (!found) continue
+        state.addComparison({ ...found, name: snapshot.name })
+        this.#solved.set(snapshot, state.designs.length - 1)
       }
-      const found = this.#read(answer.json.design, answer, [...settings])
-      if (!found) return
-      this.state.addComparison({ ...found, name: snapshot.name })
-      this.state.choose({ compared: this.state.designs.length - 1 })
     } catch (error) {
       this.#showStatus(messageOf(error))
     }
+    const shown = this.history.compared.flatMap((snapshot) => this.#solved.get(snapshot) ?? [])
+    state.choose({ compared: shown.at(-1), overlays: shown.slice(0, -1) })
   }
 
-  /** Makes the design that a study found the present one. */
+  async #solveSnapshot({ step: { text, settings } }: Snapshot): Promise<Design | undefined> {
+    if (text === this.model.text) {
+      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: [...settings], from: null })
+      return this.#read(answer.json.design, answer, [...settings])
+    }
+    await this.#sensing.ask<OpenReply>({ ask: 'open', model: { ...this.model, text } })
+    const { json } = await this.#sensing.ask<Text>({ ask: 'text', change: [...settings] })
+    const answer = await this.#drags.ask<DesignReply>({ ask: 'beside', model: { ...this.model, text: json.text } })
+    return this.#read(answer.json.design, answer, [...settings])
+  }
+
+  /**
+   * Makes the design that a study found the present one. Changes of the model itself keep it as the dashed original;
+   * before another text, the present design is given a name and compared with.
+   */
   async #applyResult(change: VariableSetting[] | null, text: string | null, studied: string): Promise<void> {
+    const { history } = this
+    if (change && studied === history.present.text && studied === this.model.text) {
+      history.go({ text: studied, settings: change, label: 'optimised' })
+      return this.state.setDesign(change)
+    }
+    const former = history.save('before optimisation')
+    history.compareWith([former])
     if (text !== null) await this.replace(text, 'found')
     else if (studied !== this.#text) await this.replace(studied, 'studied')
     if (text === null && change) this.state.setDesign(change)
@@ -441,11 +572,6 @@ export function between(
   return names
     .map((name) => ({ name, by: (before.get(name) ?? 0) + part * ((after.get(name) ?? 0) - (before.get(name) ?? 0)) }))
     .filter(({ by }) => by !== 0)
-}
-
-function named<T extends { name: string }>(list: readonly T[], wanted: T | undefined): number | undefined {
-  const found = list.findIndex(({ name }) => name === wanted?.name)
-  return found < 0 ? undefined : found
 }
 
 /** The engine solves and draws nothing: bodies keep the shapes that the page has of them. */

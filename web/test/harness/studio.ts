@@ -95,7 +95,7 @@ const first: Step = { text: window.model, settings: [], label: 'opened' }
 window.designs = new History(first)
 const bar = historyBar(window.designs, {
   show: (step) => window.shown.push(step),
-  compare: (snapshot) => window.compared.push(snapshot?.name),
+  compare: (snapshots) => window.compared.push(snapshots.at(-1)?.name),
 })
 
 const host = {

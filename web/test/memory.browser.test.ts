@@ -1,0 +1,163 @@
+import type { Browser, Page } from 'playwright-core'
+import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
+import { launch, NO_3D, visit, type Visit } from './browser'
+import { slide } from './person'
+
+const { models } = inject('samples')
+
+/** With the view, and without it where the camera does not matter. */
+let browser: Browser
+let flat: Browser
+let visited: Visit
+let page: Page
+beforeAll(async () => {
+  ;[browser, flat] = await Promise.all([launch(), launch(NO_3D)])
+})
+afterAll(() => Promise.all([browser?.close(), flat?.close()]))
+afterEach(async () => {
+  expect(visited.complaints).toEqual([])
+  await page.context().close()
+})
+
+const ready = (page: Page) => page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+const settled = async (page: Page) => {
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'no')
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
+}
+const open = async (name: string, where = flat) => {
+  visited = await visit(where, models[name])
+  page = visited.page
+  await ready(page)
+}
+const change = (name: string) => page.getByTestId(`variable-${name}`).getByTestId('change-value')
+const over = (id: string) => page.getByTestId(id).getByTestId('over').locator('option:checked').innerText()
+const quantity = (id: string) => page.getByTestId(id).getByTestId('quantity').locator('option:checked').innerText()
+const figures = () => page.getByTestId('curves').locator('[data-testid^=plot-]').count()
+
+/** Choices of a reader that nothing but the reader is to take back. */
+async function choose(): Promise<void> {
+  await page.getByTestId('plot-0').getByTestId('over').selectOption({ label: 'over wheel_travel' })
+  await page.getByTestId('plot-0').getByTestId('quantity').selectOption({ label: 'camber' })
+  await page.getByTestId('add-curve').click()
+  await page.getByTestId('tab-checks').click()
+}
+
+/** Further choices in the view. */
+async function look(): Promise<void> {
+  await page.getByTestId('look-side').click()
+  await page.getByTestId('trace').selectOption({ label: 'path of tie_rod_outer' })
+  await page.getByTestId('labels').click()
+}
+
+/** The same choices, as the page shows them. */
+async function chosen() {
+  return {
+    over: await over('plot-0'),
+    quantity: await quantity('plot-0'),
+    figures: await figures(),
+    tab: await page.getByTestId('tab-checks').getAttribute('aria-selected'),
+  }
+}
+
+async function looked() {
+  return {
+    look: await page.getByTestId('look-side').getAttribute('aria-pressed'),
+    trace: await page.getByTestId('trace').locator('option:checked').innerText(),
+    labels: await page.getByTestId('labels').getAttribute('aria-pressed'),
+  }
+}
+
+describe('axes, plots, camera, path and tab', () => {
+  test('survive an edit of the text and its undo', async () => {
+    await open('macpherson', browser)
+    await choose()
+    await look()
+    const before = { ...(await chosen()), ...(await looked()) }
+    await page.getByTestId('open-model').click()
+    await page.locator('.cm-content').click()
+    await page.keyboard.press('Control+f')
+    await page.keyboard.type('strut, BMW')
+    await page.keyboard.press('Enter')
+    await page.keyboard.press('Escape')
+    await page.keyboard.type('another')
+    await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('another'))
+    await ready(page)
+    expect({ ...(await chosen()), ...(await looked()) }).toEqual(before)
+    await page.getByTestId('undo').click()
+    await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('BMW'))
+    await ready(page)
+    expect({ ...(await chosen()), ...(await looked()) }).toEqual(before)
+  })
+})
+
+describe('work on a design', () => {
+  test('is offered again after a reload, with its design, its named designs and its plots', async () => {
+    await open('macpherson')
+    await choose()
+    const before = await chosen()
+    await page.getByTestId('tab-variables').click()
+    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
+    await settled(page)
+    await page.getByTestId('designs').click()
+    await page.getByTestId('snapshot-name').fill('higher')
+    await page.getByTestId('snapshot-keep').click()
+    await page.getByTestId('tab-checks').click()
+    await page.reload()
+    await page.getByTestId('restore-bar').waitFor()
+    expect(await page.getByTestId('restore-bar').innerText()).toContain('1 change')
+    expect(await change('tie_rod_outer_z').inputValue()).toBe('0')
+    await page.getByTestId('restore').click()
+    await settled(page)
+    expect(await change('tie_rod_outer_z').inputValue()).toBe('5')
+    expect(await chosen()).toEqual(before)
+    expect(await page.getByTestId('designs').innerText()).toContain('1')
+    expect(await page.getByTestId('restore-bar').count()).toBe(0)
+    // What is discarded is not offered again.
+    await page.reload()
+    await page.getByTestId('discard').click()
+    await page.reload()
+    await ready(page)
+    expect(await page.getByTestId('restore-bar').count()).toBe(0)
+  })
+
+  test('goes with a link', async () => {
+    await open('macpherson')
+    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
+    await settled(page)
+    await page.getByTestId('export').click()
+    await page.getByTestId('export-link').click()
+    await page.waitForFunction(() => location.hash.startsWith('#state='))
+    const other = await visit(flat, page.url())
+    await other.page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
+    await expect
+      .poll(() => other.page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue())
+      .toBe('5')
+    await other.page.context().close()
+  })
+
+  test('is not left without a warning where the browser keeps nothing', async () => {
+    await open('macpherson')
+    const asked: string[] = []
+    page.on('dialog', (dialog) => {
+      asked.push(dialog.type())
+      void dialog.accept()
+    })
+    await page.locator('h1').click()
+    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
+    await settled(page)
+    await page.evaluate(() => {
+      Storage.prototype.setItem = () => {
+        throw new Error('the storage is full')
+      }
+    })
+    await page.close({ runBeforeUnload: true })
+    await expect.poll(() => asked).toEqual(['beforeunload'])
+  })
+
+  test('is compared with what it was before an optimisation', async () => {
+    await open('macpherson')
+    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
+    await settled(page)
+    expect(await page.getByTestId('plot-0').innerText()).toContain('original')
+  })
+})
