@@ -4,7 +4,7 @@ import { css, el, keepFocus, prose, setText, svg } from './dom'
 import { number, pretty, titled } from './format'
 import { abscissaOf, type Content, drawnRange, drawnSteps, type Line } from './content'
 import { decades, nearestStep, padded, positive, stepAt, valueAt, type Curve, withGaps } from './curve'
-import { extent, linearAxis } from './export/axis'
+import { extent, FEWEST_TICKS, ticks } from './export/axis'
 import type { State } from './state'
 import { atLeast, between, moved, type Part, scaled, within, Zoom } from './zoom'
 
@@ -18,9 +18,8 @@ const AXIS = 66
 const ABSCISSA = 48
 /** With more powers of ten than this along an axis, every other one has a number. */
 const MOST_POWERS = 6
-/** An ordinate has a number on about so many pixels, and never less than this number of them. */
+/** An ordinate has a number on about so many pixels. */
 const TICK = 34
-const FEWEST_TICKS = 3
 
 /** A magnifying glass with a plus; arrows to the corners. */
 const GLASS = 'M6.5 2a4.5 4.5 0 1 0 0 9a4.5 4.5 0 1 0 0 -9M10 10l4 4M4.5 6.5h4M6.5 4.5v4'
@@ -93,6 +92,7 @@ export class Plot {
     'whole',
   )
   #large = button('maximise', 'Maximise (double click, Enter); Escape restores', CORNERS, () => this.maximise())
+  #range?: { x: Part; y: Part }
   /** Size of the area, px, from its observer. */
   #extent?: { width: number; height: number }
 
@@ -122,6 +122,7 @@ export class Plot {
     )
     new ResizeObserver(([{ contentRect }]) => {
       this.#extent = { width: Math.round(contentRect.width), height: Math.round(contentRect.height) }
+      this.#range = undefined
       this.#uplot?.setSize(this.#size())
     }).observe(this.area)
     new IntersectionObserver((all) => {
@@ -164,6 +165,7 @@ export class Plot {
   #render(): void {
     const { content } = this
     this.#stale = false
+    this.#range = undefined
     setText(this.#title, titled(content.title, content.message ? '' : content.unit))
     if (this.#caption.dataset.text !== (content.caption ?? '')) {
       this.#caption.dataset.text = content.caption ?? ''
@@ -243,7 +245,13 @@ export class Plot {
     this.overlay = overlay
     if (!this.#uplot) return
     overlay?.onto(this.#uplot)
-    this.#uplot.setData(this.#uplot.data)
+    this.rescale()
+  }
+
+  /** Draws with new ranges of the axes. */
+  rescale(): void {
+    this.#range = undefined
+    this.#uplot?.setData(this.#uplot.data)
   }
 
   /** Fills the page with the plot, or returns it to its place. */
@@ -321,8 +329,12 @@ export class Plot {
     return this.content.lines.filter(({ hidden }) => !hidden)[k]
   }
 
-  /** Ranges of both axes. */
+  /** Ranges of both axes, found once for what is drawn. */
   #ranges(): { x: Part; y: Part } {
+    return (this.#range ??= this.#findRanges())
+  }
+
+  #findRanges(): { x: Part; y: Part } {
     const { part, upright, logarithmic, equal } = this.content
     const x = part ?? this.#all()
     const [low, high] = drawnRange(this.content, this.state.report.times) ?? [null, null]
@@ -516,7 +528,7 @@ export class Plot {
     // A button that goes takes the focus with it.
     if (document.activeElement === this.#whole) this.#closer.focus()
     this.#whole.hidden = (this.content.part ?? this.content.upright) === undefined
-    this.#uplot.setData(this.#uplot.data)
+    this.rescale()
   }
 
   #showTime(): void {
@@ -563,14 +575,6 @@ function sample({ color, dash, width, marks }: Line): SVGElement {
     ? svg('circle', { cx: SAMPLE / 2, cy: 5, r: RADIUS, ...style })
     : svg('path', { d: `M0 5H${SAMPLE}`, ...style })
   return svg('svg', { class: 'sample', width: SAMPLE, height: 10, 'aria-hidden': 'true' }, shape)
-}
-
-/** Round numbers of an ordinate, at least three. */
-export function ticks(range: [number, number], count: number): number[] {
-  for (let wanted = count; ; wanted++) {
-    const found = linearAxis(range, 0, 1, wanted).ticks.map(({ value }) => value)
-    if (found.length >= FEWEST_TICKS || wanted > 4 * count) return found
-  }
 }
 
 /** The step of a path that is nearest to a position, px. */

@@ -152,7 +152,7 @@ describe('the model in the page', () => {
   test('follows a slider: solved, not predicted', async () => {
     await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
     await settled()
-    expect(await page.getByTestId('plot-0').innerText()).toContain('changed')
+    expect(await page.getByTestId('plot-0').innerText()).toContain('current')
     const by = Number(await page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue())
     expect(await card('toe')).toBeCloseTo(
       Number(native('macpherson.toml', [{ name: 'tie_rod_outer_z', by }])[0].toPrecision(4)),

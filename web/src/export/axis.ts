@@ -7,6 +7,8 @@ export interface Axis {
   ticks: { value: number; text: string }[]
 }
 
+/** Least number of round numbers along an ordinate. */
+export const FEWEST_TICKS = 3
 /** Number of powers of ten above which only every other one has a label. */
 const MOST_POWERS = 6
 
@@ -21,6 +23,14 @@ export function linearAxis([low, high]: [number, number], from: number, to: numb
     return { value, text: number(value, 6) }
   })
   return { at, ticks }
+}
+
+/** Round numbers of an ordinate, at least three. */
+export function ticks(range: [number, number], count: number): number[] {
+  for (let wanted = count; ; wanted++) {
+    const found = linearAxis(range, 0, 1, wanted).ticks.map(({ value }) => value)
+    if (found.length >= FEWEST_TICKS || wanted > 4 * count) return found
+  }
 }
 
 /** An axis over whole powers of ten. */

@@ -1,3 +1,19 @@
+/** A picture of vectors as a PNG file, with this number of pixels per pixel of the picture. */
+export async function pngOf(picture: Blob, scale: number): Promise<Blob> {
+  const image = new Image()
+  image.src = URL.createObjectURL(picture)
+  try {
+    await image.decode()
+    const canvas = document.createElement('canvas')
+    canvas.width = image.naturalWidth * scale
+    canvas.height = image.naturalHeight * scale
+    canvas.getContext('2d')!.drawImage(image, 0, 0, canvas.width, canvas.height)
+    return await canvasPng(canvas)
+  } finally {
+    URL.revokeObjectURL(image.src)
+  }
+}
+
 /** Contents of a canvas, as a file. */
 function canvasPng(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) =>
@@ -6,25 +22,4 @@ function canvasPng(canvas: HTMLCanvasElement): Promise<Blob> {
       'image/png',
     ),
   )
-}
-
-/** A plot's canvas on the page's colour with its title above: a canvas is clear where nothing is drawn. */
-export function plotPng(
-  plot: HTMLCanvasElement,
-  title: string,
-  { page, text }: { page: string; text: string },
-): Promise<Blob> {
-  const scale = devicePixelRatio
-  const head = 26 * scale
-  const canvas = document.createElement('canvas')
-  canvas.width = plot.width
-  canvas.height = plot.height + head
-  const brush = canvas.getContext('2d')!
-  brush.fillStyle = page
-  brush.fillRect(0, 0, canvas.width, canvas.height)
-  brush.fillStyle = text
-  brush.font = `600 ${14 * scale}px system-ui, sans-serif`
-  brush.fillText(title, 12 * scale, 18 * scale, canvas.width - 24 * scale)
-  brush.drawImage(plot, 0, head)
-  return canvasPng(canvas)
 }

@@ -1,7 +1,7 @@
 import './influence.css'
 import { css, el, onSchemeChange } from '../dom'
 import { number, pretty } from '../format'
-import { derivativeUnit, ORDERS, type Quantity } from '../report'
+import { derivativeUnit, ORDERS, type Quantity, type Variable } from '../report'
 import { originHeading } from '../page/checks'
 import { whileSeen } from '../page/tabs'
 import type { State } from '../state'
@@ -18,6 +18,8 @@ const NAMES = { width: 176, height: 112 }
 /** Maximum height of the window, and room for a scroll bar, px. */
 const HIGHEST = 460
 const SPARE = 18
+/** Columns of a table on paper. */
+const PAPER_COLUMNS = 12
 const FONT = '12px system-ui, sans-serif'
 const SMALL = '11px system-ui, sans-serif'
 
@@ -39,6 +41,8 @@ class HeatMap {
   readonly #reading = el('output', { class: 'reading', 'aria-live': 'polite', 'data-testid': 'heat-reading' })
   readonly #legend = el('span', { class: 'ends' })
   readonly #title = el('span')
+  /** The whole map in tables that fit a sheet of paper, filled while it is printed. */
+  readonly #paper = el('div', { class: 'heat-paper' })
   readonly #window: HTMLElement
   readonly #group: HTMLSelectElement
   readonly #filter: HTMLInputElement
@@ -107,7 +111,10 @@ class HeatMap {
       ),
       this.#window,
       this.#reading,
+      this.#paper,
     )
+    addEventListener('beforeprint', () => this.#print(), { signal: state.ended })
+    addEventListener('afterprint', () => this.#paper.replaceChildren(), { signal: state.ended })
     new ResizeObserver(([{ contentRect }]) => {
       this.#size = { width: contentRect.width, height: contentRect.height }
       this.#layOut()
@@ -151,6 +158,31 @@ class HeatMap {
       this.#pointed = undefined
     this.#read()
     this.#draw()
+  }
+
+  #print(): void {
+    const { rows, quantities } = this.#grid
+    const scale = new Scale()
+    const cell = (quantity: Quantity, variable: Variable) => {
+      const found = this.#cells.at(quantity, variable)
+      if (!found) return el('td', {}, '·')
+      const style = `background: ${scale.of(found.share)}; color: ${strong(found.share) ? css('--heat-text') : css('--ink')}`
+      return el('td', { style }, found.share === 0 ? '' : number(found.extreme, 2))
+    }
+    const table = (part: Quantity[]) =>
+      el(
+        'table',
+        {},
+        el('tr', {}, el('th'), ...part.map(({ name }) => el('th', { class: 'column' }, el('span', {}, name)))),
+        ...rows.map(({ unit, variable }) => {
+          const name = variable?.name ?? `per ${pretty(unit) || 'unit'}`
+          return el('tr', {}, el('th', {}, name), ...(variable ? part.map((one) => cell(one, variable)) : []))
+        }),
+      )
+    const parts = Array.from({ length: Math.ceil(quantities.length / PAPER_COLUMNS) }, (_, k) =>
+      quantities.slice(k * PAPER_COLUMNS, (k + 1) * PAPER_COLUMNS),
+    )
+    this.#paper.replaceChildren(...parts.map(table))
   }
 
   /** Draws in the next frame, once however often it is requested. */

@@ -1,5 +1,5 @@
 import './influence.css'
-import { el, keepFocus, prose } from '../dom'
+import { el, keepFocus, onSchemeChange, prose } from '../dom'
 import { figure } from '../format'
 import { derivativeUnit, orderedName, ranking, type Variable } from '../report'
 import type { State } from '../state'
@@ -59,8 +59,9 @@ export function rankingTable(state: State): HTMLElement {
   /** Makes the rows that a scroll brings into sight. */
   const place = () => {
     frame = 0
-    const first = Math.max(0, Math.min(Math.floor(top / ROW), rows.length - 1) - SPARE)
-    const last = Math.min(rows.length, Math.ceil((top + height) / ROW) + SPARE)
+    const printing = document.documentElement.classList.contains('printing')
+    const first = printing ? 0 : Math.max(0, Math.min(Math.floor(top / ROW), rows.length - 1) - SPARE)
+    const last = printing ? rows.length : Math.min(rows.length, Math.ceil((top + height) / ROW) + SPARE)
     if (range[0] === first && range[1] === last) return
     range = [first, last]
     above.style.height = `${first * ROW}px`
@@ -97,6 +98,7 @@ export function rankingTable(state: State): HTMLElement {
     report.variables.length > FIRST_ROWS && el('label', { class: 'field' }, el('span', {}, 'Filter'), filter),
     scroll,
   )
+  onSchemeChange(place, state.ended)
   whileSeen(element, (listener) => state.onChoice(listener), show, state.ended)
   return element
 }

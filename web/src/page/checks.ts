@@ -82,7 +82,7 @@ function marginPlot(state: State): { element: HTMLElement; show: () => void } {
     const present = state.present?.margin
     if (present) {
       Object.assign(lines[0], { color: css('--former'), dash: [6, 4] })
-      lines.unshift({ label: 'current design', color: css('--trace'), curve: present })
+      lines.unshift({ label: 'current', color: css('--trace'), curve: present })
     }
     const { outdated, sensitivityReport } = state
     const note = sensitivityReport.margin?.note ?? ''

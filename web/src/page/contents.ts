@@ -120,7 +120,7 @@ export function valueContent(state: State, subject: Subject): Content {
 
 function presentDesign(state: State): Drawn {
   const { present, isPredicted, isCompared } = state
-  const name = isPredicted ? 'predicted to first order' : (present?.name ?? (isCompared ? 'current design' : ''))
+  const name = isPredicted ? 'predicted to first order' : present || isCompared ? 'current' : ''
   return { name, curve: (quantity, order) => state.curve(quantity, order), width: 2.4, color: css('--trace') }
 }
 
@@ -231,7 +231,7 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   content.lines.push(...content.lines.splice(first, 1))
   const { differences } = own.sensitivity
   const left = peers.length - shown.length
-  const rest = [at.note, left > 0 ? `strongest ${shown.length} of ${peers.length}.` : '']
+  const rest = [at.note, left > 0 ? `Strongest ${shown.length} of ${peers.length}.` : '']
     .filter((words) => words !== '')
     .join(' ')
   if (!differences) return overOther(state, subject.over, { ...content, caption: rest })

@@ -1,6 +1,6 @@
 import { css } from '../dom'
 import { csvOf, type Column } from '../export/csv'
-import { plotPng } from '../export/png'
+import { pngOf } from '../export/png'
 import { plotSvg } from '../export/plot_svg'
 import { save } from '../export/save'
 import type { View } from '../scene/view'
@@ -31,20 +31,17 @@ export function exports(state: State, figures: Figure[], view: View | undefined)
       : []),
     ...drawn.flatMap(({ plot }) => {
       const { title } = plot.content
+      const vectors = () => plotSvg(plot.content, report.times, report.units.time, paper())
       return [
         {
           name: `${title} as PNG`,
           testId: 'export-plot-png',
-          run: async () =>
-            save(
-              await plotPng(plot.canvas!, title, { page: css('--page'), text: css('--ink') }),
-              `${name} ${title}.png`,
-            ),
+          run: async () => save(await pngOf(vectors(), SHARP), `${name} ${title}.png`),
         },
         {
           name: `${title} as SVG`,
           testId: 'export-plot-svg',
-          run: () => save(plotSvg(plot.content, report.times, report.units.time, paper()), `${name} ${title}.svg`),
+          run: () => save(vectors(), `${name} ${title}.svg`),
         },
       ]
     }),
@@ -73,7 +70,9 @@ function columns({ report }: State, figures: Figure[]): Column[] {
     { label: 'time', unit: report.units.time, curve: report.times },
     ...[...overs.values()].map(({ label, unit, curve }) => ({ label, unit, curve })),
     ...contents.flatMap(({ title, unit, lines }) =>
-      lines.map(({ label, curve }) => ({ label: label === title ? label : `${title}: ${label}`, unit, curve })),
+      lines
+        .filter(({ free, hidden }) => !free && !hidden)
+        .map(({ label, curve }) => ({ label: label === title ? label : `${title}: ${label}`, unit, curve })),
     ),
   ]
   const seen = contents.map(({ over, part }) => part && stepsWithin(over?.curve ?? report.times, part))

@@ -88,7 +88,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   })
   if (tools.bar) slot(head, tools.bar)
   const steps = report.model ? firstSteps(state, () => tools.grips?.()) : undefined
-  const notices = el('div', { class: 'notices' }, banner(state), steps)
+  const notices = el('div', { class: 'announcements' }, banner(state), steps)
   root.append(
     head,
     notices,

@@ -243,7 +243,7 @@ export class Sketch implements Overlay {
   }
 
   #rescale(): void {
-    this.#plot!.setData(this.#plot!.data)
+    this.over.rescale()
   }
 
   #key(event: KeyboardEvent): void {

@@ -1,0 +1,186 @@
+import type { Browser, Page } from 'playwright-core'
+import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
+import { launch, NO_3D, visit, type Visit } from './browser'
+import { curve, drawn, slide } from './person'
+
+const { models } = inject('samples')
+
+/** The curves need no view, and are drawn sooner without one. */
+let browser: Browser
+let visited: Visit
+let page: Page
+beforeAll(async () => {
+  browser = await launch(NO_3D)
+})
+afterAll(() => browser?.close())
+afterEach(async () => {
+  expect(visited.complaints).toEqual([])
+  await page.context().close()
+})
+
+const open = async (name: string, viewport = { width: 1440, height: 900 }) => {
+  visited = await visit(browser, models[name], { viewport })
+  page = visited.page
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+}
+const settled = async () => {
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'no')
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
+}
+const plot = (k: number) => page.getByTestId(`plot-${k}`)
+const chosen = (k: number, name: string) => plot(k).getByTestId(name).locator('option:checked').innerText()
+const change = (name: string, by: number) => slide(page, `[data-testid=variable-${name}] [data-testid=change]`, by)
+const numberOf = (text: string) => Number(text.replaceAll('−', '-'))
+
+describe('after a change', () => {
+  test('the checks have the numbers of the cards, or the heading of the design that theirs belong to', async () => {
+    await open('front_axle')
+    const card = async () => numberOf(await page.getByTestId('card-bump_steer').getByTestId('card-value').innerText())
+    const fact = () =>
+      page
+        .getByTestId('checks')
+        .locator('tr', { hasText: /^bump_steer/ })
+        .first()
+        .innerText()
+    const before = await card()
+    await page.getByTestId('tab-checks').click()
+    const heading = page.getByTestId('checks').getByTestId('of-design')
+    expect(await heading.isVisible()).toBe(false)
+    await page.getByTestId('tab-variables').click()
+    await change('upper_ball_x', 10)
+    await page.getByTestId('tab-checks').click()
+    await page.waitForFunction(
+      (before) => document.querySelector('[data-testid=card-bump_steer] .figure-now')!.textContent !== before,
+      String(before),
+    )
+    const isCurrent = async () => (await fact()).includes(String(await card()))
+    // At every moment the number is the present one, or stands under a heading.
+    expect((await heading.isVisible()) || (await isCurrent())).toBe(true)
+    await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
+    expect(await card()).not.toBe(before)
+    expect(await isCurrent()).toBe(true)
+    expect(await heading.isVisible()).toBe(false)
+  })
+
+  test('cards show what it did to the range over the motion, where the value at ride height stays', async () => {
+    await open('macpherson')
+    const toe = page.getByTestId('card-toe')
+    const before = await toe.getByTestId('card-motion').innerText()
+    expect(before).toMatch(/^−8\.71 … 8\.95 · slope −0\.0218 deg\/mm$/)
+    await change('tie_rod_outer_z', 5)
+    await settled()
+    const after = await toe.getByTestId('card-motion').innerText()
+    expect(after).toMatch(/^−[\d.]+ \([+−][\d.]+\) … [\d.]+ \([+−][\d.]+\) · slope −?[\d.]+ deg\/mm$/)
+    expect(await toe.getByTestId('card-change').isVisible()).toBe(false)
+  })
+})
+
+describe('the sheet', () => {
+  test('of a suspension opens on toe over wheel travel, and has three numbers on every ordinate', async () => {
+    await open('double_wishbone_4x4', { width: 1024, height: 768 })
+    expect([await chosen(0, 'quantity'), await chosen(0, 'over')]).toEqual([
+      'front_left.toe',
+      'over front_left.wheel_travel',
+    ])
+    const areas = page.getByTestId('curves').locator('.area')
+    for (const height of await areas.evaluateAll((all) => all.map((area) => area.clientHeight)))
+      expect(height).toBeGreaterThanOrEqual(180)
+    const titles = await page
+      .getByTestId('curves')
+      .getByTestId('quantity')
+      .evaluateAll((all) => all.map((select) => (select as HTMLSelectElement).selectedOptions[0].textContent))
+    for (const name of ['camber', 'caster', 'roll_centre_height', 'half_track'])
+      expect(titles).toContain(`front_left.${name}`)
+  })
+
+  test('holds several quantities and designs, whose lines are hidden by a click on the legend', async () => {
+    await open('front_axle')
+    const labels = () => plot(0).locator('.legend .label').allInnerTexts()
+    expect(await labels()).toEqual(['left.toe', 'right.toe'])
+    await plot(0).getByTestId('also').selectOption({ label: 'left.camber' })
+    expect(await labels()).toEqual(['left.toe', 'right.toe', 'left.camber'])
+    const before = await curve(page, 'plot-0')
+    await plot(0).locator('.legend button').last().click()
+    expect((await curve(page, 'plot-0')).sum).not.toBe(before.sum)
+    expect(await plot(0).locator('.legend button').last().getAttribute('aria-pressed')).toBe('false')
+    await plot(0).locator('.legend button').last().click()
+    expect((await curve(page, 'plot-0')).sum).toBe(before.sum)
+    // Two kept designs besides the present one and the original.
+    for (const [by, name] of [
+      [4, 'forward'],
+      [8, 'far'],
+    ] as const) {
+      await change('tie_rod_outer_x', by)
+      await settled()
+      await page.getByTestId('designs').click()
+      await page.getByTestId('snapshot-name').fill(name)
+      await page.getByTestId('snapshot-keep').click()
+      await page.getByTestId('snapshot-compare').last().click()
+      await page.keyboard.press('Escape')
+    }
+    await page.getByTestId('reset-design').click()
+    await settled()
+    await expect.poll(async () => (await labels()).join()).toContain('left.toe, forward')
+    expect((await labels()).join()).toContain('left.toe, far')
+  })
+
+  test('shows changes to the original, and values at chosen abscissas', async () => {
+    await open('double_wishbone_4x4')
+    await plot(0).getByTestId('values-at').click()
+    const rows = () => plot(0).getByTestId('value-table').locator('tbody tr').allInnerTexts()
+    await plot(0).getByTestId('abscissas').fill('-60 0 60')
+    await plot(0).getByTestId('abscissas').press('Enter')
+    expect((await rows()).map((row) => row.split('\t')[0])).toEqual(['−60', '0', '60'])
+    expect(numberOf((await rows())[1].split('\t')[1])).toBeCloseTo(0, 3)
+    await plot(0).getByTestId('difference').click()
+    expect(await plot(0).locator('.caption').first().innerText()).toBe('Nothing is changed yet.')
+    await change('tie_rod_inner_z', 5)
+    await settled()
+    expect(await plot(0).locator('.caption').first().innerText()).toBe('Change to: original.')
+    const differences = (await rows()).map((row) => numberOf(row.split('\t')[1]))
+    expect(Math.max(...differences.map(Math.abs))).toBeGreaterThan(0.1)
+  })
+
+  test('is maximised and restored, and zooms along the ordinate', async () => {
+    await open('double_wishbone_4x4')
+    const width = () => plot(0).evaluate((element) => element.clientWidth)
+    const before = await width()
+    await plot(0).getByTestId('maximise').click()
+    expect(await width()).toBe(1440)
+    await page.keyboard.press('Escape')
+    expect(await width()).toBe(before)
+    await plot(0).locator('.u-over').dblclick()
+    expect(await width()).toBe(1440)
+    await plot(0).locator('.u-over').dblclick()
+    expect(await width()).toBe(before)
+    const whole = await curve(page, 'plot-0')
+    const axis = (await plot(0).locator('.ordinate').boundingBox())!
+    await page.mouse.move(axis.x + 40, axis.y + 30)
+    await page.mouse.down()
+    await page.mouse.move(axis.x + 40, axis.y + 80, { steps: 3 })
+    await page.mouse.up()
+    expect((await curve(page, 'plot-0')).sum).not.toBe(whole.sum)
+    await plot(0).getByTestId('whole').click()
+    await page.mouse.move(1, 1)
+    expect((await curve(page, 'plot-0')).sum).toBe(whole.sum)
+  })
+
+  test('reads all plots under one pointer, and draws measured data', async () => {
+    await open('double_wishbone_4x4')
+    const area = (await plot(0).locator('.u-over').boundingBox())!
+    await page.mouse.move(area.x + area.width * 0.8, area.y + 40)
+    await drawn(page)
+    const moment = await plot(0).locator('.moment').innerText()
+    expect(moment).toMatch(/wheel_travel \d/)
+    expect(await plot(1).locator('.moment').innerText()).toBe(moment)
+    const rig = 'front_left.wheel_travel [mm],front_left.toe [deg]\n-50,-1.5\n0,0.1\n50,1.2\n'
+    await plot(0)
+      .getByTestId('measured-file')
+      .setInputFiles({ name: 'rig.csv', mimeType: 'text/csv', buffer: Buffer.from(rig) })
+    await expect.poll(() => plot(0).locator('.legend').innerText()).toContain('front_left.toe, rig.csv')
+    await plot(0)
+      .getByTestId('measured-file')
+      .setInputFiles({ name: 'none.csv', mimeType: 'text/csv', buffer: Buffer.from('nothing') })
+    await expect.poll(() => plot(0).innerText()).toContain('needs two columns')
+  })
+})
