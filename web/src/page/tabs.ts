@@ -15,6 +15,8 @@ export interface Tabs {
   show(name: string): void
 }
 
+/** Screens with one section at a time, as in the style sheet. */
+const NARROW = '(max-width: 700px)'
 /** Event of the page when another panel or section comes to the front. */
 export const FRONT = 'front'
 
@@ -89,7 +91,8 @@ export function whileSeen(
 ): void {
   let stale = false
   const update = () => {
-    stale = content.closest('.away, .behind') !== null && !document.documentElement.classList.contains('printing')
+    const hidden = matchMedia(NARROW).matches ? '.away, .behind' : '.away'
+    stale = content.closest(hidden) !== null && !document.documentElement.classList.contains('printing')
     if (!stale) render()
   }
   const catchUp = () => {

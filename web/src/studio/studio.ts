@@ -19,6 +19,7 @@ import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
 import { connect } from './server'
+import { separateMotions } from './motions'
 import { serverBar } from './server_bar'
 import { linkedSession, linkOf, type SavedDesign, type Session, Storage } from './session'
 import { optimizePane, type StudyPane, tolerancePane } from './studies'
@@ -69,6 +70,8 @@ export class Studio {
   /** Choices by case, for when it is shown again; and those that the next page is to make. */
   readonly #choices = new Map<string | null, Choices>()
   #recalled?: Choices
+  /** True if the next page is to open with the sheet of its motion. */
+  #fresh = false
   readonly #storage: Storage
   #saving?: ReturnType<typeof setTimeout>
   /** Stored work that the reader has not decided about, and the offer to restore it. */
@@ -311,7 +314,7 @@ export class Studio {
   }
 
   #offerCases(cases: string[]): void {
-    if (cases.length < 2) return this.#cases.replaceChildren()
+    if (cases.length < 2) return this.#cases.replaceChildren(...this.#separation(cases))
     const select = el(
       'select',
       {
@@ -323,6 +326,20 @@ export class Studio {
       ...cases.map((name) => el('option', { value: name, selected: name === (this.model.case ?? cases[0]) }, name)),
     )
     this.#cases.replaceChildren(select)
+  }
+
+  /** A button that writes a case for each driver, where curves over wheel travel would be loops. */
+  #separation(cases: string[]): HTMLElement[] {
+    const made = cases.length === 0 ? separateMotions(this.model.text, this.state.report) : undefined
+    if (!made) return []
+    const separate = () => {
+      const { settings } = this.state
+      this.history.go({ text: made.text, settings, label: 'separate motions' })
+      this.#fresh = true
+      void this.#openModel({ ...this.model, text: made.text, case: made.first }, settings)
+    }
+    const title = 'Write a case for each driver, so that curves over wheel travel are lines instead of loops'
+    return [el('button', { type: 'button', title, 'data-testid': 'separate', onclick: separate }, 'Separate motions')]
   }
 
   /** Notes the design as a step of the history, or as part of what the hand does. */
@@ -464,18 +481,20 @@ export class Studio {
     this.#choices.set(former, choices)
     const own = former === this.model.case ? undefined : this.#choices.get(this.model.case)
     const recalled = this.#recalled ?? own ?? choices
+    const fresh = this.#fresh
     this.#recalled = undefined
+    this.#fresh = false
     before.end()
     view?.dispose()
     keepMeshes(before.report, report)
     const state = new State(report)
-    state.recall({ ...recalled.choices, time: before.time })
+    if (!fresh) state.recall({ ...recalled.choices, time: before.time })
     this.root.replaceChildren()
     this.state = state
     this.#solved.clear()
     this.made = page(this.root, state, {
       bar: this.#tools,
-      memory: recalled.page,
+      memory: fresh ? { ...recalled.page, figures: [] } : recalled.page,
       exports: this.exports,
       grips: () => this.grips(),
       figure: (figure) => this.target(figure),
