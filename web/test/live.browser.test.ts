@@ -234,6 +234,8 @@ describe('studies in the page', () => {
     )
     await ready()
     expect(await page.getByTestId('undo').isDisabled()).toBe(false)
+    // What was gained is seen: the original stays, dashed.
+    await expect.poll(() => page.getByTestId('plot-0').innerText()).toContain('original')
     expect(visited.complaints).toEqual([])
   })
 

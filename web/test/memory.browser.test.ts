@@ -154,10 +154,26 @@ describe('work on a design', () => {
     await expect.poll(() => asked).toEqual(['beforeunload'])
   })
 
-  test('is compared with what it was before an optimisation', async () => {
-    await open('macpherson')
-    await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
-    await settled(page)
-    expect(await page.getByTestId('plot-0').innerText()).toContain('original')
+  test('moves each driver alone in cases of its own, over wheel travel', async () => {
+    await open('front_axle')
+    await page.getByTestId('separate').click()
+    await page.getByTestId('case').waitFor()
+    expect(await page.getByTestId('case').locator('option').allInnerTexts()).toEqual([
+      'bump',
+      'steering',
+      'all_drivers',
+    ])
+    expect(await over('plot-0')).toBe('over left.wheel_travel')
+    // Each case keeps its own axes.
+    await page.getByTestId('case').selectOption('steering')
+    await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('steering'))
+    await ready(page)
+    expect(await over('plot-0')).not.toBe('over left.wheel_travel')
+    await page.getByTestId('case').selectOption('bump')
+    await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('bump'))
+    await ready(page)
+    expect(await over('plot-0')).toBe('over left.wheel_travel')
+    await page.getByTestId('undo').click()
+    await page.getByTestId('separate').waitFor()
   })
 })

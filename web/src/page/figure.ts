@@ -99,9 +99,7 @@ export class Figure {
       'Over',
       () => this.#choose({ over: over.value === '' ? undefined : Number(over.value) }),
       el('option', { value: '' }, 'over time'),
-      ...groups(report).flatMap(([, members]) =>
-        members.map(({ index, name }) => el('option', { value: index }, `over ${name}`)),
-      ),
+      ...offered(report, 'over '),
     )
     const order = select(
       'order',
@@ -308,10 +306,15 @@ function select(testId: string, label: string, onchange: () => void, ...options:
   return el('select', { 'data-testid': testId, 'aria-label': label, title: label, onchange }, ...options)
 }
 
-function offered(report: Report): HTMLElement[] {
+/** All quantities in their groups, each name after a word. */
+function offered(report: Report, word = ''): HTMLElement[] {
   const plural = (group: string) => (group === 'body' ? 'bodies' : `${group}s`)
   return groups(report).map(([name, members]) =>
-    el('optgroup', { label: plural(name) }, ...members.map(({ index, name }) => el('option', { value: index }, name))),
+    el(
+      'optgroup',
+      { label: plural(name) },
+      ...members.map(({ index, name }) => el('option', { value: index }, word + name)),
+    ),
   )
 }
 

@@ -93,6 +93,7 @@ function ghostKey(state: State): HTMLElement {
 
 /** Chooses the hardpoint whose path is drawn. */
 function tracer(state: State): HTMLElement {
+  const seen = new Set<string>()
   const select = el(
     'select',
     {
@@ -105,15 +106,14 @@ function tracer(state: State): HTMLElement {
       },
     },
     el('option', { value: '' }, 'no path'),
-    ...state.report.bodies
-      .slice(1)
-      .map((body, index) =>
-        el(
-          'optgroup',
-          { label: body.name },
-          ...body.labels.map((label, point) => el('option', { value: `${index + 1} ${point}` }, `path of ${label}`)),
-        ),
-      ),
+    ...state.report.bodies.slice(1).map((body, index) => {
+      // A point that joins two bodies has one path.
+      const own = body.labels.flatMap((label, point) => (seen.has(label) ? [] : [{ label, point }]))
+      for (const { label } of own) seen.add(label)
+      const option = ({ label, point }: (typeof own)[number]) =>
+        el('option', { value: `${index + 1} ${point}` }, `path of ${label}`)
+      return own.length > 0 && el('optgroup', { label: body.name }, ...own.map(option))
+    }),
   )
   const sync = () => {
     const { trace } = state.choice

@@ -1,6 +1,9 @@
 import './drawer.css'
 import { el } from '../dom'
 
+/** The drawer is not made narrower than this, px. */
+const NARROWEST = 320
+
 /** A pane of the drawer. */
 interface Pane {
   name: string
@@ -14,6 +17,14 @@ export class Drawer {
   readonly element = el('aside', { class: 'drawer', hidden: true, 'data-testid': 'drawer' })
   readonly buttons: HTMLButtonElement[]
   #open?: number
+  /** Handle by which the drawer is made wider. */
+  #edge = el('div', {
+    class: 'drawer-edge',
+    title: 'Drag to resize',
+    'data-testid': 'drawer-edge',
+    onpointerdown: (event: PointerEvent) => this.#edge.setPointerCapture(event.pointerId),
+    onpointermove: (event: PointerEvent) => this.#resize(event),
+  })
 
   constructor(private readonly panes: Pane[]) {
     this.buttons = panes.map(({ name, title }, index) =>
@@ -35,6 +46,20 @@ export class Drawer {
       void this.show(undefined)
       button.focus()
     })
+  }
+
+  /** Marks the button of a pane in which a study runs, whether the pane is shown or not. */
+  mark(name: string, running: boolean): void {
+    const index = this.panes.findIndex((pane) => pane.name === name)
+    this.buttons[index].classList.toggle('running', running)
+    this.buttons[index].title = running ? `${this.panes[index].title}: running` : this.panes[index].title
+  }
+
+  /** Follows the pointer with the left edge of the drawer. */
+  #resize(event: PointerEvent): void {
+    if (event.buttons !== 1) return
+    const width = Math.max(NARROWEST, document.documentElement.clientWidth - event.clientX)
+    document.body.style.setProperty('--drawer', `${width}px`)
   }
 
   /** Shows a pane, or none. */
@@ -59,6 +84,7 @@ export class Drawer {
       },
       '×',
     )
-    this.element.replaceChildren(el('div', { class: 'drawer-head' }, el('h2', {}, name), close), content)
+    const head = el('div', { class: 'drawer-head' }, el('h2', {}, name), close)
+    this.element.replaceChildren(this.#edge, head, content)
   }
 }

@@ -29,6 +29,8 @@ export interface StudyHost {
 /** A study with its form, its progress and its result. */
 export interface StudyPane {
   readonly element: HTMLElement
+  /** Called with true when a study begins, and with false when it ends. */
+  onRunning?: (running: boolean) => void
   /**
    * To be called when the pane is opened, and when the text changes while it is: what can be chosen is read again, but
    * for what was changed by hand.
@@ -129,6 +131,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     const view = progressView(name, () => running.cancel())
     show(...view.elements)
     let running: Running<StudyResult>
+    itself.onRunning?.(true)
     try {
       running = start(text, request)
       running.onProgress(view.update)
@@ -136,6 +139,9 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     } catch (error) {
       showForm(made, refused(error))
       announced.textContent = `${name} failed.`
+    } finally {
+      view.end()
+      itself.onRunning?.(false)
     }
   }
 
@@ -156,7 +162,8 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     if (read !== host.text() && (shown === 'nothing' || (shown === 'form' && !touched))) void load()
     else stale()
   }
-  return { element, refresh }
+  const itself: StudyPane = { element, refresh }
+  return itself
 }
 
 interface FormActions<Request> {
@@ -223,7 +230,9 @@ function resultView(name: string, result: StudyResult, { apply, leave }: { apply
     { class: 'outcome stale', 'data-testid': `${testId}-stale` },
     'The design has changed since the study began. Applying the result discards later changes.',
   )
-  const outcome = el('p', { class: 'outcome', 'data-testid': `${testId}-outcome` }, ...prose(result.message))
+  // One statement on each line.
+  const statements = result.message.split(/(?<=[.;]) /).map((statement) => el('span', {}, ...prose(statement)))
+  const outcome = el('p', { class: 'outcome', 'data-testid': `${testId}-outcome` }, ...statements)
   const acts = el('div', { class: 'acts' }, ...(hasDesign ? [take] : []), discard)
   const tables = el('div', { class: 'checks' }, ...result.tables.map(factTable))
   return { elements: [outcome, since, acts, tables], since }
@@ -248,9 +257,18 @@ function progressView(name: string, onCancel: () => void) {
     'Cancel',
   )
   const lines: string[] = []
+  const began = performance.now()
+  const clock = el('span', { class: 'muted' })
+  const tick = () => {
+    clock.textContent = `${Math.round((performance.now() - began) / 1000)} s`
+  }
+  const ticking = setInterval(tick, 1000)
+  tick()
   return {
+    end: () => clearInterval(ticking),
     elements: [
       bar,
+      clock,
       log,
       el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')),
     ],

@@ -107,14 +107,19 @@ export class Studio {
       text: () => this.#text,
       apply: ({ change, text }: StudyResult, studied: string) => void this.#applyResult(change, text, studied),
     }
+    const mark = (name: string) => (running: boolean) => this.#drawer.mark(name, running)
     this.#drawer = new Drawer([
       { name: 'Model', title: 'Edit the text of the model', open: () => this.#openEditor() },
       {
         name: 'Optimise',
         title: 'Optimise the design for the goals of the model',
-        open: studyPane(() => optimizePane(host), this),
+        open: studyPane(() => optimizePane(host), this, mark('Optimise')),
       },
-      { name: 'Tolerance', title: 'Tolerance analysis', open: studyPane(() => tolerancePane(host), this) },
+      {
+        name: 'Tolerance',
+        title: 'Tolerance analysis',
+        open: studyPane(() => tolerancePane(host), this, mark('Tolerance')),
+      },
     ])
     const server = connect(document)
     const own = {
@@ -567,11 +572,16 @@ export class Studio {
 }
 
 /** A pane of a study, which reads the text again whenever that changes. */
-function studyPane(make: () => StudyPane, studio: Studio): () => Promise<HTMLElement> {
+function studyPane(
+  make: () => StudyPane,
+  studio: Studio,
+  onRunning: (running: boolean) => void,
+): () => Promise<HTMLElement> {
   let pane: StudyPane | undefined
   return async () => {
     if (!pane) {
       pane = make()
+      pane.onRunning = onRunning
       studio.onText(() => pane!.refresh())
     }
     pane.refresh()
