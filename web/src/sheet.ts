@@ -112,10 +112,13 @@ function wheelPlots(report: Report, measures: Quantity[], over?: number): SheetP
   const members = WHEEL_PLOTS.map((kind) =>
     known.filter(({ name, index }) => index !== over && kind.test(kindOf(name))),
   )
-  return members.flatMap((found) => {
+  const plots = members.flatMap((found) => {
     const same = found.filter(({ units }) => units[0] === found[0].units[0])
     return same.length > 0 ? [{ y: same.map(({ index }) => index), over }] : []
   })
+  // What is held, as toe is by a driver that steers the wheel, is no opening.
+  const isHeld = ({ y }: SheetPlot) => !moves(report.quantities[y[0]].curves[0])
+  return [...plots.filter((plot) => !isHeld(plot)), ...plots.filter(isHeld)]
 }
 
 function linkagePlots(report: Report, measures: Quantity[], over?: number): SheetPlot[] {
@@ -130,11 +133,15 @@ function linkagePlots(report: Report, measures: Quantity[], over?: number): Shee
   return path ? [...plots.slice(0, 1), path, ...plots.slice(1)] : plots
 }
 
-/** A metric with a target curve leads. */
+/**
+ * A metric with a target curve leads. Without rates its sensitivities are known over time only, and so it is drawn.
+ */
 function leading(report: Report, plots: SheetPlot[]): SheetPlot[] {
-  if (report.over !== null) return plots
-  const first = plots.findIndex(({ y }) => report.quantities[y[0]].wanted.length > 0)
-  return first > 0 ? [plots[first], ...plots.filter((_, k) => k !== first)] : plots
+  if (report.over !== null || plots.length === 0) return plots
+  const wanted = plots.findIndex(({ y }) => report.quantities[y[0]].wanted.length > 0)
+  const first = plots[Math.max(wanted, 0)]
+  const hasRates = report.quantities[first.y[0]].curves[2].length > 0
+  return [hasRates ? first : { ...first, over: undefined }, ...plots.filter((plot) => plot !== first)]
 }
 
 /** The path of the first point that moves in a plane of the axes. */

@@ -122,6 +122,9 @@ describe('the sheet', () => {
     await settled()
     await expect.poll(async () => (await labels()).join()).toContain('left.toe, forward')
     expect((await labels()).join()).toContain('left.toe, far')
+    await page.getByTestId('tab-compare').click()
+    const header = page.getByTestId('comparison').locator('thead th')
+    expect(await header.allInnerTexts()).toEqual(['value', 'far', 'current', 'forward', 'change', 'unit'])
   })
 
   test('shows changes to the original, and values at chosen abscissas', async () => {

@@ -150,7 +150,7 @@ describe('work on a design', () => {
         throw new Error('the storage is full')
       }
     })
-    await page.close({ runBeforeUnload: true })
+    await page.reload()
     await expect.poll(() => asked).toEqual(['beforeunload'])
   })
 

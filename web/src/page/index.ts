@@ -9,6 +9,7 @@ import { sweepPlot } from '../sweep/scatter'
 import { bar } from './bar'
 import { cards } from './cards'
 import { checks } from './checks'
+import { comparison } from './comparison'
 import { Curves } from './curves'
 import { exports } from './exports'
 import type { Figure, FigureMemory } from './figure'
@@ -135,6 +136,7 @@ function tableTabs(state: State): Tab[] {
     all.push({ name: 'table', title: 'Influence', content })
   }
   if (loads.length > 0) all.push({ name: 'loads', title: 'Forces', content: forcePaths(state) })
+  if (state.report.values.length > 0) all.push({ name: 'compare', title: 'Compare', content: comparison(state) })
   return [...all, { name: 'checks', title: 'Checks', content: checks(state) }]
 }
 
