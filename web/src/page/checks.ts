@@ -36,7 +36,11 @@ export function checks(state: State): HTMLElement {
       const title = titleOf(table.querySelector('summary')!)
       if (open.has(title) || closed.has(title)) table.open = open.has(title)
     }
-    element.replaceChildren(heading, facts, ...(margin ? [margin.element] : []), ...tables)
+    // What only the command computes, such as the effects of a what-if, stays as it was.
+    const titles = new Set(shown.checks.map(({ title }) => title))
+    const stored: HTMLElement[] = state.report.checks.filter(({ title }) => !titles.has(title)).map(factTable)
+    if (stored.length > 0) stored.unshift(el('p', { class: 'of-design' }, 'Results of the command'))
+    element.replaceChildren(heading, facts, ...(margin ? [margin.element] : []), ...tables, ...stored)
     facts.replaceChildren(...factsOf(shown))
   }
   whileSeen(element, (listener) => state.onChoice(listener), render, state.ended)

@@ -46,6 +46,8 @@ export interface Subject {
   measured?: readonly Measured[]
 }
 
+/** Name that the engine gives a design without one. */
+const CHANGED = 'changed'
 /** Number of sensitivities that are drawn with that of the selected variable. */
 const FEW = 5
 const DASHED = [7, 5]
@@ -120,7 +122,8 @@ export function valueContent(state: State, subject: Subject): Content {
 
 function presentDesign(state: State): Drawn {
   const { present, isPredicted, isCompared } = state
-  const name = isPredicted ? 'predicted to first order' : present || isCompared ? 'current' : ''
+  const own = present && present.name !== CHANGED ? present.name : 'current'
+  const name = isPredicted ? 'predicted to first order' : present || isCompared ? own : ''
   return { name, curve: (quantity, order) => state.curve(quantity, order), width: 2.4, color: css('--trace') }
 }
 
