@@ -12,6 +12,7 @@ const state = new State(read(payload, decode))
 const tools: Parameters<typeof page>[2] = {
   exports: () => studio?.exports() ?? [],
   grips: () => studio?.grips(),
+  leave: () => studio?.leave() ?? false,
   figure: (figure) => studio?.target(figure),
 }
 const made = page(root, state, tools)

@@ -30,6 +30,8 @@ export interface Tools {
   /** More that can be exported. */
   exports?: () => Item[]
   grips?: () => void
+  /** Ends the mode in which hardpoints are moved; false if it is not on. */
+  leave?: () => boolean
   /** Element next to the controls of a figure. */
   figure?: (figure: Figure) => HTMLElement | undefined
 }
@@ -68,7 +70,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
     head,
     ...(report.status.complete ? [] : [banner(report)]),
     ...(report.values.length > 0 ? [cards(state)] : []),
-    el('div', { class: 'scene' }, scene.element, transport(state)),
+    el('div', { class: 'scene' }, scene.element, ...scene.docked, transport(state)),
     ...shown.map(({ element }) => element),
     navigation(
       shown.map(({ name, element }) => ({ name, element })),
@@ -79,9 +81,11 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   listenToKeys(state, {
     fit: scene.view && (() => scene.view?.fit()),
     look: scene.look,
+    measure: scene.measure,
     find: search?.focus,
     help: () => keys.showModal(),
     grips: () => tools.grips?.(),
+    leave: () => tools.leave?.() ?? false,
   })
   return { view: scene.view, bar: head }
 }

@@ -4,6 +4,7 @@ import { figure, number, pretty, roundBelow } from '../format'
 import { derivativeUnit, orderedName, type Variable } from '../report'
 import type { State } from '../state'
 import { badge } from '../variables'
+import { NumberField } from './number_field'
 import { reach } from './reach'
 
 /** With more variables than this they can be searched. */
@@ -133,7 +134,7 @@ function row(state: State, variable: Variable): Row {
   const size = el('span', { class: 'size' })
   const effect = el('span', { class: 'effect', 'data-testid': 'effect' }, bar, size)
   const controls =
-    step > 0 ? [slider, el('span', { class: 'amount' }, field, el('span', { class: 'unit' }, pretty(unit)))] : []
+    step > 0 ? [slider, el('span', { class: 'amount' }, field.input, el('span', { class: 'unit' }, pretty(unit)))] : []
   const element = el(
     'li',
     { class: `${admissibility} ${controls.length > 0 ? '' : 'fixed'}`, 'data-testid': `variable-${name}` },
@@ -162,18 +163,17 @@ function row(state: State, variable: Variable): Row {
     sync: () => {
       const chosen = state.choice.variable === index
       const by = state.changes[index]
-      const key = () => `${chosen} ${by} ${field.value}`
-      if (shown === key()) return
+      const key = `${chosen} ${by}`
+      if (shown === key) return
       element.setAttribute('aria-current', String(chosen))
       button.tabIndex = chosen ? 0 : -1
-      slider.tabIndex = field.tabIndex = reset.tabIndex = chosen ? 0 : -1
+      slider.tabIndex = field.input.tabIndex = reset.tabIndex = chosen ? 0 : -1
       if (Number(slider.value) !== by) slider.value = String(by)
-      if (document.activeElement !== field || Number(field.value) !== by)
-        field.value = String(Number(by.toFixed(Math.max(digits, 3))))
+      field.show(Number(by.toFixed(Math.max(digits, 3))))
       slider.setAttribute('aria-valuetext', figure(by, unit))
       reset.classList.toggle('away', by === 0)
       element.classList.toggle('changed', by !== 0)
-      shown = key()
+      shown = key
     },
     rank: (found, symbol) => {
       bar.style.setProperty('--share', String(found?.share ?? 0))
@@ -213,13 +213,18 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
     'aria-label': `change of ${name}`,
     oninput: () => changeSoon(Number(slider.value)),
   })
-  const field = el('input', {
-    type: 'number',
+  const field = new NumberField({
+    label: `change of ${name} in ${pretty(unit) || 'its unit'}`,
+    testId: 'change-value',
+    unit,
     step,
-    value: 0,
-    'data-testid': 'change-value',
-    'aria-label': `change of ${name} in ${pretty(unit) || 'its unit'}`,
-    onchange: () => state.change(index, limited(Number(field.value), variable)),
+    plus: 'sign',
+    apply: (by) => {
+      const kept = limited(by, variable)
+      state.change(index, kept)
+      field.show(kept)
+      return kept === by ? undefined : `The bound of \`${name}\` is ${figure(kept, unit)}.`
+    },
   })
   const reset = el(
     'button',
@@ -237,6 +242,5 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
 }
 
 function limited(by: number, { bounds }: Variable): number {
-  if (!Number.isFinite(by)) return 0
   return Math.min(Math.max(by, bounds?.[0] ?? -Infinity), bounds?.[1] ?? Infinity)
 }

@@ -18,6 +18,8 @@ import { Drawer } from './drawer'
 import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
+import { Mover } from './mover'
+import { PointsPane } from './points'
 import { connect } from './server'
 import { serverBar } from './server_bar'
 import { optimizePane, type StudyPane, tolerancePane } from './studies'
@@ -40,9 +42,11 @@ export class Studio {
   readonly #status = el('span', { class: 'studio-status', role: 'status', 'data-testid': 'studio-status' })
   readonly #cases = el('span')
   readonly #drawer: Drawer
+  readonly #points = new PointsPane(() => this.#scheduleUpdate())
   readonly #listeners: (() => void)[] = []
   #editor?: Editor
   #grips?: Grips
+  #mover?: Mover
   #opened?: OpenReply
   #accepted: VariableSetting[] = []
   #wanted?: VariableSetting[]
@@ -79,6 +83,11 @@ export class Studio {
     }
     this.#drawer = new Drawer([
       { name: 'Model', title: 'Edit the text of the model', open: () => this.#openEditor() },
+      {
+        name: 'Points',
+        title: 'Table of the hardpoints',
+        open: async () => (this.#points.show(this.#mover), this.#points.element),
+      },
       {
         name: 'Optimise',
         title: 'Optimise the design for the goals of the model',
@@ -157,6 +166,11 @@ export class Studio {
     this.#grips?.toggle()
   }
 
+  /** Lets go of hardpoints; false if none could be moved. */
+  leave(): boolean {
+    return this.#grips?.leave() ?? false
+  }
+
   #showStatus(words: string): void {
     this.#status.textContent = words
   }
@@ -168,6 +182,7 @@ export class Studio {
       this.#recordStep()
       this.#scheduleUpdate()
     })
+    state.onChoice(() => this.#showPoints())
   }
 
   /** Opens the model in the engine; from then on changes are solved. */
@@ -192,12 +207,21 @@ export class Studio {
     }
   }
 
+  #showPoints(): void {
+    if (this.#points.element.isConnected) this.#points.show(this.#mover)
+  }
+
   #offerGrips(): void {
     const { view } = this.made
-    if (!view || !this.#opened) return
-    const grips = new Grips(view, this.state, this.#opened, () => this.#scheduleUpdate())
+    if (!this.#opened) return
+    const mover = new Mover(this.state, this.#opened)
+    this.#mover = mover
+    this.#showPoints()
+    if (!view) return
+    const grips = new Grips(view, this.state, this.#opened, mover, () => this.#scheduleUpdate())
     this.#grips = grips
-    view.element.append(grips.element, grips.pane)
+    view.element.append(grips.element)
+    view.element.after(grips.pane)
     view.element.querySelector('.looks')?.append(grips.button)
   }
 
@@ -366,6 +390,7 @@ export class Studio {
       bar: this.#tools,
       exports: this.exports,
       grips: () => this.grips(),
+      leave: () => this.leave(),
       figure: (figure) => this.target(figure),
     })
     state.goToTime(time)
