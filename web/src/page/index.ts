@@ -21,7 +21,7 @@ import { navigation } from './navigation'
 import { stage } from './stage'
 import { tabs, type Tab } from './tabs'
 import { transport } from './transport'
-import { variables } from './variables'
+import { type VariableLimits, variables } from './variables'
 
 /** Parts of the page in addition to the report. */
 export interface Tools {
@@ -32,6 +32,8 @@ export interface Tools {
   grips?: () => void
   /** Ends the mode in which hardpoints are moved; false if it is not on. */
   leave?: () => boolean
+  /** Keeps bounds and tolerances of variables. */
+  limits?: VariableLimits
   /** Element next to the controls of a figure. */
   figure?: (figure: Figure) => HTMLElement | undefined
 }
@@ -52,7 +54,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   const scene = stage(state)
   const curves = hasQuantities ? new Curves(state, tools.figure) : undefined
   const sections: [name: string, element: HTMLElement | undefined][] = [
-    ['variables', hasVariables ? variables(state) : undefined],
+    ['variables', hasVariables ? variables(state, tools.limits) : undefined],
     ['curves', curves?.element],
     ['tables', tabs('Tables and checks', tableTabs(state))],
   ]

@@ -25,7 +25,8 @@ interface NumberFieldOptions {
  */
 export class NumberField {
   readonly input: HTMLInputElement
-  #value = 0
+  /** Undefined where the field is empty. */
+  #value?: number
   #dirty = false
 
   constructor(private readonly options: NumberFieldOptions) {
@@ -59,7 +60,7 @@ export class NumberField {
   #reset(): void {
     this.#dirty = false
     this.#complain('')
-    const text = entry(this.#value, this.options.digits)
+    const text = this.#value === undefined ? '' : entry(this.#value, this.options.digits)
     if (this.input.value !== text) this.input.value = text
   }
 
@@ -67,7 +68,7 @@ export class NumberField {
     const typed = amount(this.input.value, this.options.unit)
     if (typeof typed === 'string') return this.#complain(typed)
     const adds = typed.form === 'step' || (typed.form === 'plus' && this.options.plus === 'adds')
-    this.#apply(adds ? this.#value + typed.value : typed.value)
+    this.#apply(adds ? (this.#value ?? 0) + typed.value : typed.value)
   }
 
   #apply(value: number): void {
@@ -90,7 +91,7 @@ export class NumberField {
     event.preventDefault()
     event.stopPropagation()
     if (this.#dirty) this.#commit()
-    if (!this.#dirty) this.#apply(this.#value + way * this.options.step * (event.shiftKey ? 0.1 : 1))
+    if (!this.#dirty) this.#apply((this.#value ?? 0) + way * this.options.step * (event.shiftKey ? 0.1 : 1))
   }
 
   #complain(message: string): void {

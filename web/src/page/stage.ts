@@ -1,5 +1,6 @@
 import { el } from '../dom'
 import type { Look } from '../scene/camera'
+import { openingStep } from '../scene/opening'
 import { hasWebGL, View } from '../scene/view'
 import type { State } from '../state'
 import { Inspector } from './inspector'
@@ -25,6 +26,7 @@ export function stage(state: State): Stage {
     return { element, docked: [] }
   }
   const view = new View(state)
+  if (state.step === 0) state.goToStep(openingStep(view.original))
   const buttons = view.looks.map(({ name, title }, index) =>
     el('button', { type: 'button', title, 'data-testid': `look-${name}`, onclick: () => look(index) }, name),
   )

@@ -12,6 +12,13 @@ const MANY = 12
 /** Steps of a slider to either side. */
 const STEPS = 50
 
+/** Keeps bounds and tolerances of variables in the model. */
+export interface VariableLimits {
+  /** Returns a sentence where it is not possible. */
+  setBounds: (name: string, bounds: readonly [number, number]) => string | undefined
+  setTolerance: (name: string, tolerance: number) => void
+}
+
 interface Row {
   variable: Variable
   element: HTMLElement
@@ -23,7 +30,7 @@ interface Row {
 }
 
 /** The design variables, largest effect on the selected quantity first, each with its change. */
-export function variables(state: State): HTMLElement {
+export function variables(state: State, limits?: VariableLimits): HTMLElement {
   const { report, choice } = state
   const list = el('ul', { 'aria-label': 'Design variables' })
   const about = el('span', { class: 'muted' })
@@ -41,7 +48,7 @@ export function variables(state: State): HTMLElement {
   })
   search.hidden = report.variables.length <= MANY
   const note = el('p', { class: 'note', 'data-testid': 'variable-note', 'aria-live': 'polite' })
-  const rows = report.variables.map((variable) => row(state, variable))
+  const rows = report.variables.map((variable) => row(state, variable, limits))
   let order = rows
 
   const filter = () => {
@@ -113,7 +120,7 @@ function bringIntoView(list: HTMLElement, { offsetTop: top, offsetHeight: height
   }
 }
 
-function row(state: State, variable: Variable): Row {
+function row(state: State, variable: Variable, limits: VariableLimits | undefined): Row {
   const { index, name, unit, admissibility } = variable
   const able = admissibility !== 'cannot_follow'
   const [low, high] = able ? reach(state.report, variable) : [0, 0]
@@ -130,15 +137,18 @@ function row(state: State, variable: Variable): Row {
     name,
   )
   const { slider, field, reset } = rowControls(state, variable, [low, high], step)
+  const bounded = able && limits ? limitControls(variable, [low, high], limits) : undefined
   const bar = el('span', { class: 'bar-of', 'aria-hidden': 'true' })
   const size = el('span', { class: 'size' })
   const effect = el('span', { class: 'effect', 'data-testid': 'effect' }, bar, size)
-  const controls =
-    step > 0 ? [slider, el('span', { class: 'amount' }, field.input, el('span', { class: 'unit' }, pretty(unit)))] : []
+  const range = step > 0 ? slider : el('span', { class: 'no-range' }, limits ? 'no range: set bounds by ±' : 'no range')
+  const controls = able
+    ? [range, el('span', { class: 'amount' }, field.input, el('span', { class: 'unit' }, pretty(unit)))]
+    : []
   const element = el(
     'li',
     { class: `${admissibility} ${controls.length > 0 ? '' : 'fixed'}`, 'data-testid': `variable-${name}` },
-    el('span', { class: 'who' }, button, able ? badge(variable) : undefined),
+    el('span', { class: 'who' }, button, able ? badge(variable) : undefined, bounded?.button),
     ...controls,
     able
       ? effect
@@ -148,6 +158,7 @@ function row(state: State, variable: Variable): Row {
           ...prose(variable.note || 'not possible for this mechanism'),
         ),
     controls.length > 0 && reset,
+    bounded?.fields,
   )
   // A press anywhere in the row selects it, in addition to the action of a button or field.
   element.addEventListener('pointerdown', (event) => {
@@ -167,6 +178,7 @@ function row(state: State, variable: Variable): Row {
       if (shown === key) return
       element.setAttribute('aria-current', String(chosen))
       button.tabIndex = chosen ? 0 : -1
+      if (bounded) bounded.sync(chosen)
       slider.tabIndex = field.input.tabIndex = reset.tabIndex = chosen ? 0 : -1
       if (Number(slider.value) !== by) slider.value = String(by)
       field.show(Number(by.toFixed(Math.max(digits, 3))))
@@ -217,7 +229,7 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
     label: `change of ${name} in ${pretty(unit) || 'its unit'}`,
     testId: 'change-value',
     unit,
-    step,
+    step: step || 1,
     plus: 'sign',
     apply: (by) => {
       const kept = limited(by, variable)
@@ -239,6 +251,66 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
     '↺',
   )
   return { slider, field, reset }
+}
+
+/** Fields for the bounds and the tolerance of a variable, below its row, and the button that opens them. */
+function limitControls(variable: Variable, [low, high]: [number, number], { setBounds, setTolerance }: VariableLimits) {
+  const { name, unit, bounds, tolerance } = variable
+  const step = high > low ? roundBelow((high - low) / (2 * STEPS)) : 1
+  const ends = [bounds?.[0] ?? undefined, bounds?.[1] ?? undefined]
+  const field = (
+    label: string,
+    testId: string,
+    value: number | undefined,
+    apply: (x: number) => string | undefined,
+  ) => {
+    const made = new NumberField({ label: `${label} of ${name}`, testId, unit, step, plus: 'sign', apply })
+    if (value !== undefined) made.show(value)
+    made.input.placeholder = 'none'
+    return made.input
+  }
+  const end = (k: 0 | 1) => (x: number) => {
+    ends[k] = x
+    const [a, b] = ends
+    if (a === undefined || b === undefined) return `Enter the ${a === undefined ? 'lower' : 'upper'} bound as well.`
+    return a < b ? setBounds(name, [a, b]) : `The lower bound of \`${name}\` is not below its upper bound.`
+  }
+  const label = (text: string, input: HTMLElement) => el('label', {}, el('span', { class: 'muted' }, text), input)
+  const fields = el(
+    'div',
+    { class: 'limit-fields', hidden: true },
+    label('lowest', field('lower bound', 'bound-low', ends[0], end(0))),
+    label('highest', field('upper bound', 'bound-high', ends[1], end(1))),
+    label(
+      'tolerance ±',
+      field('tolerance', 'tolerance-of', tolerance ?? undefined, (x) =>
+        x > 0 ? (setTolerance(name, x), undefined) : 'A tolerance is above zero.',
+      ),
+    ),
+    el('span', { class: 'unit' }, pretty(unit)),
+  )
+  const button = el(
+    'button',
+    {
+      type: 'button',
+      class: 'icon limits-button',
+      'aria-expanded': 'false',
+      title: `bounds and tolerance of ${name}`,
+      'aria-label': `bounds and tolerance of ${name}`,
+      'data-testid': 'limits',
+      onclick: () => {
+        fields.hidden = !fields.hidden
+        button.setAttribute('aria-expanded', String(!fields.hidden))
+      },
+    },
+    '±',
+  )
+  const sync = (chosen: boolean) => {
+    button.tabIndex = chosen ? 0 : -1
+    if (!chosen) fields.hidden = true
+    button.setAttribute('aria-expanded', String(!fields.hidden))
+  }
+  return { fields, button, sync }
 }
 
 function limited(by: number, { bounds }: Variable): number {

@@ -41,7 +41,7 @@ export class MotionDrag {
     canvas.addEventListener(
       'pointerdown',
       (event) => {
-        if (event.button !== 0 || event.ctrlKey || event.metaKey || event.shiftKey || this.#from) return
+        if (event.button !== 0 || event.altKey || event.ctrlKey || event.metaKey || event.shiftKey || this.#from) return
         this.#path = this.#pathAt(event.offsetX, event.offsetY)
         if (!this.#path) return
         this.#from = { x: event.offsetX, y: event.offsetY, id: event.pointerId }

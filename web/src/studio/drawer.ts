@@ -37,6 +37,11 @@ export class Drawer {
     })
   }
 
+  /** Shows a pane by its name. */
+  open(name: string): Promise<void> {
+    return this.show(this.panes.findIndex((pane) => pane.name === name))
+  }
+
   /** Shows a pane, or none. */
   async show(index: number | undefined): Promise<void> {
     this.#open = index

@@ -1,3 +1,4 @@
+import { amount, entry } from '../amount'
 import { el, prose } from '../dom'
 import type {
   OptimizeOffer,
@@ -10,8 +11,10 @@ import type {
   ToleranceOffer,
   ToleranceRequest,
 } from '../engine/engine'
+import type { VariableSetting } from '../engine/protocol'
 import { figure, pretty } from '../format'
 import { factTable } from '../page/checks'
+import { GoalForm, type GoalHost, type Proposal } from './goal_form'
 import './studio.css'
 
 /** Lines of a study under way that are shown. */
@@ -24,6 +27,9 @@ export interface StudyHost {
   text: () => string
   /** Shows the design that a study found; its changes count from the text that was studied. */
   apply: (result: StudyResult, studied: string) => void
+  /** Shows a design of a study under way next to the present one, or none any more. */
+  preview: (change: VariableSetting[] | undefined, studied: string) => void
+  goals: GoalHost
 }
 
 /** A study with its form, its progress and its result. */
@@ -36,15 +42,38 @@ export interface StudyPane {
   refresh(): void
 }
 
+/** Searches for the best design, for goals that can be added. */
+export interface OptimizePane extends StudyPane {
+  /** Prepares a goal for a quantity or a metric. */
+  propose(proposal: Proposal): void
+}
+
 /** Searches for the best design. */
-export function optimizePane(host: StudyHost): StudyPane {
-  return pane(host, {
+export function optimizePane(host: StudyHost): OptimizePane {
+  let proposed: Proposal | undefined
+  let shown: GoalForm | undefined
+  const made = pane(host, {
     name: 'Optimise',
     verb: 'Optimise',
     offer: (text) => host.studies.optimizeOffer(text),
-    form: optimizeForm,
+    form: (offer) => {
+      shown = new GoalForm(
+        { ...host.goals, add: (judged, aim) => (made.release(), host.goals.add(judged, aim)) },
+        offer.goals,
+      )
+      if (proposed) shown.propose(proposed)
+      proposed = undefined
+      return optimizeForm(offer, shown.element)
+    },
     start: (text, request) => host.studies.optimize(text, request),
+    steps: ({ starts, iterations }) => (starts > 1 ? starts : iterations),
+    isSeveral: ({ starts }) => starts > 1,
   })
+  const propose = (proposal: Proposal) => {
+    if (shown?.element.isConnected) shown.propose(proposal)
+    else proposed = proposal
+  }
+  return { ...made, propose }
 }
 
 /** Tolerance study. */
@@ -55,6 +84,8 @@ export function tolerancePane(host: StudyHost): StudyPane {
     offer: (text) => host.studies.toleranceOffer(text),
     form: toleranceForm,
     start: (text, request) => host.studies.tolerance(text, request),
+    steps: ({ samples }) => samples,
+    isSeveral: () => false,
   })
 }
 
@@ -72,9 +103,16 @@ interface Kind<Offer, Request> {
   offer: (text: string) => Promise<Offer>
   form: (offer: Offer) => Form<Request>
   start: (text: string, request: Request) => Running<StudyResult>
+  /** Number of steps, as far as it is known before the start. */
+  steps: (request: Request) => number
+  /** True if it searches from several designs, each of which has a result. */
+  isSeveral: (request: Request) => boolean
 }
 
-function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start }: Kind<Offer, Request>): StudyPane {
+function pane<Offer, Request>(
+  host: StudyHost,
+  { name, verb, offer, form, start, steps, isSeveral }: Kind<Offer, Request>,
+): StudyPane & { release: () => void } {
   const testId = name.toLowerCase()
   const element = el('section', { class: 'study', 'aria-label': name, 'data-testid': testId })
   const announced = el('p', { class: 'hidden', role: 'status' })
@@ -126,29 +164,37 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
   const work = async (made: Form<Request>, request: Request) => {
     shown = 'progress'
     const text = host.text()
-    const view = progressView(name, () => running.cancel())
+    const view = progressView(name, steps(request), isSeveral(request), {
+      cancel: () => running.cancel(),
+      preview: (change) => host.preview(change, text),
+    })
     show(...view.elements)
     let running: Running<StudyResult>
     try {
       running = start(text, request)
       running.onProgress(view.update)
-      showResult(made, await running.result, text)
+      showResult(made, await running.result, text, view.end())
     } catch (error) {
+      view.end()
+      host.preview(undefined, text)
       showForm(made, refused(error))
       announced.textContent = `${name} failed.`
     }
   }
 
-  const showResult = (made: Form<Request>, result: StudyResult, text: string) => {
+  const showResult = (made: Form<Request>, result: StudyResult, text: string, starts: HTMLElement[]) => {
     shown = 'result'
     const leave = () => {
+      host.preview(undefined, text)
       showForm(made)
       if (!touched) refresh()
     }
-    const view = resultView(name, result, { apply: () => (host.apply(result, text), leave()), leave })
+    // What the search found stays next to the present design until it is applied or discarded.
+    host.preview(result.change ?? undefined, text)
+    const view = resultView(name, result, { apply: () => (leave(), host.apply(result, text)), leave })
     stale = () => (view.since.hidden = host.text() === text)
     stale()
-    show(...view.elements)
+    show(...view.elements, ...starts)
     announced.textContent = result.message
   }
 
@@ -156,7 +202,9 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     if (read !== host.text() && (shown === 'nothing' || (shown === 'form' && !touched))) void load()
     else stale()
   }
-  return { element, refresh }
+  /** The text is about to change by the pane itself: it is read again. */
+  const release = () => (touched = false)
+  return { element, refresh, release }
 }
 
 interface FormActions<Request> {
@@ -229,11 +277,27 @@ function resultView(name: string, result: StudyResult, { apply, leave }: { apply
   return { elements: [outcome, since, acts, tables], since }
 }
 
-/** Progress of a running study: a bar, its last lines, and a button that cancels it. */
-function progressView(name: string, onCancel: () => void) {
+/** Progress of a running study: a bar, its last lines, the designs of its starts, and a button that cancels it. */
+function progressView(
+  name: string,
+  steps: number,
+  isSeveral: boolean,
+  host: { cancel: () => void; preview: (change: VariableSetting[] | undefined) => void },
+) {
   const testId = name.toLowerCase()
-  const bar = el('progress', { 'aria-label': `Progress of ${testId}`, 'data-testid': `${testId}-progress` })
+  const bar = el('progress', {
+    'aria-label': `Progress of ${testId}`,
+    'data-testid': `${testId}-progress`,
+    max: steps,
+    value: 0,
+  })
   const log = el('pre', { class: 'log', 'data-testid': `${testId}-lines` })
+  const clock = el('span', { class: 'muted' }, 'Started.')
+  const begun = performance.now()
+  const timer = setInterval(() => {
+    clock.textContent = `Running for ${Math.round((performance.now() - begun) / 1000)} s. Cancel keeps the best so far.`
+  }, 1000)
+  const starts = el('div', { class: 'starts', role: 'group', 'aria-label': 'Designs of the starts', hidden: true })
   const cancel = el(
     'button',
     {
@@ -242,29 +306,51 @@ function progressView(name: string, onCancel: () => void) {
       onclick: () => {
         cancel.disabled = true
         cancel.textContent = 'Cancelling…'
-        onCancel()
+        host.cancel()
       },
     },
     'Cancel',
   )
+  const show = (change: VariableSetting[], button: HTMLButtonElement) => {
+    for (const one of starts.querySelectorAll('button')) one.setAttribute('aria-pressed', String(one === button))
+    host.preview(change)
+  }
   const lines: string[] = []
   return {
-    elements: [
-      bar,
-      log,
-      el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')),
-    ],
-    update: (done: number, total: number | null, line: string) => {
-      if (total === null) bar.removeAttribute('value')
-      else Object.assign(bar, { max: Math.max(total, 1), value: done })
+    elements: [bar, log, starts, el('div', { class: 'acts' }, cancel, clock)],
+    update: (done: number, total: number | null, line: string, change: VariableSetting[] | null = null) => {
+      if (total !== null) Object.assign(bar, { max: Math.max(total, 1), value: done })
+      if (change) host.preview(change)
       if (line === '' || line === lines.at(-1)) return
       lines.push(line)
       log.textContent = lines.slice(-LINES).join('\n')
+      if (!isSeveral || !change) return
+      const button: HTMLButtonElement = el(
+        'button',
+        {
+          type: 'button',
+          'aria-pressed': 'false',
+          title: line.trim(),
+          'data-testid': `${testId}-start`,
+          onclick: () => show(change, button),
+        },
+        line.trim().split(/\s{2,}/)[0],
+      )
+      starts.append(button)
+      starts.hidden = false
+    },
+    /** Ends the clock; the designs of the starts remain. */
+    end: (): HTMLElement[] => {
+      clearInterval(timer)
+      return starts.hidden ? [] : [el('h3', {}, 'Designs of the starts'), starts]
     },
   }
 }
 
-function optimizeForm({ variables, goals, limits, starts, iterations }: OptimizeOffer): Form<OptimizeRequest> {
+function optimizeForm(
+  { variables, goals, limits, starts, iterations }: OptimizeOffer,
+  addition: HTMLElement,
+): Form<OptimizeRequest> {
   const searched = variables.map(variableRow)
   const wanted = goals.map(goalRow)
   const from = whole('Starts', starts, 1, 100_000, 'optimise-starts')
@@ -288,17 +374,8 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
               wanted.map(({ row }) => row),
             ),
           )
-        : group(
-            'Goals',
-            '',
-            el(
-              'p',
-              { class: 'muted' },
-              ...prose(
-                'The model has no metrics. Add a `[metrics]` table to its text, or draw a target curve over a plot.',
-              ),
-            ),
-          ),
+        : group('Goals', '', el('p', { class: 'muted' }, 'None yet: say below what the design is to do better.')),
+      addition,
       ...(limits.length > 0
         ? [
             group(
@@ -313,7 +390,7 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
     request: () => {
       const [chosen, aims] = [searched.filter(({ chosen }) => chosen()), wanted.filter(({ chosen }) => chosen())]
       if (chosen.length === 0) return 'Choose at least one variable.'
-      if (aims.length === 0) return goals.length > 0 ? 'Choose at least one goal.' : ''
+      if (aims.length === 0) return goals.length > 0 ? 'Choose at least one goal.' : 'Add a goal first.'
       const asked = {
         variables: chosen.map(({ value }) => value()),
         goals: aims.map(({ value }) => value()),
@@ -336,22 +413,27 @@ interface Row<T> {
 }
 
 function variableRow({ name, unit, bounds, chosen }: SearchVariable): Row<OptimizeRequest['variables'][number]> {
-  const [low, high] = [0, 1].map((end) => field(`${end ? 'highest' : 'lowest'} of ${name}`, bounds?.[end]))
-  const choice = choose(name, chosen && bounds !== null, [low, high])
+  const [low, high] = [0, 1].map((end) => field(`${end ? 'highest' : 'lowest'} of ${name}`, bounds?.[end], unit))
+  const choice = choose(name, chosen && bounds !== null, [low.input, high.input])
   return {
     row: el(
       'tr',
       { 'data-testid': `search-${name}` },
       el('td', {}, choice.element),
-      el('td', {}, low),
-      el('td', {}, high),
+      el('td', {}, low.input),
+      el('td', {}, high.input),
       el('td', { class: 'unit' }, pretty(unit)),
     ),
     chosen: choice.chosen,
     value: () => {
-      const ends: [number, number] = [low.valueAsNumber, high.valueAsNumber]
-      if (!ends.every(Number.isFinite)) return `\`${name}\` needs a lower and an upper bound.`
-      return ends[0] < ends[1] ? { name, bounds: ends } : `The lower bound of \`${name}\` is not below its upper bound.`
+      const ends = [low.value(), high.value()]
+      if (ends.includes(undefined)) return `\`${name}\` needs a lower and an upper bound.`
+      const wrong = ends.find((end) => typeof end === 'string')
+      if (wrong !== undefined) return `\`${name}\`: ${wrong}`
+      const [least, most] = ends as [number, number]
+      return least < most
+        ? { name, bounds: [least, most] }
+        : `The lower bound of \`${name}\` is not below its upper bound.`
     },
   }
 }
@@ -365,31 +447,28 @@ function goalRow({
   curve,
   chosen,
 }: SearchGoal): Row<OptimizeRequest['goals'][number]> {
-  const counts = field(`weight of ${metric}`, weight)
-  const wanted = field(`target of ${metric}`, target ?? undefined)
-  wanted.placeholder = 'minimum'
-  const choice = choose(metric, chosen, curve ? [counts] : [counts, wanted])
+  const counts = field(`weight of ${metric}`, weight, '1')
+  const wanted = field(`target of ${metric}`, target ?? undefined, unit)
+  wanted.input.placeholder = 'minimum'
+  const choice = choose(metric, chosen, curve ? [counts.input] : [counts.input, wanted.input])
   const aim = curve
     ? el('span', { class: 'muted' }, 'its curve')
-    : el('span', {}, wanted, ' ', el('span', { class: 'unit' }, pretty(unit)))
+    : el('span', {}, wanted.input, ' ', el('span', { class: 'unit' }, pretty(unit)))
   return {
     row: el(
       'tr',
       { 'data-testid': `goal-${metric}` },
       el('td', {}, choice.element),
       el('td', { class: 'figure' }, value === null ? '–' : figure(value, unit)),
-      el('td', {}, counts),
+      el('td', {}, counts.input),
       el('td', {}, aim),
     ),
     chosen: choice.chosen,
     value: () => {
-      if (!(counts.valueAsNumber > 0)) return `The weight of \`${metric}\` must be above zero.`
-      if (wanted.validity.badInput) return `The target of \`${metric}\` is not a number.`
-      return {
-        metric,
-        weight: counts.valueAsNumber,
-        target: curve || wanted.value === '' ? null : wanted.valueAsNumber,
-      }
+      const [weight, target] = [counts.value(), curve ? undefined : wanted.value()]
+      if (!(typeof weight === 'number' && weight > 0)) return `The weight of \`${metric}\` must be above zero.`
+      if (typeof target === 'string') return `The target of \`${metric}\`: ${target}`
+      return { metric, weight, target: target ?? null }
     },
   }
 }
@@ -416,9 +495,7 @@ function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): 
           : el(
               'p',
               { class: 'muted' },
-              ...prose(
-                'No design variable has a tolerance. Add `tolerance = 0.1` to those in `[design]` or `[parameters]`.',
-              ),
+              ...prose('No design variable has a tolerance. Enter one with the button ± in the row of a variable.'),
             ),
       ),
       ...(metrics.length > 0
@@ -433,7 +510,8 @@ function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): 
       el('div', { class: 'settings' }, drawn.element, from.element),
     ],
     request: () => {
-      if (tolerances.length === 0) return ' '
+      if (tolerances.length === 0)
+        return 'No variable has a tolerance. Enter one with the button ± in the row of a variable.'
       const asked = { samples: drawn.value(), seed: from.value() }
       return Object.values(asked).find((part) => typeof part === 'string') ?? (asked as ToleranceRequest)
     },
@@ -457,9 +535,18 @@ function table(header: string[], rows: HTMLElement[]): HTMLElement {
   )
 }
 
-/** A field for a number. */
-function field(label: string, value: number | undefined): HTMLInputElement {
-  return el('input', { type: 'number', step: 'any', 'aria-label': label, value })
+/** A field for a number with a unit; its value is a sentence where it cannot be read, and undefined where it is empty. */
+function field(label: string, value: number | undefined, unit: string) {
+  const text = value === undefined ? undefined : entry(value)
+  const input = el('input', { type: 'text', class: 'number-field', 'aria-label': label, value: text })
+  return {
+    input,
+    value: (): number | string | undefined => {
+      if (input.value.trim() === '') return undefined
+      const typed = amount(input.value, unit)
+      return typeof typed === 'string' ? typed : typed.value
+    },
+  }
 }
 
 /** A box to choose something by, whose fields are of use only then. */

@@ -6,15 +6,19 @@ import type { StudyResult } from '../engine/engine'
 import type { CheckReply, OpenReply, VariableSetting, DesignReply, Text } from '../engine/protocol'
 import { type Answer, RequestError } from '../engine/answer'
 import { Solver } from '../engine/solver'
+import { pageFile, storedDesign } from '../export/page_file'
 import { save } from '../export/save'
 import { page, type PageParts, slot } from '../page'
 import type { Item } from '../page/menu'
+import type { VariableLimits } from '../page/variables'
 import type { Design as WireDesign, ModelText, Payload } from '../payload'
 import { design, read, type Design, type Report } from '../report'
 import { State } from '../state'
 import type { Figure } from '../page/figure'
 import { targetButton } from './draw_target'
 import { Drawer } from './drawer'
+import { type Aim, boundsToml, goalToml, type Judged, toleranceToml } from './goal'
+import type { Proposal } from './goal_form'
 import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
@@ -22,9 +26,11 @@ import { Mover } from './mover'
 import { PointsPane } from './points'
 import { connect } from './server'
 import { serverBar } from './server_bar'
-import { optimizePane, type StudyPane, tolerancePane } from './studies'
+import { type OptimizePane, optimizePane, type StudyPane, tolerancePane } from './studies'
 import { Workers } from './workers'
 
+/** Name of the design of a study under way. */
+const PREVIEW = 'optimisation, best so far'
 /** Milliseconds without a change after which text and sensitivities follow the design. */
 const REST = 200
 
@@ -47,6 +53,10 @@ export class Studio {
   #editor?: Editor
   #grips?: Grips
   #mover?: Mover
+  /** A design of a study that is to be drawn next; undefined if none is waiting or being solved. */
+  #previewed?: { change: VariableSetting[] | undefined }
+  /** The design that was compared with before. */
+  #compared?: number
   #opened?: OpenReply
   #accepted: VariableSetting[] = []
   #wanted?: VariableSetting[]
@@ -80,6 +90,18 @@ export class Studio {
       studies: new Workers(module, (text) => ({ ...this.model, text })),
       text: () => this.#text,
       apply: ({ change, text }: StudyResult, studied: string) => void this.#applyResult(change, text, studied),
+      preview: (change: VariableSetting[] | undefined, studied: string) => this.#preview(change, studied),
+      goals: {
+        quantities: () => this.state.report.quantities.map(({ name, units: [unit] }) => ({ name, unit })),
+        cases: () => this.#opened?.cases ?? [],
+        selected: () => this.#proposal(),
+        add: (judged: Judged, aim: Aim) => void this.edit((text) => goalToml(text, judged, aim).text, 'goal'),
+      },
+    }
+    let optimize: OptimizePane | undefined
+    const openOptimize = studyPane(() => (optimize = optimizePane(host)), this)
+    this.propose = (proposal) => {
+      void this.#drawer.open('Optimise').then(() => optimize?.propose(proposal))
     }
     this.#drawer = new Drawer([
       { name: 'Model', title: 'Edit the text of the model', open: () => this.#openEditor() },
@@ -91,10 +113,17 @@ export class Studio {
       {
         name: 'Optimise',
         title: 'Optimise the design for the goals of the model',
-        open: studyPane(() => optimizePane(host), this),
+        open: openOptimize,
       },
       { name: 'Tolerance', title: 'Tolerance analysis', open: studyPane(() => tolerancePane(host), this) },
     ])
+    // A card is a value, for which there may be a goal.
+    root.addEventListener('contextmenu', (event) => {
+      const name = (event.target as Element).closest<HTMLElement>('[data-testid^=card-]')?.dataset.testid
+      if (!name || !this.#opened) return
+      event.preventDefault()
+      this.propose({ of: name.slice('card-'.length), over: this.#proposal().over })
+    })
     const server = connect(document)
     const own = {
       text: () => this.#currentText(),
@@ -111,7 +140,7 @@ export class Studio {
     document.body.append(this.#drawer.element)
     slot(made.bar, this.#tools)
     this.#attach()
-    void this.#open()
+    void this.#open().then(() => this.#restore())
   }
 
   /** The text of the present design. */
@@ -133,12 +162,51 @@ export class Studio {
     await solved
   }
 
+  /** Changes the text of the original design; the changes made since stay. */
+  async edit(change: (text: string) => string, label: string): Promise<void> {
+    const { settings } = this.state
+    const text = change(this.model.text)
+    if (text === this.model.text) return
+    this.history.go({ text, settings, label })
+    await this.#openModel({ ...this.model, text }, settings)
+  }
+
+  /** Opens the pane of the optimisation with a goal for a quantity or a metric. */
+  readonly propose: (proposal: Proposal) => void
+
+  #proposal(): Proposal {
+    const { quantities } = this.state.report
+    const { quantity, over } = this.state.choice
+    return { of: quantities[quantity]?.name ?? '', over: over === undefined ? undefined : quantities[over].name }
+  }
+
+  /** Bounds and tolerances of variables, which are kept in the text. */
+  readonly limits: VariableLimits = {
+    setBounds: (name, bounds) => {
+      if (boundsToml(this.model.text, name, bounds) === undefined)
+        return `\`${name}\` is not a variable of the model's text, so that it has no bounds there.`
+      void this.edit((text) => boundsToml(text, name, bounds) ?? text, `bounds of ${name}`)
+      return undefined
+    },
+    setTolerance: (name, tolerance) =>
+      void this.edit((text) => toleranceToml(text, name, tolerance), `tolerance of ${name}`),
+  }
+
   /** Items for export in addition to those of the report. */
   readonly exports = (): Item[] => [
     {
       name: 'Model as TOML',
       testId: 'export-toml',
       run: async () => save(new Blob([await this.#currentText()], { type: 'application/toml' }), this.model.file),
+    },
+    {
+      name: 'Page with this design',
+      testId: 'export-html',
+      run: () => {
+        const { text, file } = this.model
+        const design = { text, case: this.model.case, settings: this.state.settings }
+        save(pageFile(document, design), `${file.replace(/\.[^.]*$/, '')}.html`)
+      },
     },
   ]
 
@@ -155,10 +223,21 @@ export class Studio {
         case: several ? (this.model.case ?? this.#opened?.cases[0]) : undefined,
       }
     }
-    return targetButton(figure.plot, drawn, {
+    const target = targetButton(figure.plot, drawn, {
       text: () => this.#text,
       replace: (text) => void this.replace(text, 'target'),
     })
+    const goal = el(
+      'button',
+      {
+        type: 'button',
+        'data-testid': 'goal',
+        title: 'Minimise it, bring it to a value, or keep it within limits',
+        onclick: () => this.propose(drawn()),
+      },
+      'Goal…',
+    )
+    return el('span', { class: 'tools' }, goal, target)
   }
 
   /** Takes hold of hardpoints, or lets go. */
@@ -183,6 +262,16 @@ export class Studio {
       this.#scheduleUpdate()
     })
     state.onChoice(() => this.#showPoints())
+  }
+
+  /** Shows the design that the page was saved with. */
+  async #restore(): Promise<void> {
+    const stored = storedDesign(document)
+    if (!stored || !this.#opened) return
+    const { text, settings } = stored
+    if (text === this.model.text && stored.case === this.model.case) return this.state.setDesign(settings)
+    this.history.go({ text, settings, label: 'saved' })
+    await this.#openModel({ ...this.model, text, case: stored.case }, settings)
   }
 
   /** Opens the model in the engine; from then on changes are solved. */
@@ -391,6 +480,7 @@ export class Studio {
       exports: this.exports,
       grips: () => this.grips(),
       leave: () => this.leave(),
+      limits: this.limits,
       figure: (figure) => this.target(figure),
     })
     state.goToTime(time)
@@ -419,6 +509,48 @@ export class Studio {
     } catch (error) {
       this.#showStatus(messageOf(error))
     }
+  }
+
+  /** Draws a design of a study under way next to the present one; of several at once the last. */
+  #preview(change: VariableSetting[] | undefined, studied: string): void {
+    if (change && studied !== this.#text) return
+    const isIdle = this.#previewed === undefined
+    this.#previewed = { change }
+    if (isIdle) void this.#drawPreviews()
+  }
+
+  async #drawPreviews(): Promise<void> {
+    while (this.#previewed) {
+      const { change } = this.#previewed
+      const { state } = this
+      const found = change && (await this.#designOf(added(state.settings, change)))
+      if (this.state === state) this.#showPreview(found)
+      if (this.#previewed.change === change) this.#previewed = undefined
+    }
+  }
+
+  async #designOf(settings: VariableSetting[]): Promise<Design | undefined> {
+    try {
+      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: settings, from: null })
+      return this.#read(answer.json.design, answer, settings)
+    } catch {
+      // A design of a search may not move at all: there is nothing to draw then.
+      return undefined
+    }
+  }
+
+  /** Draws a design dashed, as the one that the present one is compared with; undefined ends that. */
+  #showPreview(design: Design | undefined): void {
+    const { state } = this
+    const { comparisons, choice } = state
+    const first = state.report.designs.length
+    const at = comparisons.findIndex(({ name }) => name === PREVIEW)
+    if (at >= 0) comparisons.splice(at, 1)
+    if (design) {
+      if (at < 0) this.#compared = choice.compared
+      comparisons.push({ ...design, name: PREVIEW })
+      state.choose({ compared: first + comparisons.length - 1 })
+    } else if (at >= 0) state.choose({ compared: this.#compared })
   }
 
   /** Makes the design that a study found the present one. */
@@ -452,6 +584,13 @@ function studyPane(make: () => StudyPane, studio: Studio): () => Promise<HTMLEle
     pane.refresh()
     return pane.element
   }
+}
+
+/** Changes made after others. */
+function added(first: readonly VariableSetting[], then: readonly VariableSetting[]): VariableSetting[] {
+  const sum = new Map(first.map(({ name, by }) => [name, by]))
+  for (const { name, by } of then) sum.set(name, (sum.get(name) ?? 0) + by)
+  return [...sum].map(([name, by]) => ({ name, by }))
 }
 
 /** A part of the way from some changes to others. */

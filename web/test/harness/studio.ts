@@ -4,6 +4,7 @@ import { el } from '../../src/dom'
 import type {
   OptimizeOffer,
   OptimizeRequest,
+  ProgressListener,
   Running,
   StudyResult,
   ToleranceOffer,
@@ -14,6 +15,7 @@ import { read } from '../../src/report'
 import { State } from '../../src/state'
 import { History, type Step } from '../../src/studio/history'
 import { historyBar } from '../../src/studio/history_bar'
+import { type Aim, goalToml, type Judged } from '../../src/studio/goal'
 import { targetButton } from '../../src/studio/draw_target'
 import { Sketch } from '../../src/studio/sketch'
 import type { Point } from '../../src/studio/stroke'
@@ -27,6 +29,7 @@ declare global {
     compared: (string | undefined)[]
     /** The studies that were begun; the tests end them. */
     studies: Study[]
+    previews: (StudyResult['change'] | undefined)[]
     taken: { change: StudyResult['change']; studied: string }[]
     /** The text of the present design. */
     model: string
@@ -42,13 +45,13 @@ interface Study {
   text: string
   request: OptimizeRequest | ToleranceRequest
   cancelled: boolean
-  tell: (done: number, total: number | null, line: string) => void
+  tell: (done: number, total: number | null, line: string, change?: StudyResult['change']) => void
   end: (result: StudyResult) => void
   fail: (message: string) => void
 }
 
 function begin(text: string, request: Study['request']): Running<StudyResult> {
-  const listeners: ((done: number, total: number | null, line: string) => void)[] = []
+  const listeners: ProgressListener[] = []
   let end!: Study['end']
   let fail!: (error: Error) => void
   const result = new Promise<StudyResult>((resolve, reject) => ((end = resolve), (fail = reject)))
@@ -56,7 +59,7 @@ function begin(text: string, request: Study['request']): Running<StudyResult> {
     text,
     request,
     cancelled: false,
-    tell: (...progress) => listeners.forEach((listener) => listener(...progress)),
+    tell: (done, total, line, change = null) => listeners.forEach((listener) => listener(done, total, line, change)),
     end,
     fail: (message) => fail(new Error(message)),
   }
@@ -90,7 +93,7 @@ const toleranceOffer: ToleranceOffer = {
   seed: 1,
 }
 
-Object.assign(window, { shown: [], compared: [], studies: [], taken: [], model: 'name = "strut"' })
+Object.assign(window, { shown: [], compared: [], studies: [], taken: [], previews: [], model: 'name = "strut"' })
 const first: Step = { text: window.model, settings: [], label: 'opened' }
 window.designs = new History(first)
 const bar = historyBar(window.designs, {
@@ -110,6 +113,19 @@ const host = {
   },
   text: () => window.model,
   apply: ({ change }: StudyResult, studied: string) => window.taken.push({ change, studied }),
+  preview: (change: StudyResult['change'] | undefined) => window.previews.push(change),
+  goals: {
+    quantities: () => [
+      { name: 'toe', unit: 'deg' },
+      { name: 'travel', unit: 'mm' },
+    ],
+    cases: () => ['bump', 'steer'],
+    selected: () => ({ of: 'toe', over: 'travel' }),
+    add: (judged: Judged, aim: Aim) => {
+      window.model = goalToml(window.model, judged, aim).text
+      window.refresh()
+    },
+  },
 }
 const panes = [optimizePane(host), tolerancePane(host)]
 window.refresh = () => panes.forEach((pane) => pane.refresh())
