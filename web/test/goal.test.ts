@@ -22,21 +22,31 @@ describe('a key that is set', () => {
   })
 })
 
+const NONE = { variables: [], goals: [] }
+
 describe('a goal', () => {
-  test('of a quantity makes the metric that it needs', () => {
-    expect(
-      goalToml('name = "x"\n', { of: 'left.toe', take: 'range', over: 'left.travel' }, { kind: 'minimise' }),
-    ).toEqual({
+  const range = { of: 'left.toe', take: 'range', over: 'left.travel' } as const
+  const metric = '[metrics]\nleft_toe_range = { of = "left.toe", over = "left.travel", take = "range" }\n'
+  test('of a quantity makes the metric that it needs, alone while no variable has bounds', () => {
+    expect(goalToml('name = "x"\n', range, { kind: 'minimise' }, NONE)).toEqual({
       name: 'left_toe_range',
-      text:
-        'name = "x"\n\n[metrics]\nleft_toe_range = { of = "left.toe", over = "left.travel", take = "range" }\n\n' +
-        '[optimize.goals]\nleft_toe_range = {}\n',
+      text: `name = "x"\n\n${metric}`,
     })
+  })
+  test('is written with the bounds and the goals that are chosen', () => {
+    const chosen = {
+      variables: [{ name: 'z', bounds: [-1, 2] }],
+      goals: [{ metric: 'm', weight: 3, target: 0.5 }],
+    } as const
+    expect(goalToml('[design]\nz = { move = "p", along = "z" }\n', range, { kind: 'minimise' }, chosen).text).toBe(
+      `[design]\nz = { move = "p", along = "z", bounds = [-1, 2] }\n\n${metric}\n` +
+        '[optimize.goals]\nm = { target = 0.5, weight = 3 }\nleft_toe_range = {}\n',
+    )
   })
   test('of a metric is a target, or a limit', () => {
     const text = '[metrics.m]\nof = "toe"\n\n[optimize.goals]\nm = {}\n'
-    expect(goalToml(text, { metric: 'm' }, { kind: 'bring', target: 2 }).text).toContain('m = { target = 2 }')
-    expect(goalToml(text, { metric: 'm' }, { kind: 'keep', min: 1, max: 3 }).text).toContain(
+    expect(goalToml(text, { metric: 'm' }, { kind: 'bring', target: 2 }, NONE).text).toContain('m = { target = 2 }')
+    expect(goalToml(text, { metric: 'm' }, { kind: 'keep', min: 1, max: 3 }, NONE).text).toContain(
       '[optimize.limits]\nm = { metric = "m", min = 1, max = 3 }',
     )
   })
@@ -49,6 +59,14 @@ describe('bounds and tolerances', () => {
     expect(boundsToml(text, 'outer_z', [-1, 1])).toContain('outer = { move = "p", along = "xyz", bounds = [-1, 1] }')
     expect(toleranceToml(text, 'rack_z', 0.2)).toContain('along = "z", tolerance = 0.2 }')
     expect(boundsToml(text, 'p.x', [0, 1])).toBe(undefined)
+  })
+  test('of a parameter are those of its value', () => {
+    const parameters = '[parameters]\nr = 40\narm = { value = 120, unit = "length" }\nsum = "r + 1"\n'
+    expect(boundsToml(parameters, 'r', [-1, 2])).toContain('r = { value = 40, bounds = [39, 42] }')
+    expect(boundsToml(parameters, 'arm', [-20, 20])).toContain('unit = "length", bounds = [100, 140] }')
+    expect(boundsToml(parameters, 'arm', [100, 140], 'value')).toContain('bounds = [100, 140] }')
+    expect(boundsToml(parameters, 'sum', [0, 1])).toBe(undefined)
+    expect(toleranceToml(parameters, 'r', 0.1)).toContain('r = { value = 40, tolerance = 0.1 }')
   })
   test('of one coordinate of a point has its own tolerance', () => {
     expect(toleranceToml(text, 'outer_z', 0.2)).toContain('[tolerance.variables]\nouter_z = 0.2')

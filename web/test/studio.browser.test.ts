@@ -185,7 +185,7 @@ describe('a study', () => {
     await page.getByTestId('goal-max').press('Enter')
     expect(await page.evaluate(() => [window.model, window.studies.length])).toEqual([
       'name = "strut"\n\n[metrics]\ntoe_range = { case = "bump", of = "toe", over = "travel", take = "range" }\n\n' +
-        '[optimize.limits]\ntoe_range = { metric = "toe_range", min = -0.5, max = 0.5 }\n',
+        '[optimize.goals]\ntoe_error = {}\n\n[optimize.limits]\ntoe_range = { metric = "toe_range", min = -0.5, max = 0.5 }\n',
       0,
     ])
   })

@@ -114,7 +114,7 @@ describe('a body that is clicked', () => {
     expect(text).toContain('B – C')
     expect(number(/B – C\s+([\d.]+) mm/.exec(text)![1])).toBeCloseTo(Math.hypot(320, 400), 1)
     await scrub(page, 20)
-    await expect.poll(() => inspector.innerText()).toMatch(/Rotation since the start\s+[1-9]/)
+    await expect.poll(() => inspector.innerText()).toMatch(/Rotation since the start\s+0\.\d+ deg/)
     await inspector.locator('.link').first().click()
     await expect.poll(() => inspector.innerText()).toMatch(/Bodies[^]*Location/)
     await page.keyboard.press('Escape')

@@ -72,14 +72,22 @@ export function variables(state: State, limits?: VariableLimits): HTMLElement {
       const effect = all[place.get(item.variable.index) ?? -1]
       item.rank(effect, quantity ? derivativeUnit(quantity, choice.order, item.variable) : '')
     }
-    // Under the hand that changes one of them, they keep their places.
-    if (again) return
-    const rank = ({ variable }: Row) =>
-      place.get(variable.index) ?? rows.length + Number(variable.admissibility === 'cannot_follow')
-    order = [...rows].sort((a, b) => rank(a) - rank(b) || a.variable.index - b.variable.index)
-    list.replaceChildren(...order.map(({ element }) => element))
-    list.scrollTop = 0
+    rank = (variable) => place.get(variable.index) ?? rows.length + Number(variable.admissibility === 'cannot_follow')
+    if (!again) list.scrollTop = 0
+    sort(!again)
   }
+  let rank: (variable: Variable) => number = ({ index }) => index
+  /** Sorts the rows; under the hand that changes one of them, they keep their places until it has left. */
+  const sort = (isForced = false) => {
+    const held = list.matches(':hover') || list.matches(':focus-within')
+    const sorted = [...rows].sort((a, b) => rank(a.variable) - rank(b.variable) || a.variable.index - b.variable.index)
+    if (sorted.every((item, k) => item === order[k]) && list.childElementCount > 0) return
+    if (held && !isForced) return
+    order = sorted
+    list.replaceChildren(...order.map(({ element }) => element))
+  }
+  list.addEventListener('pointerleave', () => sort())
+  list.addEventListener('focusout', ({ relatedTarget }) => list.contains(relatedTarget as Node | null) || sort())
   let shown = -1
   const sync = () => {
     arrange()

@@ -2,7 +2,7 @@ import { amount } from '../amount'
 import { el, prose } from '../dom'
 import type { SearchGoal } from '../engine/engine'
 import { pretty } from '../format'
-import { type Aim, isPlaced, type Judged, type Take, TAKES } from './goal'
+import { type Aim, type Chosen, isPlaced, type Judged, type Take, TAKES } from './goal'
 
 /** What can be judged in a model, beyond its metrics. */
 export interface GoalHost {
@@ -10,7 +10,14 @@ export interface GoalHost {
   cases: () => readonly string[]
   /** Quantity of the leading plot, and the one that it is shown over. */
   selected: () => Proposal
-  add: (judged: Judged, aim: Aim) => void
+  add: (judged: Judged, aim: Aim, chosen: Chosen) => void
+}
+
+/** Present choices of the form that a goal is added to. */
+export interface Surroundings {
+  chosen: () => Chosen
+  /** Why no limit can be added; empty if it can. */
+  limitBlocked: () => string
 }
 
 /** Quantity or metric that a goal is proposed for. */
@@ -41,6 +48,8 @@ export class GoalForm {
   constructor(
     private readonly host: GoalHost,
     private readonly metrics: readonly SearchGoal[],
+    private readonly around: Surroundings,
+    private readonly onAdd: (judged: Judged, aim: Aim) => void,
   ) {
     const quantities = host.quantities()
     const cases = host.cases()
@@ -103,6 +112,11 @@ export class GoalForm {
     return this.#of.value.replace(/^of /, '')
   }
 
+  /** Shows again what is missing: the choices around it may be others. */
+  sync(): void {
+    this.#sync()
+  }
+
   #sync(): void {
     const take = this.#take.value as Take
     const isMetric = this.#metric !== undefined
@@ -154,6 +168,8 @@ export class GoalForm {
         const wrong = ends.find((end) => typeof end === 'string')
         if (typeof wrong === 'string') return wrong
         const [min, max] = ends as (number | undefined)[]
+        const blocked = this.around.limitBlocked()
+        if (blocked) return blocked
         if (min === undefined && max === undefined) return 'Enter a lower limit, an upper limit, or both.'
         if (min !== undefined && max !== undefined && min > max) return 'The lower limit is above the upper limit.'
         return { judged, aim: { kind: 'keep', min, max } }
@@ -169,7 +185,8 @@ export class GoalForm {
     if (typeof found === 'string') return
     this.#add.disabled = true
     this.#why.textContent = 'Adding…'
-    this.host.add(found.judged, found.aim)
+    this.onAdd(found.judged, found.aim)
+    this.host.add(found.judged, found.aim, this.around.chosen())
   }
 }
 

@@ -14,6 +14,7 @@ import type {
 import type { VariableSetting } from '../engine/protocol'
 import { figure, pretty } from '../format'
 import { factTable } from '../page/checks'
+import { hasGoals, metricName } from './goal'
 import { GoalForm, type GoalHost, type Proposal } from './goal_form'
 import './studio.css'
 
@@ -52,28 +53,44 @@ export interface OptimizePane extends StudyPane {
 export function optimizePane(host: StudyHost): OptimizePane {
   let proposed: Proposal | undefined
   let shown: GoalForm | undefined
+  const kept: Kept = { variables: new Map(), goals: new Map() }
   const made = pane(host, {
     name: 'Optimise',
     verb: 'Optimise',
     offer: (text) => host.studies.optimizeOffer(text),
     form: (offer) => {
+      const form = optimizeForm(offer, kept, () => shown!)
       shown = new GoalForm(
-        { ...host.goals, add: (judged, aim) => (made.release(), host.goals.add(judged, aim)) },
+        host.goals,
         offer.goals,
+        { chosen: form.chosen, limitBlocked: () => (hasGoals(host.text()) ? '' : form.missing()) },
+        (judged, aim) => {
+          made.release()
+          const target = aim.kind === 'bring' ? String(aim.target) : ''
+          const name = 'metric' in judged ? judged.metric : metricName(host.text(), judged)
+          if (aim.kind !== 'keep') kept.goals.set(name, { chosen: true, weight: '1', target })
+        },
       )
       if (proposed) shown.propose(proposed)
       proposed = undefined
-      return optimizeForm(offer, shown.element)
+      return { ...form, elements: form.elements(shown.element) }
     },
     start: (text, request) => host.studies.optimize(text, request),
     steps: ({ starts, iterations }) => (starts > 1 ? starts : iterations),
     isSeveral: ({ starts }) => starts > 1,
+    forget: () => (kept.variables.clear(), kept.goals.clear()),
   })
   const propose = (proposal: Proposal) => {
     if (shown?.element.isConnected) shown.propose(proposal)
     else proposed = proposal
   }
   return { ...made, propose }
+}
+
+/** Entries of the form that outlive its text, by the names of variables and metrics. */
+interface Kept {
+  variables: Map<string, { chosen: boolean; low: string; high: string }>
+  goals: Map<string, { chosen: boolean; weight: string; target: string }>
 }
 
 /** Tolerance study. */
@@ -86,6 +103,7 @@ export function tolerancePane(host: StudyHost): StudyPane {
     start: (text, request) => host.studies.tolerance(text, request),
     steps: ({ samples }) => samples,
     isSeveral: () => false,
+    forget: () => {},
   })
 }
 
@@ -107,11 +125,13 @@ interface Kind<Offer, Request> {
   steps: (request: Request) => number
   /** True if it searches from several designs, each of which has a result. */
   isSeveral: (request: Request) => boolean
+  /** Forgets what was entered, before the model is read again. */
+  forget: () => void
 }
 
 function pane<Offer, Request>(
   host: StudyHost,
-  { name, verb, offer, form, start, steps, isSeveral }: Kind<Offer, Request>,
+  { name, verb, offer, form, start, steps, isSeveral, forget }: Kind<Offer, Request>,
 ): StudyPane & { release: () => void } {
   const testId = name.toLowerCase()
   const element = el('section', { class: 'study', 'aria-label': name, 'data-testid': testId })
@@ -139,7 +159,7 @@ function pane<Offer, Request>(
     const view = formView(name, verb, made, refusal, {
       isStale: () => read !== host.text(),
       changed: () => (touched = true),
-      reload: () => void load(),
+      reload: () => (forget(), void load()),
       run: (request) => void work(made, request),
     })
     stale = view.sync
@@ -349,14 +369,29 @@ function progressView(
 
 function optimizeForm(
   { variables, goals, limits, starts, iterations }: OptimizeOffer,
-  addition: HTMLElement,
-): Form<OptimizeRequest> {
-  const searched = variables.map(variableRow)
-  const wanted = goals.map(goalRow)
+  kept: Kept,
+  addition: () => GoalForm,
+) {
+  const searched = variables.map((variable) => variableRow(variable, kept.variables, () => addition().sync()))
+  const wanted = goals.map((goal) => goalRow(goal, kept.goals, () => addition().sync()))
   const from = whole('Starts', starts, 1, 100_000, 'optimise-starts')
   const maximum = whole('Maximum iterations', iterations, 1, 100_000, 'optimise-iterations')
+  /** Values of the chosen rows that are complete. */
+  const complete = <T>(rows: Row<T>[]): T[] =>
+    rows.flatMap((row) => {
+      const value = row.chosen() ? row.value() : ''
+      return typeof value === 'string' ? [] : [value as T]
+    })
+  const chosen = () => ({ variables: complete(searched), goals: complete(wanted) })
   return {
-    elements: [
+    chosen,
+    /** What a limit needs and is not chosen; empty if nothing is missing. */
+    missing: () => {
+      const { variables, goals } = chosen()
+      if (goals.length === 0) return 'A limit needs a goal: add one first.'
+      return variables.length === 0 ? 'A limit needs a variable with bounds: choose one above.' : ''
+    },
+    elements: (added: HTMLElement): HTMLElement[] => [
       group(
         'Variables',
         'within their bounds',
@@ -375,7 +410,7 @@ function optimizeForm(
             ),
           )
         : group('Goals', '', el('p', { class: 'muted' }, 'None yet: say below what the design is to do better.')),
-      addition,
+      added,
       ...(limits.length > 0
         ? [
             group(
@@ -387,7 +422,7 @@ function optimizeForm(
         : []),
       el('div', { class: 'settings' }, from.element, maximum.element),
     ],
-    request: () => {
+    request: (): OptimizeRequest | string => {
       const [chosen, aims] = [searched.filter(({ chosen }) => chosen()), wanted.filter(({ chosen }) => chosen())]
       if (chosen.length === 0) return 'Choose at least one variable.'
       if (aims.length === 0) return goals.length > 0 ? 'Choose at least one goal.' : 'Add a goal first.'
@@ -412,13 +447,23 @@ interface Row<T> {
   value: () => T | string
 }
 
-function variableRow({ name, unit, bounds, chosen }: SearchVariable): Row<OptimizeRequest['variables'][number]> {
+function variableRow(
+  { name, unit, bounds, chosen }: SearchVariable,
+  kept: Kept['variables'],
+  onChange: () => void,
+): Row<OptimizeRequest['variables'][number]> {
   const [low, high] = [0, 1].map((end) => field(`${end ? 'highest' : 'lowest'} of ${name}`, bounds?.[end], unit))
-  const choice = choose(name, chosen && bounds !== null, [low.input, high.input])
+  const former = kept.get(name)
+  if (former) [low.input.value, high.input.value] = [former.low, former.high]
+  const choice = choose(name, former?.chosen ?? (chosen && bounds !== null), [low.input, high.input])
+  const oninput = () => {
+    kept.set(name, { chosen: choice.chosen(), low: low.input.value, high: high.input.value })
+    onChange()
+  }
   return {
     row: el(
       'tr',
-      { 'data-testid': `search-${name}` },
+      { 'data-testid': `search-${name}`, oninput },
       el('td', {}, choice.element),
       el('td', {}, low.input),
       el('td', {}, high.input),
@@ -438,26 +483,28 @@ function variableRow({ name, unit, bounds, chosen }: SearchVariable): Row<Optimi
   }
 }
 
-function goalRow({
-  metric,
-  unit,
-  value,
-  weight,
-  target,
-  curve,
-  chosen,
-}: SearchGoal): Row<OptimizeRequest['goals'][number]> {
+function goalRow(
+  { metric, unit, value, weight, target, curve, chosen }: SearchGoal,
+  kept: Kept['goals'],
+  onChange: () => void,
+): Row<OptimizeRequest['goals'][number]> {
   const counts = field(`weight of ${metric}`, weight, '1')
   const wanted = field(`target of ${metric}`, target ?? undefined, unit)
   wanted.input.placeholder = 'minimum'
-  const choice = choose(metric, chosen, curve ? [counts.input] : [counts.input, wanted.input])
+  const former = kept.get(metric)
+  if (former) [counts.input.value, wanted.input.value] = [former.weight, former.target]
+  const choice = choose(metric, former?.chosen ?? chosen, curve ? [counts.input] : [counts.input, wanted.input])
+  const oninput = () => {
+    kept.set(metric, { chosen: choice.chosen(), weight: counts.input.value, target: wanted.input.value })
+    onChange()
+  }
   const aim = curve
     ? el('span', { class: 'muted' }, 'its curve')
     : el('span', {}, wanted.input, ' ', el('span', { class: 'unit' }, pretty(unit)))
   return {
     row: el(
       'tr',
-      { 'data-testid': `goal-${metric}` },
+      { 'data-testid': `goal-${metric}`, oninput },
       el('td', {}, choice.element),
       el('td', { class: 'figure' }, value === null ? '–' : figure(value, unit)),
       el('td', {}, counts.input),

@@ -17,7 +17,7 @@ import { State } from '../state'
 import type { Figure } from '../page/figure'
 import { targetButton } from './draw_target'
 import { Drawer } from './drawer'
-import { type Aim, boundsToml, goalToml, type Judged, toleranceToml } from './goal'
+import { type Aim, boundsToml, type Chosen, goalToml, type Judged, toleranceToml } from './goal'
 import type { Proposal } from './goal_form'
 import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
@@ -95,7 +95,8 @@ export class Studio {
         quantities: () => this.state.report.quantities.map(({ name, units: [unit] }) => ({ name, unit })),
         cases: () => this.#opened?.cases ?? [],
         selected: () => this.#proposal(),
-        add: (judged: Judged, aim: Aim) => void this.edit((text) => goalToml(text, judged, aim).text, 'goal'),
+        add: (judged: Judged, aim: Aim, chosen: Chosen) =>
+          void this.edit((text) => goalToml(text, judged, aim, chosen).text, 'goal'),
       },
     }
     let optimize: OptimizePane | undefined

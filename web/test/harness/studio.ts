@@ -15,7 +15,7 @@ import { read } from '../../src/report'
 import { State } from '../../src/state'
 import { History, type Step } from '../../src/studio/history'
 import { historyBar } from '../../src/studio/history_bar'
-import { type Aim, goalToml, type Judged } from '../../src/studio/goal'
+import { type Aim, type Chosen, goalToml, type Judged } from '../../src/studio/goal'
 import { targetButton } from '../../src/studio/draw_target'
 import { Sketch } from '../../src/studio/sketch'
 import type { Point } from '../../src/studio/stroke'
@@ -121,8 +121,8 @@ const host = {
     ],
     cases: () => ['bump', 'steer'],
     selected: () => ({ of: 'toe', over: 'travel' }),
-    add: (judged: Judged, aim: Aim) => {
-      window.model = goalToml(window.model, judged, aim).text
+    add: (judged: Judged, aim: Aim, chosen: Chosen) => {
+      window.model = goalToml(window.model, judged, aim, chosen).text
       window.refresh()
     },
   },
