@@ -118,7 +118,7 @@ describe('a body that is clicked', () => {
     await inspector.locator('.link').first().click()
     await expect.poll(() => inspector.innerText()).toMatch(/Bodies[^]*Location/)
     await page.keyboard.press('Escape')
-    expect(await inspector.isVisible()).toBe(false)
+    await expect.poll(() => inspector.isVisible()).toBe(false)
   })
 })
 

@@ -32,7 +32,7 @@ export function pageFile(document: Document, design: StoredDesign): Blob {
   // Within a script nothing may look like its end.
   stored.textContent = JSON.stringify(design).replaceAll('<', '\\u003c')
   code?.before(stored)
-  return new Blob([`<!doctype html>\n${root.outerHTML}\n`], { type: 'text/html' })
+  return new Blob([`<!doctype html>\n${root.outerHTML}`], { type: 'text/html' })
 }
 
 /** The design that a page was saved with; undefined without one. */

@@ -22,7 +22,7 @@ export class Inspector {
     'data-testid': 'inspector',
   })
   #body = el('div')
-  #title = el('h3')
+  #title = el('h2')
   #shown?: Part
 
   constructor(
@@ -194,7 +194,7 @@ export class Inspector {
 }
 
 function section(title: string, ...content: HTMLElement[]): HTMLElement[] {
-  return [el('h4', {}, title), ...content]
+  return [el('h3', {}, title), ...content]
 }
 
 function coordinateTable(rows: { name: string; at: Vector3 }[]): HTMLElement {

@@ -93,8 +93,18 @@ export class Measuring {
       tabindex: -1,
       'aria-label': `measure ${name}`,
       'data-testid': `spot-${name}`,
-      onclick: () => this.#add(name),
+      onclick: (event: MouseEvent) => this.#add(event.detail > 0 ? this.#nearest(event) : name),
     })
+  }
+
+  /** Name of the point nearest to a click: their buttons may lie on each other. */
+  #nearest({ clientX, clientY }: MouseEvent): string {
+    const { left, top } = this.view.element.getBoundingClientRect()
+    const far = (spot: Spot) => {
+      const { x, y } = this.view.project(this.#place(spot))
+      return Math.hypot(x - (clientX - left), y - (clientY - top))
+    }
+    return this.#spots.filter(({ button }) => !button.hidden).reduce((a, b) => (far(b) < far(a) ? b : a)).name
   }
 
   /** Adds a point; after three the next begins anew. */

@@ -449,7 +449,7 @@ export class Grips {
 
   #directionButtons: HTMLButtonElement[] = []
   #deltas: HTMLOutputElement[] = []
-  #name = el('h3')
+  #name = el('h2')
   #refusal = el('p', { class: 'refusal', role: 'status', 'data-testid': 'refusal' })
   #mirrorField?: HTMLInputElement
   #reset = el(

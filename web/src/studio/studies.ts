@@ -60,6 +60,7 @@ export function optimizePane(host: StudyHost): OptimizePane {
     offer: (text) => host.studies.optimizeOffer(text),
     form: (offer) => {
       const form = optimizeForm(offer, kept, () => shown!)
+      const isOpen = shown?.element.open
       shown = new GoalForm(
         host.goals,
         offer.goals,
@@ -71,6 +72,7 @@ export function optimizePane(host: StudyHost): OptimizePane {
           if (aim.kind !== 'keep') kept.goals.set(name, { chosen: true, weight: '1', target })
         },
       )
+      if (isOpen) shown.element.open = true
       if (proposed) shown.propose(proposed)
       proposed = undefined
       return { ...form, elements: form.elements(shown.element) }
@@ -396,7 +398,7 @@ function optimizeForm(
         'Variables',
         'within their bounds',
         table(
-          ['variable', 'lowest', 'highest', ''],
+          ['variable', 'lowest', 'highest', 'unit'],
           searched.map(({ row }) => row),
         ),
       ),
