@@ -21,6 +21,7 @@ import { navigation } from './navigation'
 import { stage } from './stage'
 import { tabs, type Tab } from './tabs'
 import { transport } from './transport'
+import { valueStrip } from './value_strip'
 import { type VariableLimits, variables } from './variables'
 
 /** Parts of the page in addition to the report. */
@@ -71,7 +72,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   root.append(
     head,
     ...(report.status.complete ? [] : [banner(report)]),
-    ...(report.values.length > 0 ? [cards(state)] : []),
+    ...(report.values.length > 0 ? [valueStrip(cards(state), state)] : []),
     el('div', { class: 'scene' }, scene.element, ...scene.docked, transport(state)),
     ...shown.map(({ element }) => element),
     navigation(
