@@ -199,7 +199,7 @@ describe('the table of hardpoints', () => {
       input.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, bubbles: true, cancelable: true }))
     })
     await settled()
-    expect(await page.getByTestId('points-told').innerText()).toBe('1 hardpoint set. There is no hardpoint nobody.')
+    expect(await page.getByTestId('points-news').innerText()).toBe('1 hardpoint set. There is no hardpoint nobody.')
     const values = await Promise.all([0, 1, 2].map((k) => cell('tie_rod_outer', k).inputValue()))
     expect(values).toEqual(['-201', '575.5', '2'])
     await page.getByTestId('undo').click()

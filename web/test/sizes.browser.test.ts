@@ -8,7 +8,7 @@ const SOURCES = join(import.meta.dirname, '../src')
 /** Names and dimensions in the picture are as large as what they are part of. */
 const IN_PICTURES = ['labels.css', 'palette.css']
 
-test('letters are as large as the browser is told to have them', async () => {
+test('letters are as large as in the settings of the browser', async () => {
   const browser = await launch([...NO_3D, '--blink-settings=defaultFontSize=24'])
   try {
     const { page } = await visit(browser, models.four_bar, { viewport: { width: 1440, height: 900 } })

@@ -94,7 +94,7 @@ describe('measuring', () => {
     const before = await result.innerText()
     await scrub(page, 20)
     await drawn(page)
-    // The crank is as long as before, and stands elsewhere.
+    // The crank is as long as before, in another position.
     expect(await result.innerText()).toMatch(/^203\.96 mm/)
     expect(await result.innerText()).not.toBe(before)
     await page.keyboard.press('d')

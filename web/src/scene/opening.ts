@@ -7,7 +7,7 @@ const LINE = 0.06
 const OPEN = 0.8
 
 /**
- * Step at which the links of a mechanism are told apart best, if at the start they lie on one line, as those of a press
+ * Step at which the links of a mechanism are seen best, if at the start they lie on one line, as those of a press
  * at its dead centre do; 0 for all others.
  */
 export function openingStep(mechanism: Mechanism): number {

@@ -4,7 +4,7 @@ import type { SearchGoal } from '../engine/engine'
 import { pretty } from '../format'
 import { type Aim, type Chosen, isPlaced, type Judged, type Take, TAKES } from './goal'
 
-/** What can be judged in a model, beyond its metrics. */
+/** Quantities and cases of a model, and the way to add a goal to it. */
 export interface GoalHost {
   quantities: () => readonly { name: string; unit: string }[]
   cases: () => readonly string[]
@@ -16,7 +16,7 @@ export interface GoalHost {
 /** Present choices of the form that a goal is added to. */
 export interface Surroundings {
   chosen: () => Chosen
-  /** Why no limit can be added; empty if it can. */
+  /** Reason why no limit can be added; empty if it can. */
   limitBlocked: () => string
 }
 
@@ -78,7 +78,7 @@ export class GoalForm {
         'data-testid': 'goal-form',
         open: isOpen,
         // Within the form of the study, but not part of its request.
-        oninput: (event: Event) => (event.stopPropagation(), this.#sync()),
+        oninput: (event: Event) => (event.stopPropagation(), this.sync()),
         onkeydown: (event: KeyboardEvent) => {
           if (event.key !== 'Enter' || !(event.target instanceof HTMLInputElement)) return
           event.preventDefault()
@@ -101,7 +101,7 @@ export class GoalForm {
     if (!this.#of.value) this.#of.selectedIndex = 0
     this.#over.value = over ?? ''
     this.element.open = isOpen
-    this.#sync()
+    this.sync()
   }
 
   get #metric(): string | undefined {
@@ -112,30 +112,34 @@ export class GoalForm {
     return this.#of.value.replace(/^of /, '')
   }
 
-  /** Shows again what is missing: the choices around it may be others. */
-  sync(): void {
-    this.#sync()
+  /** Unit of the value that is judged, before it is reduced. */
+  get #unitOfValue(): string {
+    const metric = this.#metric
+    const found =
+      metric === undefined
+        ? this.host.quantities().find(({ name }) => name === this.#quantity)
+        : this.metrics.find((one) => one.metric === metric)
+    return found?.unit ?? '1'
   }
 
-  #sync(): void {
+  /** Shows the fields that are of use and what is missing, also when the choices around it are others. */
+  sync(): void {
     const take = this.#take.value as Take
     const isMetric = this.#metric !== undefined
     this.#reduction.hidden = isMetric
     this.#at.hidden = !isPlaced(take)
     this.#target.hidden = this.#aim.value !== 'bring'
     this.#min.hidden = this.#max.hidden = this.#aim.value !== 'keep'
-    const unit = isMetric
-      ? this.metrics.find(({ metric }) => metric === this.#metric)?.unit
-      : this.host.quantities().find(({ name }) => name === this.#quantity)?.unit
-    const shown = this.#aim.value === 'minimise' || (!isMetric && take === 'slope') ? '' : pretty(unit ?? '')
-    this.#unit.textContent = shown
-    const found = this.#wanted(unit ?? '1')
+    const isNumber = this.#aim.value === 'minimise' || (!isMetric && take === 'slope')
+    this.#unit.textContent = isNumber ? '' : pretty(this.#unitOfValue)
+    const found = this.#wanted()
     this.#add.disabled = typeof found === 'string'
     this.#why.replaceChildren(...prose(typeof found === 'string' ? found : ''))
   }
 
-  /** What is to be added; a sentence where something is missing. */
-  #wanted(unit: string): { judged: Judged; aim: Aim } | string {
+  /** The goal or limit that is to be added; a sentence where something is missing. */
+  #wanted(): { judged: Judged; aim: Aim } | string {
+    const unit = this.#unitOfValue
     const take = this.#take.value as Take
     const isMetric = this.#metric !== undefined
     const isSlope = !isMetric && take === 'slope'
@@ -178,10 +182,7 @@ export class GoalForm {
   }
 
   #submit(): void {
-    const unit = this.#metric
-      ? this.metrics.find(({ metric }) => metric === this.#metric)?.unit
-      : this.host.quantities().find(({ name }) => name === this.#quantity)?.unit
-    const found = this.#wanted(unit ?? '1')
+    const found = this.#wanted()
     if (typeof found === 'string') return
     this.#add.disabled = true
     this.#why.textContent = 'Adding…'

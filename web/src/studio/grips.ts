@@ -9,6 +9,7 @@ import { prefer, preference } from '../preferences'
 import { poseAt } from '../scene/poses'
 import type { View } from '../scene/view'
 import type { State } from '../state'
+import { AxisArrows } from './axis_arrows'
 import type { Mover } from './mover'
 import { AXES, directionsOffered, type DragDirection, facingPlane, followed, turnOf } from './moves'
 
@@ -20,10 +21,6 @@ const NUDGE = 2e-3
 const FINE = 0.1
 /** Half length of an axis drawn through a hardpoint, relative to the size. */
 const GUIDE = 0.25
-/** An axis arrow, px: from the point, its least length, and what is added where it is seen in full length. */
-const ARROW = { from: 13, least: 14, full: 44, head: 9 }
-/** An axis that is seen shorter than this points at the reader and has no arrow. */
-const END_ON = 0.12
 /** Key of the direction in the browser's store, by the kind of mechanism. */
 const REMEMBERED = { planar: 'direction.planar', spatial: 'direction' }
 
@@ -44,20 +41,11 @@ interface ActiveDrag {
   turn: Quaternion
   /** From the hardpoint to where it was taken hold of. */
   offset: Vector3
-  /** Where the hand was last, and where it is as far as the hardpoint is concerned. */
+  /** Last place of the hand, and the place that the hardpoint follows. */
   last: { clientX: number; clientY: number }
   hand: { clientX: number; clientY: number }
   /** Resolution of its coordinates. */
   snap: number
-}
-
-/** An arrow along an axis of the model, at the chosen hardpoint. */
-interface Arrow {
-  axis: 'x' | 'y' | 'z'
-  element: SVGGElement
-  lines: SVGLineElement[]
-  head: SVGPathElement
-  letter: SVGTextElement
 }
 
 /** Hardpoints that can be taken hold of in the view, and the pane of the one that is chosen, docked below the view. */
@@ -82,9 +70,8 @@ export class Grips {
     'Drag points',
   )
   #guide = svg('svg', { class: 'guide', 'aria-hidden': 'true' })
-  #handles = svg('svg', { class: 'guide handles', 'aria-hidden': 'true' })
   #label = el('output', { class: 'drag-label', hidden: true, 'data-testid': 'drag-label' })
-  #arrows: Arrow[]
+  #arrows: AxisArrows
   #shown: Grip[]
   #chosen?: Grip
   #activeDrag?: ActiveDrag
@@ -110,9 +97,13 @@ export class Grips {
     const remembered = preference(this.#memory) as DragDirection | undefined
     this.#direction = remembered && this.#offered.includes(remembered) ? remembered : this.#offered[0]
     this.#shown = opened.grips.flatMap((grip) => this.#place(grip))
-    this.#arrows = AXES.filter((axis) => this.#offered.some((one) => one === axis)).map((axis) => this.#makeArrow(axis))
-    this.#handles.append(...this.#arrows.map(({ element }) => element))
-    this.element.append(this.#guide, ...this.#shown.map(({ button }) => button), this.#handles, this.#label)
+    this.#arrows = new AxisArrows(
+      view,
+      AXES.filter((axis) => this.#offered.some((one) => one === axis)),
+      (event, axis, held) => this.#chosen && this.#grab(event, this.#chosen, axis, held),
+      this.#dragging,
+    )
+    this.element.append(this.#guide, ...this.#shown.map(({ button }) => button), this.#arrows.element, this.#label)
     this.#makePane()
     view.onDrawn(() => this.#follow())
     state.onChoice(() => {
@@ -193,21 +184,6 @@ export class Grips {
     }
   }
 
-  #makeArrow(axis: 'x' | 'y' | 'z'): Arrow {
-    const lines = ['reach', ''].map((name) => svg('line', { class: name }))
-    const [head, letter] = [svg('path'), svg('text')]
-    letter.textContent = axis
-    const element = svg('g', { class: `arrow axis-${axis}`, 'data-testid': `arrow-${axis}` }, ...lines, head, letter)
-    element.addEventListener('pointerdown', (event) => {
-      if (this.#chosen) this.#grab(event, this.#chosen, axis, element)
-    })
-    const { onpointermove, onpointerup, onpointercancel } = this.#dragging
-    element.addEventListener('pointermove', onpointermove)
-    element.addEventListener('pointerup', onpointerup)
-    element.addEventListener('pointercancel', onpointercancel)
-    return { axis, element, lines, head, letter }
-  }
-
   #world({ body, point }: Grip): Vector3 {
     const { mechanism } = this.view
     return mechanism.frame(this.state.step).at(body, new Vector3(...mechanism.report.bodies[body].skeleton[point]))
@@ -228,7 +204,7 @@ export class Grips {
     }
     this.#guide.replaceChildren()
     const chosen = this.#chosen && !this.#chosen.button.hidden ? this.#chosen : undefined
-    this.#handles.style.display = chosen ? '' : 'none'
+    this.#arrows.element.style.display = chosen ? '' : 'none'
     if (!chosen) return
     const [at, turn] = [this.#world(chosen), this.#turn(chosen)]
     const active = this.#activeDrag?.direction ?? this.#direction
@@ -237,34 +213,9 @@ export class Grips {
       const [a, b] = [1, -1].map((side) => this.view.project(at.clone().addScaledVector(along, side)))
       this.#guide.append(svg('line', { x1: a.x, y1: a.y, x2: b.x, y2: b.y, class: `axis-${axis}` }))
     }
-    this.#drawArrows(at, turn)
+    this.#arrows.draw(at, turn)
     const { x, y } = this.view.project(at)
     this.#label.style.transform = `translate(${(x + 18).toFixed(1)}px, ${(y + 14).toFixed(1)}px)`
-  }
-
-  #drawArrows(at: Vector3, turn: Quaternion): void {
-    const { x, y } = this.view.project(at)
-    const [right, up] = [0, 1].map((k) => new Vector3().setFromMatrixColumn(this.view.camera.matrixWorld, k))
-    for (const { axis, element, lines, head, letter } of this.#arrows) {
-      const along = new Vector3().setComponent(AXES.indexOf(axis), 1).applyQuaternion(turn)
-      const [dx, dy] = [along.dot(right), -along.dot(up)]
-      const seen = Math.hypot(dx, dy)
-      element.style.display = seen < END_ON ? 'none' : ''
-      if (seen < END_ON) continue
-      const [ux, uy] = [dx / seen, dy / seen]
-      const tip = ARROW.from + ARROW.least + ARROW.full * seen
-      for (const line of lines) {
-        line.setAttribute('x1', String(x + ARROW.from * ux))
-        line.setAttribute('y1', String(y + ARROW.from * uy))
-        line.setAttribute('x2', String(x + (tip - ARROW.head / 2) * ux))
-        line.setAttribute('y2', String(y + (tip - ARROW.head / 2) * uy))
-      }
-      const corner = (ahead: number, aside: number) =>
-        `${(x + (tip + ahead) * ux - aside * uy).toFixed(1)} ${(y + (tip + ahead) * uy + aside * ux).toFixed(1)}`
-      head.setAttribute('d', `M${corner(0, 0)}L${corner(-ARROW.head, 4)}L${corner(-ARROW.head, -4)}Z`)
-      letter.setAttribute('x', String(x + (tip + 8) * ux))
-      letter.setAttribute('y', String(y + (tip + 8) * uy))
-    }
   }
 
   #grab(event: PointerEvent, shown: Grip, direction: DragDirection, held: Element): void {
@@ -367,8 +318,7 @@ export class Grips {
   }
 
   /**
-   * Where the mechanism locked on the way, it stopped between two round positions: the hardpoint goes back to the one
-   * that works, and the reason stays.
+   * Puts a hardpoint back to a round position after the mechanism locked on the way, and keeps the reason.
    */
   #settle(): void {
     const { refusal } = this.state
@@ -426,7 +376,7 @@ export class Grips {
         const parts = AXES.map((_, k) => new Vector3().setComponent(k, 1).applyQuaternion(turn).dot(screen))
         const isPlane = this.#direction.length === 2
         const allowed = (k: number) =>
-          this.#arrows.some(({ axis }) => axis === AXES[k]) && (!isPlane || this.#direction.includes(AXES[k]))
+          this.#arrows.axes.includes(AXES[k]) && (!isPlane || this.#direction.includes(AXES[k]))
         const axis = [0, 1, 2].filter(allowed).sort((a, b) => Math.abs(parts[b]) - Math.abs(parts[a]))[0]
         direction.setComponent(axis, step * Math.sign(parts[axis]) * (by[0] + by[1]))
       }
@@ -523,7 +473,7 @@ export class Grips {
           el(
             'label',
             // Out of its plane a planar mechanism does not move.
-            { hidden: !this.#arrows.some((arrow) => arrow.axis === axis) },
+            { hidden: !this.#arrows.axes.includes(axis) },
             el('span', { class: `axis-${axis}` }, axis),
             this.#fields[k].input,
             this.#deltas[k],

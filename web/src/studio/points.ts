@@ -71,7 +71,7 @@ export class PointsPane {
   readonly element = el('section', { class: 'points', 'aria-label': 'Hardpoints', 'data-testid': 'points' })
   #mover?: Mover
   #rows: { grip: MovableHardpoint; fields: NumberField[]; change: HTMLElement }[] = []
-  #told = el('p', { class: 'told', role: 'status', 'data-testid': 'points-told' })
+  #news = el('p', { class: 'news', role: 'status', 'data-testid': 'points-news' })
 
   constructor(
     /** Called when a change is complete. */
@@ -128,7 +128,7 @@ export class PointsPane {
         copy,
         mover.mirror && el('label', { class: 'mirror' }, mirror, 'mirror edits to the other side'),
       ),
-      this.#told,
+      this.#news,
       el(
         'table',
         { onpaste: (event: ClipboardEvent) => this.#paste(event) },
@@ -180,7 +180,7 @@ export class PointsPane {
     mover.moveAll(places)
     this.onRelease()
     const set = `${places.size} ${places.size === 1 ? 'hardpoint' : 'hardpoints'} set.`
-    this.#told.replaceChildren(...prose([set, ...problems].join(' ')))
+    this.#news.replaceChildren(...prose([set, ...problems].join(' ')))
     this.show(mover)
   }
 
@@ -196,9 +196,9 @@ export class PointsPane {
     ])
     try {
       await navigator.clipboard.writeText(rows.map((row) => row.join('\t')).join('\n'))
-      this.#told.textContent = 'Copied.'
+      this.#news.textContent = 'Copied.'
     } catch {
-      this.#told.textContent = 'The browser does not allow copying here.'
+      this.#news.textContent = 'The browser does not allow copying here.'
     }
   }
 }

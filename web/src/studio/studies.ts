@@ -387,7 +387,7 @@ function optimizeForm(
   const chosen = () => ({ variables: complete(searched), goals: complete(wanted) })
   return {
     chosen,
-    /** What a limit needs and is not chosen; empty if nothing is missing. */
+    /** Sentence on the choice that a limit needs; empty if nothing is missing. */
     missing: () => {
       const { variables, goals } = chosen()
       if (goals.length === 0) return 'A limit needs a goal: add one first.'
