@@ -45,9 +45,13 @@ describe('a mirrored move', () => {
 
   test('stops both at the bound of the variable', () => {
     const positions = new Positions([left, right], [both(2, [-2, 2])])
-    const { settings, bound } = positions.settings(left, new Vector3(1, 20, 9), [], partner)
+    const { settings, bound } = positions.settings(left, new Vector3(1.5, 20, 9), [], partner)
     expect(bound).toBe('both_z')
-    expect(nonzero(settings)).toEqual([{ name: 'both_z', by: 2 }])
+    expect(nonzero(settings)).toEqual([
+      { name: 'both_z', by: 2 },
+      { name: 'left.x', by: 0.5 },
+      { name: 'right.x', by: 0.5 },
+    ])
   })
 })
 

@@ -21,6 +21,8 @@ const NUDGE = 2e-3
 const FINE = 0.1
 /** Half length of an axis drawn through a hardpoint, relative to the size. */
 const GUIDE = 0.25
+/** Part of a step by which a whole number of steps may be missed. */
+const ROUNDING = 1e-6
 /** Key of the direction in the browser's store, by the kind of mechanism. */
 const REMEMBERED = { planar: 'direction.planar', spatial: 'direction' }
 
@@ -82,7 +84,7 @@ export class Grips {
   #size: number
   #pending = false
   /** The last move and where it began, until it is known whether the mechanism followed. */
-  #last?: { shown: Grip; from: Vector3; snap: number }
+  #last?: { shown: Grip; from: Vector3; snap: number; edition: string }
 
   constructor(
     private readonly view: View,
@@ -312,7 +314,7 @@ export class Grips {
   }
 
   #moveTo(shown: Grip, place: Vector3, snap: number, from: Vector3): void {
-    this.#last = { shown, from, snap: snap || this.#resolution }
+    this.#last = { shown, from, snap: snap || this.#resolution, edition: this.state.edition }
     this.mover.move(shown.grip, place, { snap, before: from })
     this.#tell(shown, from)
   }
@@ -322,14 +324,15 @@ export class Grips {
    */
   #settle(): void {
     const { refusal } = this.state
-    if (this.#activeDrag || !this.#last || refusal === '') return
+    // Until it is solved, the reason is that of an earlier move.
+    if (this.#activeDrag || !this.#last || this.#last.edition === this.state.edition || refusal === '') return
     const { shown, from, snap } = this.#last
     this.#last = undefined
     const reached = this.mover.place(shown.grip)
     const round = reached.clone()
     AXES.forEach((_, k) => {
       const [a, b] = [from.getComponent(k), reached.getComponent(k)]
-      const steps = Math.trunc((b - a) / snap)
+      const steps = Math.trunc((b - a) / snap + ROUNDING * Math.sign(b - a))
       if (this.mover.differ(a, b)) round.setComponent(k, Number((a + steps * snap).toPrecision(12)))
     })
     if (round.distanceTo(reached) === 0) return

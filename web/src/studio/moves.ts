@@ -131,29 +131,32 @@ export class Positions {
     let bound: string | undefined
     const set = (name: string, wanted: number, bounds: SharedVariable['bounds'] | undefined) => {
       const value = Math.min(Math.max(wanted, bounds?.[0] ?? -Infinity), bounds?.[1] ?? Infinity)
-      if (Math.abs(value - wanted) > 1e-9 * (1 + Math.abs(wanted))) bound = name
+      const isLimited = Math.abs(value - wanted) > 1e-9 * (1 + Math.abs(wanted))
+      if (isLimited) bound = name
       changed.set(name, value)
       by.set(name, value)
+      return isLimited
     }
+    const target = place.clone()
     if (partner)
       for (const k of [0, 1, 2]) {
         const shared = this.#symmetric(grip, partner, k)
         if (!shared) continue
         const missing = place.getComponent(k) - this.#at(grip, by).getComponent(k)
         const rate = shared.moves.get(grip.name)!.getComponent(k)
-        set(shared.name, exact((by.get(shared.name) ?? 0) + missing / rate), shared.bounds)
+        const isLimited = set(shared.name, exact((by.get(shared.name) ?? 0) + missing / rate), shared.bounds)
+        // Where its bound stops both, neither goes on by itself.
+        if (isLimited) target.setComponent(k, this.#at(grip, by).getComponent(k))
       }
-    const put = (one: MovableHardpoint, target: Vector3) => {
+    const put = (one: MovableHardpoint, at: Vector3) => {
       const carried = this.#carried(one, by)
       one.coordinates.forEach(({ variable, sign, bounds }, k) => {
-        const wanted = (target.getComponent(k) - one.place[k] - carried.getComponent(k)) / sign
+        const wanted = (at.getComponent(k) - one.place[k] - carried.getComponent(k)) / sign
         set(variable, exact(wanted), bounds)
       })
     }
-    // Where a bound stops the variable of both, neither goes on by itself.
-    const at = bound ? this.#at(grip, by) : place
-    put(grip, at)
-    if (partner) put(partner.grip, mirrored(at, partner.axis))
+    put(grip, target)
+    if (partner) put(partner.grip, mirrored(target, partner.axis))
     return { settings: [...changed].map(([name, by]) => ({ name, by })), bound }
   }
 

@@ -31,6 +31,8 @@ export interface StudyHost {
   /** Shows a design of a study under way next to the present one, or none any more. */
   preview: (change: VariableSetting[] | undefined, studied: string) => void
   goals: GoalHost
+  /** Metrics of the curves that were drawn: they are goals unless they are deselected. */
+  targets: ReadonlySet<string>
 }
 
 /** A study with its form, its progress and its result. */
@@ -59,7 +61,14 @@ export function optimizePane(host: StudyHost): OptimizePane {
     verb: 'Optimise',
     offer: (text) => host.studies.optimizeOffer(text),
     form: (offer) => {
-      const form = optimizeForm(offer, kept, () => shown!)
+      const form = optimizeForm(
+        {
+          ...offer,
+          goals: offer.goals.map((goal) => ({ ...goal, chosen: goal.chosen || host.targets.has(goal.metric) })),
+        },
+        kept,
+        () => shown!,
+      )
       const isOpen = shown?.element.open
       shown = new GoalForm(
         host.goals,

@@ -27,6 +27,7 @@ import { PointsPane } from './points'
 import { connect } from './server'
 import { serverBar } from './server_bar'
 import { type OptimizePane, optimizePane, type StudyPane, tolerancePane } from './studies'
+import { targetToml } from './target'
 import { Workers } from './workers'
 
 /** Name of the design of a study under way. */
@@ -53,6 +54,8 @@ export class Studio {
   #editor?: Editor
   #grips?: Grips
   #mover?: Mover
+  /** Metrics of the curves that were drawn. */
+  readonly #targets = new Set<string>()
   /** A design of a study that is to be drawn next; undefined if none is waiting or being solved. */
   #previewed?: { change: VariableSetting[] | undefined }
   /** The design that was compared with before. */
@@ -91,6 +94,7 @@ export class Studio {
       text: () => this.#text,
       apply: ({ change, text }: StudyResult, studied: string) => void this.#applyResult(change, text, studied),
       preview: (change: VariableSetting[] | undefined, studied: string) => this.#preview(change, studied),
+      targets: this.#targets,
       goals: {
         quantities: () => this.state.report.quantities.map(({ name, units: [unit] }) => ({ name, unit })),
         cases: () => this.#opened?.cases ?? [],
@@ -224,9 +228,9 @@ export class Studio {
         case: several ? (this.model.case ?? this.#opened?.cases[0]) : undefined,
       }
     }
-    const target = targetButton(figure.plot, drawn, {
-      text: () => this.#text,
-      replace: (text) => void this.replace(text, 'target'),
+    const target = targetButton(figure.plot, drawn, (curve) => {
+      this.#targets.add(targetToml(this.model.text, curve).name)
+      void this.edit((text) => targetToml(text, curve).text, `target of ${curve.of}`)
     })
     const goal = el(
       'button',

@@ -20,6 +20,7 @@ import { targetButton } from '../../src/studio/draw_target'
 import { Sketch } from '../../src/studio/sketch'
 import type { Point } from '../../src/studio/stroke'
 import { optimizePane, tolerancePane } from '../../src/studio/studies'
+import { targetToml } from '../../src/studio/target'
 import { EMPTY } from '../mechanisms'
 
 declare global {
@@ -114,6 +115,7 @@ const host = {
   text: () => window.model,
   apply: ({ change }: StudyResult, studied: string) => window.taken.push({ change, studied }),
   preview: (change: StudyResult['change'] | undefined) => window.previews.push(change),
+  targets: new Set<string>(),
   goals: {
     quantities: () => [
       { name: 'toe', unit: 'deg' },
@@ -150,10 +152,11 @@ const sketch = el(
   },
   'Draw a target',
 )
-const target = targetButton(plot, () => ({ of: 'wheel.z', over: 'travel' }), {
-  text: host.text,
-  replace: (text) => (window.model = text),
-})
+const target = targetButton(
+  plot,
+  () => ({ of: 'wheel.z', over: 'travel' }),
+  (curve) => (window.model = targetToml(window.model, curve).text),
+)
 document.body.append(
   el(
     'header',
