@@ -37,7 +37,7 @@ test('with colours of the system sliders and bars are seen, and the choice as we
   try {
     const { page } = await visit(browser, models.four_bar, { forcedColors: 'active' })
     const bar = await page
-      .locator('.bar-of')
+      .locator('.bar-of:not(.negative)')
       .first()
       .evaluate((bar) => getComputedStyle(bar).backgroundColor)
     expect(bar).not.toMatch(/^rgba\(0, 0, 0, 0\)$|^rgb\(255, 255, 255\)$/)

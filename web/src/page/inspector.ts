@@ -48,15 +48,21 @@ export class Inspector {
     this.element.hidden = !selected
     if (!selected) return ((this.#shown = undefined), undefined)
     this.#title.textContent = this.#title.title = selected.name
-    const former = this.#body.querySelector<HTMLElement>(':focus')?.dataset.part
-    this.#body.replaceChildren(el('p', { class: 'muted' }, selected.about), ...this.#facts(selected))
-    if (former) this.#body.querySelector<HTMLElement>(`[data-part="${CSS.escape(former)}"]`)?.focus()
+    this.#fill(el('div', {}, el('p', { class: 'muted' }, selected.about), ...this.#facts(selected)))
     if (selected === this.#shown) return
     this.#shown = selected
     // On the side where the selection is not.
     const at = this.#place(selected)
     const isLeft = at !== undefined && this.view.project(at).x < this.view.element.clientWidth / 2
     this.element.classList.toggle('right', isLeft)
+  }
+
+  /** Shows facts, if they are others: a link that is being pressed stays, and so does the focus. */
+  #fill(facts: HTMLElement): void {
+    if (facts.textContent === this.#body.textContent) return
+    const former = this.#body.querySelector<HTMLElement>(':focus')?.dataset.part
+    this.#body.replaceChildren(...facts.childNodes)
+    if (former) this.#body.querySelector<HTMLElement>(`[data-part="${CSS.escape(former)}"]`)?.focus()
   }
 
   #place(part: Part): Vector3 | undefined {
