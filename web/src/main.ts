@@ -12,6 +12,11 @@ const state = new State(read(payload, decode))
 const tools: Parameters<typeof page>[2] = {
   exports: () => studio?.exports() ?? [],
   grips: () => studio?.grips(),
+  leave: () => studio?.leave() ?? false,
+  limits: {
+    setBounds: (name, bounds) => studio?.limits.setBounds(name, bounds),
+    setTolerance: (name, tolerance) => studio?.limits.setTolerance(name, tolerance),
+  },
   figure: (figure) => studio?.target(figure),
 }
 const made = page(root, state, tools)

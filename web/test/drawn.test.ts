@@ -119,7 +119,7 @@ describe.each(Object.entries(models))('of %s', async (_, address) => {
     const assemblies = [matter, marks].map(
       (draws) => new Assembly(mechanism, LIGHT, new State(report).choice, draws, new Outlines(), 0),
     )
-    const camera = cameraFor(mechanism)
+    const camera = cameraFor(mechanism, looksOf(mechanism)[0].parallel)
     fit(
       camera,
       assemblies.flatMap(({ reach }) => reach),

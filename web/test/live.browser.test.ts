@@ -60,6 +60,8 @@ describe('a hardpoint of the strut in the hand', () => {
   beforeEach(async () => {
     await open('macpherson')
     await page.getByTestId('grips').click()
+    // The pane takes room of the view, which has its new size in the next frame.
+    await frames(page, 3)
   })
 
   test('is dragged, and every value becomes the one that the command gives for that design', async () => {
@@ -284,6 +286,7 @@ test.skipIf(!IMAGES)('a hardpoint in the hand is the picture of the studio', asy
   page = visited.page
   await ready()
   await page.getByTestId('grips').click()
+  await frames(page, 3)
   await page.getByTestId('quantity').first().selectOption({ label: 'toe' })
   const { x, y } = (await grip('tie_rod_outer').boundingBox())!
   const pictures: Buffer[] = []

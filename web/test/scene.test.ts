@@ -78,7 +78,7 @@ describe('the camera', () => {
         camera.up.set(0, 0, 1)
         camera.near = 0.02 * size
         camera.far = 60 * size
-        fit(camera, points, size, { name: '', title: '', direction }, width, height)
+        fit(camera, points, size, { name: '', title: '', direction, parallel: false }, width, height)
         for (const point of points) {
           const seen = point.clone().project(camera)
           for (const side of seen.toArray()) expect(Math.abs(side)).toBeLessThan(1)

@@ -170,6 +170,42 @@ describe('a study', () => {
     expect(await page.getByLabel('highest of top_x').inputValue()).toBe('4')
   })
 
+  test('has a goal that is added without writing, of a quantity, with the reason why it cannot start', async () => {
+    await page.getByTestId('goal-form').locator('summary').click()
+    expect(await page.getByTestId('goal-of').inputValue()).toBe('of toe')
+    expect(await page.getByTestId('goal-over').inputValue()).toBe('travel')
+    await page.getByTestId('goal-aim').selectOption('keep')
+    expect(await page.getByTestId('goal-why').innerText()).toBe('Enter a lower limit, an upper limit, or both.')
+    expect(await page.getByTestId('goal-add').isDisabled()).toBe(true)
+    await page.getByTestId('goal-min').fill('2 mm')
+    expect(await page.getByTestId('goal-why').innerText()).toBe('This is an angle, but mm is not a unit of angle.')
+    await page.getByTestId('goal-min').fill('-0,5')
+    await page.getByTestId('goal-max').fill('0.5')
+    await page.getByTestId('goal-case').selectOption('bump')
+    await page.getByTestId('goal-max').press('Enter')
+    expect(await page.evaluate(() => [window.model, window.studies.length])).toEqual([
+      'name = "strut"\n\n[metrics]\ntoe_range = { case = "bump", of = "toe", over = "travel", take = "range" }\n\n' +
+        '[optimize.goals]\ntoe_error = {}\n\n[optimize.limits]\ntoe_range = { metric = "toe_range", min = -0.5, max = 0.5 }\n',
+      0,
+    ])
+  })
+
+  test('shows its designs while it runs, and those of its starts', async () => {
+    await page.getByTestId('optimise-starts').fill('3')
+    await page.getByTestId('optimise-run').click()
+    const change = (by: number) => [{ name: 'rack_z', by }]
+    await page.evaluate(() => window.studies[0].tell(0, 3, '', [{ name: 'rack_z', by: 1 }]))
+    await page.evaluate(() => window.studies[0].tell(1, 3, '  nominal  objective 2', [{ name: 'rack_z', by: 2 }]))
+    await page.evaluate(() => window.studies[0].tell(2, 3, '  start 1  objective 1', [{ name: 'rack_z', by: 3 }]))
+    await page.getByTestId('optimise-start').first().click()
+    expect(await page.getByTestId('optimise-start').allInnerTexts()).toEqual(['nominal', 'start 1'])
+    expect(await page.evaluate(() => window.previews)).toEqual([1, 2, 3, 2].map(change))
+    await end(found)
+    await page.getByTestId('optimise-start').last().click()
+    await page.getByTestId('optimise-discard').click()
+    expect((await page.evaluate(() => window.previews)).slice(4)).toEqual([change(2), change(3), undefined])
+  })
+
   test('of a design that has changed since says so', async () => {
     await page.getByTestId('optimise-run').click()
     await page.evaluate(() => (window.model = 'name = "other"'))

@@ -80,15 +80,17 @@ pub(crate) fn run_optimization(
             Step::Search(_, search) => search.found.as_ref().map(|found| &found.design),
             Step::Variable | Step::Designs | Step::Fit(_) => None,
         };
-        match progress_line(&file.model, file.units, &progress) {
-            Some(line) => listener(&ProgressReply {
-                done: progress.done,
-                total: Some(progress.total),
-                line,
-                change: design.map(|design| changes(&file, design)),
-            }),
-            None => ControlFlow::Continue(()),
+        let line = progress_line(&file.model, file.units, &progress);
+        if line.is_none() && design.is_none() {
+            return ControlFlow::Continue(());
         }
+        listener(&ProgressReply {
+            done: progress.done,
+            total: Some(progress.total),
+            // Iterations of one of several searches have a design to draw, but no line.
+            line: line.unwrap_or_default(),
+            change: design.map(|design| changes(&file, design)),
+        })
     };
     let control = Control { threads: NonZero::<usize>::MIN, progress: &mut progress, more: &|| true };
     let found = optimize(&file.model, &motions, &request, control);

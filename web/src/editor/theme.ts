@@ -13,7 +13,7 @@ const wavy = (colour: string) => ({
 /** The editor in the page's own colours, which follow the screen's scheme by themselves. */
 export function theme(): Extension {
   return EditorView.theme({
-    '&': { height: '100%', color: 'var(--ink)', backgroundColor: 'var(--page)', fontSize: '13px' },
+    '&': { height: '100%', color: 'var(--ink)', backgroundColor: 'var(--page)', fontSize: '1rem' },
     '&.cm-focused': { outline: '2px solid var(--accent)', outlineOffset: '-2px' },
     '.cm-scroller': { fontFamily: MONOSPACE, lineHeight: '1.5' },
     '.cm-content': { caretColor: 'var(--accent)', padding: '6px 0' },

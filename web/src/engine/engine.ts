@@ -23,10 +23,17 @@ export interface Checker {
   check(text: string): Promise<DiagnosticMessage[]>
 }
 
+export type ProgressListener = (
+  done: number,
+  total: number | null,
+  line: string,
+  change: VariableSetting[] | null,
+) => void
+
 /** A study under way in a worker of its own. */
 export interface Running<T> {
-  /** Calls back with the work done, the total if known, and a line of text. */
-  onProgress(listener: (done: number, total: number | null, line: string) => void): void
+  /** Calls back with the work done, the total if known, a line of text, and the best design so far. */
+  onProgress(listener: ProgressListener): void
   /** Ends it soon; the result is then the best so far. */
   cancel(): void
   /** Rejected where there is nothing to show at all. */

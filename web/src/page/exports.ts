@@ -3,6 +3,7 @@ import { csvOf, type Column } from '../export/csv'
 import { pngOf } from '../export/png'
 import { plotSvg } from '../export/plot_svg'
 import { save } from '../export/save'
+import { hasVideo, motionVideo } from '../export/video'
 import type { View } from '../scene/view'
 import type { State } from '../state'
 import { stepsWithin } from '../zoom'
@@ -26,6 +27,18 @@ export function exports(state: State, figures: Figure[], view: View | undefined)
             run: async () => save(await view.picture(SHARP), `${name} view.png`),
           },
           { name: 'View as SVG', testId: 'export-view-svg', run: () => save(view.vectors(), `${name} view.svg`) },
+          ...(hasVideo() && state.lastStep > 0
+            ? [
+                {
+                  name: 'Motion as video',
+                  testId: 'export-video',
+                  run: async () => {
+                    const { blob, ending } = await motionVideo(view.canvas, state)
+                    save(blob, `${name}.${ending}`)
+                  },
+                },
+              ]
+            : []),
           { name: 'Motion as glTF', testId: 'export-gltf', run: async () => save(await view.motion(), `${name}.glb`) },
         ]
       : []),

@@ -20,6 +20,9 @@ const VIEW: Pairs = [
   ['F', 'fit the mechanism to the view'],
   ['L', 'show names of hardpoints'],
   ['N', 'show forces as arrows, if the model has masses or forces'],
+  ['1 … 5', 'standard views, in the order of their buttons'],
+  ['D', 'measure distances and angles'],
+  ['drag', 'a body moves the mechanism along its motion; elsewhere, or with Alt, the view turns'],
 ]
 
 const PLOTS: Pairs = [

@@ -22,7 +22,8 @@ import { navigation, type Section } from './navigation'
 import { stage } from './stage'
 import { tabs, type Tab } from './tabs'
 import { transport } from './transport'
-import { variables as variableList } from './variables'
+import { valueStrip } from './value_strip'
+import { type VariableLimits, variables as variableList } from './variables'
 
 /** Tabs that the page of a study opens on. */
 const OPENS_ON = ['designs', 'maps']
@@ -43,6 +44,10 @@ export interface Tools {
   /** More that can be exported. */
   exports?: () => Item[]
   grips?: () => void
+  /** Ends the mode in which hardpoints are moved; false if it is not on. */
+  leave?: () => boolean
+  /** Keeps bounds and tolerances of variables. */
+  limits?: VariableLimits
   /** Element next to the controls of a figure. */
   figure?: (figure: Figure) => HTMLElement | undefined
 }
@@ -65,7 +70,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   const keys = help()
   const scene = stage(state, tools.memory?.pose)
   const curves = hasQuantities ? new Curves(state, tools.figure, tools.memory?.figures) : undefined
-  const all = tableTabs(state)
+  const all = tableTabs(state, tools.limits)
   const tables = tabs('Variables, tables and checks', all)
   const opened = tools.memory?.tab ?? all.find(({ name }) => OPENS_ON.includes(name))?.name
   if (opened) tables.show(opened)
@@ -93,8 +98,8 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   root.append(
     head,
     notices,
-    ...(report.values.length > 0 ? [cards(state)] : []),
-    el('div', { class: 'scene' }, scene.element, transport(state)),
+    ...(report.values.length > 0 ? [valueStrip(cards(state), state)] : []),
+    el('div', { class: 'scene' }, scene.element, ...scene.docked, transport(state)),
     ...(curves ? [curves.element] : []),
     tables.element,
     navigation(sections, () => keys.showModal()),
@@ -103,9 +108,11 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   listenToKeys(state, {
     fit: scene.view && (() => scene.view?.fit()),
     look: scene.look,
+    measure: scene.measure,
     find: search?.focus,
     help: () => keys.showModal(),
     grips: () => tools.grips?.(),
+    leave: () => tools.leave?.() ?? false,
   })
   return {
     view: scene.view,
@@ -118,10 +125,10 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
 }
 
 /** Tabs for which the report has data; the checks are always shown. */
-function tableTabs(state: State): Tab[] {
+function tableTabs(state: State, limits?: VariableLimits): Tab[] {
   const { sweep, maps, quantities, variables, loads } = state.report
   const all: Tab[] = []
-  if (variables.length > 0) all.push({ name: 'variables', title: 'Variables', content: variableList(state) })
+  if (variables.length > 0) all.push({ name: 'variables', title: 'Variables', content: variableList(state, limits) })
   if (sweep) {
     const title = sweep.what === 'design' ? 'Designs' : 'Residuals'
     all.push({ name: 'designs', title, content: el('div', {}, recordHeading(state), sweepPlot(sweep)) })

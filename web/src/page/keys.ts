@@ -5,10 +5,14 @@ interface Targets {
   fit?: () => void
   /** Takes the standard view of this number, from 0. */
   look?: (index: number) => void
+  /** Begins or ends measuring. */
+  measure?: () => void
   find?: () => void
   help: () => void
   /** Takes hold of hardpoints, or lets go. */
   grips?: () => void
+  /** Ends the mode in which hardpoints are moved; false if it is not on. */
+  leave?: () => boolean
 }
 
 /** Keys that work wherever the focus is, but for controls to which they mean something else. */
@@ -52,12 +56,15 @@ function actionOf(
     case 'm':
     case 'M':
       return targets.grips
+    case 'd':
+    case 'D':
+      return targets.measure
     case '/':
       return targets.find
     case '?':
       return targets.help
     case 'Escape':
-      return state.choice.selected ? () => state.choose({ selected: undefined }) : undefined
+      return () => targets.leave?.() || (state.choice.selected && state.choose({ selected: undefined }))
   }
   // A slider and a list of tabs step by themselves.
   if (target.closest('input, [role=tablist]')) return undefined

@@ -1,34 +1,44 @@
 import { el } from '../dom'
+import type { Look } from '../scene/camera'
+import { openingStep } from '../scene/opening'
 import { hasWebGL, type Pose, View } from '../scene/view'
 import type { State } from '../state'
+import { Inspector } from './inspector'
+import { Measuring } from './measuring'
 
 /** The view with its buttons; without WebGL a message, and no view. */
 interface Stage {
   element: HTMLElement
+  /** Panes below the view. */
+  docked: HTMLElement[]
   view?: View
   /** Takes the standard view of this number, from 0. */
   look?: (index: number) => void
+  /** Begins or ends measuring. */
+  measure?: () => void
 }
 
 /** The mechanism in 3D with its standard views, or a plain message where there is no WebGL. */
 export function stage(state: State, pose?: Pose): Stage {
   if (!hasWebGL()) {
     const message = 'The 3D view needs WebGL, which this browser does not provide. Curves and tables are complete.'
-    return { element: el('div', { class: 'view', 'data-testid': 'no-webgl' }, el('p', { class: 'message' }, message)) }
+    const element = el('div', { class: 'view', 'data-testid': 'no-webgl' }, el('p', { class: 'message' }, message))
+    return { element, docked: [] }
   }
   const view = new View(state)
+  if (state.step === 0) state.goToStep(openingStep(view.original))
   const buttons = view.looks.map(({ name, title }, index) =>
     el('button', { type: 'button', title, 'data-testid': `look-${name}`, onclick: () => look(index) }, name),
   )
   const look = (index: number) => {
     const chosen = view.looks[index]
-    if (!chosen) return
-    view.look(chosen.name)
-    buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(k === index)))
+    if (chosen) view.look(chosen.name)
   }
   if (pose) view.restore(pose)
-  const { look: first } = view.pose
-  buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(view.looks[k].name === first)))
+  const press = (seen: Look | undefined) =>
+    buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(view.looks[k] === seen)))
+  press(view.looks.find(({ name }) => name === view.pose.look))
+  view.onLook(press)
   const labels = el(
     'button',
     {
@@ -56,6 +66,7 @@ export function stage(state: State, pose?: Pose): Stage {
   }
   state.onChoice(sync)
   sync()
+  const measuring = new Measuring(view, state)
   const fit = el('button', { type: 'button', title: 'Fit (F)', 'data-testid': 'fit', onclick: () => view.fit() }, 'fit')
   view.element.append(
     el(
@@ -65,11 +76,14 @@ export function stage(state: State, pose?: Pose): Stage {
       fit,
       labels,
       forces,
+      measuring.button,
       tracer(state),
     ),
     ghostKey(state),
+    measuring.overlay,
+    new Inspector(view, state).element,
   )
-  return { element: view.element, view, look }
+  return { element: view.element, docked: [measuring.pane], view, look, measure: () => measuring.toggle() }
 }
 
 /** Names the design that is drawn dashed. */

@@ -4,12 +4,20 @@ import { figure, number, pretty, roundBelow } from '../format'
 import { derivativeUnit, orderedName, type Variable } from '../report'
 import type { State } from '../state'
 import { badge } from '../variables'
+import { NumberField } from './number_field'
 import { reach } from './reach'
 
 /** With more variables than this they can be searched. */
 const MANY = 12
 /** Steps of a slider to either side. */
 const STEPS = 50
+
+/** Keeps bounds and tolerances of variables in the model. */
+export interface VariableLimits {
+  /** Returns a sentence where it is not possible. */
+  setBounds: (name: string, bounds: readonly [number, number]) => string | undefined
+  setTolerance: (name: string, tolerance: number) => void
+}
 
 interface Row {
   variable: Variable
@@ -22,7 +30,7 @@ interface Row {
 }
 
 /** The design variables, largest effect on the selected quantity first, each with its change. */
-export function variables(state: State): HTMLElement {
+export function variables(state: State, limits?: VariableLimits): HTMLElement {
   const { report, choice } = state
   const list = el('ul', { 'aria-label': 'Design variables' })
   const about = el('span', { class: 'muted' })
@@ -40,7 +48,7 @@ export function variables(state: State): HTMLElement {
   })
   search.hidden = report.variables.length <= MANY
   const note = el('p', { class: 'note', 'data-testid': 'variable-note', 'aria-live': 'polite' })
-  const rows = report.variables.map((variable) => row(state, variable))
+  const rows = report.variables.map((variable) => row(state, variable, limits))
   let order = rows
 
   const filter = () => {
@@ -64,22 +72,22 @@ export function variables(state: State): HTMLElement {
       const effect = all[place.get(item.variable.index) ?? -1]
       item.rank(effect, quantity ? derivativeUnit(quantity, choice.order, item.variable) : '')
     }
-    const rank = ({ variable }: Row) =>
-      place.get(variable.index) ?? rows.length + Number(variable.admissibility === 'cannot_follow')
-    order = [...rows].sort((a, b) => rank(a) - rank(b) || a.variable.index - b.variable.index)
-    sorted = false
+    rank = (variable) => place.get(variable.index) ?? rows.length + Number(variable.admissibility === 'cannot_follow')
+    if (!again) list.scrollTop = 0
     sort(!again)
   }
-  let sorted = true
-  /** Puts the rows in order; under the hand that changes one of them, they keep their places. */
-  const sort = (atOnce = false) => {
-    if (sorted || (!atOnce && (list.matches(':hover') || list.contains(document.activeElement)))) return
-    sorted = true
-    const { scrollTop } = list
+  let rank: (variable: Variable) => number = ({ index }) => index
+  /** Sorts the rows; under the hand that changes one of them, they keep their places until it has left. */
+  const sort = (isForced = false) => {
+    const held = list.matches(':hover') || list.matches(':focus-within')
+    const sorted = [...rows].sort((a, b) => rank(a.variable) - rank(b.variable) || a.variable.index - b.variable.index)
+    if (sorted.every((item, k) => item === order[k]) && list.childElementCount > 0) return
+    if (held && !isForced) return
+    order = sorted
     list.replaceChildren(...order.map(({ element }) => element))
-    list.scrollTop = atOnce ? 0 : scrollTop
   }
-  for (const event of ['pointerleave', 'focusout']) list.addEventListener(event, () => setTimeout(sort))
+  list.addEventListener('pointerleave', () => sort())
+  list.addEventListener('focusout', ({ relatedTarget }) => list.contains(relatedTarget as Node | null) || sort())
   let shown = -1
   const sync = () => {
     arrange()
@@ -120,7 +128,7 @@ function bringIntoView(list: HTMLElement, { offsetTop: top, offsetHeight: height
   }
 }
 
-function row(state: State, variable: Variable): Row {
+function row(state: State, variable: Variable, limits: VariableLimits | undefined): Row {
   const { index, name, unit, admissibility } = variable
   const able = admissibility !== 'cannot_follow'
   const [low, high] = able ? reach(state.report, variable) : [0, 0]
@@ -137,15 +145,18 @@ function row(state: State, variable: Variable): Row {
     name,
   )
   const { slider, field, reset } = rowControls(state, variable, [low, high], step)
+  const bounded = able && limits ? limitControls(variable, [low, high], limits) : undefined
   const bar = el('span', { class: 'bar-of', 'aria-hidden': 'true' })
   const size = el('span', { class: 'size' })
   const effect = el('span', { class: 'effect', 'data-testid': 'effect' }, bar, size)
-  const controls =
-    step > 0 ? [slider, el('span', { class: 'amount' }, field, el('span', { class: 'unit' }, pretty(unit)))] : []
+  const range = step > 0 ? slider : el('span', { class: 'no-range' }, limits ? 'no range: set bounds by ±' : 'no range')
+  const controls = able
+    ? [range, el('span', { class: 'amount' }, field.input, el('span', { class: 'unit' }, pretty(unit)))]
+    : []
   const element = el(
     'li',
     { class: `${admissibility} ${controls.length > 0 ? '' : 'fixed'}`, 'data-testid': `variable-${name}` },
-    el('span', { class: 'who' }, button, able ? badge(variable) : undefined),
+    el('span', { class: 'who' }, button, able ? badge(variable) : undefined, bounded?.button),
     ...controls,
     able
       ? effect
@@ -155,6 +166,7 @@ function row(state: State, variable: Variable): Row {
           ...prose(variable.note || 'not possible for this mechanism'),
         ),
     controls.length > 0 && reset,
+    bounded?.fields,
   )
   // A press anywhere in the row selects it, in addition to the action of a button or field.
   element.addEventListener('pointerdown', (event) => {
@@ -170,18 +182,18 @@ function row(state: State, variable: Variable): Row {
     sync: () => {
       const chosen = state.choice.variable === index
       const by = state.changes[index]
-      const key = () => `${chosen} ${by} ${field.value}`
-      if (shown === key()) return
+      const key = `${chosen} ${by}`
+      if (shown === key) return
       element.setAttribute('aria-current', String(chosen))
       button.tabIndex = chosen ? 0 : -1
-      slider.tabIndex = field.tabIndex = reset.tabIndex = chosen ? 0 : -1
+      if (bounded) bounded.sync(chosen)
+      slider.tabIndex = field.input.tabIndex = reset.tabIndex = chosen ? 0 : -1
       if (Number(slider.value) !== by) slider.value = String(by)
-      if (document.activeElement !== field || Number(field.value) !== by)
-        field.value = String(Number(by.toFixed(Math.max(digits, 3))))
+      field.show(Number(by.toFixed(Math.max(digits, 3))))
       slider.setAttribute('aria-valuetext', figure(by, unit))
       reset.classList.toggle('away', by === 0)
       element.classList.toggle('changed', by !== 0)
-      shown = key()
+      shown = key
     },
     rank: (found, symbol) => {
       bar.style.setProperty('--share', String(found?.share ?? 0))
@@ -221,13 +233,18 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
     'aria-label': `change of ${name}`,
     oninput: () => changeSoon(Number(slider.value)),
   })
-  const field = el('input', {
-    type: 'number',
-    step,
-    value: 0,
-    'data-testid': 'change-value',
-    'aria-label': `change of ${name} in ${pretty(unit) || 'its unit'}`,
-    onchange: () => state.change(index, limited(Number(field.value), variable)),
+  const field = new NumberField({
+    label: `change of ${name} in ${pretty(unit) || 'its unit'}`,
+    testId: 'change-value',
+    unit,
+    step: step || 1,
+    plus: 'sign',
+    apply: (by) => {
+      const kept = limited(by, variable)
+      state.change(index, kept)
+      field.show(kept)
+      return kept === by ? undefined : `The bound of \`${name}\` is ${figure(kept, unit)}.`
+    },
   })
   const reset = el(
     'button',
@@ -244,7 +261,66 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
   return { slider, field, reset }
 }
 
+/** Fields for the bounds and the tolerance of a variable, below its row, and the button that opens them. */
+function limitControls(variable: Variable, [low, high]: [number, number], { setBounds, setTolerance }: VariableLimits) {
+  const { name, unit, bounds, tolerance } = variable
+  const step = high > low ? roundBelow((high - low) / (2 * STEPS)) : 1
+  const ends = [bounds?.[0] ?? undefined, bounds?.[1] ?? undefined]
+  const field = (
+    label: string,
+    testId: string,
+    value: number | undefined,
+    apply: (x: number) => string | undefined,
+  ) => {
+    const made = new NumberField({ label: `${label} of ${name}`, testId, unit, step, plus: 'sign', apply })
+    if (value !== undefined) made.show(value)
+    made.input.placeholder = 'none'
+    return made.input
+  }
+  const end = (k: 0 | 1) => (x: number) => {
+    ends[k] = x
+    const [a, b] = ends
+    if (a === undefined || b === undefined) return `Enter the ${a === undefined ? 'lower' : 'upper'} bound as well.`
+    return a < b ? setBounds(name, [a, b]) : `The lower bound of \`${name}\` is not below its upper bound.`
+  }
+  const label = (text: string, input: HTMLElement) => el('label', {}, el('span', { class: 'muted' }, text), input)
+  const fields = el(
+    'div',
+    { class: 'limit-fields', hidden: true },
+    label('lowest', field('lower bound', 'bound-low', ends[0], end(0))),
+    label('highest', field('upper bound', 'bound-high', ends[1], end(1))),
+    label(
+      'tolerance ±',
+      field('tolerance', 'tolerance-of', tolerance ?? undefined, (x) =>
+        x > 0 ? (setTolerance(name, x), undefined) : 'A tolerance is above zero.',
+      ),
+    ),
+    el('span', { class: 'unit' }, pretty(unit)),
+  )
+  const button = el(
+    'button',
+    {
+      type: 'button',
+      class: 'icon limits-button',
+      'aria-expanded': 'false',
+      title: `bounds and tolerance of ${name}`,
+      'aria-label': `bounds and tolerance of ${name}`,
+      'data-testid': 'limits',
+      onclick: () => {
+        fields.hidden = !fields.hidden
+        button.setAttribute('aria-expanded', String(!fields.hidden))
+      },
+    },
+    '±',
+  )
+  const sync = (chosen: boolean) => {
+    button.tabIndex = chosen ? 0 : -1
+    if (!chosen) fields.hidden = true
+    button.setAttribute('aria-expanded', String(!fields.hidden))
+  }
+  return { fields, button, sync }
+}
+
 function limited(by: number, { bounds }: Variable): number {
-  if (!Number.isFinite(by)) return 0
   return Math.min(Math.max(by, bounds?.[0] ?? -Infinity), bounds?.[1] ?? Infinity)
 }

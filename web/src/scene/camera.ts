@@ -9,6 +9,8 @@ export interface Look {
   title: string
   /** From the mechanism to the eye. */
   direction: Vector3
+  /** True if lengths are to compare: a parallel projection. */
+  parallel: boolean
 }
 
 /** Vertical opening of the perspective, in degrees. */
@@ -27,7 +29,10 @@ export function looksOf(mechanism: Mechanism): Look[] {
   if (plane) {
     const right = up.clone().cross(plane)
     const tilt = plane.clone().addScaledVector(up, 0.45).addScaledVector(right, 0.55)
-    return [look('straight', 'normal to the plane', plane.clone()), look('tilt', 'seen from the side and above', tilt)]
+    return [
+      look('straight', 'normal to the plane', plane.clone(), true),
+      look('tilt', 'seen from the side and above', tilt, true),
+    ]
   }
   if (vehicle) {
     const { forward } = vehicle
@@ -42,29 +47,30 @@ export function looksOf(mechanism: Mechanism): Look[] {
     const corner = wheels.length > 1 ? from(0.95, -0.62, 0.5) : from(0.85, -0.8 * outboard, 0.42)
     return [
       look('corner', 'seen from the front corner', corner),
-      look('front', 'seen from ahead', from(1, 0, HAIR)),
-      look('side', outboard > 0 ? 'seen from its left' : 'seen from its right', from(0, outboard, HAIR)),
-      look('top', 'seen from above, ahead is up', from(-HAIR, 0, 1)),
-      look('rear', 'seen from behind', from(-1, 0, HAIR)),
+      look('front', 'seen from ahead, to scale', from(1, 0, HAIR), true),
+      look('side', `seen from its ${outboard > 0 ? 'left' : 'right'}, to scale`, from(0, outboard, HAIR), true),
+      look('top', 'seen from above, ahead is up, to scale', from(-HAIR, 0, 1), true),
+      look('rear', 'seen from behind, to scale', from(-1, 0, HAIR), true),
     ]
   }
   return [
     look('corner', 'seen from the corner', mechanism.reader.clone()),
-    look('front', 'seen along y', new Vector3(0, -1, HAIR)),
-    look('side', 'seen against x', new Vector3(1, 0, HAIR)),
-    look('top', 'seen from above', new Vector3(0, -HAIR, 1)),
+    look('front', 'seen along y, to scale', new Vector3(0, -1, HAIR), true),
+    look('side', 'seen against x, to scale', new Vector3(1, 0, HAIR), true),
+    look('top', 'seen from above, to scale', new Vector3(0, -HAIR, 1), true),
   ]
 }
 
-const look = (name: string, title: string, direction: Vector3): Look => ({
+const look = (name: string, title: string, direction: Vector3, parallel = false): Look => ({
   name,
   title,
   direction: direction.normalize(),
+  parallel,
 })
 
-/** Parallel projection for planar mechanisms, where lengths should compare; perspective for spatial ones. */
-export function cameraFor({ plane, up, size }: Mechanism): Camera {
-  const camera = plane ? new OrthographicCamera() : new PerspectiveCamera(OPENING)
+/** Camera of parallel projection, or of perspective. */
+export function cameraFor({ up, size }: Mechanism, parallel: boolean): Camera {
+  const camera = parallel ? new OrthographicCamera() : new PerspectiveCamera(OPENING)
   camera.up.copy(up)
   camera.near = size * 0.02
   camera.far = size * 60

@@ -1,4 +1,4 @@
-import { type Intersection, type Material, type Mesh, type Object3D, Raycaster, Vector2 } from 'three'
+import { type Intersection, type Material, type Mesh, type Object3D, Raycaster, Vector2, type Vector3 } from 'three'
 import { el } from '../dom'
 import type { Camera } from './camera'
 import type { Part } from './drawable'
@@ -21,7 +21,7 @@ export class Pointer {
    */
   constructor(
     private readonly canvas: HTMLCanvasElement,
-    private readonly camera: Camera,
+    private readonly camera: () => Camera,
     private readonly roots: () => Object3D[],
     private readonly hover: () => void,
     choose: (part: Part | undefined) => void,
@@ -34,7 +34,7 @@ export class Pointer {
     canvas.addEventListener('pointerup', ({ offsetX: x, offsetY: y, button }) => {
       const down = this.#down
       this.#down = undefined
-      if (button === 0 && down && Math.hypot(x - down.x, y - down.y) <= STILL) choose(this.#find(x, y))
+      if (button === 0 && down && Math.hypot(x - down.x, y - down.y) <= STILL) choose(this.hit(x, y)?.part)
     })
   }
 
@@ -46,17 +46,19 @@ export class Pointer {
     const { offsetX: x, offsetY: y } = event
     requestAnimationFrame(() => {
       this.#pending = false
-      this.#show(this.#find(x, y), x, y)
+      this.#show(this.hit(x, y)?.part, x, y)
     })
   }
 
-  /** Part at a position: translucent parts only where nothing solid is. */
-  #find(x: number, y: number): Part | undefined {
+  /** Part at a position, and where it is seen: translucent parts only where nothing solid is. */
+  hit(x: number, y: number): { part: Part; point: Vector3 } | undefined {
     const { clientWidth: width, clientHeight: height } = this.canvas
-    this.#ray.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera)
+    this.#ray.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera())
     const hits = this.#ray.intersectObjects(this.roots()).filter(({ object }) => partOf(object) && shown(object))
     const solid = hits.find(({ object }) => !clear(object))
-    return partOf((over(hits) ?? solid ?? hits[0])?.object)
+    const first = over(hits) ?? solid ?? hits[0]
+    const part = partOf(first?.object)
+    return part && { part, point: first.point }
   }
 
   #show(part: Part | undefined, x = 0, y = 0): void {

@@ -7,7 +7,7 @@ import { viewSvg } from '../export/view_svg'
 import { number } from '../format'
 import type { State } from '../state'
 import { Assembly } from './assembly'
-import { cameraFor, fit, type Look, looksOf, pixelsPerLength, shapeTo } from './camera'
+import { type Camera, cameraFor, fit, type Look, looksOf, pixelsPerLength, shapeTo } from './camera'
 import { marks, matter } from './draw'
 import { changeText, shownChange } from './draw/design_velocity'
 import { forceText } from './draw/load'
@@ -15,6 +15,7 @@ import { type Part, samePart } from './drawable'
 import { Floor } from './floor'
 import { distanceLabels, hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
+import { MotionDrag } from './motion_drag'
 import { type Emphasis, Outlines, OVER } from './outlines'
 import { Overview } from './overview'
 import { paletteOf } from './palette'
@@ -24,6 +25,8 @@ import { Triad } from './triad'
 
 /** Room round every place that the motion visits, in units. */
 const ROOM = 2
+/** One less the cosine of the angle up to which the camera has the direction of a standard view. */
+const STRAIGHT = 1e-6
 /** Numbers of marks start here, far above those of matter. */
 const MARK_NUMBERS = 1 << 15
 
@@ -49,7 +52,8 @@ export class View {
   /** The standard views offered; the first is that of the start. */
   readonly looks: readonly Look[]
   readonly scene = new Scene()
-  readonly camera
+  /** Camera of the present view: of perspective, or of parallel projection. */
+  camera: Camera
   /** The design as loaded. */
   readonly original: Mechanism
   #renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true })
@@ -74,6 +78,10 @@ export class View {
   /** Key of the drawn design. */
   #drawn: string
   #look: Look
+  #cameras: Camera[]
+  /** The look whose direction the camera has. */
+  #seen?: Look
+  #onLook: ((look: Look | undefined) => void)[] = []
   /** True if the reader turned or moved the view since it was fitted. */
   #turned = false
   /** Position to take as soon as the view has a size. */
@@ -92,7 +100,8 @@ export class View {
     this.#triad = new Triad(this.original.vehicle)
     this.looks = looksOf(this.original)
     this.#look = this.looks[0]
-    this.camera = cameraFor(this.original)
+    this.#cameras = [false, true].map((parallel) => cameraFor(this.original, parallel))
+    this.camera = this.#cameras[Number(this.#look.parallel)]
     this.canvas = this.#renderer.domElement
     this.canvas.setAttribute('data-testid', 'view-canvas')
     this.canvas.setAttribute('role', 'img')
@@ -102,15 +111,23 @@ export class View {
     this.#renderer.shadowMap.type = PCFShadowMap
     this.#renderer.shadowMap.autoUpdate = false
     this.#controls = new OrbitControls(this.camera, this.canvas)
-    this.#controls.addEventListener('change', () => this.#draw())
+    this.#controls.addEventListener('change', () => {
+      this.#draw()
+      this.#reportLook()
+    })
     this.#controls.addEventListener('start', () => (this.#turned = true))
     this.#pointer = new Pointer(
       this.canvas,
-      this.camera,
+      () => this.camera,
       () => [...this.#marks.groups, ...this.#matter.groups],
       () => this.#emphasise(),
       (selected) => state.choose({ selected }),
     )
+    new MotionDrag(this.canvas, this.#controls, state, {
+      find: (x, y) => this.#pointer.hit(x, y),
+      mechanism: () => this.mechanism,
+      project: (place) => this.project(place),
+    })
     this.element = el(
       'div',
       { class: 'view' },
@@ -220,7 +237,25 @@ export class View {
   /** Shows a standard view by its name. */
   look(name: string): void {
     this.#look = this.looks.find((look) => look.name === name) ?? this.looks[0]
+    this.camera = this.#cameras[Number(this.#look.parallel)]
+    this.#controls.object = this.camera
     this.fit()
+    this.#reportLook()
+  }
+
+  /** Calls back with the standard view that the camera has, or none after it was turned. */
+  onLook(listener: (look: Look | undefined) => void): void {
+    this.#onLook.push(listener)
+  }
+
+  #reportLook(): void {
+    const eye = this.camera.position.clone().sub(this.#controls.target).normalize()
+    const { direction, parallel } = this.#look
+    const same = eye.dot(direction) > 1 - STRAIGHT && this.camera === this.#cameras[Number(parallel)]
+    const seen = same ? this.#look : undefined
+    if (seen === this.#seen) return
+    this.#seen = seen
+    for (const listener of this.#onLook) listener(seen)
   }
 
   /**

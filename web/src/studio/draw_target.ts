@@ -1,15 +1,7 @@
 import { el } from '../dom'
 import type { Plot } from '../plot'
 import { Sketch } from './sketch'
-import { targetToml } from './target'
-
-/** Actions of the page on a target. */
-export interface TargetHost {
-  /** The text of the present design. */
-  text: () => string
-  /** Shows another text, as a step of the history. */
-  replace: (text: string, label: string) => void
-}
+import type { TargetCurve } from './target'
 
 /** Contents of a plot, by the names of the text. */
 export interface Drawing {
@@ -22,10 +14,10 @@ export interface Drawing {
 }
 
 /**
- * A button by which the curve that is wanted is drawn over a plot, and becomes a metric of the text; `drawing` is asked
- * when it is pressed.
+ * A button by which the curve that is wanted is drawn over a plot, and added to the model; `drawing` is evaluated when
+ * it is pressed.
  */
-export function targetButton(plot: Plot, drawing: () => Drawing, { text, replace }: TargetHost): HTMLButtonElement {
+export function targetButton(plot: Plot, drawing: () => Drawing, add: (curve: TargetCurve) => void): HTMLButtonElement {
   let sketch: Sketch | undefined
   const end = () => {
     sketch = undefined
@@ -37,8 +29,7 @@ export function targetButton(plot: Plot, drawing: () => Drawing, { text, replace
     sketch = new Sketch(plot, {
       done: (points) => {
         end()
-        const made = targetToml(text(), { name: `${of.replaceAll('.', '_')}_target`, of, ...where, points })
-        replace(made.text, `target of ${of}`)
+        add({ name: `${of.replaceAll('.', '_')}_target`, of, ...where, points })
       },
       cancel: end,
     })

@@ -48,6 +48,11 @@ export class Drawer {
     })
   }
 
+  /** Shows a pane by its name. */
+  open(name: string): Promise<void> {
+    return this.show(this.panes.findIndex((pane) => pane.name === name))
+  }
+
   /** Marks the button of a pane in which a study runs, whether the pane is shown or not. */
   mark(name: string, running: boolean): void {
     const index = this.panes.findIndex((pane) => pane.name === name)

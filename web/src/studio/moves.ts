@@ -2,21 +2,37 @@ import { Quaternion, type Ray, Vector3 } from 'three'
 import type { MovableHardpoint, VariableSetting } from '../engine/protocol'
 
 /**
- * Direction in which a hardpoint is moved: in the plane of the picture, along an axis of the model, or in the plane of
- * two axes.
+ * Direction in which a hardpoint is moved: in the plane of two axes that faces the reader, along an axis of the model,
+ * in the plane of two axes, or in the plane of the picture.
  */
-export type DragDirection = 'free' | 'x' | 'y' | 'z' | 'xy' | 'yz' | 'zx'
-export const DRAG_DIRECTIONS: readonly DragDirection[] = ['free', 'x', 'y', 'z', 'xy', 'yz', 'zx']
+export type DragDirection = 'auto' | 'x' | 'y' | 'z' | 'xy' | 'yz' | 'zx' | 'free'
 export const AXES = ['x', 'y', 'z'] as const
 
 /** Sine of the angle between a line of sight and an axis or plane below which they count as parallel. */
 const GRAZING = 0.02
 /** Two hardpoints are mirror images to this part of the size of the mechanism. */
 const MIRRORED = 1e-6
+/** A change below this is rounding of the sums that make it, in any unit of a model. */
+const ROUNDING = 1e-10
+
+/** Directions that can be chosen, the usual one first: in a planar mechanism those in its plane. */
+export function directionsOffered(plane: Vector3 | undefined): DragDirection[] {
+  if (!plane) return ['auto', 'x', 'y', 'z', 'xy', 'yz', 'zx', 'free']
+  const within = AXES.filter((_, k) => Math.abs(plane.getComponent(k)) < GRAZING)
+  return ['free', ...(within.length === 2 ? within : AXES)]
+}
+
+/** The plane of two axes that faces the reader; `turn` rotates directions of the design configuration into the world. */
+export function facingPlane(turn: Quaternion, facing: Vector3): 'xy' | 'yz' | 'zx' {
+  const seen = AXES.map((_, k) => Math.abs(new Vector3().setComponent(k, 1).applyQuaternion(turn).dot(facing)))
+  return (['yz', 'zx', 'xy'] as const)[seen.indexOf(Math.max(...seen))]
+}
 
 /** Unit vectors of a drag direction in the design configuration; none for the plane of the screen. */
 function directions(way: DragDirection): Vector3[] {
-  return way === 'free' ? [] : [...way].map((axis) => new Vector3().setComponent(AXES.indexOf(axis as 'x'), 1))
+  return way === 'free' || way === 'auto'
+    ? []
+    : [...way].map((axis) => new Vector3().setComponent(AXES.indexOf(axis as 'x'), 1))
 }
 
 /**
@@ -59,26 +75,128 @@ export function snapped(value: number, snap: number): number {
   return snap > 0 ? Number((Math.round(value / snap) * snap).toPrecision(12)) : value
 }
 
-/** Position of a hardpoint in the design configuration of the design with these changes. */
-export function placeOf(grip: MovableHardpoint, settings: readonly VariableSetting[]): Vector3 {
-  const by = new Map(settings.map(({ name, by }) => [name, by]))
-  const [x, y, z] = grip.coordinates.map(({ variable, sign }, k) => grip.place[k] + sign * (by.get(variable) ?? 0))
-  return new Vector3(x, y, z)
+/** Effect of a design variable on hardpoints: displacement of each, by name, per unit of the variable. */
+export interface SharedVariable {
+  name: string
+  bounds: readonly [number | null, number | null] | null
+  moves: ReadonlyMap<string, Vector3>
 }
 
-/**
- * Settings that put a hardpoint at a position, within the bounds of its variables, and the variable whose bound is
- * reached.
- */
-export function settingsFor(grip: MovableHardpoint, place: Vector3): { settings: VariableSetting[]; bound?: string } {
-  let bound: string | undefined
-  const settings = grip.coordinates.map(({ variable, sign, bounds }, k) => {
-    const wanted = (place.getComponent(k) - grip.place[k]) / sign
-    const by = bounds ? Math.min(Math.max(wanted, bounds[0]), bounds[1]) : wanted
-    if (Math.abs(by - wanted) > 1e-9 * (1 + Math.abs(wanted))) bound = variable
-    return { name: variable, by }
-  })
-  return { settings, bound }
+/** A hardpoint that moves as the mirror image of another one. */
+export interface Partner {
+  axis: number
+  grip: MovableHardpoint
+}
+
+/** Settings that put hardpoints at a position, and the variable whose bound is reached. */
+export interface Placing {
+  settings: VariableSetting[]
+  bound?: string
+}
+
+/** Positions of hardpoints in the design configuration, as functions of the variables and coordinates that move them. */
+export class Positions {
+  /** By hardpoint: the variables that move it, other than its own coordinates. */
+  readonly #shared = new Map<string, SharedVariable[]>()
+
+  constructor(grips: readonly MovableHardpoint[], variables: readonly SharedVariable[]) {
+    for (const { name, coordinates } of grips) {
+      const own = coordinates.map(({ variable }) => variable)
+      this.#shared.set(
+        name,
+        variables.filter((variable) => variable.moves.has(name) && !own.includes(variable.name)),
+      )
+    }
+  }
+
+  /** Position of a hardpoint in the design with these changes. */
+  of(grip: MovableHardpoint, settings: readonly VariableSetting[]): Vector3 {
+    const by = changesOf(settings)
+    const [x, y, z] = grip.coordinates.map(({ variable, sign }) => sign * (by.get(variable) ?? 0))
+    return new Vector3(...grip.place).add(new Vector3(x, y, z)).add(this.#carried(grip, by))
+  }
+
+  /**
+   * Settings that put a hardpoint at a position, and its mirror image at the mirrored one, within the bounds of the
+   * variables. A variable that moves exactly these two is changed, where there is one.
+   */
+  settings(
+    grip: MovableHardpoint,
+    place: Vector3,
+    present: readonly VariableSetting[],
+    partner: Partner | undefined,
+  ): Placing {
+    const by = changesOf(present)
+    const changed = new Map<string, number>()
+    let bound: string | undefined
+    const set = (name: string, wanted: number, bounds: SharedVariable['bounds'] | undefined) => {
+      const value = Math.min(Math.max(wanted, bounds?.[0] ?? -Infinity), bounds?.[1] ?? Infinity)
+      const isLimited = Math.abs(value - wanted) > 1e-9 * (1 + Math.abs(wanted))
+      if (isLimited) bound = name
+      changed.set(name, value)
+      by.set(name, value)
+      return isLimited
+    }
+    const target = place.clone()
+    if (partner)
+      for (const k of [0, 1, 2]) {
+        const shared = this.#symmetric(grip, partner, k)
+        if (!shared) continue
+        const missing = place.getComponent(k) - this.#at(grip, by).getComponent(k)
+        const rate = shared.moves.get(grip.name)!.getComponent(k)
+        const isLimited = set(shared.name, exact((by.get(shared.name) ?? 0) + missing / rate), shared.bounds)
+        // Where its bound stops both, neither goes on by itself.
+        if (isLimited) target.setComponent(k, this.#at(grip, by).getComponent(k))
+      }
+    const put = (one: MovableHardpoint, at: Vector3) => {
+      const carried = this.#carried(one, by)
+      one.coordinates.forEach(({ variable, sign, bounds }, k) => {
+        const wanted = (at.getComponent(k) - one.place[k] - carried.getComponent(k)) / sign
+        set(variable, exact(wanted), bounds)
+      })
+    }
+    put(grip, target)
+    if (partner) put(partner.grip, mirrored(target, partner.axis))
+    return { settings: [...changed].map(([name, by]) => ({ name, by })), bound }
+  }
+
+  #at(grip: MovableHardpoint, by: ReadonlyMap<string, number>): Vector3 {
+    return this.of(
+      grip,
+      [...by].map(([name, by]) => ({ name, by })),
+    )
+  }
+
+  /** Displacement by variables other than its own coordinates. */
+  #carried({ name }: MovableHardpoint, by: ReadonlyMap<string, number>): Vector3 {
+    const sum = new Vector3()
+    for (const { name: variable, moves } of this.#shared.get(name) ?? [])
+      sum.addScaledVector(moves.get(name)!, by.get(variable) ?? 0)
+    return sum
+  }
+
+  /** The variable that moves a hardpoint and its mirror image along an axis, and nothing else. */
+  #symmetric(grip: MovableHardpoint, { axis, grip: other }: Partner, k: number): SharedVariable | undefined {
+    return this.#shared.get(grip.name)?.find(({ moves }) => {
+      const [a, b] = [moves.get(grip.name), moves.get(other.name)]
+      const alone = a && AXES.every((_, other) => (other === k) === Math.abs(a.getComponent(other)) > MIRRORED)
+      return alone && b && moves.size === 2 && mirrored(a, axis).distanceTo(b) < MIRRORED
+    })
+  }
+}
+
+function changesOf(settings: readonly VariableSetting[]): Map<string, number> {
+  return new Map(settings.map(({ name, by }) => [name, by]))
+}
+
+/** Without the last digits, which are rounding; nothing of a difference that is rounding. */
+function exact(value: number): number {
+  const round = Number(value.toPrecision(12))
+  return Math.abs(round) < ROUNDING ? 0 : round
+}
+
+function mirrored(place: Vector3, axis: number): Vector3 {
+  return place.clone().setComponent(axis, -place.getComponent(axis))
 }
 
 /**
@@ -102,16 +220,4 @@ export function mirrors(
   })
   const [best] = found.sort((a, b) => b.partner.size - a.partner.size)
   return best.partner.size >= 4 ? best : undefined
-}
-
-const UNITS: Record<string, number> = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254, ft: 0.3048 }
-
-/** A length as typed, in the unit of the model, like `12`, `12 mm`, `0.5in`; nothing where it is none. */
-export function lengthOf(text: string, unit: string): number | undefined {
-  const found = /^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*([a-z]*)\s*$/i.exec(text.replace('−', '-'))
-  if (!found) return undefined
-  const [, number, symbol] = found
-  if (symbol === '' || symbol === unit) return Number(number)
-  const [from, to] = [UNITS[symbol], UNITS[unit]]
-  return from && to ? (Number(number) * from) / to : undefined
 }

@@ -1,3 +1,4 @@
+import { amount, entry } from '../amount'
 import { el, prose } from '../dom'
 import type {
   OptimizeOffer,
@@ -10,8 +11,11 @@ import type {
   ToleranceOffer,
   ToleranceRequest,
 } from '../engine/engine'
+import type { VariableSetting } from '../engine/protocol'
 import { figure, pretty } from '../format'
 import { factTable } from '../page/checks'
+import { hasGoals, metricName } from './goal'
+import { GoalForm, type GoalHost, type Proposal } from './goal_form'
 import './studio.css'
 
 /** Lines of a study under way that are shown. */
@@ -24,6 +28,11 @@ export interface StudyHost {
   text: () => string
   /** Shows the design that a study found; its changes count from the text that was studied. */
   apply: (result: StudyResult, studied: string) => void
+  /** Shows a design of a study under way next to the present one, or none any more. */
+  preview: (change: VariableSetting[] | undefined, studied: string) => void
+  goals: GoalHost
+  /** Metrics of the curves that were drawn: they are goals unless they are deselected. */
+  targets: ReadonlySet<string>
 }
 
 /** A study with its form, its progress and its result. */
@@ -38,15 +47,63 @@ export interface StudyPane {
   refresh(): void
 }
 
+/** Searches for the best design, for goals that can be added. */
+export interface OptimizePane extends StudyPane {
+  /** Prepares a goal for a quantity or a metric. */
+  propose(proposal: Proposal): void
+}
+
 /** Searches for the best design. */
-export function optimizePane(host: StudyHost): StudyPane {
-  return pane(host, {
+export function optimizePane(host: StudyHost): OptimizePane {
+  let proposed: Proposal | undefined
+  let shown: GoalForm | undefined
+  const kept: Kept = { variables: new Map(), goals: new Map() }
+  const made = pane(host, {
     name: 'Optimise',
     verb: 'Optimise',
     offer: (text) => host.studies.optimizeOffer(text),
-    form: optimizeForm,
+    form: (offer) => {
+      const form = optimizeForm(
+        {
+          ...offer,
+          goals: offer.goals.map((goal) => ({ ...goal, chosen: goal.chosen || host.targets.has(goal.metric) })),
+        },
+        kept,
+        () => shown!,
+      )
+      const isOpen = shown?.element.open
+      shown = new GoalForm(
+        host.goals,
+        offer.goals,
+        { chosen: form.chosen, limitBlocked: () => (hasGoals(host.text()) ? '' : form.missing()) },
+        (judged, aim) => {
+          made.release()
+          const target = aim.kind === 'bring' ? String(aim.target) : ''
+          const name = 'metric' in judged ? judged.metric : metricName(host.text(), judged)
+          if (aim.kind !== 'keep') kept.goals.set(name, { chosen: true, weight: '1', target })
+        },
+      )
+      if (isOpen) shown.element.open = true
+      if (proposed) shown.propose(proposed)
+      proposed = undefined
+      return { ...form, elements: form.elements(shown.element) }
+    },
     start: (text, request) => host.studies.optimize(text, request),
+    steps: ({ starts, iterations }) => (starts > 1 ? starts : iterations),
+    isSeveral: ({ starts }) => starts > 1,
+    forget: () => (kept.variables.clear(), kept.goals.clear()),
   })
+  const propose = (proposal: Proposal) => {
+    if (shown?.element.isConnected) shown.propose(proposal)
+    else proposed = proposal
+  }
+  return Object.assign(made, { propose })
+}
+
+/** Entries of the form that outlive its text, by the names of variables and metrics. */
+interface Kept {
+  variables: Map<string, { chosen: boolean; low: string; high: string }>
+  goals: Map<string, { chosen: boolean; weight: string; target: string }>
 }
 
 /** Tolerance study. */
@@ -57,6 +114,9 @@ export function tolerancePane(host: StudyHost): StudyPane {
     offer: (text) => host.studies.toleranceOffer(text),
     form: toleranceForm,
     start: (text, request) => host.studies.tolerance(text, request),
+    steps: ({ samples }) => samples,
+    isSeveral: () => false,
+    forget: () => {},
   })
 }
 
@@ -74,9 +134,18 @@ interface Kind<Offer, Request> {
   offer: (text: string) => Promise<Offer>
   form: (offer: Offer) => Form<Request>
   start: (text: string, request: Request) => Running<StudyResult>
+  /** Number of steps, as far as it is known before the start. */
+  steps: (request: Request) => number
+  /** True if it searches from several designs, each of which has a result. */
+  isSeveral: (request: Request) => boolean
+  /** Forgets what was entered, before the model is read again. */
+  forget: () => void
 }
 
-function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start }: Kind<Offer, Request>): StudyPane {
+function pane<Offer, Request>(
+  host: StudyHost,
+  { name, verb, offer, form, start, steps, isSeveral, forget }: Kind<Offer, Request>,
+): StudyPane & { release: () => void } {
   const testId = name.toLowerCase()
   const element = el('section', { class: 'study', 'aria-label': name, 'data-testid': testId })
   const announced = el('p', { class: 'hidden', role: 'status' })
@@ -103,7 +172,7 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     const view = formView(name, verb, made, refusal, {
       isStale: () => read !== host.text(),
       changed: () => (touched = true),
-      reload: () => void load(),
+      reload: () => (forget(), void load()),
       run: (request) => void work(made, request),
     })
     stale = view.sync
@@ -128,33 +197,40 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
   const work = async (made: Form<Request>, request: Request) => {
     shown = 'progress'
     const text = host.text()
-    const view = progressView(name, () => running.cancel())
+    const view = progressView(name, steps(request), isSeveral(request), {
+      cancel: () => running.cancel(),
+      preview: (change) => host.preview(change, text),
+    })
     show(...view.elements)
     let running: Running<StudyResult>
     itself.onRunning?.(true)
     try {
       running = start(text, request)
       running.onProgress(view.update)
-      showResult(made, await running.result, text)
+      showResult(made, await running.result, text, view.end())
     } catch (error) {
+      view.end()
+      host.preview(undefined, text)
       showForm(made, refused(error))
       announced.textContent = `${name} failed.`
     } finally {
-      view.end()
       itself.onRunning?.(false)
     }
   }
 
-  const showResult = (made: Form<Request>, result: StudyResult, text: string) => {
+  const showResult = (made: Form<Request>, result: StudyResult, text: string, starts: HTMLElement[]) => {
     shown = 'result'
     const leave = () => {
+      host.preview(undefined, text)
       showForm(made)
       if (!touched) refresh()
     }
-    const view = resultView(name, result, { apply: () => (host.apply(result, text), leave()), leave })
+    // What the search found stays next to the present design until it is applied or discarded.
+    host.preview(result.change ?? undefined, text)
+    const view = resultView(name, result, { apply: () => (leave(), host.apply(result, text)), leave })
     stale = () => (view.since.hidden = host.text() === text)
     stale()
-    show(...view.elements)
+    show(...view.elements, ...starts)
     announced.textContent = result.message
   }
 
@@ -162,7 +238,9 @@ function pane<Offer, Request>(host: StudyHost, { name, verb, offer, form, start 
     if (read !== host.text() && (shown === 'nothing' || (shown === 'form' && !touched))) void load()
     else stale()
   }
-  const itself: StudyPane = { element, refresh }
+  /** The text is about to change by the pane itself: it is read again. */
+  const release = () => (touched = false)
+  const itself: StudyPane & { release: () => void } = { element, refresh, release }
   return itself
 }
 
@@ -238,11 +316,27 @@ function resultView(name: string, result: StudyResult, { apply, leave }: { apply
   return { elements: [outcome, since, acts, tables], since }
 }
 
-/** Progress of a running study: a bar, its last lines, and a button that cancels it. */
-function progressView(name: string, onCancel: () => void) {
+/** Progress of a running study: a bar, its last lines, the designs of its starts, and a button that cancels it. */
+function progressView(
+  name: string,
+  steps: number,
+  isSeveral: boolean,
+  host: { cancel: () => void; preview: (change: VariableSetting[] | undefined) => void },
+) {
   const testId = name.toLowerCase()
-  const bar = el('progress', { 'aria-label': `Progress of ${testId}`, 'data-testid': `${testId}-progress` })
+  const bar = el('progress', {
+    'aria-label': `Progress of ${testId}`,
+    'data-testid': `${testId}-progress`,
+    max: steps,
+    value: 0,
+  })
   const log = el('pre', { class: 'log', 'data-testid': `${testId}-lines` })
+  const clock = el('span', { class: 'muted' }, 'Started.')
+  const begun = performance.now()
+  const timer = setInterval(() => {
+    clock.textContent = `Running for ${Math.round((performance.now() - begun) / 1000)} s. Cancel keeps the best so far.`
+  }, 1000)
+  const starts = el('div', { class: 'starts', role: 'group', 'aria-label': 'Designs of the starts', hidden: true })
   const cancel = el(
     'button',
     {
@@ -251,49 +345,77 @@ function progressView(name: string, onCancel: () => void) {
       onclick: () => {
         cancel.disabled = true
         cancel.textContent = 'Cancelling…'
-        onCancel()
+        host.cancel()
       },
     },
     'Cancel',
   )
-  const lines: string[] = []
-  const began = performance.now()
-  const clock = el('span', { class: 'muted' })
-  const tick = () => {
-    clock.textContent = `${Math.round((performance.now() - began) / 1000)} s`
+  const show = (change: VariableSetting[], button: HTMLButtonElement) => {
+    for (const one of starts.querySelectorAll('button')) one.setAttribute('aria-pressed', String(one === button))
+    host.preview(change)
   }
-  const ticking = setInterval(tick, 1000)
-  tick()
+  const lines: string[] = []
   return {
-    end: () => clearInterval(ticking),
-    elements: [
-      bar,
-      clock,
-      log,
-      el('div', { class: 'acts' }, cancel, el('span', { class: 'muted' }, 'Cancel keeps the best so far.')),
-    ],
-    update: (done: number, total: number | null, line: string) => {
-      if (total === null) bar.removeAttribute('value')
-      else Object.assign(bar, { max: Math.max(total, 1), value: done })
+    elements: [bar, log, starts, el('div', { class: 'acts' }, cancel, clock)],
+    update: (done: number, total: number | null, line: string, change: VariableSetting[] | null = null) => {
+      if (total !== null) Object.assign(bar, { max: Math.max(total, 1), value: done })
+      if (change) host.preview(change)
       if (line === '' || line === lines.at(-1)) return
       lines.push(line)
       log.textContent = lines.slice(-LINES).join('\n')
+      if (!isSeveral || !change) return
+      const button: HTMLButtonElement = el(
+        'button',
+        {
+          type: 'button',
+          'aria-pressed': 'false',
+          title: line.trim(),
+          'data-testid': `${testId}-start`,
+          onclick: () => show(change, button),
+        },
+        line.trim().split(/\s{2,}/)[0],
+      )
+      starts.append(button)
+      starts.hidden = false
+    },
+    /** Ends the clock; the designs of the starts remain. */
+    end: (): HTMLElement[] => {
+      clearInterval(timer)
+      return starts.hidden ? [] : [el('h3', {}, 'Designs of the starts'), starts]
     },
   }
 }
 
-function optimizeForm({ variables, goals, limits, starts, iterations }: OptimizeOffer): Form<OptimizeRequest> {
-  const searched = variables.map(variableRow)
-  const wanted = goals.map(goalRow)
+function optimizeForm(
+  { variables, goals, limits, starts, iterations }: OptimizeOffer,
+  kept: Kept,
+  addition: () => GoalForm,
+) {
+  const searched = variables.map((variable) => variableRow(variable, kept.variables, () => addition().sync()))
+  const wanted = goals.map((goal) => goalRow(goal, kept.goals, () => addition().sync()))
   const from = whole('Starts', starts, 1, 100_000, 'optimise-starts')
   const maximum = whole('Maximum iterations', iterations, 1, 100_000, 'optimise-iterations')
+  /** Values of the chosen rows that are complete. */
+  const complete = <T>(rows: Row<T>[]): T[] =>
+    rows.flatMap((row) => {
+      const value = row.chosen() ? row.value() : ''
+      return typeof value === 'string' ? [] : [value as T]
+    })
+  const chosen = () => ({ variables: complete(searched), goals: complete(wanted) })
   return {
-    elements: [
+    chosen,
+    /** Sentence on the choice that a limit needs; empty if nothing is missing. */
+    missing: () => {
+      const { variables, goals } = chosen()
+      if (goals.length === 0) return 'A limit needs a goal: add one first.'
+      return variables.length === 0 ? 'A limit needs a variable with bounds: choose one above.' : ''
+    },
+    elements: (added: HTMLElement): HTMLElement[] => [
       group(
         'Variables',
         'within their bounds',
         table(
-          ['variable', 'lowest', 'highest', ''],
+          ['variable', 'lowest', 'highest', 'unit'],
           searched.map(({ row }) => row),
         ),
       ),
@@ -306,17 +428,8 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
               wanted.map(({ row }) => row),
             ),
           )
-        : group(
-            'Goals',
-            '',
-            el(
-              'p',
-              { class: 'muted' },
-              ...prose(
-                'The model has no metrics. Add a `[metrics]` table to its text, or draw a target curve over a plot.',
-              ),
-            ),
-          ),
+        : group('Goals', '', el('p', { class: 'muted' }, 'None yet: say below what the design is to do better.')),
+      added,
       ...(limits.length > 0
         ? [
             group(
@@ -328,10 +441,10 @@ function optimizeForm({ variables, goals, limits, starts, iterations }: Optimize
         : []),
       el('div', { class: 'settings' }, from.element, maximum.element),
     ],
-    request: () => {
+    request: (): OptimizeRequest | string => {
       const [chosen, aims] = [searched.filter(({ chosen }) => chosen()), wanted.filter(({ chosen }) => chosen())]
       if (chosen.length === 0) return 'Choose at least one variable.'
-      if (aims.length === 0) return goals.length > 0 ? 'Choose at least one goal.' : ''
+      if (aims.length === 0) return goals.length > 0 ? 'Choose at least one goal.' : 'Add a goal first.'
       const asked = {
         variables: chosen.map(({ value }) => value()),
         goals: aims.map(({ value }) => value()),
@@ -353,61 +466,75 @@ interface Row<T> {
   value: () => T | string
 }
 
-function variableRow({ name, unit, bounds, chosen }: SearchVariable): Row<OptimizeRequest['variables'][number]> {
-  const [low, high] = [0, 1].map((end) => field(`${end ? 'highest' : 'lowest'} of ${name}`, bounds?.[end]))
-  const choice = choose(name, chosen && bounds !== null, [low, high])
+function variableRow(
+  { name, unit, bounds, chosen }: SearchVariable,
+  kept: Kept['variables'],
+  onChange: () => void,
+): Row<OptimizeRequest['variables'][number]> {
+  const [low, high] = [0, 1].map((end) => field(`${end ? 'highest' : 'lowest'} of ${name}`, bounds?.[end], unit))
+  const former = kept.get(name)
+  if (former) [low.input.value, high.input.value] = [former.low, former.high]
+  const choice = choose(name, former?.chosen ?? (chosen && bounds !== null), [low.input, high.input])
+  const oninput = () => {
+    kept.set(name, { chosen: choice.chosen(), low: low.input.value, high: high.input.value })
+    onChange()
+  }
   return {
     row: el(
       'tr',
-      { 'data-testid': `search-${name}` },
+      { 'data-testid': `search-${name}`, oninput },
       el('td', {}, choice.element),
-      el('td', {}, low),
-      el('td', {}, high),
+      el('td', {}, low.input),
+      el('td', {}, high.input),
       el('td', { class: 'unit' }, pretty(unit)),
     ),
     chosen: choice.chosen,
     value: () => {
-      const ends: [number, number] = [low.valueAsNumber, high.valueAsNumber]
-      if (!ends.every(Number.isFinite)) return `\`${name}\` needs a lower and an upper bound.`
-      return ends[0] < ends[1] ? { name, bounds: ends } : `The lower bound of \`${name}\` is not below its upper bound.`
+      const ends = [low.value(), high.value()]
+      if (ends.includes(undefined)) return `\`${name}\` needs a lower and an upper bound.`
+      const wrong = ends.find((end) => typeof end === 'string')
+      if (wrong !== undefined) return `\`${name}\`: ${wrong}`
+      const [least, most] = ends as [number, number]
+      return least < most
+        ? { name, bounds: [least, most] }
+        : `The lower bound of \`${name}\` is not below its upper bound.`
     },
   }
 }
 
-function goalRow({
-  metric,
-  unit,
-  value,
-  weight,
-  target,
-  curve,
-  chosen,
-}: SearchGoal): Row<OptimizeRequest['goals'][number]> {
-  const counts = field(`weight of ${metric}`, weight)
-  const wanted = field(`target of ${metric}`, target ?? undefined)
-  wanted.placeholder = 'minimum'
-  const choice = choose(metric, chosen, curve ? [counts] : [counts, wanted])
+function goalRow(
+  { metric, unit, value, weight, target, curve, chosen }: SearchGoal,
+  kept: Kept['goals'],
+  onChange: () => void,
+): Row<OptimizeRequest['goals'][number]> {
+  const counts = field(`weight of ${metric}`, weight, '1')
+  const wanted = field(`target of ${metric}`, target ?? undefined, unit)
+  wanted.input.placeholder = 'minimum'
+  const former = kept.get(metric)
+  if (former) [counts.input.value, wanted.input.value] = [former.weight, former.target]
+  const choice = choose(metric, former?.chosen ?? chosen, curve ? [counts.input] : [counts.input, wanted.input])
+  const oninput = () => {
+    kept.set(metric, { chosen: choice.chosen(), weight: counts.input.value, target: wanted.input.value })
+    onChange()
+  }
   const aim = curve
     ? el('span', { class: 'muted' }, 'its curve')
-    : el('span', {}, wanted, ' ', el('span', { class: 'unit' }, pretty(unit)))
+    : el('span', {}, wanted.input, ' ', el('span', { class: 'unit' }, pretty(unit)))
   return {
     row: el(
       'tr',
-      { 'data-testid': `goal-${metric}` },
+      { 'data-testid': `goal-${metric}`, oninput },
       el('td', {}, choice.element),
       el('td', { class: 'figure' }, value === null ? '–' : figure(value, unit)),
-      el('td', {}, counts),
+      el('td', {}, counts.input),
       el('td', {}, aim),
     ),
     chosen: choice.chosen,
     value: () => {
-      if (!(counts.valueAsNumber > 0)) return `The weight of \`${metric}\` must be above zero.`
-      if (wanted.validity.badInput) return `The target of \`${metric}\` is not a number.`
-      return {
-        metric,
-        weight: counts.valueAsNumber,
-        target: curve || wanted.value === '' ? null : wanted.valueAsNumber,
-      }
+      const [weight, target] = [counts.value(), curve ? undefined : wanted.value()]
+      if (!(typeof weight === 'number' && weight > 0)) return `The weight of \`${metric}\` must be above zero.`
+      if (typeof target === 'string') return `The target of \`${metric}\`: ${target}`
+      return { metric, weight, target: target ?? null }
     },
   }
 }
@@ -434,9 +561,7 @@ function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): 
           : el(
               'p',
               { class: 'muted' },
-              ...prose(
-                'No design variable has a tolerance. Add `tolerance = 0.1` to those in `[design]` or `[parameters]`.',
-              ),
+              ...prose('No design variable has a tolerance. Enter one with the button ± in the row of a variable.'),
             ),
       ),
       ...(metrics.length > 0
@@ -451,7 +576,8 @@ function toleranceForm({ tolerances, metrics, samples, seed }: ToleranceOffer): 
       el('div', { class: 'settings' }, drawn.element, from.element),
     ],
     request: () => {
-      if (tolerances.length === 0) return ' '
+      if (tolerances.length === 0)
+        return 'No variable has a tolerance. Enter one with the button ± in the row of a variable.'
       const asked = { samples: drawn.value(), seed: from.value() }
       return Object.values(asked).find((part) => typeof part === 'string') ?? (asked as ToleranceRequest)
     },
@@ -475,9 +601,18 @@ function table(header: string[], rows: HTMLElement[]): HTMLElement {
   )
 }
 
-/** A field for a number. */
-function field(label: string, value: number | undefined): HTMLInputElement {
-  return el('input', { type: 'number', step: 'any', 'aria-label': label, value })
+/** A field for a number with a unit; its value is a sentence where it cannot be read, and undefined where it is empty. */
+function field(label: string, value: number | undefined, unit: string) {
+  const text = value === undefined ? undefined : entry(value)
+  const input = el('input', { type: 'text', class: 'number-field', 'aria-label': label, value: text })
+  return {
+    input,
+    value: (): number | string | undefined => {
+      if (input.value.trim() === '') return undefined
+      const typed = amount(input.value, unit)
+      return typeof typed === 'string' ? typed : typed.value
+    },
+  }
 }
 
 /** A box to choose something by, whose fields are of use only then. */

@@ -6,25 +6,34 @@ import type { StudyResult } from '../engine/engine'
 import type { CheckReply, OpenReply, VariableSetting, DesignReply, Text } from '../engine/protocol'
 import { type Answer, RequestError } from '../engine/answer'
 import { Solver } from '../engine/solver'
+import { pageFile, storedDesign } from '../export/page_file'
 import { save } from '../export/save'
 import { page, type PageMemory, type PageParts, slot } from '../page'
 import type { Item } from '../page/menu'
+import type { VariableLimits } from '../page/variables'
 import type { Design as WireDesign, ModelText, Payload } from '../payload'
 import { design, read, type Design, type Report } from '../report'
 import { type ChoiceMemory, State } from '../state'
 import type { Figure } from '../page/figure'
 import { targetButton } from './draw_target'
 import { Drawer } from './drawer'
+import { type Aim, boundsToml, type Chosen, goalToml, type Judged, toleranceToml } from './goal'
+import type { Proposal } from './goal_form'
 import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
+import { Mover } from './mover'
+import { PointsPane } from './points'
 import { connect } from './server'
 import { separateMotions } from './motions'
 import { serverBar } from './server_bar'
 import { linkedSession, linkOf, type SavedDesign, type Session, Storage } from './session'
-import { optimizePane, type StudyPane, tolerancePane } from './studies'
+import { type OptimizePane, optimizePane, type StudyPane, tolerancePane } from './studies'
+import { targetToml } from './target'
 import { Workers } from './workers'
 
+/** Name of the design of a study under way. */
+const PREVIEW = 'optimisation, best so far'
 /** Milliseconds without a change after which text and sensitivities follow the design. */
 const REST = 200
 /** Milliseconds between a change and its being kept by the browser. */
@@ -50,9 +59,17 @@ export class Studio {
   readonly #status = el('span', { class: 'studio-status', role: 'status', 'data-testid': 'studio-status' })
   readonly #cases = el('span')
   readonly #drawer: Drawer
+  readonly #points = new PointsPane(() => this.#scheduleUpdate())
   readonly #listeners: (() => void)[] = []
   #editor?: Editor
   #grips?: Grips
+  #mover?: Mover
+  /** Metrics of the curves that were drawn. */
+  readonly #targets = new Set<string>()
+  /** A design of a study that is to be drawn next; undefined if none is waiting or being solved. */
+  #previewed?: { change: VariableSetting[] | undefined }
+  /** The design that was compared with before. */
+  #compared?: number
   #opened?: OpenReply
   #accepted: VariableSetting[] = []
   #wanted?: VariableSetting[]
@@ -106,14 +123,33 @@ export class Studio {
       studies: new Workers(module, (text) => ({ ...this.model, text })),
       text: () => this.#text,
       apply: ({ change, text }: StudyResult, studied: string) => void this.#applyResult(change, text, studied),
+      preview: (change: VariableSetting[] | undefined, studied: string) => this.#preview(change, studied),
+      targets: this.#targets,
+      goals: {
+        quantities: () => this.state.report.quantities.map(({ name, units: [unit] }) => ({ name, unit })),
+        cases: () => this.#opened?.cases ?? [],
+        selected: () => this.#proposal(),
+        add: (judged: Judged, aim: Aim, chosen: Chosen) =>
+          void this.edit((text) => goalToml(text, judged, aim, chosen).text, 'goal'),
+      },
     }
     const mark = (name: string) => (running: boolean) => this.#drawer.mark(name, running)
+    let optimize: OptimizePane | undefined
+    const openOptimize = studyPane(() => (optimize = optimizePane(host)), this, mark('Optimise'))
+    this.propose = (proposal) => {
+      void this.#drawer.open('Optimise').then(() => optimize?.propose(proposal))
+    }
     this.#drawer = new Drawer([
       { name: 'Model', title: 'Edit the text of the model', open: () => this.#openEditor() },
       {
+        name: 'Points',
+        title: 'Table of the hardpoints',
+        open: async () => (this.#points.show(this.#mover), this.#points.element),
+      },
+      {
         name: 'Optimise',
         title: 'Optimise the design for the goals of the model',
-        open: studyPane(() => optimizePane(host), this, mark('Optimise')),
+        open: openOptimize,
       },
       {
         name: 'Tolerance',
@@ -121,6 +157,13 @@ export class Studio {
         open: studyPane(() => tolerancePane(host), this, mark('Tolerance')),
       },
     ])
+    // A card is a value, for which there may be a goal.
+    root.addEventListener('contextmenu', (event) => {
+      const name = (event.target as Element).closest<HTMLElement>('[data-testid^=card-]')?.dataset.testid
+      if (!name || !this.#opened) return
+      event.preventDefault()
+      this.propose({ of: name.slice('card-'.length), over: this.#proposal().over })
+    })
     const server = connect(document)
     const own = {
       text: () => this.#currentText(),
@@ -144,6 +187,7 @@ export class Studio {
   async #begin(): Promise<void> {
     const linked = await linkedSession()
     await this.#open()
+    if (await this.#restoreSaved()) return
     if (linked) await this.#resume(linked, 'link')
     else if (this.#stored) this.#offerStored(this.#stored)
   }
@@ -167,6 +211,36 @@ export class Studio {
     await solved
   }
 
+  /** Changes the text of the original design; the changes made since stay. */
+  async edit(change: (text: string) => string, label: string): Promise<void> {
+    const { settings } = this.state
+    const text = change(this.model.text)
+    if (text === this.model.text) return
+    this.history.go({ text, settings, label })
+    await this.#openModel({ ...this.model, text }, settings)
+  }
+
+  /** Opens the pane of the optimisation with a goal for a quantity or a metric. */
+  readonly propose: (proposal: Proposal) => void
+
+  #proposal(): Proposal {
+    const { quantities } = this.state.report
+    const { quantity, over } = this.state.choice
+    return { of: quantities[quantity]?.name ?? '', over: over === undefined ? undefined : quantities[over].name }
+  }
+
+  /** Bounds and tolerances of variables, which are kept in the text. */
+  readonly limits: VariableLimits = {
+    setBounds: (name, bounds) => {
+      if (boundsToml(this.model.text, name, bounds) === undefined)
+        return `\`${name}\` is not a variable of the model's text, so that it has no bounds there.`
+      void this.edit((text) => boundsToml(text, name, bounds) ?? text, `bounds of ${name}`)
+      return undefined
+    },
+    setTolerance: (name, tolerance) =>
+      void this.edit((text) => toleranceToml(text, name, tolerance), `tolerance of ${name}`),
+  }
+
   /** Items for export in addition to those of the report. */
   readonly exports = (): Item[] => [
     { name: 'Link to this design', testId: 'export-link', run: () => this.#link() },
@@ -174,6 +248,15 @@ export class Studio {
       name: 'Model as TOML',
       testId: 'export-toml',
       run: async () => save(new Blob([await this.#currentText()], { type: 'application/toml' }), this.model.file),
+    },
+    {
+      name: 'Page with this design',
+      testId: 'export-html',
+      run: () => {
+        const { text, file } = this.model
+        const design = { text, case: this.model.case, settings: this.state.settings }
+        save(pageFile(document, design), `${file.replace(/\.[^.]*$/, '')}.html`)
+      },
     },
   ]
 
@@ -190,15 +273,31 @@ export class Studio {
         case: several ? (this.model.case ?? this.#opened?.cases[0]) : undefined,
       }
     }
-    return targetButton(figure.plot, drawn, {
-      text: () => this.#text,
-      replace: (text) => void this.replace(text, 'target'),
+    const target = targetButton(figure.plot, drawn, (curve) => {
+      this.#targets.add(targetToml(this.model.text, curve).name)
+      void this.edit((text) => targetToml(text, curve).text, `target of ${curve.of}`)
     })
+    const goal = el(
+      'button',
+      {
+        type: 'button',
+        'data-testid': 'goal',
+        title: 'Minimise it, bring it to a value, or keep it within limits',
+        onclick: () => this.propose(drawn()),
+      },
+      'Goal…',
+    )
+    return el('span', { class: 'tools' }, goal, target)
   }
 
   /** Takes hold of hardpoints, or lets go. */
   grips(): void {
     this.#grips?.toggle()
+  }
+
+  /** Lets go of hardpoints; false if none could be moved. */
+  leave(): boolean {
+    return this.#grips?.leave() ?? false
   }
 
   #showStatus(words: string): void {
@@ -212,7 +311,10 @@ export class Studio {
       this.#recordStep()
       this.#scheduleUpdate()
     })
-    state.onChoice(() => this.#saveSoon())
+    state.onChoice(() => {
+      this.#saveSoon()
+      this.#showPoints()
+    })
   }
 
   /** The work so far. */
@@ -287,6 +389,20 @@ export class Studio {
     this.#showStatus('The address of this page now carries the design.')
   }
 
+  /** Shows the design that the page was saved with; false if it was saved without one. */
+  async #restoreSaved(): Promise<boolean> {
+    const stored = storedDesign(document)
+    if (!stored || !this.#opened) return false
+    const { text, settings } = stored
+    if (text === this.model.text && stored.case === this.model.case) {
+      this.state.setDesign(settings)
+      return true
+    }
+    this.history.go({ text, settings, label: 'saved' })
+    await this.#openModel({ ...this.model, text, case: stored.case }, settings)
+    return true
+  }
+
   /** Opens the model in the engine; from then on changes are solved. */
   async #open(): Promise<void> {
     const version = ++this.#version
@@ -309,12 +425,21 @@ export class Studio {
     }
   }
 
+  #showPoints(): void {
+    if (this.#points.element.isConnected) this.#points.show(this.#mover)
+  }
+
   #offerGrips(): void {
     const { view } = this.made
-    if (!view || !this.#opened) return
-    const grips = new Grips(view, this.state, this.#opened, () => this.#scheduleUpdate())
+    if (!this.#opened) return
+    const mover = new Mover(this.state, this.#opened)
+    this.#mover = mover
+    this.#showPoints()
+    if (!view) return
+    const grips = new Grips(view, this.state, this.#opened, mover, () => this.#scheduleUpdate())
     this.#grips = grips
-    view.element.append(grips.element, grips.pane)
+    view.element.append(grips.element)
+    view.element.after(grips.pane)
     view.element.querySelector('.looks')?.append(grips.button)
   }
 
@@ -502,6 +627,8 @@ export class Studio {
       memory: fresh ? { ...recalled.page, figures: [] } : recalled.page,
       exports: this.exports,
       grips: () => this.grips(),
+      leave: () => this.leave(),
+      limits: this.limits,
       figure: (figure) => this.target(figure),
     })
     if (this.#offer) this.made.notices.append(this.#offer)
@@ -539,6 +666,54 @@ export class Studio {
     const { json } = await this.#sensing.ask<Text>({ ask: 'text', change: [...settings] })
     const answer = await this.#drags.ask<DesignReply>({ ask: 'beside', model: { ...this.model, text: json.text } })
     return this.#read(answer.json.design, answer, [...settings])
+  }
+
+  /** Draws a design of a study under way next to the present one; of several at once the last. */
+  #preview(change: VariableSetting[] | undefined, studied: string): void {
+    if (change && studied !== this.#text) return
+    const isIdle = this.#previewed === undefined
+    this.#previewed = { change }
+    if (isIdle) void this.#drawPreviews()
+  }
+
+  async #drawPreviews(): Promise<void> {
+    while (this.#previewed) {
+      const { change } = this.#previewed
+      const { state } = this
+      const found = change && (await this.#designOf(added(state.settings, change)))
+      if (this.state === state) this.#showPreview(found)
+      if (this.#previewed.change === change) this.#previewed = undefined
+    }
+  }
+
+  async #designOf(settings: VariableSetting[]): Promise<Design | undefined> {
+    try {
+      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: settings, from: null })
+      return this.#read(answer.json.design, answer, settings)
+    } catch {
+      // A design of a search may not move at all: there is nothing to draw then.
+      return undefined
+    }
+  }
+
+  /** Draws a design dashed, as the one that the present one is compared with; undefined ends that. */
+  #showPreview(design: Design | undefined): void {
+    const { state } = this
+    const { comparisons, choice } = state
+    const first = state.report.designs.length
+    const at = comparisons.findIndex(({ name }) => name === PREVIEW)
+    if (at >= 0) {
+      comparisons.splice(at, 1)
+      for (const [snapshot, k] of this.#solved) if (k > first + at) this.#solved.set(snapshot, k - 1)
+    }
+    if (design) {
+      if (at < 0) this.#compared = choice.compared
+      comparisons.push({ ...design, name: PREVIEW })
+      state.choose({ compared: first + comparisons.length - 1 })
+    } else if (at >= 0) {
+      if (this.history.compared.length > 0) void this.#compare()
+      else state.choose({ compared: this.#compared })
+    }
   }
 
   /**
@@ -587,6 +762,13 @@ function studyPane(
     pane.refresh()
     return pane.element
   }
+}
+
+/** Changes made after others. */
+function added(first: readonly VariableSetting[], then: readonly VariableSetting[]): VariableSetting[] {
+  const sum = new Map(first.map(({ name, by }) => [name, by]))
+  for (const { name, by } of then) sum.set(name, (sum.get(name) ?? 0) + by)
+  return [...sum].map(([name, by]) => ({ name, by }))
 }
 
 /** A part of the way from some changes to others. */

@@ -56,7 +56,7 @@ export class Workers implements Studies {
     }
     const whole = solver.ask<StudyReply>(request, onProgress).then(({ json }) => json)
     return {
-      onProgress: (listener) => listeners.push(({ done, total, line }) => listener(done, total, line)),
+      onProgress: (listener) => listeners.push(({ done, total, line, change }) => listener(done, total, line, change)),
       cancel: () => {
         ended({
           tables: [],

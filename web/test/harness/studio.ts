@@ -4,6 +4,7 @@ import { el } from '../../src/dom'
 import type {
   OptimizeOffer,
   OptimizeRequest,
+  ProgressListener,
   Running,
   StudyResult,
   ToleranceOffer,
@@ -14,10 +15,12 @@ import { read } from '../../src/report'
 import { State } from '../../src/state'
 import { History, type Step } from '../../src/studio/history'
 import { historyBar } from '../../src/studio/history_bar'
+import { type Aim, type Chosen, goalToml, type Judged } from '../../src/studio/goal'
 import { targetButton } from '../../src/studio/draw_target'
 import { Sketch } from '../../src/studio/sketch'
 import type { Point } from '../../src/studio/stroke'
 import { optimizePane, tolerancePane } from '../../src/studio/studies'
+import { targetToml } from '../../src/studio/target'
 import { EMPTY } from '../mechanisms'
 
 declare global {
@@ -27,6 +30,7 @@ declare global {
     compared: (string | undefined)[]
     /** The studies that were begun; the tests end them. */
     studies: Study[]
+    previews: (StudyResult['change'] | undefined)[]
     taken: { change: StudyResult['change']; studied: string }[]
     /** The text of the present design. */
     model: string
@@ -42,13 +46,13 @@ interface Study {
   text: string
   request: OptimizeRequest | ToleranceRequest
   cancelled: boolean
-  tell: (done: number, total: number | null, line: string) => void
+  tell: (done: number, total: number | null, line: string, change?: StudyResult['change']) => void
   end: (result: StudyResult) => void
   fail: (message: string) => void
 }
 
 function begin(text: string, request: Study['request']): Running<StudyResult> {
-  const listeners: ((done: number, total: number | null, line: string) => void)[] = []
+  const listeners: ProgressListener[] = []
   let end!: Study['end']
   let fail!: (error: Error) => void
   const result = new Promise<StudyResult>((resolve, reject) => ((end = resolve), (fail = reject)))
@@ -56,7 +60,7 @@ function begin(text: string, request: Study['request']): Running<StudyResult> {
     text,
     request,
     cancelled: false,
-    tell: (...progress) => listeners.forEach((listener) => listener(...progress)),
+    tell: (done, total, line, change = null) => listeners.forEach((listener) => listener(done, total, line, change)),
     end,
     fail: (message) => fail(new Error(message)),
   }
@@ -90,7 +94,7 @@ const toleranceOffer: ToleranceOffer = {
   seed: 1,
 }
 
-Object.assign(window, { shown: [], compared: [], studies: [], taken: [], model: 'name = "strut"' })
+Object.assign(window, { shown: [], compared: [], studies: [], taken: [], previews: [], model: 'name = "strut"' })
 const first: Step = { text: window.model, settings: [], label: 'opened' }
 window.designs = new History(first)
 const bar = historyBar(window.designs, {
@@ -110,6 +114,20 @@ const host = {
   },
   text: () => window.model,
   apply: ({ change }: StudyResult, studied: string) => window.taken.push({ change, studied }),
+  preview: (change: StudyResult['change'] | undefined) => window.previews.push(change),
+  targets: new Set<string>(),
+  goals: {
+    quantities: () => [
+      { name: 'toe', unit: 'deg' },
+      { name: 'travel', unit: 'mm' },
+    ],
+    cases: () => ['bump', 'steer'],
+    selected: () => ({ of: 'toe', over: 'travel' }),
+    add: (judged: Judged, aim: Aim, chosen: Chosen) => {
+      window.model = goalToml(window.model, judged, aim, chosen).text
+      window.refresh()
+    },
+  },
 }
 const panes = [optimizePane(host), tolerancePane(host)]
 window.refresh = () => panes.forEach((pane) => pane.refresh())
@@ -134,10 +152,11 @@ const sketch = el(
   },
   'Draw a target',
 )
-const target = targetButton(plot, () => ({ of: 'wheel.z', over: 'travel' }), {
-  text: host.text,
-  replace: (text) => (window.model = text),
-})
+const target = targetButton(
+  plot,
+  () => ({ of: 'wheel.z', over: 'travel' }),
+  (curve) => (window.model = targetToml(window.model, curve).text),
+)
 document.body.append(
   el(
     'header',

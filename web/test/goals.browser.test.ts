@@ -1,0 +1,115 @@
+import { readFileSync } from 'node:fs'
+import type { Browser, Page } from 'playwright-core'
+import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
+import { launch, visit, type Visit } from './browser'
+import { frames } from './person'
+
+const { models } = inject('samples')
+
+/** Time in which a study has ended after it was cancelled, ms, as the page measures it. */
+const SOON = 300
+
+let browser: Browser
+let visited: Visit
+let page: Page
+beforeAll(async () => {
+  browser = await launch()
+})
+afterAll(() => browser?.close())
+afterEach(async () => {
+  expect(visited.complaints).toEqual([])
+  await page.context().close()
+})
+const ready = () => page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+const settled = async () => {
+  await frames(page, 3)
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
+}
+const open = async (name: string) => {
+  visited = await visit(browser, models[name])
+  page = visited.page
+  await ready()
+}
+/** The text of the model, as the page exports it. */
+const model = async () => {
+  await page.getByTestId('export').click()
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('export-toml').click()])
+  return readFileSync(await download.path(), 'utf8')
+}
+
+describe('a goal', () => {
+  test('is made of a plot, runs with the progress drawn, and is cancelled at once', async () => {
+    await open('macpherson')
+    await page.getByTestId('open-optimise').click()
+    expect(await page.getByTestId('optimise-why').innerText()).toMatch(
+      /^(Add a goal first|Choose at least one variable)/,
+    )
+    await page.getByTestId('drawer-close').click()
+    await page.getByTestId('goal').first().click()
+    expect(await page.getByTestId('goal-of').inputValue()).toBe('of toe')
+    await page.getByTestId('goal-over').selectOption('wheel_travel')
+    await page.getByTestId('goal-add').click()
+    await page.getByTestId('goal-toe_range').waitFor()
+    await ready()
+    // The text has the metric alone, and the form the goal: no variable has bounds yet.
+    expect(await page.getByTestId('goal-toe_range').getByRole('checkbox').isChecked()).toBe(true)
+    expect(await page.getByTestId('optimise-why').innerText()).toBe('Choose at least one variable.')
+    await page.getByTestId('search-tie_rod_outer_z').getByRole('checkbox').check()
+    await page.getByLabel('lowest of tie_rod_outer_z').fill('-1 cm')
+    await page.getByLabel('highest of tie_rod_outer_z').fill('10')
+    await page.getByTestId('goal-of').selectOption('camber')
+    await page.getByTestId('goal-aim').selectOption('keep')
+    await page.getByTestId('goal-max').fill('10')
+    await page.getByTestId('goal-add').click()
+    await expect.poll(() => page.getByTestId('optimise').locator('.limits').innerText()).toMatch(/camber_range.*10 deg/)
+    await ready()
+    expect(await page.getByLabel('highest of tie_rod_outer_z').inputValue()).toBe('10')
+    expect(await page.getByTestId('goal-toe_range').getByRole('checkbox').isChecked()).toBe(true)
+    await page.getByTestId('optimise-starts').fill('40')
+    await page.getByTestId('optimise-run').click()
+    await expect.poll(() => page.getByTestId('plot-0').innerText()).toContain('best so far')
+    const took = await page.evaluate(async () => {
+      const begun = performance.now()
+      document.querySelector<HTMLElement>('[data-testid=optimise-cancel]')!.click()
+      while (!document.querySelector('[data-testid=optimise-outcome]')) await new Promise((done) => setTimeout(done))
+      return performance.now() - begun
+    })
+    expect(took).toBeLessThan(SOON)
+    await page.getByTestId('optimise-take').click()
+    await settled()
+    expect(await page.getByTestId('plot-0').innerText()).not.toContain('best so far')
+    expect(await page.getByTestId('plot-0').innerText()).toContain('original')
+  })
+})
+
+describe('a variable', () => {
+  test('gets bounds and a tolerance in its row, and keeps its change', async () => {
+    await open('four_bar')
+    const row = page.getByTestId('variable-B_x')
+    await row.locator('.name').click()
+    await row.getByTestId('change-value').fill('3')
+    await row.getByTestId('change-value').press('Enter')
+    await settled()
+    await row.getByTestId('limits').click()
+    await row.getByTestId('bound-low').fill('-20')
+    await row.getByTestId('bound-low').press('Enter')
+    expect(await page.getByTestId('field-error').innerText()).toBe('Enter the upper bound as well.')
+    await row.getByTestId('bound-high').fill('2 cm')
+    await row.getByTestId('bound-high').press('Enter')
+    await page.waitForFunction(
+      () => document.querySelector('[data-testid=variable-B_x] [type=range]')!.getAttribute('max') === '20',
+    )
+    await ready()
+    await settled()
+    expect(await row.getByTestId('change-value').inputValue()).toBe('3')
+    await row.locator('.name').click()
+    await row.getByTestId('limits').click()
+    await row.getByTestId('tolerance-of').fill('0,2')
+    await row.getByTestId('tolerance-of').press('Enter')
+    await settled()
+    await ready()
+    const text = await model()
+    // They count from the changed design, which the text has.
+    expect(text).toContain('B_x = { move = "B", along = "x", bounds = [-23, 17], tolerance = 0.2 }')
+  })
+})

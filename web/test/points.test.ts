@@ -1,0 +1,100 @@
+import { Quaternion, Vector3 } from 'three'
+import { describe, expect, test } from 'vitest'
+import type { MovableHardpoint } from '../src/engine/protocol'
+import { facingPlane, Positions, type SharedVariable } from '../src/studio/moves'
+import { pasted } from '../src/studio/points'
+
+const grip = (name: string, place: [number, number, number]): MovableHardpoint => {
+  const at = (axis: string) => ({ variable: `${name}.${axis}`, sign: 1, bounds: null })
+  return { name, place, coordinates: [at('x'), at('y'), at('z')] }
+}
+const [left, right] = [grip('left', [1, 20, 3]), grip('right', [1, -20, 3])]
+const both = (axis: 0 | 1 | 2, bounds: SharedVariable['bounds'] = null): SharedVariable => {
+  const along = new Vector3().setComponent(axis, 1)
+  const other = along.clone().multiply(new Vector3(1, -1, 1))
+  return {
+    name: `both_${'xyz'[axis]}`,
+    bounds,
+    moves: new Map([
+      ['left', along],
+      ['right', other],
+    ]),
+  }
+}
+const partner = { axis: 1, grip: right }
+const nonzero = (settings: { name: string; by: number }[]) => settings.filter(({ by }) => by !== 0)
+
+describe('a mirrored move', () => {
+  test('changes the variable that moves both sides, and nothing else', () => {
+    const positions = new Positions([left, right], [both(1), both(2)])
+    const { settings } = positions.settings(left, new Vector3(1, 21, 11.22), [], partner)
+    expect(nonzero(settings)).toEqual([
+      { name: 'both_y', by: 1 },
+      { name: 'both_z', by: 8.22 },
+    ])
+    expect(positions.of(right, settings).toArray()).toEqual([1, -21, 11.22])
+  })
+
+  test('without such a variable changes the coordinates of both', () => {
+    const { settings } = new Positions([left, right], []).settings(left, new Vector3(1, 20, 4), [], partner)
+    expect(nonzero(settings)).toEqual([
+      { name: 'left.z', by: 1 },
+      { name: 'right.z', by: 1 },
+    ])
+  })
+
+  test('stops both at the bound of the variable', () => {
+    const positions = new Positions([left, right], [both(2, [-2, 2])])
+    const { settings, bound } = positions.settings(left, new Vector3(1.5, 20, 9), [], partner)
+    expect(bound).toBe('both_z')
+    expect(nonzero(settings)).toEqual([
+      { name: 'both_z', by: 2 },
+      { name: 'left.x', by: 0.5 },
+      { name: 'right.x', by: 0.5 },
+    ])
+  })
+})
+
+test('a hardpoint is where a variable of both sides has moved it', () => {
+  const positions = new Positions([left, right], [both(2)])
+  const settings = [
+    { name: 'both_z', by: 5 },
+    { name: 'left.z', by: 1 },
+  ]
+  expect(positions.of(left, settings).z).toBe(9)
+  expect(positions.of(right, settings).z).toBe(8)
+})
+
+test('the plane of two axes that faces the eye', () => {
+  expect(facingPlane(new Quaternion(), new Vector3(0.9, 0.1, 0.4))).toBe('yz')
+  expect(facingPlane(new Quaternion(), new Vector3(0, 0.1, -1))).toBe('xy')
+})
+
+describe('rows of a spreadsheet', () => {
+  const read = (text: string, first = 0, axis = 0) => {
+    const { places, problems } = pasted(text, [left, right], ({ place }) => new Vector3(...place), 'mm', {
+      first,
+      axis,
+    })
+    return { places: [...places].map(([{ name }, place]) => [name, ...place.toArray()]), problems }
+  }
+  test('set hardpoints by name, below a line of titles', () => {
+    expect(read('hardpoint\tx\ty\tz\nright\t1,5\t-2\t1 in\r\nleft\t\t7\t\n')).toEqual({
+      places: [
+        ['right', 1.5, -2, 25.4],
+        ['left', 1, 7, 3],
+      ],
+      problems: [],
+    })
+  })
+  test('without names begin where they are pasted', () => {
+    expect(read('8\t9\n', 1, 1).places).toEqual([['right', 1, 8, 9]])
+    expect(read('1;2;3\n4;5;6\n7;8;9').problems).toEqual(['There are more rows than hardpoints.'])
+  })
+  test('that cannot be read are named', () => {
+    expect(read('top\t1\t2\t3\nleft\t1\tx\t3')).toEqual({
+      places: [],
+      problems: ['There is no hardpoint `top`.', '`left`, y: `x` is not a number with a unit.'],
+    })
+  })
+})

@@ -1,0 +1,146 @@
+import type { Browser, Page } from 'playwright-core'
+import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
+import { launch, visit, type Visit } from './browser'
+import { drawn, frames, scrub } from './person'
+
+const { models } = inject('samples')
+
+let browser: Browser
+let visited: Visit
+let page: Page
+beforeAll(async () => {
+  browser = await launch()
+})
+afterAll(() => browser?.close())
+afterEach(async () => {
+  expect(visited.complaints).toEqual([])
+  await page.context().close()
+})
+const open = async (name: string) => {
+  visited = await visit(browser, models[name])
+  page = visited.page
+  await drawn(page)
+}
+/** Begins measuring, and waits for the view to have its new size. */
+const measure = async (spot: string) => {
+  await page.keyboard.press('d')
+  let last = ''
+  await expect
+    .poll(async () => {
+      const before = last
+      last = JSON.stringify(await centre(spot))
+      await frames(page, 3)
+      return last === before
+    })
+    .toBe(true)
+}
+const number = (text: string) => Number(text.replace('−', '-'))
+const centre = async (id: string) => {
+  const { x, y, width, height } = (await page.getByTestId(id).boundingBox())!
+  return { x: x + width / 2, y: y + height / 2 }
+}
+const pressed = () => page.locator('[data-testid^=look-][aria-pressed=true]').allInnerTexts()
+
+describe('standard views', () => {
+  test('from the front are to scale: the picture is linear in the coordinates', async () => {
+    await open('macpherson')
+    await page.getByTestId('grips').waitFor()
+    await page.getByTestId('grips').click()
+    // In a parallel projection pixels per mm are the same near and far.
+    await page.getByTestId('look-front').click()
+    await drawn(page)
+    const names = await page
+      .locator('.grip:not([hidden])')
+      .evaluateAll((all) => all.map((one) => one.getAttribute('data-testid')!.slice('grip-'.length)))
+    const places: { at: { x: number; y: number }; z: number }[] = []
+    for (const name of names) {
+      await page.getByTestId(`grip-${name}`).focus()
+      await page.keyboard.press('Enter')
+      const z = Number(await page.getByTestId('grip-z').inputValue())
+      places.push({ at: await centre(`grip-${name}`), z })
+    }
+    expect(await pressed()).toEqual(['front'])
+    const [low, high] = [...places].sort((a, b) => a.z - b.z).filter((_, k, all) => k === 0 || k === all.length - 1)
+    const scale = (high.at.y - low.at.y) / (high.z - low.z)
+    for (const { at, z } of places) expect(Math.abs(at.y - low.at.y - scale * (z - low.z))).toBeLessThan(1.5)
+  })
+
+  test('are no longer pressed when the view was turned', async () => {
+    await open('macpherson')
+    expect(await pressed()).toEqual(['corner'])
+    const box = (await page.getByTestId('view-canvas').boundingBox())!
+    await page.mouse.move(box.x + 40, box.y + 80)
+    await page.mouse.down()
+    await page.mouse.move(box.x + 120, box.y + 100, { steps: 3 })
+    await page.mouse.up()
+    await drawn(page)
+    expect(await pressed()).toEqual([])
+    await page.keyboard.press('1')
+    expect(await pressed()).toEqual(['corner'])
+  })
+})
+
+describe('measuring', () => {
+  test('shows the distance of two points and the angle of three, at every moment', async () => {
+    await open('four_bar')
+    await page.keyboard.press('d')
+    const result = page.getByTestId('measured')
+    expect(await result.innerText()).toContain('Click two points')
+    await page.getByTestId('spot-A').click()
+    await page.getByTestId('spot-B').click()
+    await expect.poll(() => result.innerText()).toMatch(/^203\.96 mm \(Δx 40, Δy 200, Δz 0\)$/)
+    await page.getByTestId('measure-2').selectOption('D')
+    await expect.poll(() => result.innerText()).toContain('angle')
+    const before = await result.innerText()
+    await scrub(page, 20)
+    await drawn(page)
+    // The crank is as long as before, in another position.
+    expect(await result.innerText()).toMatch(/^203\.96 mm/)
+    expect(await result.innerText()).not.toBe(before)
+    await page.keyboard.press('d')
+    expect(await page.getByTestId('measuring').isVisible()).toBe(false)
+  })
+})
+
+describe('a body that is clicked', () => {
+  test('shows its points, lengths, rotation and joints, and leads to them', async () => {
+    await open('four_bar')
+    await measure('spot-B')
+    const [b, c] = [await centre('spot-B'), await centre('spot-C')]
+    await page.mouse.click(b.x + 0.3 * (c.x - b.x), b.y + 0.3 * (c.y - b.y))
+    const inspector = page.getByTestId('inspector')
+    await inspector.waitFor()
+    const text = await inspector.innerText()
+    expect(text).toContain('B – C')
+    expect(number(/B – C\s+([\d.]+) mm/.exec(text)![1])).toBeCloseTo(Math.hypot(320, 400), 1)
+    await scrub(page, 20)
+    await expect.poll(() => inspector.innerText()).toMatch(/Rotation since the start\s+0\.\d+ deg/)
+    await inspector.locator('.link').first().click()
+    await expect.poll(() => inspector.innerText()).toMatch(/Bodies[^]*Location/)
+    await page.keyboard.press('Escape')
+    await expect.poll(() => inspector.isVisible()).toBe(false)
+  })
+})
+
+describe('a body that is dragged', () => {
+  test('moves the mechanism along its motion, and a press elsewhere turns the view', async () => {
+    await open('four_bar')
+    await measure('spot-B')
+    const [a, b] = [await centre('spot-A'), await centre('spot-B')]
+    const inner = { x: a.x + 0.6 * (b.x - a.x), y: a.y + 0.6 * (b.y - a.y) }
+    await page.mouse.move(inner.x, inner.y)
+    await frames(page, 2)
+    await page.mouse.down()
+    await page.mouse.move(inner.x - 30, inner.y + 12, { steps: 6 })
+    await drawn(page)
+    const step = Number(await page.getByTestId('scrub').inputValue())
+    await page.mouse.up()
+    expect(step).toBeGreaterThan(0)
+    expect(await pressed()).toEqual(['straight'])
+    // The point of the crank under the hand is in the direction of the hand.
+    const turned = await centre('spot-B')
+    const direction = Math.atan2(turned.y - a.y, turned.x - a.x)
+    const hand = Math.atan2(inner.y + 12 - a.y, inner.x - 30 - a.x)
+    expect(Math.abs(direction - hand)).toBeLessThan(0.05)
+  })
+})
