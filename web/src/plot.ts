@@ -52,8 +52,9 @@ export class Plot {
   readonly area = el('div', { class: 'area' })
   /** Overlay on the curves, if there is one. */
   overlay?: Overlay
-  /** Contents of the plot. */
-  content: Content = { title: '', unit: '', lines: [] }
+  #content: Content = { title: '', unit: '', lines: [] }
+  /** Contents that are not made yet, because nobody sees them. */
+  #next?: () => Content
   #title = el('h3')
   #legend = el('ul', { class: 'legend' })
   #caption = el('p', { class: 'caption' })
@@ -151,15 +152,29 @@ export class Plot {
     this.#upright.show(upright)
   }
 
-  show(content: Content): void {
-    const { over, unit } = this.content
-    if (this.content.title !== '') {
+  /** Contents of the plot. */
+  get content(): Content {
+    const make = this.#next
+    this.#next = undefined
+    if (make) this.#take(make())
+    return this.#content
+  }
+
+  /** Shows contents, which are made and drawn as soon as the plot is seen. */
+  show(make: () => Content): void {
+    this.#next = make
+    this.#stale = true
+    if (this.#seen || document.documentElement.classList.contains('printing')) this.#render()
+  }
+
+  #take(content: Content): void {
+    const { title, over, unit } = this.#content
+    if (title !== '') {
       if (content.over?.label !== over?.label) this.#own.show(undefined)
       if (content.unit !== unit) this.#upright.show(undefined)
     }
-    this.content = { ...content, part: (content.over ? this.#own : this.time).part, upright: this.#upright.part }
-    if (this.#seen || document.documentElement.classList.contains('printing')) this.#render()
-    else this.#stale = true
+    const { part } = content.over ? this.#own : this.time
+    this.#content = { ...content, part, upright: this.#upright.part }
   }
 
   #render(): void {
@@ -522,9 +537,9 @@ export class Plot {
   }
 
   #zoomed(): void {
-    this.content.part = (this.content.over ? this.#own : this.time).part
-    this.content.upright = this.#upright.part
-    if (!this.#uplot) return
+    this.#content.part = (this.#content.over ? this.#own : this.time).part
+    this.#content.upright = this.#upright.part
+    if (!this.#uplot || this.#stale) return
     // A button that goes takes the focus with it.
     if (document.activeElement === this.#whole) this.#closer.focus()
     this.#whole.hidden = (this.content.part ?? this.content.upright) === undefined

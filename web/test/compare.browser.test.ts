@@ -20,7 +20,7 @@ describe('a changed design beside the original', () => {
 
   test('is drawn solid, the original dashed, and both have a curve', async () => {
     expect(await page.locator('.ghost-key').innerText()).toContain('original')
-    expect(await lines()).toMatch(/changed/)
+    expect(await lines()).toMatch(/current/)
     expect(await lines()).toMatch(/original/)
   })
 

@@ -88,8 +88,10 @@ describe('forces of the press', () => {
     await page.getByTestId('load-which').selectOption({ label: 'A' })
     const before = Number(await row('A').nth(2).innerText())
     const field = page.getByTestId('variable-counterweight').getByTestId('change-value')
+    await page.getByTestId('tab-variables').click()
     await field.fill('20')
     await field.press('Enter')
+    await page.getByTestId('tab-loads').click()
     await expect.poll(async () => Number(await row('A').nth(2).innerText())).toBeGreaterThan(before)
     expect(await page.locator('.loads .path.former').getAttribute('d')).toMatch(/^M/)
     // 20 kg at 60 mm go round once a second, and weigh.

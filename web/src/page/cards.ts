@@ -65,7 +65,7 @@ export function cards(state: State): HTMLElement {
 }
 
 /** True for the value of a measure at one position, whose curve says more. */
-function isStatic({ what, quantity }: Value): boolean {
+export function isStatic({ what, quantity }: Value): boolean {
   return quantity !== null && STATIC.includes(what)
 }
 

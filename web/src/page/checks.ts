@@ -91,7 +91,7 @@ function marginPlot(state: State): { element: HTMLElement; show: () => void } {
     const { outdated, sensitivityReport } = state
     const note = sensitivityReport.margin?.note ?? ''
     const caption = outdated && note ? `${outdated}: ${note}` : note
-    plot.show({ title: 'distance from a singular position', unit: '', lines, caption, logarithmic: true })
+    plot.show(() => ({ title: 'distance from a singular position', unit: '', lines, caption, logarithmic: true }))
   }
   onSchemeChange(show, state.ended)
   return { element: plot.element, show }

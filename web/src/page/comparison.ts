@@ -1,20 +1,27 @@
+import type { Curve } from '../curve'
 import { el } from '../dom'
+import { extent } from '../export/axis'
 import { number, pretty } from '../format'
 import { noise, rounded } from '../rounding'
 import type { State } from '../state'
+import { isStatic } from './cards'
 import { whileSeen } from './tabs'
 
-/** A column of the comparison. */
+/** A design of the comparison. */
 interface Column {
   name: string
   value: (index: number) => number | null
+  curve: (quantity: number) => Curve
 }
 
-/** Values of the original, the present and all compared designs, side by side, with the change to the reference. */
+/**
+ * Metrics, and minimum and maximum of the measures over the motion, of the original, the present and all compared
+ * designs, side by side, with the change to the reference.
+ */
 export function comparison(state: State): HTMLElement {
   const { values } = state.report
   const [head, body] = [el('thead'), el('tbody')]
-  const table = el('div', { class: 'scroll', tabindex: 0 }, el('table', {}, head, body))
+  const table = el('div', { class: 'scroll', tabindex: 0 }, el('table', { class: 'numbers' }, head, body))
   const lead = el('p', { class: 'lead' })
   const element = el('section', { class: 'checks', 'data-testid': 'comparison', 'aria-label': 'Compare' }, lead, table)
   const render = () => {
@@ -22,20 +29,27 @@ export function comparison(state: State): HTMLElement {
     const [reference] = columns
     const present = columns[1]
     lead.textContent = present
-      ? `Values of the designs, and the change from ${reference.name} to ${present.name}.`
+      ? `Metrics, and ranges of the measures over the motion; change from ${reference.name} to ${present.name}.`
       : 'Change a variable or drag a point, or compare named designs (Designs ▾): their values are listed here.'
     const header = ['value', ...columns.map(({ name }) => name), ...(present ? ['change'] : []), 'unit']
     head.replaceChildren(el('tr', {}, ...header.map((text) => el('th', { scope: 'col' }, text))))
     body.replaceChildren(
-      ...values.map(({ name, what, unit }, index) => {
-        const found = columns.map(({ value }) => value(index))
+      ...values.map((item, index) => {
+        const { name, what, unit, quantity } = item
+        const isRange = isStatic(item)
+        const found = columns.map(({ value, curve }) =>
+          isRange ? (extent([curve(quantity!)]) ?? [null, null]) : [value(index)],
+        )
+        const join = (words: string[]) => [...new Set(words)].join(' … ')
+        const cells = found.map((numbers) => join(numbers.map(text)))
         const [before, now] = found
-        const cells = found.map(text)
-        if (present) cells.push(before === null || now === null ? '–' : changeText(now - before, now))
+        const changed = (value: number | null, k: number) =>
+          value === null || before[k] === null ? '–' : changeText(value - before[k], value)
+        if (present) cells.push(join(now.map(changed)))
         return el(
           'tr',
           {},
-          el('th', { scope: 'row', title: what }, name),
+          el('th', { scope: 'row', title: `${name}: ${isRange ? 'minimum and maximum over the motion' : what}` }, name),
           ...cells.map((cell) => el('td', { class: 'figure' }, cell)),
           el('td', { class: 'unit' }, pretty(unit) || '–'),
         )
@@ -50,9 +64,21 @@ export function comparison(state: State): HTMLElement {
 /** The reference first, then the present design if it differs, then the others. */
 function columnsOf(state: State): Column[] {
   const { report, former, designs, choice, isCompared } = state
-  const original: Column = { name: 'original', value: (index) => report.values[index].value }
-  const of = (k: number): Column => ({ name: designs[k].name, value: (index) => designs[k].values[index] ?? null })
-  const present: Column = { name: 'current', value: (index) => state.value(index) }
+  const original: Column = {
+    name: 'original',
+    value: (index) => report.values[index].value,
+    curve: (quantity) => report.quantities[quantity].curves[0],
+  }
+  const of = (k: number): Column => ({
+    name: designs[k].name,
+    value: (index) => designs[k].values[index] ?? null,
+    curve: (quantity) => designs[k].quantities[quantity]?.[0] ?? new Float32Array(),
+  })
+  const present: Column = {
+    name: 'current',
+    value: (index) => state.value(index),
+    curve: (quantity) => state.curve(quantity, 0),
+  }
   const reference = choice.compared !== undefined && former ? of(choice.compared) : original
   const others = (choice.overlays ?? []).filter((k) => designs[k] && k !== choice.compared).map(of)
   const last = reference === original || !state.changed ? [] : [original]
@@ -60,7 +86,7 @@ function columnsOf(state: State): Column[] {
 }
 
 function text(value: number | null): string {
-  return value === null ? '–' : number(rounded(value), 5)
+  return value === null ? '–' : number(rounded(value), 4)
 }
 
 function changeText(by: number, size: number): string {

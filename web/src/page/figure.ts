@@ -151,14 +151,16 @@ export class Figure {
       shown.setAttribute('aria-pressed', String(!values))
       this.#delta.setAttribute('aria-pressed', String(this.#difference))
       this.#values.setAttribute('aria-pressed', String(!this.#table.element.hidden))
-      const content = values ? valueContent(state, subject) : sensitivityContent(state, subject)
-      if (values)
-        for (const line of content.lines) {
-          line.hidden = this.#hidden.has(line.label)
-          line.pick = () => this.#toggle(line.label)
-        }
-      this.plot.show(content)
-      this.#table.show(content, report.times, report.units.time)
+      this.plot.show(() => {
+        const content = values ? valueContent(state, subject) : sensitivityContent(state, subject)
+        if (values)
+          for (const line of content.lines) {
+            line.hidden = this.#hidden.has(line.label)
+            line.pick = () => this.#toggle(line.label)
+          }
+        this.#table.show(content, report.times, report.units.time)
+        return content
+      })
     }
     onSchemeChange(() => this.show(), state.ended)
   }

@@ -66,7 +66,8 @@ export function help(): HTMLDialogElement {
     { class: 'help', 'data-testid': 'keys', 'aria-label': 'Keys and lines' },
     el(
       'p',
-      { class: 'lead' },
+      // The first element that can have the focus is at the end, where the dialog would open.
+      { class: 'lead', tabindex: -1, autofocus: true },
       'This page shows a mechanism, its motion, and how every result depends on the design. Change a variable or drag ' +
         'a point: everything is solved again. The page needs no connection.',
     ),

@@ -24,7 +24,7 @@ export class ValueTable {
 
   constructor() {
     const label = el('label', { class: 'field' }, this.#name, this.#field)
-    const table = el('table', {}, this.#head, this.#body)
+    const table = el('table', { class: 'numbers' }, this.#head, this.#body)
     this.element = el('div', { class: 'value-table', hidden: true, 'data-testid': 'value-table' }, label, table)
   }
 

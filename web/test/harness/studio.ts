@@ -137,11 +137,11 @@ const state = new State(read({ ...EMPTY, times: [0] }, () => times))
 const plot = new Plot(state, 'plot')
 window.plot = plot
 window.show = () =>
-  plot.show({
+  plot.show(() => ({
     title: 'toe',
     unit: 'deg',
     lines: [{ label: 'toe', color: '#0b61bd', curve: times.map((t) => Math.sin(t)) }],
-  })
+  }))
 const sketch = el(
   'button',
   {
