@@ -35,8 +35,22 @@ export function stage(state: State, pose?: Pose): Stage {
     if (chosen) view.look(chosen.name)
   }
   if (pose) view.restore(pose)
-  const press = (seen: Look | undefined) =>
+  // In place of the buttons on a narrow screen.
+  const chooser = el(
+    'select',
+    {
+      class: 'look-chooser',
+      'aria-label': 'Standard view',
+      'data-testid': 'looks',
+      onchange: () => look(view.looks.findIndex(({ name }) => name === chooser.value)),
+    },
+    el('option', { value: '', hidden: true }, 'turned'),
+    ...view.looks.map(({ name }) => el('option', { value: name }, name)),
+  )
+  const press = (seen: Look | undefined) => {
     buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(view.looks[k] === seen)))
+    chooser.value = seen?.name ?? ''
+  }
   press(view.looks.find(({ name }) => name === view.pose.look))
   view.onLook(press)
   const labels = el(
@@ -72,6 +86,7 @@ export function stage(state: State, pose?: Pose): Stage {
     el(
       'div',
       { class: 'looks', role: 'toolbar', 'aria-label': 'Standard views' },
+      chooser,
       ...buttons,
       fit,
       labels,
