@@ -8,8 +8,8 @@ use toml_edit::{DocumentMut, Item, Value};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::read::planar::Plane;
-use crate::units::Units;
 use crate::{Folder, ModelFile, parsed};
+use hardpoint_table::Units;
 
 /// Tolerance of written numbers in units of round-off, which covers the sums, products and roots between a number of
 /// the file and of the changed design: 5.200000000000001 is written as 5.2.

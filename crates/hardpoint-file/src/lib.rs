@@ -29,7 +29,6 @@
 //! - Tables of laws may be CSV files, and shapes of bodies files of triangles, in the model's folder. No other files
 //!   are read.
 
-pub mod csv_table;
 mod diagnostic;
 mod drawing;
 mod edit;
@@ -40,7 +39,6 @@ mod read;
 mod schema;
 pub mod side_names;
 mod tree;
-mod units;
 mod walk;
 
 use std::ops::Range;
@@ -55,11 +53,11 @@ use toml::de::DeTable;
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 pub use drawing::{Appearance, Form, Mesh, MeshFrame};
 pub use edit::{at_keys, hardpoint_in, hardpoints_in, placed, with_keys};
+pub use hardpoint_table::{AngleUnit, LengthUnit, Units};
 pub use measured::MeasuredData;
 pub use read::planar::Plane;
 pub use read::triangles;
 pub use schema::schema;
-pub use units::{AngleUnit, LengthUnit, Units};
 
 use diagnostic::{closest, shown};
 use places::Places;

@@ -37,7 +37,7 @@ use crate::drawing::{Appearance, FORMS, Form};
 use crate::format::{self, ANGLE, HARDPOINT, Key, Kinds, LENGTH, NUMBER, Need, Shape, Table, table};
 use crate::places::{EntryPlace, Places};
 use crate::tree::{Field, Fields, LINE, MOST_ENTRIES, PLACE, Reader, Subject, Value, above_tables, quoted};
-use crate::units::{AngleUnit, LengthUnit};
+use hardpoint_table::{AngleUnit, LengthUnit};
 
 pub(crate) use elements::weightless;
 pub(crate) use mesh::BodyMesh;
@@ -131,9 +131,9 @@ const UNITS: Table = table! {
     /// The units of all numbers in the file.
     "Units":
     /// Unit of every length.
-    must "length": Shape::Known("the symbol of a unit", LengthUnit::words), "\"mm\"";
+    must "length": Shape::Known("the symbol of a unit", || LengthUnit::ALL.map(|unit| (unit.symbol(), String::new())).into()), "\"mm\"";
     /// Unit of every angle.
-    must "angle": Shape::Known("the symbol of a unit", AngleUnit::words), "\"deg\"";
+    must "angle": Shape::Known("the symbol of a unit", || AngleUnit::ALL.map(|unit| (unit.symbol(), String::new())).into()), "\"deg\"";
 };
 /// Common other spellings of a unit's symbol.
 const UNIT_WORDS: [(&str, &str); 12] = [

@@ -17,7 +17,7 @@ use crate::diagnostic::{Diagnostic, Severity, Source, closest, shown};
 use crate::format::{HARDPOINT, Key, LENGTH, NUMBER, Need, Shape, THREE_NUMBERS, Table, table};
 use crate::read::BodyMesh;
 use crate::read::mirror::Origins;
-use crate::units::Units;
+use hardpoint_table::Units;
 
 pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 

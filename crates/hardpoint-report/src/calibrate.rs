@@ -6,14 +6,14 @@ use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
 use hardpoint::model::Reading;
 use hardpoint::model::{DriverId, Model};
-use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{MeasuredData, ModelFile, Units};
 use hardpoint_study::calibrate::{
     Calibration, FittedReading, Loss, NextReading, Status, UnidentifiableChange,
 };
+use hardpoint_table::csv::CsvWriter;
 use serde::Serialize;
 
-use crate::facts::variable_unit;
+use crate::figures::variable_unit;
 use crate::figures::{count, number, rounded, seconds, some_of, symbol, unit, with_unit};
 use crate::optimize::{Evaluations, MovedHardpoint, moved};
 use crate::page::{Curve, Fact, Payload, SweepAxis, SweepPlot, Table};

@@ -6,14 +6,16 @@ use std::io::Write;
 use hardpoint::Solution;
 use hardpoint::model::{Dimension, Model};
 use hardpoint::run::metrics;
-use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::Magnitude;
+use hardpoint_table::csv::CsvWriter;
 use serde::Serialize;
+
+use hardpoint_table::series::settled;
 
 use crate::GENERATOR;
 use crate::columns::Column;
-use crate::course::{RoundOff, settled};
+use crate::course::RoundOff;
 use crate::figures::{number, rounded, unit, with_unit};
 use crate::page::{Payload, Table};
 

@@ -16,8 +16,10 @@ use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
 use crate::assembly::GapFact;
 use crate::course::Course;
-use crate::facts::{Facts, VariableAdmissibility, variable_unit};
-use crate::figures::{names, number, quoted, rounded, some_in_words, some_of, symbol, with_unit};
+use crate::facts::{Facts, VariableAdmissibility};
+use crate::figures::{
+    names, number, quoted, rounded, some_in_words, some_of, symbol, variable_unit, with_unit,
+};
 use crate::margin::MarginFact;
 use crate::summary::Summary;
 

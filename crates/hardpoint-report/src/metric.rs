@@ -7,7 +7,7 @@ use hardpoint_file::Units;
 use hardpoint_study::whatif::WhatIf;
 use serde::Serialize;
 
-use crate::facts::variable_unit;
+use crate::figures::variable_unit;
 use crate::figures::{number, per, rounded, unit, with_unit};
 use crate::page::Table;
 

@@ -13,7 +13,7 @@ use hardpoint_study::optimize::{
 use hardpoint_study::{Motions, Progress, Step};
 use serde::Serialize;
 
-use crate::facts::variable_unit;
+use crate::figures::variable_unit;
 use crate::figures::{error, number, seconds, some_of, symbol, unit, with_unit};
 use crate::page::{Payload, Table};
 

@@ -10,7 +10,7 @@ use hardpoint_study::{Motions, StudyCost};
 use serde::Serialize;
 
 use crate::cells::Cells;
-use crate::facts::variable_unit;
+use crate::figures::variable_unit;
 use crate::figures::{count, number, seconds, unit, with_unit};
 use crate::optimize::{BeforeAfter, Evaluations, case_name};
 use crate::page::{Fact, Payload, SweepAxis, SweepIndex, SweepPlot, Table};

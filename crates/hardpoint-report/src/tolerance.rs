@@ -4,17 +4,17 @@ use std::io::Write;
 
 use hardpoint::measure::Output;
 use hardpoint::model::{AllocationRule, Dimension, LimitTarget, Model, OutputSource, ToleranceSettings};
-use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::tolerance::{
     Allocation, AllocationError, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric, SpreadModel,
     ToleranceResult, Yield,
 };
 use hardpoint_study::{EvaluationError, Motions};
+use hardpoint_table::csv::CsvWriter;
 use serde::{Serialize, Serializer};
 
 use crate::diagnose;
-use crate::facts::variable_unit;
+use crate::figures::variable_unit;
 use crate::figures::{count, number, rounded, seconds, some_of, unit, with_unit};
 use crate::optimize::{BeforeAfter, Evaluations, case_name};
 use crate::page::{Curve, Design, DesignCurves, DesignKind, Fact, Payload, Table};

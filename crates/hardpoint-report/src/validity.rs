@@ -6,8 +6,8 @@ use hardpoint_file::Units;
 use hardpoint_study::Validity;
 use serde::Serialize;
 
-use crate::facts::variable_unit;
 use crate::figures::rounded;
+use crate::figures::variable_unit;
 use crate::page::Table;
 use crate::summary::Summary;
 

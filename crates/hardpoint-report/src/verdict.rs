@@ -7,7 +7,7 @@ use hardpoint_study::difference::DifferenceScheme;
 use hardpoint_study::verify::{CheckOutcome, Verification};
 use serde::Serialize;
 
-use crate::facts::variable_unit;
+use crate::figures::variable_unit;
 use crate::figures::{error, number, rounded};
 use crate::page::Table;
 

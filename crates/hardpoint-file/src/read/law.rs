@@ -13,7 +13,7 @@ use crate::diagnostic::{Severity, closest, shown};
 use crate::format::{ANGLE, Kinds, NUMBER, Shape, TWO_NUMBERS, Table, table};
 use crate::read::data;
 use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject, Value};
-use crate::units::AngleUnit;
+use hardpoint_table::AngleUnit;
 
 /// Maximum number of pieces of a sequence, whose cost grows with their square.
 const MOST_PIECES: usize = 500;

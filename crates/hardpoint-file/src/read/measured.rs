@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::data::{DataError, delimiter, number, text_from, unquoted};
 use super::sweep::bare;
-use crate::csv_table::original;
 use crate::diagnostic::shown;
+use hardpoint_table::csv::original;
 
 /// Maximum number of rows: each is a posture that is solved separately.
 const MOST_ROWS: usize = 100_000;

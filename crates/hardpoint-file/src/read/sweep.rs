@@ -6,11 +6,11 @@ use hardpoint::draft::{DesignListDraft, Section, SweepRangeDraft, SweepSettingsD
 use hardpoint::model::{SweepMethod, SweepSettings};
 use toml::de::DeValue;
 
-use crate::csv_table::original;
 use crate::diagnostic::shown;
 use crate::format::{METRIC, NUMBER, OUTPUT, Shape, TWO_NUMBERS, Table, table};
 use crate::places::EntryPlace;
 use crate::tree::{Fields, MOST_ENTRIES, Reader, Subject};
+use hardpoint_table::csv::original;
 
 use super::Raw;
 use super::data::{DataError, Wanted, delimiter, number, text_from, unquoted};

@@ -31,10 +31,11 @@ const CRATES: &[(&str, &[&str])] = &[
     ("hardpoint-code", &["hardpoint-tape"]),
     ("hardpoint", &["hardpoint-tape", "hardpoint-code"]),
     ("hardpoint-study", &["hardpoint", "hardpoint-tape"]),
-    ("hardpoint-file", &["hardpoint"]),
-    ("hardpoint-report", &["hardpoint", "hardpoint-file", "hardpoint-study"]),
+    ("hardpoint-table", &["hardpoint"]),
+    ("hardpoint-file", &["hardpoint", "hardpoint-table"]),
+    ("hardpoint-report", &["hardpoint", "hardpoint-file", "hardpoint-study", "hardpoint-table"]),
     ("hardpoint-import", &["hardpoint", "hardpoint-file"]),
-    ("hardpoint-export", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
+    ("hardpoint-export", &["hardpoint", "hardpoint-file", "hardpoint-report", "hardpoint-table"]),
     (
         "hardpoint-cli",
         &[
@@ -44,6 +45,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "hardpoint-import",
             "hardpoint-report",
             "hardpoint-study",
+            "hardpoint-table",
         ],
     ),
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
@@ -467,7 +469,7 @@ fn one_writer_writes_all_csv_files() {
             files.filter(|(_, text)| text.contains("csv::Writer") || text.contains("WriterBuilder::new()"));
         writing.extend(bare.map(|(path, _)| path.strip_prefix(crates).unwrap().to_str().unwrap().to_owned()));
     }
-    assert_eq!(writing, ["hardpoint-file/src/csv_table.rs"]);
+    assert_eq!(writing, ["hardpoint-table/src/csv.rs"]);
 }
 
 /// The words of `docs/glossary.md` name types that there are.

@@ -29,11 +29,6 @@ impl LengthUnit {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Millimetre, Self::Centimetre, Self::Metre, Self::Inch];
 
-    /// Words of the format.
-    pub(crate) fn words() -> Vec<(&'static str, String)> {
-        Self::ALL.map(|unit| (unit.symbol(), String::new())).into()
-    }
-
     /// Symbol in files and results.
     pub const fn symbol(self) -> &'static str {
         match self {
@@ -80,11 +75,6 @@ impl AngleUnit {
     /// Both of them.
     pub const ALL: [Self; 2] = [Self::Degree, Self::Radian];
 
-    /// Words of the format.
-    pub(crate) fn words() -> Vec<(&'static str, String)> {
-        Self::ALL.map(|unit| (unit.symbol(), String::new())).into()
-    }
-
     /// Symbol in files and results.
     pub const fn symbol(self) -> &'static str {
         match self {
@@ -124,7 +114,7 @@ impl Units {
     ///
     /// ```
     /// use hardpoint::joint::Quantity;
-    /// use hardpoint_file::{AngleUnit, LengthUnit, Units};
+    /// use hardpoint_table::{AngleUnit, LengthUnit, Units};
     ///
     /// let units = Units { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };
     /// assert_eq!(units.of(Quantity::Length), ("mm", 1000.0));
@@ -191,7 +181,7 @@ impl Units {
     ///
     /// ```
     /// use hardpoint::joint::Quantity;
-    /// use hardpoint_file::{AngleUnit, LengthUnit, Units};
+    /// use hardpoint_table::{AngleUnit, LengthUnit, Units};
     ///
     /// // A toe that changes by 1 rad per metre changes by 0.0573 deg per millimetre.
     /// let units = Units { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };

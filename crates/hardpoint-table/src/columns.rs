@@ -9,9 +9,9 @@ use hardpoint::measure::Output;
 use hardpoint::model::{Model, OrientationAngle, VariableId};
 use hardpoint::run::Jerks;
 use hardpoint::space::{Angles, Vec3};
-use hardpoint_file::Units;
 use serde::Serialize;
 
+use crate::Units;
 use crate::figures::order_unit;
 
 /// Column of a result file.

@@ -23,19 +23,19 @@ pub fn original(cell: &str) -> &str {
 }
 
 /// Writes the rows of a CSV table, header first.
-pub struct CsvWriter<W: Write>(csv::Writer<W>);
+pub struct CsvWriter<W: Write>(::csv::Writer<W>);
 
 impl<W: Write> CsvWriter<W> {
     /// A writer of rows of any length.
     pub fn new(out: W) -> Self {
-        Self(csv::WriterBuilder::new().has_headers(false).flexible(true).from_writer(out))
+        Self(::csv::WriterBuilder::new().has_headers(false).flexible(true).from_writer(out))
     }
 
     /// Writes a row of texts and numbers, each cell [`neutral`].
     ///
     /// # Errors
     /// Fails if it cannot be written.
-    pub fn row<C: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = C>) -> csv::Result<()> {
+    pub fn row<C: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = C>) -> ::csv::Result<()> {
         for cell in cells {
             self.text(cell.as_ref())?;
         }
@@ -46,7 +46,7 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// # Errors
     /// Fails if it cannot be written.
-    pub fn text(&mut self, text: &str) -> csv::Result<()> {
+    pub fn text(&mut self, text: &str) -> ::csv::Result<()> {
         self.0.write_field(neutral(text).as_bytes())
     }
 
@@ -55,7 +55,7 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// # Errors
     /// Fails if they cannot be written.
-    pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) -> csv::Result<()> {
+    pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) -> ::csv::Result<()> {
         let mut digits = zmij::Buffer::new();
         for x in numbers {
             self.0.write_field(if x.is_finite() { digits.format_finite(x) } else { "" })?;
@@ -67,7 +67,7 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// # Errors
     /// Fails if it cannot be written.
-    pub fn end_row(&mut self) -> csv::Result<()> {
+    pub fn end_row(&mut self) -> ::csv::Result<()> {
         self.0.write_record(None::<&[u8]>)
     }
 
@@ -75,7 +75,7 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// # Errors
     /// Fails if it cannot be written.
-    pub fn copy(&mut self, row: &csv::ByteRecord) -> csv::Result<()> {
+    pub fn copy(&mut self, row: &::csv::ByteRecord) -> ::csv::Result<()> {
         self.0.write_byte_record(row)
     }
 

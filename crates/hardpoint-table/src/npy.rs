@@ -8,7 +8,7 @@ use hardpoint::Solution;
 use serde::Serialize;
 
 use crate::columns::{Column, Columns};
-use crate::facts::variable_unit;
+use crate::figures::variable_unit;
 
 /// Size of the header in bytes: enough for any shape.
 const HEADER: usize = 256;

@@ -1,13 +1,15 @@
 //! Numbers and units as text, for tables and messages. Result files have full precision instead.
 
 use hardpoint::joint::Quantity;
-use hardpoint::model::Dimension;
-use hardpoint_file::Units;
+use hardpoint::law::ParameterKind;
+use hardpoint::model::{Change, DesignVariable, Dimension, Model};
+
+use crate::Units;
 
 /// Number with at most five significant digits, without trailing zeros.
 ///
 /// ```
-/// use hardpoint_report::figures::number;
+/// use hardpoint_table::figures::number;
 /// assert_eq!(number(0.123456789), "0.12346");
 /// assert_eq!(number(1250.0), "1250");
 /// assert_eq!(number(-3.2e-9), "-3.2e-9");
@@ -60,7 +62,7 @@ pub fn seconds(value: f64) -> String {
 /// File size: `3.2 MB`.
 ///
 /// ```
-/// use hardpoint_report::figures::bytes;
+/// use hardpoint_table::figures::bytes;
 /// assert_eq!([0, 999, 1_500, 3_200_000, 5_800_000_000].map(bytes), ["0 B", "999 B", "1.5 kB", "3.2 MB", "5.8 GB"]);
 /// ```
 pub fn bytes(size: u64) -> String {
@@ -90,8 +92,8 @@ pub fn symbol(units: Units, quantity: Quantity) -> &'static str {
 ///
 /// ```
 /// use hardpoint::model::Dimension;
-/// use hardpoint_file::Units;
-/// use hardpoint_report::figures::unit;
+/// use hardpoint_table::Units;
+/// use hardpoint_table::figures::unit;
 /// let metres = Units::default();
 /// assert_eq!(unit(metres, Dimension::LENGTH.rate(2)), "m/s^2");
 /// assert_eq!(unit(metres, Dimension::ANGLE.over(Dimension::LENGTH).rate(1)), "rad/(m*s)");
@@ -128,10 +130,62 @@ pub fn order_unit(units: Units, of: impl Into<Dimension>, order: usize) -> Strin
     unit(units, of.into().rate(order as i8))
 }
 
+/// Unit of a design variable; `1` for a plain number.
+///
+/// To the core, a parameter of a law that is neither a length nor an angle is a plain number. The rate of change of the
+/// parameter per unit of the variable then decides whether the variable is in the user's unit or in SI.
+pub fn variable_unit(model: &Model, units: Units, variable: &DesignVariable) -> String {
+    if variable.quantity != Quantity::Number {
+        return symbol(units, variable.quantity).into();
+    }
+    let mut found = variable.changes.iter().map(|change| match change {
+        Change::Law(change) => {
+            let driver = &model.drivers[change.driver.0];
+            let quantity = model.driven(driver).quantity;
+            let kind = driver.law.parameters()[change.parameter].kind;
+            parameter_unit(units, quantity, kind, change.rate.abs())
+        }
+        _ => None,
+    });
+    let first = found.next().flatten();
+    match first {
+        Some(unit) if found.all(|other| other.as_ref() == Some(&unit)) => unit,
+        _ => "1".into(),
+    }
+}
+
+/// Unit in which a parameter changes by one, if it changes by `rate` internally.
+fn parameter_unit(units: Units, driven: Quantity, kind: ParameterKind, rate: f64) -> Option<String> {
+    let is = |size: f64| (rate - size).abs() <= 1e-12 * size;
+    match kind {
+        ParameterKind::Time if is(1.0) => Some("s".into()),
+        ParameterKind::Frequency if is(1.0) => Some("Hz".into()),
+        ParameterKind::ValueRate(power) => {
+            let per = match power {
+                1 | 2 => return in_either(units, driven, is, |u| order_unit(u, driven, power as usize)),
+                n => format!("/s^{n}"),
+            };
+            in_either(units, driven, is, |u| format!("{}{per}", symbol(u, driven)))
+        }
+        _ => None,
+    }
+}
+
+/// Text for the user's units if the rate corresponds to them, otherwise for SI units.
+fn in_either(
+    units: Units,
+    driven: Quantity,
+    is: impl Fn(f64) -> bool,
+    text: impl Fn(Units) -> String,
+) -> Option<String> {
+    let meant = [units, Units::default()].into_iter().find(|u| is(u.to_si(driven, 1.0)));
+    meant.map(text)
+}
+
 /// Unit of a derivative: `deg/mm`, `mm/s per mm` as `mm/(s*mm)`.
 ///
 /// ```
-/// use hardpoint_report::figures::per;
+/// use hardpoint_table::figures::per;
 /// assert_eq!(per("deg", "mm"), "deg/mm");
 /// assert_eq!(per("deg/s", "mm"), "deg/(s*mm)");
 /// assert_eq!(per("deg/mm", "mm"), "deg/mm^2");

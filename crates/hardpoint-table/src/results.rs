@@ -7,13 +7,13 @@
 use std::borrow::Cow;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-use csv::{ByteRecord, Reader};
+use ::csv::{ByteRecord, Reader};
 use hardpoint::Solution;
 use hardpoint::run::Jerks;
-use hardpoint_file::csv_table::{CsvWriter, neutral};
 
 use crate::columns::{Column, Columns};
-use crate::facts::variable_unit;
+use crate::csv::{CsvWriter, neutral};
+use crate::figures::variable_unit;
 
 /// Writer of `motion.csv`, window by window.
 pub struct MotionCsv<'m, W: Write> {
@@ -28,7 +28,7 @@ impl<'m, W: Write> MotionCsv<'m, W> {
     ///
     /// # Errors
     /// If `out` cannot be written.
-    pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
+    pub fn new(columns: Columns<'m>, out: W) -> ::csv::Result<Self> {
         let writer = with_header(&["t [s]"], &columns.of_motion(), out)?;
         Ok(Self { columns, writer, row: Vec::new() })
     }
@@ -37,7 +37,7 @@ impl<'m, W: Write> MotionCsv<'m, W> {
     ///
     /// # Errors
     /// If the rows cannot be written.
-    pub fn add(&mut self, window: &Solution) -> csv::Result<()> {
+    pub fn add(&mut self, window: &Solution) -> ::csv::Result<()> {
         for (k, &t) in window.motion.times.iter().enumerate() {
             self.row.clear();
             self.row.push(t);
@@ -72,7 +72,7 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
     ///
     /// # Errors
     /// If `out` cannot be written.
-    pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
+    pub fn new(columns: Columns<'m>, out: W) -> ::csv::Result<Self> {
         let writer = with_header(&["t [s]", "variable", "per"], &columns.of_sensitivities(), out)?;
         let variables = columns.model.variables.iter();
         let units = variables.map(|v| variable_unit(columns.model, columns.units, v)).collect();
@@ -83,7 +83,7 @@ impl<'m, W: Write> SensitivityCsv<'m, W> {
     ///
     /// # Errors
     /// If the rows cannot be written.
-    pub fn add(&mut self, window: &Solution) -> csv::Result<()> {
+    pub fn add(&mut self, window: &Solution) -> ::csv::Result<()> {
         for (k, &t) in window.motion.times.iter().enumerate() {
             for (b, variable) in self.columns.model.variables.iter().enumerate() {
                 self.row.clear();
@@ -119,7 +119,7 @@ pub fn without_variables(
     rows: u64,
     out: &mut impl Write,
     mut go_on: impl FnMut() -> bool,
-) -> csv::Result<bool> {
+) -> ::csv::Result<bool> {
     /// Number of rows, and number of bytes, between two calls of `more`.
     const ROWS: u64 = 1 << 16;
     const BYTES: u64 = 1 << 24;
@@ -161,7 +161,7 @@ impl<'m, W: Write> JerkCsv<'m, W> {
     ///
     /// # Errors
     /// If `out` cannot be written.
-    pub fn new(columns: Columns<'m>, out: W) -> csv::Result<Self> {
+    pub fn new(columns: Columns<'m>, out: W) -> ::csv::Result<Self> {
         let writer = with_header(&["t [s]"], &columns.of_jerk(), out)?;
         Ok(Self { columns, writer, row: Vec::new() })
     }
@@ -170,7 +170,7 @@ impl<'m, W: Write> JerkCsv<'m, W> {
     ///
     /// # Errors
     /// If the rows cannot be written.
-    pub fn add(&mut self, jerks: &Jerks) -> csv::Result<()> {
+    pub fn add(&mut self, jerks: &Jerks) -> ::csv::Result<()> {
         for (k, &t) in jerks.times.iter().enumerate() {
             self.row.clear();
             self.row.push(t);
@@ -190,7 +190,7 @@ impl<'m, W: Write> JerkCsv<'m, W> {
     }
 }
 
-fn with_header<W: Write>(first: &[&str], columns: &[Column], out: W) -> csv::Result<CsvWriter<W>> {
+fn with_header<W: Write>(first: &[&str], columns: &[Column], out: W) -> ::csv::Result<CsvWriter<W>> {
     let mut writer = CsvWriter::new(out);
     let columns = columns.iter().map(|c| Cow::Owned(c.header()));
     writer.row(first.iter().copied().map(Cow::Borrowed).chain(columns))?;
