@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
-use crate::format::{Key, Kinds, Need, Shape, Table};
+use crate::compose::SECTIONS;
 use crate::read::MODEL;
-use crate::read::mirror::SECTIONS;
+use crate::values::{Key, Kinds, Need, Shape, Table};
 
 /// JSON Schema of model files, the contents of `models/hardpoint.schema.json`.
 ///

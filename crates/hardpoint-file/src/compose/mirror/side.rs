@@ -12,18 +12,15 @@ use hardpoint::space::Vec3;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use crate::diagnostic::shown;
-use crate::format::Shape;
-use crate::read::include::lay_under;
-use crate::read::{MODEL, cases, design, law};
-use crate::tree::{Value, axis_named};
-use crate::walk::{list_of, table_of};
+use crate::compose::entries::lay_under;
+use crate::values::{Shape, Table, Value, axis_named, list_of, shown, table_of};
 
-use super::{Opposites, Rule, each, turn_sign};
+use super::rule::{Opposites, Rule, each, turn_sign};
 
 /// The other side under construction.
 pub(super) struct Side<'m, 'a> {
     pub rule: Rule<'a>,
+    pub format: &'static Table,
     /// The written side.
     pub model: &'m DeTable<'a>,
     pub opposite: HashSet<String>,
@@ -40,8 +37,7 @@ impl<'a> Side<'_, 'a> {
 
     /// Adds the mirror images of a section's entries after these; entries written by hand take precedence.
     pub fn add(&mut self, section: &'static str, entries: &mut DeTable<'a>) {
-        let shape = MODEL.keys().find(|k| k.key == section).map(|k| k.shape);
-        let Some(Shape::Entries(_, of)) = shape else { return };
+        let of = self.format.entries_of(section);
         let originals: Vec<_> = entries
             .iter()
             .filter_map(|(k, v)| {
@@ -52,9 +48,9 @@ impl<'a> Side<'_, 'a> {
             if self.is_taken(section, &twin, &name, &at) {
                 continue;
             }
-            self.mirror(section, *of, &name, &mut value);
+            self.mirror(section, of, &name, &mut value);
             let (key, at) = (Cow::Owned(twin.clone()), at);
-            if !lay_under(*of, entries, Spanned::new(at, key), value) {
+            if !lay_under(of, entries, Spanned::new(at, key), value) {
                 continue;
             }
             self.made.insert((section, twin), name);
@@ -405,6 +401,8 @@ impl<'a> Side<'_, 'a> {
 
     /// Cases of one side become cases of the other; in all other cases a driver's law also applies to its image.
     pub fn cases(&mut self, cases: &mut DeTable<'a>) {
+        let of_case = self.format.entries_of("cases");
+        let of_laws = if let Shape::Table(case) = of_case { case.entries_of("laws") } else { Shape::Text };
         for (name, case) in cases.iter_mut() {
             if self
                 .rule
@@ -422,7 +420,7 @@ impl<'a> Side<'_, 'a> {
                 if !self.made.contains_key(&("drivers", twin.clone())) || laws.contains_key(&*twin) {
                     continue;
                 }
-                self.rule.mirror(law::LAW, &mut law, &|_| false);
+                self.rule.mirror(of_laws, &mut law, &|_| false);
                 if self.is_turned(&driver) && !turn_law(&mut law, self.rule.numbers) {
                     self.no_law(at.clone(), &driver);
                 }
@@ -439,7 +437,7 @@ impl<'a> Side<'_, 'a> {
             if self.entry("cases", &twin).is_some() || self.is_taken("cases", &twin, &name, &at) {
                 continue;
             }
-            self.rule.mirror(Shape::Table(&cases::CASE), &mut case, &|_| false);
+            self.rule.mirror(of_case, &mut case, &|_| false);
             let laws = table_of(&mut case).and_then(|case| table_of(case.get_mut("laws")?));
             for (driver, law) in laws.into_iter().flat_map(|laws| laws.iter_mut()) {
                 // A driver of one side has the law of its image; a shared one, such as steering, may have the opposite
@@ -460,7 +458,7 @@ impl<'a> Side<'_, 'a> {
 
     /// Applies each design variable to the other side, too.
     pub fn design(&mut self, design: &mut DeTable<'a>, twins: &mut HashMap<String, Value<'a>>) {
-        let shape = Shape::Kinds(&design::VARIABLE);
+        let shape = self.format.entries_of("design");
         let kept = self.rule.kept.clone();
         for (name, value) in design.iter_mut().filter(|(name, _)| !kept.contains(&**name.get_ref())) {
             let Some(table) = table_of(value) else { continue };

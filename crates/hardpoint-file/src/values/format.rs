@@ -1,10 +1,8 @@
 //! The format as data: tables of a model file, their keys, and the form of their values.
 //!
 //! Every table is declared once, next to the code that reads it. The declarations define the keys of the reader, its
-//! defaults and examples, the JSON Schema (`schema.rs`), and the tables of `docs/file-format.md` (`format/docs.rs`).
-
-#[cfg(test)]
-mod docs;
+//! defaults and examples, the JSON Schema (`write/schema.rs`), and the tables of `docs/file-format.md`
+//! (`write/docs.rs`).
 
 use std::collections::BTreeSet;
 
@@ -33,14 +31,14 @@ pub(crate) enum Need {
 
 /// Declares keys: meaning, presence, name, form of the value, and an example.
 macro_rules! keys {
-    (@ must) => { $crate::format::Need::Required };
-    (@ may) => { $crate::format::Need::Optional };
-    (@ or $default:literal) => { $crate::format::Need::Else($default) };
+    (@ must) => { $crate::values::Need::Required };
+    (@ may) => { $crate::values::Need::Optional };
+    (@ or $default:literal) => { $crate::values::Need::Else($default) };
     ($($(#[doc = $doc:literal])+ $need:ident $(($default:literal))? $key:literal: $shape:expr, $example:literal;)*) => {
-        &[$($crate::format::Key {
+        &[$($crate::values::Key {
             key: $key,
             shape: $shape,
-            need: $crate::format::keys!(@ $need $($default)?),
+            need: $crate::values::keys!(@ $need $($default)?),
             example: $example,
             doc: concat!($($doc),+).trim_ascii(),
         }),*]
@@ -50,10 +48,10 @@ macro_rules! keys {
 /// Declares a table: description, name and keys.
 macro_rules! table {
     ($(#[doc = $doc:literal])+ $name:literal, $keys:ident) => {
-        $crate::format::Table::new($name, concat!($($doc),+).trim_ascii(), $keys)
+        $crate::values::Table::new($name, concat!($($doc),+).trim_ascii(), $keys)
     };
     ($(#[doc = $doc:literal])+ $name:literal: $($keys:tt)*) => {
-        $crate::format::Table::new($name, concat!($($doc),+).trim_ascii(), $crate::format::keys! { $($keys)* })
+        $crate::values::Table::new($name, concat!($($doc),+).trim_ascii(), $crate::values::keys! { $($keys)* })
     };
 }
 pub(crate) use {keys, table};
@@ -78,6 +76,19 @@ impl Table {
 
     pub fn keys(&'static self) -> impl Iterator<Item = &'static Key> {
         self.keys.iter().chain(self.shared)
+    }
+
+    /// Form of a key's value; a text for an unknown key.
+    pub fn shape_of(&'static self, key: &str) -> Shape {
+        self.keys().find(|k| k.key == key).map_or(Shape::Text, |k| k.shape)
+    }
+
+    /// Form of the entries of a table of named entries.
+    pub fn entries_of(&'static self, key: &str) -> Shape {
+        match self.shape_of(key) {
+            Shape::Entries(_, of) => *of,
+            shape => shape,
+        }
     }
 
     /// Sets the `type` that selects this table.
@@ -199,12 +210,12 @@ impl Shape {
 }
 
 /// `body` of `a body`.
-fn noun(one: &str) -> &str {
+pub(crate) fn noun(one: &str) -> &str {
     one.split_once(' ').map_or(one, |(_, noun)| noun)
 }
 
 /// Plural: `a body`, `bodies`.
-fn several(one: &str) -> String {
+pub(crate) fn several(one: &str) -> String {
     let noun = noun(one);
     noun.strip_suffix('y').map_or_else(|| format!("{noun}s"), |stem| format!("{stem}ies"))
 }
@@ -222,3 +233,31 @@ pub(crate) const JOINT: Shape = Shape::Name("a joint");
 pub(crate) const METRIC: Shape = Shape::Name("a metric");
 pub(crate) const VARIABLE: Shape = Shape::Name("a design variable");
 pub(crate) const OUTPUT: Shape = Shape::Name("a measure");
+
+/// From one hardpoint to another.
+pub(super) const THROUGH: Table = table! {
+    /// From the first hardpoint to the second; it follows them when the design changes.
+    "Through":
+    /// Names of two hardpoints.
+    must "through": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
+};
+pub(crate) const AXES: Shape = Shape::Any(
+    "Axis",
+    "A global axis.",
+    &[Shape::Words(&[("x", ""), ("y", ""), ("z", ""), ("-x", ""), ("-y", ""), ("-z", "")])],
+);
+pub(crate) const DIRECTION: Shape = Shape::Any(
+    "FixedDirection",
+    "A fixed direction: a global axis or a vector of any length.",
+    &[AXES, THREE_NUMBERS],
+);
+pub(crate) const LINE: Shape = Shape::Any(
+    "Direction",
+    "A direction: a global axis, a vector of any length, or through two hardpoints.",
+    &[AXES, THREE_NUMBERS, Shape::Table(&THROUGH)],
+);
+pub(crate) const PLACE: Shape = Shape::Any(
+    "Place",
+    "A hardpoint's name, or global coordinates in the design configuration.",
+    &[HARDPOINT, Shape::exactly(3, &LENGTH)],
+);

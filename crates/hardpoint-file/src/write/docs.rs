@@ -3,8 +3,7 @@
 use hardpoint::joint::Quantity;
 
 use crate::read::tables;
-
-use super::{Key, Kinds, Need, Shape, noun, several};
+use crate::values::{Key, Kinds, Need, Shape, noun, several};
 
 /// Row of a key: name, form of the value, default, and meaning.
 fn row(key: &Key) -> String {

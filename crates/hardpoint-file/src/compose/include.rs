@@ -10,19 +10,18 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::LARGEST_FILE;
-use crate::diagnostic::shown;
-use crate::format::{NUMBER, Shape, Table, table};
-use crate::tree::{Folder, Reader, Texts, Value};
-use crate::walk::{Leaf, in_expression, table_of, walk};
+use crate::values::{
+    DataError, Folder, LARGEST_FILE, Leaf, NUMBER, Reader, Shape, Table, Texts, Value, Wanted, bytes_of,
+    in_expression, shown, table, table_of, text_from, walk,
+};
 
-use super::MODEL;
-use super::data::{DataError, Wanted, bytes_of, text_from};
-use super::mirror::{Both, Opposites, SECTIONS};
+use super::entries::{Both, SECTIONS, lay_under};
+use super::mirror::{Opposites, Origins, both_sides};
+use super::planar::planar;
 
 pub(crate) const INCLUDE: Shape =
     Shape::list(&Shape::Any("Include", "", &[Shape::File, Shape::Table(&INCLUDE_TABLE)]));
-pub(super) const INCLUDE_TABLE: Table = table! {
+pub(crate) const INCLUDE_TABLE: Table = table! {
     /// Another file, with a prefix for its names and values of its parameters.
     "IncludeTable":
     /// A model file in this one's folder or below it.
@@ -62,7 +61,7 @@ pub(crate) struct IncludeError {
 }
 
 /// All files that a text includes directly or indirectly, each once.
-pub(crate) fn parts(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<IncludeError>) {
+pub(crate) fn parts_of(folder: Folder<'_>, text: &str) -> (Vec<Part>, Vec<IncludeError>) {
     let (mut parts, mut hindrances): (Vec<Part>, Vec<IncludeError>) = Default::default();
     let (mut file, mut bytes) = (0, text.len() as u64);
     while file <= parts.len() {
@@ -157,38 +156,56 @@ pub(crate) struct Files<'a> {
     pub sizes: Vec<u64>,
 }
 
-impl Reader<'_> {
-    /// Merges a model into one table: included files, the file itself, and the mirror images of both. Errors are
-    /// reported.
-    pub fn whole<'a>(&mut self, mut files: Files<'a>) -> Both<'a> {
-        let first = &mut files.tables[0].1;
-        if !["include", "mirror", "planar"].iter().any(|key| first.contains_key(*key)) {
-            return Both { table: std::mem::take(first), twins: HashMap::new() };
-        }
-        self.put_together(&files, 0, &mut vec![0])
+/// Merges a model with this format into one table: included files, the file itself, and the mirror images of both.
+/// Errors are reported. Returns the origins of mirror images and of included entries as well.
+pub(crate) fn whole<'a>(
+    r: &mut Reader<'_>,
+    format: &'static Table,
+    mut files: Files<'a>,
+) -> (Both<'a>, Origins) {
+    let first = &mut files.tables[0].1;
+    if !["include", "mirror", "planar"].iter().any(|key| first.contains_key(*key)) {
+        return (Both { table: std::mem::take(first), twins: HashMap::new() }, Origins::default());
     }
+    let mut composer = Composer { r, format, files: &files, included: 0, origins: Origins::default() };
+    let both = composer.put_together(0, &mut vec![0]);
+    (both, composer.origins)
+}
 
-    fn put_together<'a>(&mut self, files: &Files<'a>, k: usize, above: &mut Vec<usize>) -> Both<'a> {
+/// The merge of the files of one model.
+struct Composer<'c, 's, 'a> {
+    r: &'c mut Reader<'s>,
+    format: &'static Table,
+    files: &'c Files<'a>,
+    /// Size of all included files in bytes.
+    included: u64,
+    origins: Origins,
+}
+
+impl<'a> Composer<'_, '_, 'a> {
+    fn put_together(&mut self, k: usize, above: &mut Vec<usize>) -> Both<'a> {
+        let files = self.files;
         let (name, written) = &files.tables[k];
         let mut own = written.clone();
         if name.contains('/') {
-            files_from_there(&mut own, name);
+            files_from_there(self.format, &mut own, name);
         }
         let mut both = Both { table: DeTable::new(), twins: HashMap::new() };
         for value in self.includes(written) {
-            if let Some(part) = self.included(files, value, name, above) {
+            if let Some(part) = self.included(value, name, above) {
                 self.units_of(&mut own, &part.table, value);
-                merge(&mut both.table, part.table);
+                merge(self.format, &mut both.table, part.table);
                 both.twins.extend(part.twins);
             }
         }
         // Entries of this file take precedence; they come after those of the included files.
         let included = std::mem::take(&mut both.table);
         both.table = own;
-        under(&mut both.table, included);
-        self.planar(&mut both.table);
-        if self.found.is_empty()
-            && let Some(mirrored) = self.both_sides(&both.table, files.numbers)
+        under(self.format, &mut both.table, included);
+        planar(self.r, self.format, &mut both.table);
+        if self.r.found.is_empty()
+            && let Some(mirrored) =
+                both_sides(self.r, self.format, &both.table, self.files.numbers, &mut self.origins)
         {
             both.table = mirrored.table;
             both.twins.extend(mirrored.twins);
@@ -197,12 +214,12 @@ impl Reader<'_> {
     }
 
     /// Entries of `include`.
-    fn includes<'t, 'a>(&mut self, table: &'t DeTable<'a>) -> Vec<&'t Value<'a>> {
+    fn includes<'t>(&mut self, table: &'t DeTable<'a>) -> Vec<&'t Value<'a>> {
         let Some(value) = table.get("include") else { return Vec::new() };
         match value.get_ref().as_array() {
             Some(list) => list.iter().collect(),
             None => {
-                self.report("HP0105", value.span(), "`include` must be a list of files").help =
+                self.r.report("HP0105", value.span(), "`include` must be a list of files").help =
                     Some("for example `include = [\"corner.toml\"]`".into());
                 Vec::new()
             }
@@ -210,73 +227,67 @@ impl Reader<'_> {
     }
 
     /// One included file, with prefixed names and new parameter values.
-    fn included<'a>(
-        &mut self,
-        files: &Files<'a>,
-        value: &Value<'a>,
-        from: &str,
-        above: &mut Vec<usize>,
-    ) -> Option<Both<'a>> {
+    fn included(&mut self, value: &Value<'a>, from: &str, above: &mut Vec<usize>) -> Option<Both<'a>> {
         let at = value.span();
         let (mut prefix, mut shared, mut parameters) = (String::new(), BTreeSet::new(), None);
         let asked = match value.get_ref() {
             DeValue::String(name) => name.to_string(),
             DeValue::Table(table) => {
-                let fields = self.fields("an entry of `include`", at.clone(), table, INCLUDE_TABLE.keys());
-                let file = self.name_of(&fields, "file")?;
-                prefix = self.name_of(&fields, "prefix")?;
+                let fields = self.r.fields("an entry of `include`", at.clone(), table, INCLUDE_TABLE.keys());
+                let file = self.r.name_of(&fields, "file")?;
+                prefix = self.r.name_of(&fields, "prefix")?;
                 if let Some(f) = fields.get("shared") {
                     let subject = fields.subject("shared");
-                    for v in self.list(f.value, &subject, "a list of names").into_iter().flatten() {
-                        shared.extend(self.name(v, &subject, "a name in quotes"));
+                    for v in self.r.list(f.value, &subject, "a list of names").into_iter().flatten() {
+                        shared.extend(self.r.name(v, &subject, "a name in quotes"));
                     }
                 }
                 if let Some(f) = fields.get("parameters") {
                     let subject = fields.subject("parameters");
-                    self.table(f.value, &subject, "a table of parameters' names and values")?;
+                    self.r.table(f.value, &subject, "a table of parameters' names and values")?;
                 }
                 parameters = table.get("parameters").and_then(|v| v.get_ref().as_table());
                 file
             }
             _ => {
-                self.report("HP0105", at, "an entry of `include` must be a file's name or a table").help =
+                self.r.report("HP0105", at, "an entry of `include` must be a file's name or a table").help =
                     Some("for example `{ file = \"corner.toml\", prefix = \"left_\" }`".into());
                 return None;
             }
         };
         let name = beside(from, &asked);
         // A file that could not be read has been reported.
-        let k = files.tables.iter().skip(1).position(|file| file.0 == name)? + 1;
+        let k = self.files.tables.iter().skip(1).position(|file| file.0 == name)? + 1;
         if above.contains(&k) {
             let message = format!("the file `{}` includes itself", shown(&name));
             let way: Vec<String> =
-                above.iter().skip(1).chain([&k]).map(|k| format!("`{}`", files.tables[*k].0)).collect();
-            self.report("HP0117", at, message).notes.push(format!("by way of {}", way.join(", ")));
+                above.iter().skip(1).chain([&k]).map(|k| format!("`{}`", self.files.tables[*k].0)).collect();
+            self.r.report("HP0117", at, message).notes.push(format!("by way of {}", way.join(", ")));
             return None;
         }
-        self.included += files.sizes[k].max(LEAST_BYTES);
+        self.included += self.files.sizes[k].max(LEAST_BYTES);
         if self.included > LARGEST_FILE {
             let message = "includes are nested too deeply".to_owned();
-            self.report("HP0117", at, message).help =
+            self.r.report("HP0117", at, message).help =
                 Some("include each of them only where it is needed".into());
             return None;
         }
         above.push(k);
-        let mut part = self.put_together(files, k, above);
+        let mut part = self.put_together(k, above);
         above.pop();
         let all: BTreeSet<String> = declared(&part.table).into_iter().map(str::to_owned).collect();
         for name in shared.iter().filter(|name| !all.contains(*name)) {
-            let close = self.guess(name, all.iter().map(String::as_str));
+            let close = self.r.guess(name, all.iter().map(String::as_str));
             let message = format!("`{}` has nothing named `{}`", shown(&asked), shown(name));
-            self.report("HP0204", at.clone(), message).help = close.map(|c| format!("did you mean `{c}`?"));
+            self.r.report("HP0204", at.clone(), message).help = close.map(|c| format!("did you mean `{c}`?"));
         }
         let own: HashSet<String> = all.into_iter().filter(|name| !shared.contains(name)).collect();
         if !prefix.is_empty() {
-            renamed(&mut part, &prefix, &own);
+            renamed(self.format, &mut part, &prefix, &own);
             self.origins.renamed(&prefix, &own);
         }
         for name in declared(&part.table) {
-            self.origins.included.insert(name.to_owned(), name_of(files, k));
+            self.origins.included.insert(name.to_owned(), self.files.tables[k].0.clone());
         }
         for (name, value) in parameters.into_iter().flatten() {
             let there = part.table.get_mut("parameters").and_then(table_of);
@@ -295,10 +306,10 @@ impl Reader<'_> {
                         .flat_map(DeTable::keys)
                         .map(|k| k.get_ref().strip_prefix(&*prefix).unwrap_or(k.get_ref()));
                     let names: Vec<&str> = names.collect();
-                    let close = self.guess(name.get_ref(), names.into_iter());
+                    let close = self.r.guess(name.get_ref(), names.into_iter());
                     let message =
                         format!("`{}` has no parameter named `{}`", shown(&asked), shown(name.get_ref()));
-                    self.report("HP0204", name.span(), message).help =
+                    self.r.report("HP0204", name.span(), message).help =
                         close.map(|c| format!("did you mean `{c}`?"));
                 }
             }
@@ -307,7 +318,7 @@ impl Reader<'_> {
     }
 
     /// Checks that units and gravity of all files are the same; a file without them has those of its included files.
-    fn units_of<'a>(&mut self, own: &mut DeTable<'a>, part: &DeTable<'a>, value: &Value<'_>) {
+    fn units_of(&mut self, own: &mut DeTable<'a>, part: &DeTable<'a>, value: &Value<'_>) {
         // Gravity of a part is that of the whole.
         if let (Some((key, gravity)), false) = (part.get_key_value("gravity"), own.contains_key("gravity")) {
             own.insert(key.clone(), gravity.clone());
@@ -326,7 +337,7 @@ impl Reader<'_> {
                     there.join(" and "),
                     here.join(" and ")
                 );
-                self.report("HP0117", value.span(), message).help =
+                self.r.report("HP0117", value.span(), message).help =
                     Some("write both in the same units".into());
             }
             (None, Some(_)) => {
@@ -339,25 +350,16 @@ impl Reader<'_> {
     }
 }
 
-fn name_of(files: &Files<'_>, k: usize) -> String {
-    files.tables[k].0.clone()
-}
-
 /// Names that the tables of a model declare.
 fn declared<'t>(table: &'t DeTable<'_>) -> Vec<&'t str> {
     let sections = SECTIONS.iter().filter_map(|s| table.get(*s)?.get_ref().as_table());
     sections.flat_map(DeTable::keys).map(|key| &**key.get_ref()).collect()
 }
 
-/// Form of a section's entries.
-fn entries_of(section: &str) -> Shape {
-    MODEL.keys().find(|k| k.key == section).map_or(Shape::Text, |k| k.shape)
-}
-
 /// Makes file names relative to the folder of the first file.
-fn files_from_there(table: &mut DeTable<'_>, from: &str) {
+fn files_from_there(format: &'static Table, table: &mut DeTable<'_>, from: &str) {
     for (section, value) in table.iter_mut() {
-        walk("", entries_of(section.get_ref()), value, &mut |_, leaf| {
+        walk("", format.shape_of(section.get_ref()), value, &mut |_, leaf| {
             if let Leaf::File(name) = leaf
                 && &**section.get_ref() != "include"
             {
@@ -368,7 +370,7 @@ fn files_from_there(table: &mut DeTable<'_>, from: &str) {
 }
 
 /// Adds a prefix to all occurrences of these names.
-fn renamed(part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) {
+fn renamed(format: &'static Table, part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) {
     let say = |name: &str| {
         let base = name.split('.').next().unwrap_or(name);
         own.contains(base).then(|| format!("{prefix}{name}"))
@@ -384,10 +386,10 @@ fn renamed(part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) {
     };
     for section in SECTIONS {
         if let Some(value) = part.table.get_mut(section) {
-            rename(entries_of(section), value);
+            rename(format.shape_of(section), value);
         }
     }
-    let variable = Shape::Kinds(&super::design::VARIABLE);
+    let variable = format.entries_of("design");
     let twins = std::mem::take(&mut part.twins).into_iter();
     part.twins = twins
         .map(|(name, mut value)| {
@@ -398,7 +400,7 @@ fn renamed(part: &mut Both<'_>, prefix: &str, own: &HashSet<String>) {
 }
 
 /// Adds the declarations of a file to those of others; existing ones take precedence.
-fn merge<'a>(all: &mut DeTable<'a>, part: DeTable<'a>) {
+fn merge<'a>(format: &'static Table, all: &mut DeTable<'a>, part: DeTable<'a>) {
     for (section, value) in part {
         if !SECTIONS.contains(&&**section.get_ref()) {
             continue;
@@ -408,7 +410,7 @@ fn merge<'a>(all: &mut DeTable<'a>, part: DeTable<'a>) {
                 all.insert(section, value);
             }
             Some(there) => {
-                let shape = entries_of(section.get_ref());
+                let shape = format.entries_of(section.get_ref());
                 if let (Some(there), DeValue::Table(more)) = (table_of(there), value.into_inner()) {
                     for (name, value) in more {
                         lay_under(shape, there, name, value);
@@ -420,14 +422,14 @@ fn merge<'a>(all: &mut DeTable<'a>, part: DeTable<'a>) {
 }
 
 /// Puts included entries before those of the file itself.
-fn under<'a>(own: &mut DeTable<'a>, included: DeTable<'a>) {
+fn under<'a>(format: &'static Table, own: &mut DeTable<'a>, included: DeTable<'a>) {
     for (section, value) in included {
         let DeValue::Table(mut entries) = value.get_ref().clone() else { continue };
         let Some(written) = own.get_mut(&**section.get_ref()) else {
             own.insert(section, value);
             continue;
         };
-        let shape = entries_of(section.get_ref());
+        let shape = format.entries_of(section.get_ref());
         let Some(table) = table_of(written) else { continue };
         for (name, hand) in std::mem::take(table) {
             // At the position of the included entry, with the contents written here.
@@ -450,50 +452,7 @@ fn under<'a>(own: &mut DeTable<'a>, included: DeTable<'a>) {
     }
 }
 
-/// Adds the keys of an entry to one written by hand, whose keys take precedence.
-pub(super) fn lay_under<'a>(
-    shape: Shape,
-    entries: &mut DeTable<'a>,
-    name: Spanned<Cow<'a, str>>,
-    made: Value<'a>,
-) -> bool {
-    let of = if let Shape::Entries(_, of) = shape { *of } else { shape };
-    let Some(hand) = entries.get_mut(&**name.get_ref()) else {
-        entries.insert(name, made);
-        return true;
-    };
-    if table_of(hand).is_none_or(|hand| is_complete(of, hand)) {
-        return false;
-    }
-    if matches!(of, Shape::Kinds(_) | Shape::Table(_)) && !made.get_ref().is_table() {
-        // A value that is not the required table has nothing to merge: the error is reported elsewhere.
-        *hand = made;
-        return true;
-    }
-    table_of(hand).is_some_and(|hand| fill(hand, made))
-}
-
-/// Adds missing keys.
-pub(super) fn fill<'a>(hand: &mut DeTable<'a>, made: Value<'a>) -> bool {
-    let DeValue::Table(made) = made.into_inner() else { return false };
-    for (key, value) in made {
-        if !hand.contains_key(&**key.get_ref()) {
-            hand.insert(key, value);
-        }
-    }
-    true
-}
-
-/// Returns whether an entry written by hand is complete: it has its `type`, or the first key of one of its kinds.
-fn is_complete(shape: Shape, hand: &DeTable<'_>) -> bool {
-    let leads = match shape {
-        Shape::Kinds(kinds) if !kinds.typed => (kinds.tables)().iter().map(|t| t.keys[0].key).collect(),
-        _ => vec!["type"],
-    };
-    leads.iter().any(|key| hand.contains_key(*key))
-}
-
 /// Texts of included files, stored with the model.
-pub(crate) fn texts(parts: &[Part]) -> Texts {
+pub(crate) fn texts_of(parts: &[Part]) -> Texts {
     parts.iter().map(|part| (part.name.clone(), part.text.clone())).collect()
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use hardpoint::draft::{DraftLocation, Section};
 
-use crate::tree::{Fields, Value};
+use super::fields::{Fields, Value};
 
 /// Location of one entry of a list.
 #[derive(Clone, Debug)]

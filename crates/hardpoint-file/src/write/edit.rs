@@ -6,9 +6,9 @@ use hardpoint::model::{Change, Direction, Model, VariableId};
 use hardpoint::space::{Mat3, Vec3};
 use toml_edit::{DocumentMut, Item, Value};
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
-use crate::read::planar::Plane;
-use crate::{Folder, ModelFile, parsed};
+use crate::compose::Plane;
+use crate::read::{ModelFile, parsed};
+use crate::values::{Diagnostic, Diagnostics, Folder, Severity};
 use hardpoint_table::Units;
 
 /// Tolerance of written numbers in units of round-off, which covers the sums, products and roots between a number of

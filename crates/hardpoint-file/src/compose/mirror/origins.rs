@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use crate::diagnostic::Diagnostic;
-use crate::side_names::{exchanged, is_original};
+use crate::compose::side_names::{exchanged, is_original};
+use crate::values::Diagnostic;
 
 /// Origins of a mirror's images.
 #[derive(Clone, Debug, Default)]

@@ -6,8 +6,8 @@ use hardpoint::joint::Quantity;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use crate::format::{Key, Shape};
-use crate::tree::Value;
+use super::fields::Value;
+use super::format::{Key, Shape};
 
 /// Contents of a value at a place.
 pub(crate) enum Leaf<'v, 'a> {

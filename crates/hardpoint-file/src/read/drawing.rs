@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use hardpoint::space::Vec3;
 
+use crate::values::{Fields, Reader, Shape};
+
 /// Appearance of a mechanism, by indices in the lists of the [`Model`](hardpoint::model::Model).
 #[derive(Clone, Debug, Default)]
 pub struct Appearance {
@@ -81,3 +83,10 @@ pub(crate) const FORMS: &[(&str, &str)] = &[
     ("cylinder", "A hydraulic or pneumatic cylinder."),
     ("rod", "A plain rod."),
 ];
+
+/// Shape of a joint with a length in drawings.
+pub(crate) const DRAW: Shape = Shape::Any("Draw", "", &[Shape::Words(FORMS)]);
+/// Shape in drawings.
+pub(super) fn form_of(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Form> {
+    r.word_of(fields, "draw").map(|k| Form::ALL[k])
+}
