@@ -10,7 +10,7 @@ use crate::space::Real;
 use super::Stop;
 use super::assembly::assemble;
 use super::change_point::stand_within_crossing;
-use super::guard::{LONGEST, Steps, even_travel};
+use super::guard::Steps;
 use super::mechanism::Mechanism;
 use super::path::Path;
 use super::path_step::{MOST_BEND, trust};
@@ -78,8 +78,7 @@ impl<'s, 'm> OutputStep<'s, 'm> {
     #[inline(always)]
     fn to(one: &'s mut Stepper<'m>, t: f64) -> Option<Self> {
         let h = t - one.mechanism.saved.time;
-        let is_known = one.guard.knows_a_step() || one.lookahead.is_known;
-        is_known.then_some(Self { one, t, h, is_even: false })
+        one.knows_the_path().then_some(Self { one, t, h, is_even: false })
     }
 }
 
@@ -89,7 +88,7 @@ impl Step for OutputStep<'_, '_> {
     #[inline(always)]
     fn drive(&mut self) -> Result<(), RoughStep> {
         self.one.mechanism.drive(Path::Laws, self.t).map_err(|_| RoughStep)?;
-        if laws_are_resolved(self.one, self.t) { Ok(()) } else { Err(RoughStep) }
+        RoughStep::unless(laws_are_resolved(self.one, self.t))
     }
 
     #[inline(always)]
@@ -111,9 +110,7 @@ impl Step for OutputStep<'_, '_> {
         let Self { h, .. } = *self;
         let Stepper { mechanism, guard, turns, .. } = &mut *self.one;
         let [difference, fastest] = speeds(mechanism, h);
-        if !guard.speeds_are_smooth(difference, fastest) || !contacts_are_near(mechanism) {
-            return Err(RoughStep);
-        }
+        RoughStep::unless(guard.speeds_are_smooth(difference, fastest) && contacts_are_near(mechanism))?;
         let selections = mechanism.selections;
         mechanism.examine_position().map_err(|_| RoughStep)?;
         let steps = Steps { from: mechanism.saved.time, ends: &[self.t] };
@@ -121,11 +118,8 @@ impl Step for OutputStep<'_, '_> {
         let is_even = guard.determinants_are_even(&state.factors, steps, |b, _| [state.determinants[b]]);
         // Determinants of different rows cannot be compared.
         self.is_even = is_even && mechanism.selections == selections;
-        if !self.is_even && guard.knows_a_step() {
-            return Err(RoughStep);
-        }
-        let are_even = turns.as_mut().is_none_or(|turns| turns.is_even(state, h, guard.moved()));
-        if are_even { Ok(()) } else { Err(RoughStep) }
+        RoughStep::unless(self.is_even || !guard.knows_a_step())?;
+        RoughStep::unless(turns.as_mut().is_none_or(|turns| turns.is_even(state, h, guard.moved())))
     }
 
     #[inline(always)]
@@ -141,30 +135,13 @@ impl Step for OutputStep<'_, '_> {
 }
 
 /// True if the output times resolve the laws up to t, where the drivers are already, and no singular position is known
-/// to be near. Records the speed of the fastest driver.
+/// to be near.
 #[inline(always)]
 pub(super) fn laws_are_resolved(one: &mut Stepper<'_>, t: f64) -> bool {
     let Stepper { mechanism, guard, lookahead, .. } = one;
-    let is_even = guard.knows_a_step();
-    // Over the step h max abs(f.) <= 2 (larger of the last two moves) / h: the law is even in between.
-    let most = |[before, now]: [f64; 2]| if is_even { even_travel(f64::max(before, now)) } else { LONGEST };
     let steps = Steps { from: mechanism.saved.time, ends: &[t] };
-    let value = |d: usize| &mechanism.drivers[d][..1];
-    if !guard.laws_are_resolved(mechanism, steps, value, most, &mut lookahead.travel)
-        || !(is_even || lookahead.is_clear())
-    {
-        return false;
-    }
-    note_driver_speeds(one);
-    true
-}
-
-/// Records the speed of the fastest driver.
-#[inline(always)]
-pub(super) fn note_driver_speeds(Stepper { mechanism, guard, .. }: &mut Stepper<'_>) {
-    for (unit, f) in mechanism.driver_units.iter().zip(&mechanism.drivers) {
-        guard.note_driver_speed(f[1].abs() / unit);
-    }
+    let drivers = &mechanism.drivers;
+    guard.laws_are_resolved((mechanism, lookahead), steps, |d| &drivers[d][..1], |d| drivers[d][1].abs())
 }
 
 /// Largest move (rad, or sizes) over a step h, by speed and acceleration.

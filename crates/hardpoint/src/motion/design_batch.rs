@@ -11,7 +11,7 @@ use hardpoint_tape::{LANES, Lanes};
 use crate::blocks::{AlignedLanes, Blocks, ResultBlock, lanes_of};
 use crate::model::{BodyId, VariableId};
 
-use super::advance::{laws_are_resolved, note_driver_speeds};
+use super::advance::laws_are_resolved;
 use super::guard::{StepGuard, Steps};
 use super::kinematics::QUADRATIC;
 use super::mechanism::Mechanism;
@@ -48,10 +48,10 @@ pub(crate) struct DesignBatch<'m> {
     /// Source of programs.
     programs: ProgramOf<'m>,
     /// Tapes with one and two corrections; true if the present designs are set.
-    tapes: [Option<(Tape, bool)>; MOST_CORRECTIONS],
+    tapes: Tapes,
     /// Index of the program of the present step, its solution, and the error of its prediction.
     by: usize,
-    solved: Option<SolveQuality>,
+    solved: SolveQuality,
     missed: f64,
     designs: Vec<Vec<f64>>,
     weights: Weights,
@@ -68,6 +68,13 @@ pub(crate) struct DesignBatch<'m> {
     coordinates: Arc<Vec<AlignedLanes>>,
     derivatives: Vec<AlignedLanes>,
     keeps: bool,
+}
+
+type Tapes = [Option<(Tape, bool)>; MOST_CORRECTIONS];
+
+/// The tape of the present step; true if the present designs are set.
+fn at_work(tapes: &mut Tapes, by: usize) -> &mut (Tape, bool) {
+    tapes[by].as_mut().expect("the tape that is at work")
 }
 
 /// Results at an output time.
@@ -104,7 +111,7 @@ impl<'m> DesignBatch<'m> {
             programs,
             tapes,
             by: MOST_CORRECTIONS - 1,
-            solved: None,
+            solved: SolveQuality::default(),
             missed: 0.0,
             designs: Vec::new(),
             weights: Weights::default(),
@@ -180,10 +187,8 @@ impl<'m> DesignBatch<'m> {
             effort.steps += 1;
             effort.by_program += 1;
             effort.iterations += self.tape().passes();
-            if let Some(SolveQuality { residuals, pivot_ratio }) = self.solved {
-                effort.worst_residual = effort.worst_residual.max(residuals.largest);
-                effort.note_pivots([pivot_ratio].into_iter(), t);
-            }
+            effort.worst_residual = effort.worst_residual.max(self.solved.residuals.largest);
+            effort.note_pivots([self.solved.pivot_ratio].into_iter(), t);
         }
         Some(effort)
     }
@@ -228,12 +233,12 @@ impl Step for DesignStep<'_, '_> {
         // abs(dq_0) <= 1e-9 at the last step: by (26) one correction reaches round-off at the next, too.
         let is_good = *count == NODES && *missed <= GOOD;
         let corrections = if is_good { 1 } else { MOST_CORRECTIONS };
-        *by = corrections - 1;
-        let kept = &mut tapes[*by];
-        if kept.is_none() {
-            *kept = Some((Tape::new(programs(corrections).ok_or(RoughStep)?), false));
+        let made = &mut tapes[corrections - 1];
+        if made.is_none() {
+            *made = Some((Tape::new(programs(corrections).ok_or(RoughStep)?), false));
         }
-        let (tape, knows) = kept.as_mut().ok_or(RoughStep)?;
+        *by = corrections - 1;
+        let (tape, knows) = at_work(tapes, *by);
         if !std::mem::replace(knows, true) {
             tape.set_designs(designs);
         }
@@ -248,11 +253,10 @@ impl Step for DesignStep<'_, '_> {
         let DesignBatch { course, tapes, by, weights, known, times, count, .. } = &mut *self.batch;
         let ahead = [course[self.k].h; LANES];
         weights.set((times.map(|t| t - times[0]), *count), &ahead);
-        if let Some((tape, _)) = &mut tapes[*by] {
-            tape.look_ahead(&weights.of, true, &ahead);
-            for (channel, known) in known.iter().enumerate() {
-                tape.known_mut(channel).copy_from_slice(known);
-            }
+        let (tape, _) = at_work(tapes, *by);
+        tape.look_ahead(&weights.of, true, &ahead);
+        for (channel, known) in known.iter().enumerate() {
+            tape.known_mut(channel).copy_from_slice(known);
         }
         TRUST_FLOOR
     }
@@ -260,25 +264,22 @@ impl Step for DesignStep<'_, '_> {
     fn correct(&mut self, trust: f64) -> Result<(), RoughStep> {
         let states_at = self.batch.states_at(self.k);
         let DesignBatch { tapes, by, missed, solved, states, derivatives, .. } = &mut *self.batch;
-        let (tape, _) = tapes[*by].as_mut().ok_or(RoughStep)?;
+        let (tape, _) = at_work(tapes, *by);
         let states = &mut Arc::get_mut(states).ok_or(RoughStep)?[states_at];
-        *solved = Some(tape.solve(trust, [lanes_of(states), lanes_of(derivatives)])?);
+        *solved = tape.solve(trust, [lanes_of(states), lanes_of(derivatives)])?;
         *missed = tape.missed();
         Ok(())
     }
 
     fn check(&mut self) -> Result<(), RoughStep> {
         let DesignBatch { nominal, tapes, by, times, guard, .. } = &mut *self.batch;
-        let (tape, _) = tapes[*by].as_ref().ok_or(RoughStep)?;
-        if self.k > 0 && !tape.speeds_are_smooth(guard) {
-            return Err(RoughStep);
-        }
+        let (tape, _) = at_work(tapes, *by);
+        RoughStep::unless(self.k == 0 || tape.speeds_are_smooth(guard))?;
         // At the first output time a design with determinants near those of the nominal one is on the same branch.
         let steps = Steps { from: times[0], ends: &[self.t] };
-        match guard.determinants_are_even(&nominal.state.factors, steps, |b, _| tape.determinant(b)) {
-            true => Ok(()),
-            false => Err(RoughStep),
-        }
+        RoughStep::unless(
+            guard.determinants_are_even(&nominal.state.factors, steps, |b, _| tape.determinant(b)),
+        )
     }
 
     fn accept(&mut self) {
@@ -289,13 +290,12 @@ impl Step for DesignStep<'_, '_> {
             *count = 0;
             guard.forget();
         }
-        if let Some((tape, _)) = &tapes[*by] {
-            for (channel, known) in known.iter_mut().enumerate() {
-                // Node n becomes node n + 1, and where the designs are now node 0 of (27).
-                known.copy_within(..(NODES - 1) * ORDERS, ORDERS);
-                for (order, to) in known[..ORDERS].iter_mut().enumerate() {
-                    *to = *tape.channel_lanes(channel, order);
-                }
+        let (tape, _) = at_work(tapes, *by);
+        for (channel, known) in known.iter_mut().enumerate() {
+            // Node n becomes node n + 1, and where the designs are now node 0 of (27).
+            known.copy_within(..(NODES - 1) * ORDERS, ORDERS);
+            for (order, to) in known[..ORDERS].iter_mut().enumerate() {
+                *to = *tape.channel_lanes(channel, order);
             }
         }
         times.rotate_right(1);
@@ -313,10 +313,10 @@ fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
         if nominal.mechanism.drive(Path::Laws, t).is_err() || k > 0 && !laws_are_resolved(nominal, t) {
             break;
         }
-        note_driver_speeds(nominal);
         let Stepper { mechanism, guard, .. } = &mut *nominal;
-        if k > 0 {
-            guard.accept_laws(h);
+        match k {
+            0 => guard.note_driver_speeds(mechanism, |d| mechanism.drivers[d][1].abs()),
+            _ => guard.accept_laws(h),
         }
         mechanism.saved.drivers.copy_from_slice(&mechanism.drivers);
         mechanism.saved.time = t;

@@ -12,6 +12,7 @@ use hardpoint_tape::LANES;
 use crate::linalg::Factors;
 use crate::space::Real;
 
+use super::lookahead::Lookahead;
 use super::mechanism::Mechanism;
 
 /// Maximum difference between speeds after a step and their prediction, as a fraction of the fastest coordinate: for a
@@ -30,7 +31,7 @@ const EVEN: f64 = 2.0;
 /// A driver that moves by less than this between output times, in rad or sizes, rests.
 const RESTS: f64 = 1e-12;
 /// Maximum travel of a driver between output times, rad or sizes: whole turns would look like rest.
-pub(super) const LONGEST: f64 = 1.0;
+const LONGEST: f64 = 1.0;
 /// Number of output times over which the range of a law is evaluated at once.
 const CELL: f64 = 64.0;
 
@@ -141,46 +142,54 @@ impl<const N: usize> StepGuard<N> {
         self.drivers.iter().map(|driver| driver.ahead).sum()
     }
 
-    /// True if the ends of these steps resolve the laws between them. `value` returns the values of a driver at the
-    /// ends; no driver may travel farther between two of them than `most` of the move of the step before and of the
-    /// longest of these. Writes the maximum travel of each driver over all of these steps, rad or m.
+    /// True if the ends of these steps resolve the laws between them, and no singular position is known to be near.
+    /// `values` returns the values of a driver at the ends, and `speed` its largest speed there.
     #[inline(always)]
     pub fn laws_are_resolved<'v>(
         &mut self,
-        mechanism: &Mechanism<'_>,
+        (mechanism, lookahead): (&Mechanism<'_>, &mut Lookahead),
         steps: Steps<'_>,
-        value: impl Fn(usize) -> &'v [f64],
-        most: impl Fn([f64; 2]) -> f64,
-        travel: &mut [f64],
+        values: impl Fn(usize) -> &'v [f64],
+        speed: impl Fn(usize) -> f64,
     ) -> bool {
-        let Some(&to) = steps.ends.last() else { return true };
-        let from = steps.from;
+        let (from, to) = (steps.from, steps.ends[steps.ends.len() - 1]);
         let h = steps.lengths().fold(f64::MIN, f64::max);
         for (d, driver) in self.drivers.iter_mut().enumerate() {
             let (unit, law) = (mechanism.driver_units[d], |from, to| mechanism.parts.fastest(d, from, to));
             let (mut before, mut longest) = (mechanism.saved.drivers[d][0], 0.0_f64);
-            for &value in value(d) {
+            for &value in values(d) {
                 longest = longest.larger((value - before).abs());
                 before = value;
             }
             // max over the steps of abs(f_k - f_k-1) / unit
             driver.ahead = longest / unit;
-            let most = most([driver.moved, driver.ahead]);
-            // h max abs(f.) <= most
+            // A single step is compared with the step before, too; the first of all cannot be compared.
+            let near = match steps.ends.len() {
+                1 => self.step.map(|_| f64::max(driver.moved, driver.ahead)),
+                _ => Some(driver.ahead),
+            };
+            // h max abs(f.) <= 2 max abs(f_k - f_k-1): the law is even in between.
+            let most = near.map_or(LONGEST, |moved| (EVEN * moved).clamp(RESTS, LONGEST));
             let stretch = [from, to, from + CELL * h];
-            let farthest = h / unit * driver.bound.fastest(law, stretch, most * unit / h);
-            if !(farthest <= most) {
+            let travel = h / unit * driver.bound.fastest(law, stretch, most * unit / h);
+            if !(travel <= most) {
                 return false;
             }
-            travel[d] = farthest * unit * ((to - from) / h);
+            lookahead.travel[d] = travel * unit * ((to - from) / h);
         }
-        true
+        let is_clear = self.step.is_some() || lookahead.is_clear();
+        if is_clear {
+            self.note_driver_speeds(mechanism, speed);
+        }
+        is_clear
     }
 
-    /// Records the speed of a driver, in its unit.
+    /// Records the speeds of the drivers.
     #[inline(always)]
-    pub fn note_driver_speed(&mut self, speed: f64) {
-        self.fastest_driver = self.fastest_driver.max(speed);
+    pub fn note_driver_speeds(&mut self, mechanism: &Mechanism<'_>, speed: impl Fn(usize) -> f64) {
+        for (d, unit) in mechanism.driver_units.iter().enumerate() {
+            self.fastest_driver = self.fastest_driver.max(speed(d) / unit);
+        }
     }
 
     /// True if every determinant changes little over each of these steps, and like over the step before.
@@ -206,7 +215,8 @@ impl<const N: usize> StepGuard<N> {
             for (k, scale) in scales[..steps.ends.len()].iter().enumerate() {
                 let now = determinant(b, k);
                 for lane in 0..N {
-                    // r_k = det_k / det_k-1;  r_k in [0.78, 1.28],  abs((r_k - 1) - (r_k-1 - 1) h_k / h_k-1) <= 0.125 (28)
+                    // r_k = det_k / det_k-1 in [0.78, 1.28],                                              (28)
+                    // abs((r_k - 1) - (r_k-1 - 1) h_k / h_k-1) <= 0.125
                     let ratio = factors[b].ratio(now[lane], before[lane]);
                     let changed = ratio - 1.0;
                     // NaN is not even.
@@ -253,10 +263,4 @@ impl<const N: usize> StepGuard<N> {
     pub fn forget(&mut self) {
         self.step = None;
     }
-}
-
-/// Maximum travel of a driver between two output times, of a law that moves by this much from one to the next.
-#[inline(always)]
-pub(super) fn even_travel(moved: f64) -> f64 {
-    (EVEN * moved).clamp(RESTS, LONGEST)
 }

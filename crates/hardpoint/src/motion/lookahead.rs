@@ -1,8 +1,8 @@
 //! Lookahead along a path: the longest step that stays clear of singular positions, and the prediction to its end.
 //!
 //! A step is measured in travel of the drivers, not in time: the range of each law over the step is known
-//! ([`crate::law::Law::over`]), so a law that hurries, rests, turns round or pulses between two output times is followed
-//! all the same. The position is predicted along the drivers, too, so kinks of laws need no care.
+//! ([`crate::law::Law::over`]), so a law that hurries, rests, turns round or pulses between two output times is
+//! followed all the same. The position is predicted along the drivers, too, so kinks of laws need no care.
 
 use crate::model::Contact;
 use crate::space::Real;
@@ -25,7 +25,7 @@ pub(super) const LONGEST: f64 = 1.0;
 const LONGEST_MOVE: f64 = 2.0;
 
 /// Knowledge of the path ahead of the accepted position, with the travel of the step considered.
-pub(super) struct Lookahead {
+pub(crate) struct Lookahead {
     /// True if the surroundings of the accepted position are known.
     pub is_known: bool,
     /// Surroundings of the accepted position, and of the far end of a step.

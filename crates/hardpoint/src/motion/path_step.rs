@@ -43,13 +43,9 @@ impl<'s, 'm> PathStep<'s, 'm> {
 
     /// Solves the position at the end of the step, without accepting it.
     pub fn solve(mut self) -> Result<(), StepRejection> {
-        self.set_drivers()?;
+        self.one.mechanism.drive(self.path, self.t)?;
         let trust = self.predict();
         self.correct(trust)
-    }
-
-    fn set_drivers(&mut self) -> Result<(), StepRejection> {
-        self.one.mechanism.drive(self.path, self.t)
     }
 
     /// Checks the distance between the contacts of curves and their prediction.
@@ -84,7 +80,7 @@ impl Step for PathStep<'_, '_> {
         }
         self.one.lookahead.measure_travel(&self.one.mechanism, path, h);
         self.selections = self.one.mechanism.selections;
-        self.set_drivers()
+        self.one.mechanism.drive(path, self.t)
     }
 
     fn predict(&mut self) -> f64 {

@@ -31,7 +31,7 @@ const LOADS: usize = 2;
 
 /// Neighbourhood of a position: the response of the mechanism to its drivers.
 #[derive(Clone, Debug)]
-pub(super) struct Surroundings {
+pub(crate) struct Surroundings {
     /// Per direction and block: the inverse distance to the nearest singular position, per unit of the direction.
     /// 1/rho of (22), per rad or m of the driver.
     nearness: Vec<Vec<f64>>,
@@ -53,7 +53,7 @@ pub(super) struct Surroundings {
 
 /// A singular position ahead, by the series of one block's response along a direction.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SingularityAhead {
+pub(crate) struct SingularityAhead {
     /// The block that becomes singular.
     pub block: BlockId,
     /// Distance ahead, in units of the direction; negative if the position is behind.

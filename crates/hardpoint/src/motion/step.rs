@@ -47,3 +47,11 @@ pub(super) fn take<S: Step>(mut step: S) -> Result<(), S::Rejection> {
 /// Step over which the motion is too rough, or of which the program is not valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RoughStep;
+
+impl RoughStep {
+    /// Rejects a step unless it is smooth.
+    #[inline(always)]
+    pub fn unless(is_smooth: bool) -> Result<(), Self> {
+        if is_smooth { Ok(()) } else { Err(Self) }
+    }
+}

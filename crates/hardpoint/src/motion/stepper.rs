@@ -73,6 +73,12 @@ impl<'m> Stepper<'m> {
         self.lookahead.is_known = false;
     }
 
+    /// True if something is known of the path ahead.
+    #[inline(always)]
+    pub(super) fn knows_the_path(&self) -> bool {
+        self.guard.knows_a_step() || self.lookahead.is_known
+    }
+
     /// Forgets how the accepted position was reached, and the path ahead.
     pub(super) fn forget(&mut self) {
         self.predictor.forget();

@@ -41,7 +41,7 @@ pub(crate) struct Tape {
 }
 
 /// Quality of a solution.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolveQuality {
     pub residuals: Residuals,
     /// The smallest pivot ratio of all blocks.

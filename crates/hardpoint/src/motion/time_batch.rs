@@ -11,7 +11,7 @@ use hardpoint_tape::{LANES, Lanes};
 use crate::blocks::{AlignedLanes, ResultBlock, lanes_of};
 
 use super::execution::{ProgramMemory, Runnable};
-use super::guard::{Steps, even_travel};
+use super::guard::Steps;
 use super::kinematics::QUADRATIC;
 use super::margin::Margin;
 use super::mechanism::{AcceptedPosition, Mechanism};
@@ -103,8 +103,7 @@ impl<'p> TimeBatch<'p> {
         let (first, group) = (k % LANES, k - k % LANES);
         let last = usize::min(times.len() - group, LANES) - 1;
         let count = last + 1 - first;
-        let is_known = one.guard.knows_a_step() || one.lookahead.is_known;
-        if self.programs.is_none() || count < FEWEST || !is_known {
+        if self.programs.is_none() || count < FEWEST || !one.knows_the_path() {
             return 0;
         }
         if self.wait > 0 {
@@ -166,7 +165,16 @@ impl<'p> TimeBatch<'p> {
             }
             own.each_mut().map(|own| lanes_of(own))
         });
-        Some(TimeStep { one, tape, laws, weights, results, times, lanes: [first, last], solved: None })
+        Some(TimeStep {
+            one,
+            tape,
+            laws,
+            weights,
+            results,
+            times,
+            lanes: [first, last],
+            solved: SolveQuality::default(),
+        })
     }
 }
 
@@ -181,7 +189,7 @@ struct TimeStep<'s, 'm> {
     times: &'s Lanes,
     /// First and last lane of the new output times.
     lanes: [usize; 2],
-    solved: Option<SolveQuality>,
+    solved: SolveQuality,
 }
 
 impl Step for TimeStep<'_, '_> {
@@ -194,18 +202,9 @@ impl Step for TimeStep<'_, '_> {
         let steps = Steps { from: self.one.mechanism.saved.time, ends: &self.times[first..=last] };
         let Stepper { mechanism, guard, lookahead, .. } = &mut *self.one;
         let tape = &*self.tape;
-        let value = |d: usize| &tape.driver(d, 0)[first..=last];
-        // h max abs(f.) <= 2 max abs(f_k - f_k-1), h the longest of the new steps
-        let most = |[_, now]: [f64; 2]| even_travel(now);
-        if !guard.laws_are_resolved(mechanism, steps, value, most, &mut lookahead.travel)
-            || !(guard.knows_a_step() || lookahead.is_clear())
-        {
-            return Err(RoughStep);
-        }
-        for (d, unit) in mechanism.driver_units.iter().enumerate() {
-            guard.note_driver_speed(largest(&tape.driver(d, 1).map(f64::abs)) / unit);
-        }
-        Ok(())
+        let values = |d: usize| &tape.driver(d, 0)[first..=last];
+        let speed = |d: usize| largest(&tape.driver(d, 1).map(f64::abs));
+        RoughStep::unless(guard.laws_are_resolved((mechanism, lookahead), steps, values, speed))
     }
 
     #[inline(always)]
@@ -225,7 +224,7 @@ impl Step for TimeStep<'_, '_> {
 
     #[inline(always)]
     fn correct(&mut self, trust: f64) -> Result<(), RoughStep> {
-        self.solved = Some(self.tape.solve(trust, self.results.each_mut().map(|part| &mut **part))?);
+        self.solved = self.tape.solve(trust, self.results.each_mut().map(|part| &mut **part))?;
         Ok(())
     }
 
@@ -244,9 +243,8 @@ impl Step for TimeStep<'_, '_> {
             });
         if !is_smooth {
             self.tape.refuse();
-            return Err(RoughStep);
         }
-        Ok(())
+        RoughStep::unless(is_smooth)
     }
 
     /// Moves the stepper to the position in the last lane, after all new lanes.
@@ -268,11 +266,10 @@ impl Step for TimeStep<'_, '_> {
         effort.steps += count;
         effort.by_program += count;
         effort.iterations = mechanism.state.iterations;
-        if let Some(SolveQuality { residuals, pivot_ratio }) = self.solved {
-            mechanism.saved.residual = residuals.scaled;
-            effort.worst_residual = effort.worst_residual.max(residuals.largest);
-            effort.note_pivots([pivot_ratio].into_iter(), self.times[last]);
-        }
+        let SolveQuality { residuals, pivot_ratio } = self.solved;
+        mechanism.saved.residual = residuals.scaled;
+        effort.worst_residual = effort.worst_residual.max(residuals.largest);
+        effort.note_pivots([pivot_ratio].into_iter(), self.times[last]);
     }
 }
 
