@@ -10,7 +10,7 @@ use crate::linalg::Elimination;
 use crate::measure::{Instant, StepValues, bodies_asked_for};
 use crate::model::element::Compliance;
 use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, NumberId, VariableId, WheelId};
-use crate::motion::stepper::Stepper;
+use crate::motion::mechanism::Mechanism;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{PairDirection, Seconds};
 use crate::space::{Mat3, Pose, Twist, Vec3};
@@ -36,7 +36,7 @@ struct Changed {
     geometry: Geometry<Number>,
 }
 
-/// Evaluates compliances at the position of a stepper, for one design.
+/// Evaluates compliances at the position of a mechanism, for one design.
 pub(crate) struct Compliances<'a> {
     model: &'a Model,
     asked: Vec<usize>,
@@ -128,12 +128,12 @@ impl<'a> Compliances<'a> {
     }
 
     /// Adds the results at time t; `near` are approximate coordinates of the elements, for counting turns.
-    pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, near: &[f64], out: &mut StepValues) {
-        self.seconds.solve(stepper, t);
+    pub fn add(&mut self, mechanism: &mut Mechanism<'_>, t: f64, near: &[f64], out: &mut StepValues) {
+        self.seconds.solve(mechanism, t);
         // Includes the redundant rows, which the motion is not solved with.
-        stepper.state.finish_wrenches(&stepper.topology);
+        mechanism.state.finish_wrenches(&mechanism.topology);
         for (way, resistance) in self.resistance.iter_mut().enumerate() {
-            *resistance = self.seconds.resistance(stepper, way);
+            *resistance = self.seconds.resistance(mechanism, way);
         }
         self.near.clear();
         self.near.extend(near.iter().map(|x| Number::constant(Dual::constant(*x))));
@@ -141,9 +141,9 @@ impl<'a> Compliances<'a> {
             for (way, poses) in self.poses.iter_mut().enumerate() {
                 for &body in &self.bodies {
                     poses[body] = if by < self.variables {
-                        self.seconds.pose(&stepper.state, by * self.ways.len() + way, body)
+                        self.seconds.pose(&mechanism.state, by * self.ways.len() + way, body)
                     } else {
-                        self.seconds.pose_along(&stepper.state, way, body)
+                        self.seconds.pose_along(&mechanism.state, way, body)
                     };
                 }
             }

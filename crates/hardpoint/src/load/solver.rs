@@ -85,13 +85,14 @@ impl<'a> LoadSolver<'a> {
 
     /// Evaluates the loads at the position of a stepper at time t, from velocity and acceleration.
     pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) {
-        let (topology, state) = (&one.topology, &mut one.state);
+        let Stepper { mechanism, turns, .. } = one;
+        let (topology, state) = (&mechanism.topology, &mut mechanism.state);
         let model = self.model;
-        self.bodies.stand(state, |d| one.parts.law_of(d).at(t).d());
+        self.bodies.stand(state, |d| mechanism.parts.law_of(d).at(t).d());
         for (law, element) in self.bodies.now.laws.iter_mut().zip(&model.elements) {
             *law = element.kind.law(model).map_or(1.0, |law| law.at(t).value());
         }
-        self.follow_turns(&state.q, one.turns.as_ref().map_or(&[], |turns| &turns.values));
+        self.follow_turns(&state.q, turns.as_ref().map_or(&[], |turns| &turns.values));
         self.bodies.now.friction.fill(0.0);
         self.bodies.carry(topology, state, (model, &self.geometry));
         if self.judges || !self.friction.is_empty() {

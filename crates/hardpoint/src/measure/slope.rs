@@ -11,8 +11,8 @@ use crate::model::{
     of_bodies,
 };
 use crate::motion::kinematics::State;
+use crate::motion::mechanism::Mechanism;
 use crate::motion::step_program::RecordedStep;
-use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real, record as recording};
 use crate::sensitivity::{PairDirection, Seconds};
 use crate::space::{Mat3, Pose, Vec3};
@@ -85,11 +85,11 @@ impl<'a> Slopes<'a> {
     }
 
     /// Writes the results at time t, the one that was begun last.
-    pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, out: &mut StepValues) {
-        self.seconds.solve(stepper, t);
+    pub fn add(&mut self, mechanism: &mut Mechanism<'_>, t: f64, out: &mut StepValues) {
+        self.seconds.solve(mechanism, t);
         let variables = self.variables;
         let enter = |k, by, x: Dual| if by < variables { out.set_d(by, k, x.d) } else { out.set(k, x.v) };
-        self.measure(&stepper.state, enter);
+        self.measure(&mechanism.state, enter);
     }
 }
 

@@ -311,11 +311,11 @@ impl<'a> AdjointSolver<'a> {
         resisting: &mut [Resistance],
         result: &mut Gradients,
     ) {
-        self.adjoint.set_time(stepper, t);
+        self.adjoint.set_time(&stepper.mechanism, t);
         if let Some((loads, _)) = &mut self.loads {
             loads.step(stepper, t);
         }
-        let (topology, state) = (&stepper.topology, &mut stepper.state);
+        let (topology, state) = (&stepper.mechanism.topology, &mut stepper.mechanism.state);
         state.finish_rates(topology);
         self.differentiate(state);
         let first = result.times.len() * self.asked.len();

@@ -131,20 +131,20 @@ impl Analysis<'_> {
                         window.slopes.begin();
                     }
                     if let Some(found) = &mut slopes {
-                        found.add(one, times[0], &mut window.slopes);
+                        found.add(&mut one.mechanism, times[0], &mut window.slopes);
                     }
                     if let Some(loads) = loads {
                         loads.enter(&mut window.slopes);
                         if let Some(compliances) = &mut compliances {
-                            compliances.add(one, times[0], loads.near(), &mut window.slopes);
+                            compliances.add(&mut one.mechanism, times[0], loads.near(), &mut window.slopes);
                         }
                     }
-                    window.motion.coordinates.set(k, 0, one.coordinates());
+                    window.motion.coordinates.set(k, 0, one.mechanism.coordinates());
                     if let Some(turns) = &one.turns {
                         window.motion.counted.extend_from_slice(&turns.values);
                     }
                     if measures {
-                        window.motion.margins.push(margins.at(&one.topology, &one.state));
+                        window.motion.margins.push(margins.at(&one.mechanism.topology, &one.mechanism.state));
                     }
                 }
                 SolvedSteps::Batch(tape, lanes, turns) => {

@@ -25,7 +25,7 @@ use crate::law::Law;
 use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::{Flow, carried};
-use crate::motion::stepper::LOCKED;
+use crate::motion::mechanism::LOCKED;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, LinkId, RowId, RowTerm, Topology};
 

@@ -20,7 +20,7 @@ use crate::law::Law;
 use crate::model::{DriverId, JointId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::turn_twists;
-use crate::motion::stepper::Stepper;
+use crate::motion::mechanism::Mechanism;
 use crate::number::{Dual, Real, record as recording};
 use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, LinkId, RowId, SetBy, Topology};
@@ -185,9 +185,9 @@ impl Seconds {
         Self::of_fields(design_map.model(), topology, &fields, pairs)
     }
 
-    /// Solves all pairs at the position of a stepper and time t.
-    pub fn solve(&mut self, stepper: &mut Stepper<'_>, t: f64) {
-        let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
+    /// Solves all pairs at the position of a mechanism and time t.
+    pub fn solve(&mut self, mechanism: &mut Mechanism<'_>, t: f64) {
+        let (topology, state, parts) = (&mechanism.topology, &mut mechanism.state, &mechanism.parts);
         self.firsts.iter_mut().for_each(|first| first.field.set_time(|d| parts.law_of(d.0), t));
         self.pairs.iter_mut().for_each(|pair| pair.set_time(t));
         self.solve_at(topology, state);
@@ -195,8 +195,8 @@ impl Seconds {
 
     /// Defects of the redundant rows along a single direction, at the position of the last [`solve`](Self::solve);
     /// empty if the mechanism follows it.
-    pub fn resistance(&self, stepper: &Stepper<'_>, direction: usize) -> Vec<(RowId, f64)> {
-        let (topology, state) = (&stepper.topology, &stepper.state);
+    pub fn resistance(&self, mechanism: &Mechanism<'_>, direction: usize) -> Vec<(RowId, f64)> {
+        let (topology, state) = (&mechanism.topology, &mechanism.state);
         let FirstOrder { field, direct, .. } = &self.firsts[direction];
         match direct.worst_defect(topology, state, field) {
             Some(_) => direct.defects(topology, state, field).collect(),
