@@ -14,6 +14,7 @@
 //! | [`compare`] | `compare.json`, `.csv` and `.html`: comparison of two model files |
 //! | [`optimize`] | result of an optimisation: `summary.json` and tables |
 //! | [`tolerance`] | tolerance study: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
+//! | [`study`] | facts that several studies have |
 //! | [`sweep`], [`cells`] | result of a sweep: `summary.json`, and the columns of `designs` and `curves` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
 //! | [`columns`] | columns of the result files |
@@ -43,7 +44,9 @@ pub mod npy;
 pub mod optimize;
 pub mod page;
 pub mod payload;
+mod record;
 mod shifts;
+pub mod study;
 pub mod summary;
 pub mod sweep;
 pub mod tolerance;
