@@ -500,7 +500,7 @@ fn summary_text(summary: &Summary) -> String {
     let mut out = format!("{}\n{}{}", text::bold(&model.name), text::pairs(&rows), text::notes(summary));
     let assembly = summary.assembly.iter().flat_map(|a| a.tables());
     let metrics = MetricFact::table(&summary.metrics).into_iter();
-    let trusted = ValidityFact::table(summary).into_iter();
+    let trusted = summary.validity_table().into_iter();
     for table in assembly.chain(metrics).chain(trusted).chain(largest(summary).filter(|_| steps.solved > 0)) {
         out += &text::section(&table);
     }

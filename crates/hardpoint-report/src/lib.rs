@@ -14,6 +14,7 @@
 //! | [`compare`] | `compare.json`, `.csv` and `.html`: comparison of two model files |
 //! | [`optimize`] | result of an optimisation: `summary.json` and tables |
 //! | [`tolerance`] | tolerance study: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
+//! | [`study`] | facts that several studies have |
 //! | [`sweep`], [`cells`] | result of a sweep: `summary.json`, and the columns of `designs` and `curves` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
 //! | [`payload`], [`page`], [`encoding`] | `report.html` |
@@ -37,7 +38,9 @@ pub mod metric;
 pub mod optimize;
 pub mod page;
 pub mod payload;
+mod record;
 mod shifts;
+pub mod study;
 pub mod summary;
 pub mod sweep;
 pub mod tolerance;

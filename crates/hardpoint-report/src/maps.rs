@@ -9,8 +9,7 @@ use hardpoint_study::grid::{GridMap, GridStop};
 use hardpoint_table::csv::CsvWriter;
 use serde::Serialize;
 
-use crate::figures::variable_unit;
-use crate::figures::{number, per, unit, with_unit};
+use crate::figures::{number, per, unit, variable_unit, with_unit};
 use crate::page::{Curve, GridDriver, GridMap as GridPage, GridQuantity, GridSensitivity, Payload, Table};
 
 /// Maximum number of derivatives of a map on a page: about 2 MB.

@@ -37,7 +37,6 @@ use crate::page::{
     Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
-use crate::validity::ValidityFact;
 
 /// Approximate maximum number of output times on a page.
 const MOST_STEPS: usize = 1000;
@@ -205,7 +204,7 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
         checks: MetricFact::table(&summary.metrics)
             .into_iter()
             .chain(summary.assembly.iter().flat_map(|a| a.tables()))
-            .chain(ValidityFact::table(summary))
+            .chain(summary.validity_table())
             .chain(summary.model.tables())
             .collect(),
         model: Some(ModelText {

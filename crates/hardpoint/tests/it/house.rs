@@ -27,7 +27,7 @@ const ROOMS: [&str; 18] = [
 
 /// The rooms of the crate that reads model files: values of a text, one table from several texts, its sections, and
 /// files written.
-const ROOMS_OF_FILES: [&str; 6] = ["units", "csv_table", "values", "compose", "read", "write"];
+const ROOMS_OF_FILES: [&str; 4] = ["values", "compose", "read", "write"];
 
 /// Crates with rooms, by the paths of their sources, and the minimum number of files there.
 const HOUSES: [(&str, &[&str], usize); 2] =
