@@ -36,7 +36,6 @@ const LONGEST: f64 = 1.0;
 const CELL: f64 = 64.0;
 
 /// Guard of the steps of one design, or of one design per lane.
-#[derive(Clone)]
 pub(crate) struct StepGuard<const N: usize> {
     blocks: Vec<BlockGuard<N>>,
     drivers: Vec<DriverGuard>,
