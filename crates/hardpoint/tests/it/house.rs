@@ -213,7 +213,7 @@ const IN_CIRCLES: [(&str, usize); 10] = [
     ("draft", 3),
     ("expression", 2),
     ("law", 6),
-    ("load", 4),
+    ("load", 3),
     ("model", 3),
     ("motion", 5),
     ("number", 2),
