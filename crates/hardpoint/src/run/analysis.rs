@@ -332,7 +332,7 @@ impl<'m> Analysis<'m> {
                     let fields = recording::strictly(|| self.design_map.fields(values));
                     record_derivatives(self.model(), &fields, topology, state, |by| {
                         if let Some(loads) = &mut loads {
-                            loads.differentiate(by);
+                            loads.differentiate(&by);
                         }
                     })?
                 } else {

@@ -204,7 +204,7 @@ impl<'a> Walk<'a> {
             let found = |variable, body, found: &_| sink.sensitivity(k, variable, body, found);
             solver.step(&mut self.one, t, found, |by| {
                 if let Some(loads) = loads {
-                    loads.differentiate(by);
+                    loads.differentiate(&by);
                 }
             });
         }

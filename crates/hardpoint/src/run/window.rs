@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use hardpoint_tape::LANES;
 
-use crate::load::{Compliances, LoadSolver};
+use crate::load::{Compliances, LoadSolver, load_measures};
 use crate::measure::{self, Slopes, StepValues};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
@@ -104,7 +104,9 @@ impl Analysis<'_> {
             false => Walk::by_programs(self, design, wanted, (measures, slopes.is_some(), loads)),
         };
         if loads {
-            walk.loads = Some(LoadSolver::new(self.design_map(), topology, &design.values, sensitive));
+            let measures = load_measures(model);
+            let solver = LoadSolver::new(self.design_map(), topology, &design.values, measures, sensitive);
+            walk.loads = Some(solver);
         }
         let rows = usize::min(rows, model.times.len());
         let mut sensitivities = std::mem::take(&mut solution.sensitivities);

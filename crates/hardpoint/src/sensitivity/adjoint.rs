@@ -46,6 +46,14 @@ impl<T: Real> Turning<T> {
             pulls: vec![T::zero(); topology.coordinates.len()],
         }
     }
+
+    /// Adds `k` times the loads of `other`.
+    pub fn add_times(&mut self, other: &Self, k: T) {
+        let wrenches = self.starts.iter_mut().chain(self.ends.as_flattened_mut());
+        let others = other.starts.iter().chain(other.ends.as_flattened());
+        wrenches.zip(others).for_each(|(to, from)| *to = from.times_plus(k, *to));
+        self.pulls.iter_mut().zip(&other.pulls).for_each(|(to, from)| *to = from.times_plus(k, *to));
+    }
 }
 
 /// Support of loads on some bodies: the bodies from there to ground, and the variables that change something between

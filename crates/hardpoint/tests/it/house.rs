@@ -226,7 +226,7 @@ const IN_CIRCLES: [(&str, usize); 9] = [
     ("draft", 3),
     ("expression", 2),
     ("law", 6),
-    ("load", 4),
+    ("load", 3),
     ("model", 3),
     ("number", 2),
     ("run", 3),
