@@ -11,7 +11,7 @@ use hardpoint::model::{CaseId, Change, OutputSource, VariableId};
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
-use hardpoint_report::facts::variable_unit;
+use hardpoint_report::figures::variable_unit;
 use hardpoint_report::figures::{order_unit, symbol, unit};
 use hardpoint_study::Motions;
 use hardpoint_study::whatif::{add_coordinates, add_tilts};

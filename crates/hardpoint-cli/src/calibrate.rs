@@ -76,11 +76,7 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
     if session.is_json() {
         session.print_json(&facts);
     } else {
-        let mut out = format!("\n{}", text::pairs(&facts.rows()));
-        for table in facts.tables() {
-            out += &text::section(&table);
-        }
-        text::print(&out);
+        text::print(&text::study(facts.rows(), facts.seconds, &facts.tables()));
         text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
         text::print(
             &saved.ok().flatten().map_or(String::new(), |path| format!("saved: {}\n", path.display())),

@@ -69,7 +69,7 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
     if session.is_json() {
         session.print_json(facts);
     } else {
-        text::print(&facts_text(facts));
+        text::print(&text::study(facts.rows(), facts.seconds, &facts.tables()));
         let written = written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display()));
         text::print(&written);
         session.tell(&file, &facts.diagnostics);
@@ -179,14 +179,4 @@ impl Study for Search<'_> {
             |page, today: &Solution| self.facts.page(page, analysis.model(), &today.measured.outputs);
         page(self.file, analysis, Some(&found), finish)
     }
-}
-
-fn facts_text(facts: &OptimizeFacts) -> String {
-    let mut rows = facts.rows();
-    rows.push(("time taken", facts.time_line()));
-    let mut out = format!("\n{}", text::pairs(&rows));
-    for table in facts.tables() {
-        out += &text::section(&table);
-    }
-    out
 }

@@ -8,9 +8,9 @@ use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
-use hardpoint_report::optimize::case_name;
 use hardpoint_report::page::Payload;
 use hardpoint_report::payload::{ChangedDesign, Request, report};
+use hardpoint_report::study::case_name;
 use hardpoint_report::summary::Summary;
 use hardpoint_study::Motions;
 

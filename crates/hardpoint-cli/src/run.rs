@@ -12,13 +12,13 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::GENERATOR;
 use hardpoint_report::columns::Columns;
 use hardpoint_report::course::Course;
-use hardpoint_report::csv::JerkCsv;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
 use hardpoint_report::maps::MapFact;
 use hardpoint_report::metric::MetricFact;
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::{Request, report, stride_of_marks};
+use hardpoint_report::results::JerkCsv;
 use hardpoint_report::summary::{RunStatus, Summary};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_study::difference::{Difference, DifferenceScheme, finite_differences_each};
@@ -500,7 +500,7 @@ fn summary_text(summary: &Summary) -> String {
     let mut out = format!("{}\n{}{}", text::bold(&model.name), text::pairs(&rows), text::notes(summary));
     let assembly = summary.assembly.iter().flat_map(|a| a.tables());
     let metrics = MetricFact::table(&summary.metrics).into_iter();
-    let trusted = ValidityFact::table(summary).into_iter();
+    let trusted = summary.validity_table().into_iter();
     for table in assembly.chain(metrics).chain(trusted).chain(largest(summary).filter(|_| steps.solved > 0)) {
         out += &text::section(&table);
     }

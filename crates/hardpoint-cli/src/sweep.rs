@@ -42,7 +42,11 @@ fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
     if session.is_json() {
         session.print_json(&facts);
     } else {
-        text::print(&format!("{}\n{}", text::bold(&file.model.name), facts_text(&facts)));
+        text::print(&format!(
+            "{}\n{}",
+            text::bold(&file.model.name),
+            text::study(facts.rows(), facts.seconds, &facts.tables())
+        ));
         text::print(&written.map_or(String::new(), |path| format!("\nwritten: {path}\n")));
     }
     Ok(match facts.status {
@@ -315,16 +319,6 @@ impl Study for Pages<'_> {
         };
         page(self.swept.file, &self.swept.motions.analyses()[motion], None, finish)
     }
-}
-
-fn facts_text(facts: &SweepFacts) -> String {
-    let mut rows = facts.rows();
-    rows.push(("time taken", facts.time_line()));
-    let mut out = format!("\n{}", text::pairs(&rows));
-    for table in facts.tables() {
-        out += &text::section(&table);
-    }
-    out
 }
 
 impl Method {

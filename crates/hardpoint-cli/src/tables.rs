@@ -8,10 +8,10 @@ use hardpoint::sensitivity::Admissibility;
 use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::cells::Cells;
 use hardpoint_report::columns::{Column, Columns};
-use hardpoint_report::csv::{MotionCsv, SensitivityCsv, without_variables};
-use hardpoint_report::facts::variable_unit;
 use hardpoint_report::figures::bytes;
+use hardpoint_report::figures::variable_unit;
 use hardpoint_report::npy::{Npy, Sidecar, add_motion, add_sensitivities};
+use hardpoint_report::results::{MotionCsv, SensitivityCsv, without_variables};
 
 use crate::args::{Format, Orientation, Run};
 use crate::folder::{Folder, PendingFile, WriteError};

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::sync::{Mutex, PoisonError};
 
 use comfy_table::{Cell, ColumnConstraint, ContentArrangement, LineStyle, TableStyle, Width};
-use hardpoint_report::figures::is_odd;
+use hardpoint_report::figures::{is_odd, seconds};
 use hardpoint_report::margin::MarginFact;
 use hardpoint_report::page::Table;
 use hardpoint_report::summary::Summary;
@@ -109,6 +109,12 @@ pub fn error(code: &str, message: &str, note: &str, help: &str) -> String {
 pub fn pairs(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
     rows.iter().map(|(label, value)| format!("  {label:width$}  {}\n", shown(value))).collect()
+}
+
+/// Result of a study: its labelled lines with the duration, s, and its tables.
+pub fn study(mut rows: Vec<(&str, String)>, duration: f64, tables: &[Table]) -> String {
+    rows.push(("time taken", seconds(duration)));
+    format!("\n{}{}", pairs(&rows), tables.iter().map(section).collect::<String>())
 }
 
 /// Notes, one per line, after an empty line.

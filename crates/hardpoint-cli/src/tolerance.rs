@@ -48,7 +48,11 @@ fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outco
     if session.is_json() {
         session.print_json(facts);
     } else {
-        text::print(&format!("{}\n{}", text::bold(&file.model.name), facts_text(facts)));
+        text::print(&format!(
+            "{}\n{}",
+            text::bold(&file.model.name),
+            text::study(facts.rows(), facts.seconds, &facts.tables())
+        ));
         text::print(&written.map_or(String::new(), |path| format!("\nwritten: {}\n", path.display())));
     }
     Ok(if found.interrupted { Outcome::Interrupted } else { Outcome::Done })
@@ -158,14 +162,4 @@ impl Study for Results<'_> {
             |page, today: &Solution| self.studied.page(&self.facts, motion, page, &today.measured.outputs);
         page(self.studied.file, &self.motions.analyses()[motion], None, finish)
     }
-}
-
-fn facts_text(facts: &ToleranceFacts) -> String {
-    let mut rows = facts.rows();
-    rows.push(("time taken", facts.time_line()));
-    let mut out = format!("\n{}", text::pairs(&rows));
-    for table in facts.tables() {
-        out += &text::section(&table);
-    }
-    out
 }

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::io;
 
-use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{LengthUnit, ModelFile};
+use hardpoint_table::csv::CsvWriter;
 
 use crate::{ExportedModel, Format, number};
 

@@ -6,17 +6,17 @@ use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
 use hardpoint::model::Reading;
 use hardpoint::model::{DriverId, Model};
-use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{MeasuredData, ModelFile, Units};
 use hardpoint_study::calibrate::{
     Calibration, FittedReading, Loss, NextReading, Status, UnidentifiableChange,
 };
+use hardpoint_table::csv::CsvWriter;
 use serde::Serialize;
 
-use crate::facts::variable_unit;
-use crate::figures::{count, number, rounded, seconds, some_of, symbol, unit, with_unit};
-use crate::optimize::{Evaluations, MovedHardpoint, moved};
+use crate::figures::{count, number, rounded, seconds, some_of, symbol, unit, variable_unit, with_unit};
 use crate::page::{Curve, Fact, Payload, SweepAxis, SweepPlot, Table};
+use crate::record::{Column, record, write_rows};
+use crate::study::{Evaluations, MovedHardpoint};
 
 /// Residuals of more standard deviations than this are reported; about three of a thousand normal residuals are.
 const FAR: f64 = 3.0;
@@ -29,107 +29,6 @@ const FITS: f64 = 4.0;
 /// Components of an unidentifiable direction below this fraction are not shown.
 const SLIGHT: f64 = 1e-4;
 
-/// Result of a calibration, in the model's units. Serialised as `summary.json` of `hardpoint calibrate`.
-#[derive(Clone, Debug, Serialize)]
-pub struct CalibrateFacts {
-    /// Program and version.
-    pub generator: String,
-    /// Kind of study.
-    pub study: &'static str,
-    /// Name of the model.
-    pub model: String,
-    /// Name of the model file.
-    pub file: String,
-    /// Name of the measurement file.
-    pub data: String,
-    /// Status at the end: `found`, `not_told` (found, but the readings do not determine all variables),
-    /// `iteration_limit` or `interrupted`.
-    pub status: &'static str,
-    /// Status in words, with an instruction.
-    pub message: String,
-    /// Objective of the nominal and the fitted design: sum of squared residuals, or of the loss, in standard
-    /// deviations.
-    pub objective: [f64; 2],
-    /// Cost of the search.
-    pub evaluations: Evaluations,
-    /// Number of compared readings.
-    pub readings: usize,
-    /// Number of postures of these readings.
-    pub postures: usize,
-    /// Degrees of freedom: readings minus determined directions.
-    pub freedom: usize,
-    /// Standard deviation of the residuals: relative to the given standard deviations, where 1 is expected, otherwise
-    /// in `scatter_unit`.
-    pub scatter: Option<f64>,
-    /// Unit of `scatter`; empty if standard deviations are given.
-    pub scatter_unit: String,
-    /// Fitted variables.
-    pub variables: Vec<CalibratedVariable>,
-    /// Pairs of variables that the readings hardly distinguish, with their correlation.
-    pub together: Vec<(String, String, f64)>,
-    /// Changes that the readings do not determine.
-    pub untold: Vec<UnidentifiableFact>,
-    /// Variables that the mechanism cannot follow. They keep their design values.
-    pub left_out: Vec<String>,
-    /// Drivers without a column in the measurement file. They stay in the design configuration.
-    pub as_drawn: Vec<String>,
-    /// Hardpoints that the fitted design moves.
-    pub hardpoints: Vec<MovedHardpoint>,
-    /// Readings with large residuals, the largest first.
-    pub far_off: Vec<LargeResidual>,
-    /// Number of readings with large residuals.
-    pub far_off_count: usize,
-    /// Postures that the nominal design does not reach. Their readings are left out.
-    pub not_reached: Vec<NotReachedFact>,
-    /// Proposed further readings, the most informative first.
-    pub next: Vec<NextFact>,
-    /// Written files.
-    pub files: Vec<String>,
-    /// Duration, s.
-    pub seconds: f64,
-}
-
-/// Fitted variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct CalibratedVariable {
-    /// Name.
-    pub name: String,
-    /// Unit.
-    pub unit: String,
-    /// Nominal value: the value of a parameter, 0 for all other variables.
-    pub start: f64,
-    /// Fitted value: the value of a parameter, the change of all other variables.
-    pub end: f64,
-    /// Standard deviation; `null` if the readings do not determine it.
-    pub sigma: Option<f64>,
-}
-
-/// A change that the readings do not determine.
-#[derive(Clone, Debug, Serialize)]
-pub struct UnidentifiableFact {
-    /// Changed variables with their changes and units; the largest change is 1.
-    pub variables: Vec<(String, f64, String)>,
-    /// Standard deviation as a multiple of that change; `null` if the readings do not determine it at all.
-    pub sigma: Option<f64>,
-}
-
-/// Reading with a large residual.
-#[derive(Clone, Debug, Serialize)]
-pub struct LargeResidual {
-    /// Line of the measurement file.
-    pub line: u64,
-    /// Column of the reading.
-    pub column: String,
-    /// Measured and fitted value, in `unit`.
-    pub values: [f64; 2],
-    /// Unit of the values.
-    pub unit: String,
-    /// Fitted minus measured value, in standard deviations.
-    pub residual: f64,
-    /// Weight in the fit, from 0 to 1.
-    pub weight: f64,
-}
-
 /// Posture that is not reached.
 #[derive(Clone, Debug, Serialize)]
 pub struct NotReachedFact {
@@ -139,25 +38,182 @@ pub struct NotReachedFact {
     pub why: String,
 }
 
-/// Proposed reading.
-#[derive(Clone, Debug, Serialize)]
-pub struct NextFact {
+record! {
+    /// Result of a calibration, in the model's units. Serialised as `summary.json` of `hardpoint calibrate`.
+    CalibrateFacts::without_message(of: &CalibrationInputs<'_>) {
+        let (model, units, found) = (of.model(), of.units(), of.found);
+        let certainty = &found.certainty;
+        let variables = (0..found.variables.len()).map(|k| CalibratedVariable::of(of, k));
+        let variables: Vec<CalibratedVariable> = variables.collect();
+        let line = |posture: usize| of.measured.lines[posture];
+        let mut far_off: Vec<LargeResidual> = of
+            .compared()
+            .filter(|(_, f)| f.residual.abs() > FAR)
+            .map(|(r, f)| LargeResidual::of(of, r, f))
+            .collect();
+        far_off.sort_by(|a, b| b.residual.abs().total_cmp(&a.residual.abs()));
+        let far_off_count = far_off.len();
+        far_off.truncate(LISTED);
+        let names = |list: &[hardpoint::model::VariableId]| {
+            list.iter().map(|v| model.variables[v.0].name.clone()).collect::<Vec<_>>()
+        };
+        let readings = of.compared().count();
+        let mut postures: Vec<usize> = of.compared().map(|(r, _)| r.posture).collect();
+        postures.dedup();
+        let scatter_of = of.compared().next().filter(|_| !of.has_sigmas()).map(|(r, _)| r.output);
+        let not_reached = found.not_reached.iter();
+        let not_reached = not_reached.map(|n| NotReachedFact { line: line(n.posture), why: n.why.clone() });
+        let status = match found.status {
+            Status::Found if certainty.unidentifiable.is_empty() => "found",
+            Status::Found => "not_told",
+            Status::IterationLimit => "iteration_limit",
+            Status::Interrupted => "interrupted",
+        };
+        let next = found.next.iter().map(|n| NextFact::of(of, n, &variables)).collect();
+        let together = together(&certainty.covariance, &variables);
+    }
+    /// Program and version.
+    generator: String = crate::GENERATOR.into();
+    /// Kind of study.
+    study: &'static str = "calibrate";
+    /// Name of the model.
+    model: String = model.name.clone();
+    /// Name of the model file.
+    file: String = of.file.file_name().into();
+    /// Name of the measurement file.
+    data: String = of.data.into();
+    /// Status at the end: `found`, `not_told` (found, but the readings do not determine all variables),
+    /// `iteration_limit` or `interrupted`.
+    status: &'static str = status;
+    /// Status in words, with an instruction.
+    message: String = String::new();
+    /// Objective of the nominal and the fitted design: sum of squared residuals, or of the loss, in standard
+    /// deviations.
+    objective: [f64; 2] = found.objective;
+    /// Cost of the search.
+    evaluations: Evaluations = Evaluations::of(found.cost);
+    /// Number of compared readings.
+    readings: usize = readings;
+    /// Number of postures of these readings.
+    postures: usize = postures.len();
+    /// Degrees of freedom: readings minus determined directions.
+    freedom: usize = certainty.freedom;
+    /// Standard deviation of the residuals: relative to the given standard deviations, where 1 is expected, otherwise
+    /// in `scatter_unit`.
+    scatter: Option<f64> = certainty.scatter.map(|s| scatter_of.map_or(s, |m| of.shown(m, s)));
+    /// Unit of `scatter`; empty if standard deviations are given.
+    scatter_unit: String = scatter_of.map_or(String::new(), |m| of.unit_of(m));
+    /// Fitted variables.
+    variables: Vec<CalibratedVariable> = variables;
+    /// Pairs of variables that the readings hardly distinguish, with their correlation.
+    together: Vec<(String, String, f64)> = together;
+    /// Changes that the readings do not determine.
+    untold: Vec<UnidentifiableFact> = certainty.unidentifiable.iter().map(|u| UnidentifiableFact::of(of, u)).collect();
+    /// Variables that the mechanism cannot follow. They keep their design values.
+    left_out: Vec<String> = names(&found.left_out);
+    /// Drivers without a column in the measurement file. They stay in the design configuration.
+    as_drawn: Vec<String> = of.measured.as_drawn.iter().map(|d| model.drivers[d.0].name.clone()).collect();
+    /// Hardpoints that the fitted design moves.
+    hardpoints: Vec<MovedHardpoint> = MovedHardpoint::all(model, units, &found.design);
+    /// Readings with large residuals, the largest first.
+    far_off: Vec<LargeResidual> = far_off;
+    /// Number of readings with large residuals.
+    far_off_count: usize = far_off_count;
+    /// Postures that the nominal design does not reach. Their readings are left out.
+    not_reached: Vec<NotReachedFact> = not_reached.collect();
+    /// Proposed further readings, the most informative first.
+    next: Vec<NextFact> = next;
+    /// Written files.
+    files: Vec<String> = Vec::new();
+    /// Duration, s.
+    seconds: f64 = 0.0;
+}
+
+record! {
+    /// Fitted variable.
+    CalibratedVariable::of(of: &CalibrationInputs<'_>, k: usize) {
+        let (model, units, v) = (of.model(), of.units(), of.found.variables[k]);
+        let variable = &model.variables[v.0];
+        let shown = |x: f64| units.from_si(variable.quantity, x);
+        let start = model.nominal_value(v);
+    }
+    /// Name.
+    name: String = variable.name.clone();
+    /// Unit.
+    unit: String = variable_unit(model, units, variable);
+    /// Nominal value: the value of a parameter, 0 for all other variables.
+    start: f64 = shown(start);
+    /// Fitted value: the value of a parameter, the change of all other variables.
+    end: f64 = shown(start + of.found.design[v.0]);
+    /// Standard deviation; `null` if the readings do not determine it.
+    sigma: Option<f64> = of.found.certainty.sigmas[k].map(shown);
+}
+
+record! {
+    /// A change that the readings do not determine.
+    UnidentifiableFact::of(of: &CalibrationInputs<'_>, untold: &UnidentifiableChange) {
+        let (model, units) = (of.model(), of.units());
+        let shown = |k: usize| {
+            let variable = &model.variables[of.found.variables[k].0];
+            (variable, units.from_si(variable.quantity, untold.direction[k]))
+        };
+        let all = 0..untold.direction.len();
+        let most = all.clone().map(|k| shown(k).1.abs()).fold(0.0, f64::max);
+        let part = |k: usize| {
+            let (variable, by) = shown(k);
+            (variable.name.clone(), by / most, variable_unit(model, units, variable))
+        };
+        let variables = all.map(part).filter(|(_, by, _)| by.abs() > SLIGHT).collect();
+    }
+    /// Changed variables with their changes and units; the largest change is 1.
+    variables: Vec<(String, f64, String)> = variables;
+    /// Standard deviation as a multiple of that change; `null` if the readings do not determine it at all.
+    sigma: Option<f64> = untold.sigma.map(|s| s * most);
+}
+
+record! {
+    /// Reading with a large residual.
+    LargeResidual::of(of: &CalibrationInputs<'_>, r: &Reading, f: &FittedReading) {}
+    /// Line of the measurement file.
+    line: u64 = of.measured.lines[r.posture];
+    /// Column of the reading.
+    column: String = of.output(r.output).name.clone();
+    /// Measured and fitted value, in `unit`.
+    values: [f64; 2] = [r.value, f.value].map(|x| of.shown(r.output, x));
+    /// Unit of the values.
+    unit: String = of.unit_of(r.output);
+    /// Fitted minus measured value, in standard deviations.
+    residual: f64 = f.residual;
+    /// Weight in the fit, from 0 to 1.
+    weight: f64 = f.weight;
+}
+
+record! {
+    /// Proposed reading.
+    NextFact::of(of: &CalibrationInputs<'_>, next: &NextReading, variables: &[CalibratedVariable]) {
+        let improves = next.improves.as_ref();
+        let variable = improves.map(|i| &variables[i.variable]);
+        let in_units = |i: &hardpoint_study::calibrate::Improvement| {
+            let quantity: Quantity = of.model().variables[of.found.variables[i.variable].0].quantity;
+            [i.before, i.after].map(|s| of.units().from_si(quantity, s))
+        };
+    }
     /// Reading to take.
-    pub measure: String,
+    measure: String = of.output(next.output).name.clone();
     /// Assumed standard deviation, in `unit`.
-    pub sigma: f64,
+    sigma: f64 = of.shown(next.output, next.sigma);
     /// Unit of `sigma`.
-    pub unit: String,
+    unit: String = of.unit_of(next.output);
     /// Values of the drivers: name, value, unit.
-    pub drivers: Vec<(String, f64, String)>,
+    drivers: Vec<(String, f64, String)> = of.driver_values(&next.drivers);
     /// Number of the unidentifiable change, from 1, that the reading would determine.
-    pub tells: Option<usize>,
+    tells: Option<usize> = next.determines.map(|k| k + 1);
     /// Variable whose standard deviation it reduces most.
-    pub variable: Option<String>,
+    variable: Option<String> = variable.map(|v| v.name.clone());
     /// Standard deviation of that variable without and with the reading, in `variable_unit`.
-    pub sigmas: Option<[f64; 2]>,
+    sigmas: Option<[f64; 2]> = improves.map(in_units);
     /// Unit of the variable.
-    pub variable_unit: Option<String>,
+    variable_unit: Option<String> = variable.map(|v| v.unit.clone());
 }
 
 /// Inputs of [`CalibrateFacts`].
@@ -266,44 +322,32 @@ impl CalibrationInputs<'_> {
     /// # Errors
     /// If `out` cannot be written.
     pub fn write_residuals(&self, out: impl Write) -> csv::Result<()> {
-        let drivers = &self.model().drivers;
-        let mut header = vec!["line".to_owned(), "measurement".into()];
-        header.extend(
-            self.driver_values(&vec![0.0; drivers.len()]).into_iter().map(|(n, _, u)| format!("{n} [{u}]")),
-        );
-        header.extend(
-            [
-                "unit",
-                "measured",
-                "nominal",
-                "found",
-                "standard deviation",
-                "residual [standard deviations]",
-                "weight",
-            ]
-            .map(String::from),
-        );
-        let mut writer = CsvWriter::new(out);
-        writer.row(&header)?;
-        let readings = &self.measured.measurements.readings;
-        for (reading, fitted) in readings.iter().zip(&self.found.fitted) {
-            let m = reading.output;
-            let text =
-                |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(String::new(), |x| format!("{x:?}"));
-            let mut row = vec![self.measured.lines[reading.posture].to_string(), self.output(m).name.clone()];
-            let places = &self.measured.measurements.postures[reading.posture];
-            row.extend(self.driver_values(places).into_iter().map(|(_, place, _)| text(Some(place))));
-            row.push(self.unit_of(m));
-            row.push(text(Some(self.shown(m, reading.value))));
-            row.push(text(fitted.map(|f| self.shown(m, f.before))));
-            row.push(text(fitted.map(|f| self.shown(m, f.value))));
-            row.push(text(reading.sigma.map(|s| self.shown(m, s))));
-            row.push(text(fitted.map(|f| f.residual)));
-            row.push(text(fitted.map(|f| f.weight)));
-            writer.row(&row)?;
-        }
-        writer.end()?;
-        Ok(())
+        type Row<'a> = (&'a Reading, &'a Option<FittedReading>);
+        let text = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(String::new(), |x| format!("{x:?}"));
+        let shown = |r: &Row<'_>, x: Option<f64>| text(x.map(|x| self.shown(r.0.output, x)));
+        let driver = |r: &Row<'_>, d: usize| {
+            let places = &self.measured.measurements.postures[r.0.posture];
+            text(Some(self.driver_values(places)[d].1))
+        };
+        let drivers = self.driver_values(&vec![0.0; self.model().drivers.len()]).into_iter();
+        let titles: Vec<String> = drivers.map(|(n, _, u)| format!("{n} [{u}]")).collect();
+        let places: Vec<_> = (0..titles.len()).map(|d| move |r: &Row<'_>| driver(r, d)).collect();
+        let before: [Column<'_, Row<'_>>; 2] = [
+            ("line", &|r| self.measured.lines[r.0.posture].to_string()),
+            ("measurement", &|r| self.output(r.0.output).name.clone()),
+        ];
+        let after: [Column<'_, Row<'_>>; 7] = [
+            ("unit", &|r| self.unit_of(r.0.output)),
+            ("measured", &|r| shown(r, Some(r.0.value))),
+            ("nominal", &|r| shown(r, r.1.as_ref().map(|f| f.before))),
+            ("found", &|r| shown(r, r.1.as_ref().map(|f| f.value))),
+            ("standard deviation", &|r| shown(r, r.0.sigma)),
+            ("residual [standard deviations]", &|r| text(r.1.as_ref().map(|f| f.residual))),
+            ("weight", &|r| text(r.1.as_ref().map(|f| f.weight))),
+        ];
+        let places = titles.iter().zip(&places).map(|(title, place)| (title.as_str(), place as _));
+        let columns: Vec<Column<'_, Row<'_>>> = before.into_iter().chain(places).chain(after).collect();
+        write_rows(out, &columns, self.measured.measurements.readings.iter().zip(&self.found.fitted))
     }
 
     /// Writes the covariance of the variables over the determined directions: a row and a column for each, in products
@@ -338,86 +382,7 @@ impl CalibrationInputs<'_> {
 impl CalibrateFacts {
     /// Collects the facts of a calibration.
     pub fn of(of: &CalibrationInputs<'_>) -> Self {
-        let (model, units, found) = (of.model(), of.units(), of.found);
-        let certainty = &found.certainty;
-        let variable = |k: usize| {
-            let v = found.variables[k];
-            let variable = &model.variables[v.0];
-            let shown = |x: f64| units.from_si(variable.quantity, x);
-            let start = model.nominal_value(v);
-            CalibratedVariable {
-                name: variable.name.clone(),
-                unit: variable_unit(model, units, variable),
-                start: shown(start),
-                end: shown(start + found.design[v.0]),
-                sigma: certainty.sigmas[k].map(shown),
-            }
-        };
-        let variables: Vec<CalibratedVariable> = (0..found.variables.len()).map(variable).collect();
-        let line = |posture: usize| of.measured.lines[posture];
-        let mut far_off: Vec<LargeResidual> = of
-            .compared()
-            .filter(|(_, f)| f.residual.abs() > FAR)
-            .map(|(r, f)| LargeResidual {
-                line: line(r.posture),
-                column: of.output(r.output).name.clone(),
-                values: [r.value, f.value].map(|x| of.shown(r.output, x)),
-                unit: of.unit_of(r.output),
-                residual: f.residual,
-                weight: f.weight,
-            })
-            .collect();
-        far_off.sort_by(|a, b| b.residual.abs().total_cmp(&a.residual.abs()));
-        let far_off_count = far_off.len();
-        far_off.truncate(LISTED);
-        let names = |list: &[hardpoint::model::VariableId]| {
-            list.iter().map(|v| model.variables[v.0].name.clone()).collect::<Vec<_>>()
-        };
-        let readings = of.compared().count();
-        let mut postures: Vec<usize> = of.compared().map(|(r, _)| r.posture).collect();
-        postures.dedup();
-        let scatter_of = of.compared().next().filter(|_| !of.has_sigmas()).map(|(r, _)| r.output);
-        let mut facts = Self {
-            generator: crate::GENERATOR.into(),
-            study: "calibrate",
-            model: model.name.clone(),
-            file: of.file.file_name().into(),
-            data: of.data.into(),
-            status: match found.status {
-                Status::Found if certainty.unidentifiable.is_empty() => "found",
-                Status::Found => "not_told",
-                Status::IterationLimit => "iteration_limit",
-                Status::Interrupted => "interrupted",
-            },
-            message: String::new(),
-            objective: found.objective,
-            evaluations: Evaluations {
-                designs: found.cost.designs,
-                motions: found.cost.motions,
-                steps: found.cost.steps,
-            },
-            readings,
-            postures: postures.len(),
-            freedom: certainty.freedom,
-            scatter: certainty.scatter.map(|s| scatter_of.map_or(s, |m| of.shown(m, s))),
-            scatter_unit: scatter_of.map_or(String::new(), |m| of.unit_of(m)),
-            together: together(&certainty.covariance, &variables),
-            untold: certainty.unidentifiable.iter().map(|u| untold(of, u)).collect(),
-            left_out: names(&found.left_out),
-            as_drawn: of.measured.as_drawn.iter().map(|d| model.drivers[d.0].name.clone()).collect(),
-            hardpoints: moved(model, units, &found.design),
-            far_off,
-            far_off_count,
-            not_reached: found
-                .not_reached
-                .iter()
-                .map(|n| NotReachedFact { line: line(n.posture), why: n.why.clone() })
-                .collect(),
-            next: found.next.iter().map(|n| next(of, n, &variables)).collect(),
-            variables,
-            files: Vec::new(),
-            seconds: 0.0,
-        };
+        let mut facts = Self::without_message(of);
         facts.message = facts.sentence(of);
         facts
     }
@@ -489,90 +454,95 @@ impl CalibrateFacts {
             "evaluated",
             format!("{}, {} postures", count(self.evaluations.designs, "design"), self.evaluations.motions),
         ));
-        rows.push(("time taken", seconds(self.seconds)));
         rows
     }
 
     /// Further tables: variables, unidentifiable changes, large residuals, proposed readings.
     pub fn tables(&self) -> Vec<Table> {
-        let header = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
-        let table = |title: &str, note: &str, names: &[&str], rows: Vec<Vec<String>>| {
-            let (title, note) = (title.to_owned(), note.to_owned());
-            (!rows.is_empty()).then(|| Table { title, note, header: header(names), rows })
+        let parts = |list: &[(String, f64, String)], shown: fn(f64, &str) -> String| {
+            let one = |(name, x, unit): &(String, f64, String)| format!("{name} {}", shown(*x, unit));
+            list.iter().map(one).collect::<Vec<_>>().join(", ")
         };
-        let variable = |v: &CalibratedVariable| {
-            let sigma = v.sigma.map_or("undetermined".into(), |s| format!("± {}", with_unit(s, &v.unit)));
-            let change = v.end - v.start;
-            let sure = v.sigma.filter(|s| *s > 0.0).map_or(String::new(), |s| rounded(change / s, 3));
-            vec![v.name.clone(), with_unit(v.start, &v.unit), with_unit(v.end, &v.unit), sigma, sure]
+        let effect = |n: &NextFact| match (n.tells, &n.variable, n.sigmas, &n.variable_unit) {
+            (Some(k), ..) => format!("determines change {k}"),
+            (None, Some(variable), Some([before, after]), Some(unit)) => {
+                format!("{variable}: from ± {} to ± {}", number(before), with_unit(after, unit))
+            }
+            _ => String::new(),
         };
-        let together = |(a, b, r): &(String, String, f64)| vec![a.clone(), b.clone(), rounded(*r, 4)];
-        let untold = |(k, u): (usize, &UnidentifiableFact)| {
-            let parts: Vec<String> =
-                u.variables.iter().map(|(name, by, unit)| format!("{name} {}", signed(*by, unit))).collect();
-            let sigma = u.sigma.map_or("none".into(), |s| format!("± {} times that", rounded(s, 3)));
-            vec![(k + 1).to_string(), parts.join(", "), sigma]
+        let certainty = |v: &CalibratedVariable| {
+            v.sigma.filter(|s| *s > 0.0).map_or(String::new(), |s| rounded((v.end - v.start) / s, 3))
         };
-        let far = |f: &LargeResidual| {
-            let [measured, found] = f.values.map(|x| with_unit(x, &f.unit));
-            let weight = if f.weight < 1.0 { rounded(f.weight, 2) } else { "1".into() };
-            vec![f.line.to_string(), f.column.clone(), measured, found, rounded(f.residual, 3), weight]
+        let sigma = |v: &CalibratedVariable| {
+            v.sigma.map_or("undetermined".into(), |s| format!("± {}", with_unit(s, &v.unit)))
         };
-        let next = |n: &NextFact| {
-            let at: Vec<String> = n
-                .drivers
-                .iter()
-                .map(|(name, place, unit)| format!("{name} {}", with_unit(*place, unit)))
-                .collect();
-            let does = match (n.tells, &n.variable, n.sigmas, &n.variable_unit) {
-                (Some(k), ..) => format!("determines change {k}"),
-                (None, Some(variable), Some([before, after]), Some(unit)) => {
-                    format!("{variable}: from ± {} to ± {}", number(before), with_unit(after, unit))
-                }
-                _ => String::new(),
-            };
-            vec![n.measure.clone(), at.join(", "), format!("± {}", with_unit(n.sigma, &n.unit)), does]
-        };
-        let moved = |h: &MovedHardpoint| {
-            let text = |p: [f64; 3]| p.map(number).join(", ");
-            vec![h.name.clone(), text(h.before), text(h.after)]
-        };
-        [
-            table(
+        let tables = [
+            Table::of(
                 "Design",
                 "",
-                &["variable", "nominal", "fitted", "standard deviation", "change / sigma"],
-                self.variables.iter().map(variable).collect(),
-            ),
-            table(
+                &[
+                    ("variable", &|v: &&CalibratedVariable| v.name.clone()),
+                    ("nominal", &|v| with_unit(v.start, &v.unit)),
+                    ("fitted", &|v| with_unit(v.end, &v.unit)),
+                    ("standard deviation", &|v| sigma(v)),
+                    ("change / sigma", &|v| certainty(v)),
+                ],
+                &self.variables,
+            )
+            .if_any(),
+            Table::of(
                 "Hardly distinguishable",
                 "Variables with correlated errors: their combination is determined better than each of them.",
-                &["variable", "and", "correlation"],
-                self.together.iter().map(together).collect(),
-            ),
-            table(
+                &[
+                    ("variable", &|t: &&(String, String, f64)| t.0.clone()),
+                    ("and", &|t| t.1.clone()),
+                    ("correlation", &|t| rounded(t.2, 4)),
+                ],
+                &self.together,
+            )
+            .if_any(),
+            Table::of(
                 "Not determined",
                 "Changes of the design that affect no reading, or too little. The fitted design contains none of them.",
-                &["", "change by", "standard deviation"],
-                self.untold.iter().enumerate().map(untold).collect(),
-            ),
-            table("Moved hardpoints", "", &["hardpoint", "nominal", "fitted"], self.hardpoints.iter().map(moved).collect()),
-            table(
+                &[
+                    ("", &|u: &(usize, &UnidentifiableFact)| (u.0 + 1).to_string()),
+                    ("change by", &|u| parts(&u.1.variables, signed)),
+                    ("standard deviation", &|u| {
+                        u.1.sigma.map_or("none".into(), |s| format!("± {} times that", rounded(s, 3)))
+                    }),
+                ],
+                self.untold.iter().enumerate(),
+            )
+            .if_any(),
+            MovedHardpoint::table(&self.hardpoints, "fitted"),
+            Table::of(
                 "Large residuals",
                 "Residuals of more than three standard deviations.",
-                &["line", "measurement", "measured", "fitted", "residual / sigma", "weight"],
-                self.far_off.iter().map(far).collect(),
-            ),
-            table(
+                &[
+                    ("line", &|f: &&LargeResidual| f.line.to_string()),
+                    ("measurement", &|f| f.column.clone()),
+                    ("measured", &|f| with_unit(f.values[0], &f.unit)),
+                    ("fitted", &|f| with_unit(f.values[1], &f.unit)),
+                    ("residual / sigma", &|f| rounded(f.residual, 3)),
+                    ("weight", &|f| if f.weight < 1.0 { rounded(f.weight, 2) } else { "1".into() }),
+                ],
+                &self.far_off,
+            )
+            .if_any(),
+            Table::of(
                 "Proposed readings",
                 "Most informative further reading of each measure.",
-                &["measure", "where", "standard deviation", "effect"],
-                self.next.iter().map(next).collect(),
-            ),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+                &[
+                    ("measure", &|n: &&NextFact| n.measure.clone()),
+                    ("where", &|n| parts(&n.drivers, with_unit)),
+                    ("standard deviation", &|n| format!("± {}", with_unit(n.sigma, &n.unit))),
+                    ("effect", &|n| effect(n)),
+                ],
+                &self.next,
+            )
+            .if_any(),
+        ];
+        tables.into_iter().flatten().collect()
     }
 
     /// Turns the page of the fitted design into that of the calibration: residuals as points, and the result first
@@ -582,12 +552,10 @@ impl CalibrateFacts {
         page.first = first.and_then(|name| outputs.iter().position(|o| o.name == *name)).or(page.first);
         let fact = Fact { label: "readings".into(), value: self.readings.to_string() };
         page.summary.insert(0, fact);
-        let rows = self.rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
-        let header = ["", "is"].map(String::from).to_vec();
-        let mut checks = vec![Table { title: "Calibration".into(), note: String::new(), header, rows }];
-        checks.extend(self.tables());
-        checks.append(&mut page.checks);
-        Payload { checks, sweep: Some(of.plot()), ..page }
+        let duration = ("time taken", seconds(self.seconds));
+        let lines = self.rows().into_iter().chain([duration]).collect();
+        page.put_first("Calibration", lines, &[], self.tables());
+        Payload { sweep: Some(of.plot()), ..page }
     }
 }
 
@@ -609,39 +577,4 @@ fn together(covariance: &[Vec<f64>], variables: &[CalibratedVariable]) -> Vec<(S
     found.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
     found.truncate(LISTED);
     found
-}
-
-fn untold(of: &CalibrationInputs<'_>, untold: &UnidentifiableChange) -> UnidentifiableFact {
-    let (model, units) = (of.model(), of.units());
-    let shown = |k: usize| {
-        let variable = &model.variables[of.found.variables[k].0];
-        (variable, units.from_si(variable.quantity, untold.direction[k]))
-    };
-    let all = 0..untold.direction.len();
-    let most = all.clone().map(|k| shown(k).1.abs()).fold(0.0, f64::max);
-    let part = |k: usize| {
-        let (variable, by) = shown(k);
-        (variable.name.clone(), by / most, variable_unit(model, units, variable))
-    };
-    let variables = all.map(part).filter(|(_, by, _)| by.abs() > SLIGHT).collect();
-    UnidentifiableFact { variables, sigma: untold.sigma.map(|s| s * most) }
-}
-
-fn next(of: &CalibrationInputs<'_>, next: &NextReading, variables: &[CalibratedVariable]) -> NextFact {
-    let improves = next.improves.as_ref();
-    let variable = improves.map(|i| &variables[i.variable]);
-    let in_units = |i: &hardpoint_study::calibrate::Improvement| {
-        let quantity: Quantity = of.model().variables[of.found.variables[i.variable].0].quantity;
-        [i.before, i.after].map(|s| of.units().from_si(quantity, s))
-    };
-    NextFact {
-        measure: of.output(next.output).name.clone(),
-        sigma: of.shown(next.output, next.sigma),
-        unit: of.unit_of(next.output),
-        drivers: of.driver_values(&next.drivers),
-        tells: next.determines.map(|k| k + 1),
-        variable: variable.map(|v| v.name.clone()),
-        sigmas: improves.map(in_units),
-        variable_unit: variable.map(|v| v.unit.clone()),
-    }
 }

@@ -6,16 +6,17 @@ use std::io::Write;
 use hardpoint::Solution;
 use hardpoint::model::{Dimension, Model};
 use hardpoint::run::metrics;
-use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::Magnitude;
 use serde::Serialize;
 
 use crate::GENERATOR;
-use crate::columns::Column;
-use crate::course::{RoundOff, settled};
+use crate::columns;
+use crate::course::RoundOff;
 use crate::figures::{number, rounded, unit, with_unit};
 use crate::page::{Payload, Table};
+use crate::record::{Column, write_curves};
+use hardpoint_table::series::settled;
 
 /// Hardpoints with a smaller distance than this, m, coincide: numbers in different units agree only to round-off.
 const SAME_PLACE: f64 = 1e-12;
@@ -111,43 +112,39 @@ impl CompareFacts {
 
     /// Tables of the differences, and of their effect on the requested measures.
     pub fn tables(&self, wanted: &dyn Fn(&str) -> bool) -> Vec<Table> {
+        let [first, second] = self.files.each_ref().map(String::as_str);
         let of = |title: &str, what: &str, list: &[Difference]| {
-            (!list.is_empty()).then(|| Table {
-                title: title.into(),
-                note: String::new(),
-                header: [what, &self.files[0], &self.files[1], "difference"].map(String::from).to_vec(),
-                rows: list.iter().map(Difference::row).collect(),
-            })
+            let columns: [Column<'_, &Difference>; 4] = [
+                (what, &|d| d.name.clone()),
+                (first, &|d| d.shown(0)),
+                (second, &|d| d.shown(1)),
+                ("difference", &|d| {
+                    shown_difference(d.values[0].zip(d.values[1]).map(|(a, b)| b - a), &d.unit)
+                }),
+            ];
+            Table::of(title, "", &columns, list).if_any()
         };
-        let row = |c: &CurveDifference| {
-            let range = |k: usize| {
-                let low = c.curves[k].iter().copied().fold(f64::INFINITY, f64::min);
-                let high = c.curves[k].iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                if low <= high {
-                    format!("{} to {}", number(low), with_unit(high, &c.unit))
-                } else {
-                    "-".into()
-                }
-            };
-            let time = c.time.map_or("-".into(), |t| format!("{} s", number(t)));
-            vec![c.measure.clone(), range(0), range(1), shown_difference(c.difference, &c.unit), time]
+        let range = |c: &CurveDifference, k: usize| {
+            let low = c.curves[k].iter().copied().fold(f64::INFINITY, f64::min);
+            let high = c.curves[k].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            if low <= high { format!("{} to {}", number(low), with_unit(high, &c.unit)) } else { "-".into() }
         };
-        let rows: Vec<_> = self.measures.iter().filter(|c| wanted(&c.measure)).map(row).collect();
-        let measures = (!rows.is_empty()).then(|| Table {
-            title: "Measures".into(),
-            note: String::new(),
-            header: ["measure", &self.files[0], &self.files[1], "largest difference", "at t"]
-                .map(String::from)
-                .to_vec(),
-            rows,
-        });
+        let measures = Table::of(
+            "Measures",
+            "",
+            &[
+                ("measure", &|c: &&CurveDifference| c.measure.clone()),
+                (first, &|c| range(c, 0)),
+                (second, &|c| range(c, 1)),
+                ("largest difference", &|c| shown_difference(c.difference, &c.unit)),
+                ("at t", &|c| c.time.map_or("-".into(), |t| format!("{} s", number(t)))),
+            ],
+            self.measures.iter().filter(|c| wanted(&c.measure)),
+        )
+        .if_any();
         let lacking = [0, 1].map(|k| {
-            (!self.only_in[k].is_empty()).then(|| Table {
-                title: format!("Only in {}", self.files[k]),
-                note: String::new(),
-                header: vec!["what".into()],
-                rows: self.only_in[k].iter().map(|name| vec![name.clone()]).collect(),
-            })
+            let title = format!("Only in {}", self.files[k]);
+            Table::of(title, "", &[("what", &|name: &&String| (*name).clone())], &self.only_in[k]).if_any()
         });
         let differ = [
             of("Hardpoints that differ", "hardpoint", &self.hardpoints),
@@ -173,32 +170,23 @@ impl CompareFacts {
     /// # Errors
     /// If `out` cannot be written.
     pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
-        let mut header = vec!["t [s]".to_owned()];
-        for c in &self.measures {
-            for file in ["first", "second"] {
-                let column = Column { name: format!("{} {file}", c.measure), unit: c.unit.clone() };
-                header.push(column.header());
-            }
-        }
-        let mut writer = CsvWriter::new(out);
-        writer.row(&header)?;
-        for (k, t) in self.times.iter().enumerate() {
-            let curves = self.measures.iter().flat_map(|c| c.curves.iter().map(|curve| curve[k]));
-            let row: Vec<f64> = std::iter::once(*t).chain(curves).collect();
-            writer.numbers(row)?;
-            writer.end_row()?;
-        }
-        writer.end()?;
-        Ok(())
+        let column = |c: &CurveDifference, file| columns::Column {
+            name: format!("{} {file}", c.measure),
+            unit: c.unit.clone(),
+        };
+        let curves = self.measures.iter().flat_map(|c| {
+            ["first", "second"]
+                .into_iter()
+                .zip(&c.curves)
+                .map(move |(file, curve)| (column(c, file).header(), curve.as_slice()))
+        });
+        write_curves(out, &self.times, &curves.collect::<Vec<_>>())
     }
 }
 
 impl Difference {
-    fn row(&self) -> Vec<String> {
-        let shown = |x: Option<f64>| x.map_or("not reached".into(), |x| with_unit(x, &self.unit));
-        let [a, b] = self.values;
-        let difference = shown_difference(a.zip(b).map(|(a, b)| b - a), &self.unit);
-        vec![self.name.clone(), shown(a), shown(b), difference]
+    fn shown(&self, file: usize) -> String {
+        self.values[file].map_or("not reached".into(), |x| with_unit(x, &self.unit))
     }
 }
 

@@ -190,6 +190,11 @@ impl Course {
         }
     }
 
+    /// True if the motion of bodies by the variables is stored by itself.
+    pub(crate) fn stores_shifts(&self) -> bool {
+        self.shifts.is_some()
+    }
+
     /// True if sensitivities of bodies are stored.
     pub fn has_bodies(&self) -> bool {
         let sensitivities = &self.kept.sensitivities;
@@ -249,11 +254,6 @@ impl Peak {
 pub(crate) struct RoundOff {
     magnitude: Magnitude,
     natural: Vec<f64>,
-}
-
-/// Returns a number, or 0 if it is round-off.
-pub(crate) fn settled(x: f64, round_off: f64) -> f64 {
-    if x.abs() <= round_off { 0.0 } else { x }
 }
 
 impl RoundOff {

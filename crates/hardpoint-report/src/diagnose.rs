@@ -16,10 +16,10 @@ use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
 use crate::assembly::GapFact;
 use crate::course::Course;
-use crate::facts::{Facts, VariableAdmissibility, variable_unit};
-use crate::figures::{names, number, quoted, rounded, some_in_words, some_of, symbol, with_unit};
-use crate::margin::MarginFact;
-use crate::summary::Summary;
+use crate::facts::{Facts, VariableAdmissibility};
+use crate::figures::{names, number, quoted, rounded, some_in_words, symbol, variable_unit, with_unit};
+use crate::margin::{MarginFact, named};
+use crate::summary::{Summary, driver_values};
 
 /// Maximum number of remaining gaps that are reported one by one.
 const MOST_GAPS: usize = 5;
@@ -150,12 +150,6 @@ fn gap_notes(file: &ModelFile, stop: &Stop, closed: f64) -> Vec<String> {
     notes
 }
 
-/// Names of joints that are written in the model file.
-pub(crate) fn named(model: &Model, joints: &[JointId]) -> Vec<String> {
-    let joints = joints.iter().map(|j| &model.joints[j.0]);
-    joints.filter(|j| !j.unnamed).map(|j| j.name.clone()).collect()
-}
-
 /// Joints of a loop, and drivers in it that act on a point or orientation instead of a joint.
 fn parts(model: &Model, joints: &[JointId]) -> String {
     let unnamed = joints.iter().map(|j| &model.joints[j.0]).filter(|j| j.unnamed);
@@ -163,22 +157,6 @@ fn parts(model: &Model, joints: &[JointId]) -> String {
     let joints = named(model, joints);
     let parts = joints.iter().map(|j| format!("`{j}`")).chain(quoted("driver", &drivers));
     some_in_words(&parts.collect::<Vec<_>>())
-}
-
-/// Driver positions at a stop: `, with \`rack\` at 12.3 mm and ...`.
-pub(crate) fn driver_values(file: &ModelFile, stop: &Stop) -> String {
-    let (model, units) = (&file.model, file.units);
-    let values: Vec<String> = model
-        .drivers
-        .iter()
-        .zip(&stop.drivers)
-        .map(|(driver, value)| {
-            let quantity = model.driven(driver).quantity;
-            let value = with_unit(units.from_si(quantity, *value), symbol(units, quantity));
-            format!("`{}` at {value}", driver.name)
-        })
-        .collect();
-    if values.is_empty() { String::new() } else { format!(", with {}", some_of(&values, ", ")) }
 }
 
 /// A residual above this fraction of the shortest distance between joints is visible in the motion: results are

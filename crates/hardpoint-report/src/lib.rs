@@ -14,36 +14,33 @@
 //! | [`compare`] | `compare.json`, `.csv` and `.html`: comparison of two model files |
 //! | [`optimize`] | result of an optimisation: `summary.json` and tables |
 //! | [`tolerance`] | tolerance study: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
+//! | [`study`] | facts that several studies have |
 //! | [`sweep`], [`cells`] | result of a sweep: `summary.json`, and the columns of `designs` and `curves` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
-//! | [`columns`] | columns of the result files |
-//! | [`csv`], [`npy`] | `motion`, `sensitivity` and `jerk` as text, or as arrays |
 //! | [`payload`], [`page`], [`encoding`] | `report.html` |
 //! | [`gallery`] | pages of all models, and of a model that cannot be shown |
 //! | [`diagnose`] | diagnostics of runs that cannot start or ended early |
-//! | [`figures`] | numbers and units as text |
+//! | [`columns`], [`results`], [`npy`], [`figures`] | tables of numbers, from `hardpoint-table` |
 
 pub mod assembly;
 pub mod calibrate;
 pub mod cells;
-pub mod columns;
 pub mod compare;
 pub mod course;
-pub mod csv;
 pub mod diagnose;
 pub mod encoding;
 pub mod facts;
-pub mod figures;
 pub mod gallery;
 pub mod loads;
 pub mod maps;
 pub mod margin;
 pub mod metric;
-pub mod npy;
 pub mod optimize;
 pub mod page;
 pub mod payload;
+mod record;
 mod shifts;
+pub mod study;
 pub mod summary;
 pub mod sweep;
 pub mod tolerance;
@@ -51,5 +48,4 @@ pub mod validity;
 pub mod verdict;
 pub mod whatif;
 
-/// Program and version, as entered in all output.
-pub const GENERATOR: &str = concat!("hardpoint ", env!("CARGO_PKG_VERSION"));
+pub use hardpoint_table::{GENERATOR, columns, figures, npy, results};

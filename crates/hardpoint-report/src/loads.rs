@@ -6,7 +6,7 @@ use hardpoint::load::Loads;
 use hardpoint::model::{Dimension, Model};
 use hardpoint::space::Vec3;
 use hardpoint_file::Units;
-use hardpoint_file::csv_table::CsvWriter;
+use hardpoint_table::csv::CsvWriter;
 
 use crate::figures::{order_unit, unit};
 

@@ -5,12 +5,11 @@ use std::io::Write;
 use hardpoint::measure::Output;
 use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint_file::Units;
-use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_study::grid::{GridMap, GridStop};
+use hardpoint_table::csv::CsvWriter;
 use serde::Serialize;
 
-use crate::facts::variable_unit;
-use crate::figures::{number, per, unit, with_unit};
+use crate::figures::{number, per, unit, variable_unit, with_unit};
 use crate::page::{Curve, GridDriver, GridMap as GridPage, GridQuantity, GridSensitivity, Payload, Table};
 
 /// Maximum number of derivatives of a map on a page: about 2 MB.

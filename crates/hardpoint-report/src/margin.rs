@@ -1,13 +1,12 @@
 //! Margin of a motion to singular positions, in words.
 
-use hardpoint::model::{Driver, Model};
+use hardpoint::model::{Driver, JointId, Model};
 use hardpoint::motion::{Motion, StopKind};
 use hardpoint::topology::Topology;
 use hardpoint_file::Units;
 use serde::Serialize;
 
 use crate::course::MarginCourse;
-use crate::diagnose::named;
 use crate::figures::{number, rounded, some_in_words, some_of, symbol};
 
 /// Margin above which at most three digits of the velocities are lost, which needs no comment.
@@ -157,4 +156,10 @@ impl MarginFact {
 /// Names on one line; of a long list the first few and the number of the others.
 fn few(joints: &[String]) -> String {
     hardpoint::draft::some_of(joints, ", ", 4)
+}
+
+/// Names of joints that are written in the model file.
+pub(crate) fn named(model: &Model, joints: &[JointId]) -> Vec<String> {
+    let joints = joints.iter().map(|j| &model.joints[j.0]);
+    joints.filter(|j| !j.unnamed).map(|j| j.name.clone()).collect()
 }

@@ -1,140 +1,125 @@
 //! Metrics: values, sensitivities, and their changes in a changed design.
 
 use hardpoint::Solution;
-use hardpoint::model::{Metric, Model, Reduction};
+use hardpoint::model::{DesignVariable, Dimension, Metric, Model, Reduction};
 use hardpoint::run::{MetricValue, metrics, metrics_beside};
 use hardpoint_file::Units;
 use hardpoint_study::whatif::WhatIf;
-use serde::Serialize;
 
-use crate::facts::variable_unit;
-use crate::figures::{number, per, rounded, unit, with_unit};
+use crate::figures::{number, per, rounded, unit, variable_unit, with_unit};
 use crate::page::Table;
+use crate::record::{Column, record};
 
 /// Interpolation error, as a fraction of the curve's range (for a slope: of the slope), above which it is reported,
 /// since metrics are read to three digits.
 const COARSE: f64 = 1e-3;
 
-/// Value of a metric with its sensitivities, in the model's units.
-#[derive(Clone, Debug, Serialize)]
-pub struct MetricFact {
+record! {
+    /// Value of a metric with its sensitivities, in the model's units.
+    MetricFact::of(model: &Model, units: Units, metric: &Metric, found: &MetricValue) {
+        let dimension = model.metric_dimension(metric);
+        let known = found.d.iter().zip(&model.variables).filter(|(d, _)| d.is_finite());
+        let mut sensitivities: Vec<_> =
+            known.map(|(d, variable)| MetricSensitivity::of(model, units, dimension, variable, *d)).collect();
+        sensitivities.sort_by(|a, b| a.per.cmp(&b.per).then(b.value.abs().total_cmp(&a.value.abs())));
+    }
     /// Name.
-    pub name: String,
+    name: String = metric.name.clone();
     /// Description in words.
-    pub what: String,
+    what: String = what(model, units, metric);
     /// Value; `null` if the motion does not reach the required position.
-    pub value: Option<f64>,
+    value: Option<f64> = found.value.map(|x| units.from_si(dimension, x));
     /// Unit.
-    pub unit: String,
+    unit: String = unit(units, dimension);
     /// Time at which the metric is evaluated, s; `null` if it uses the whole curve.
-    pub time: Option<f64>,
+    time: Option<f64> = found.time;
     /// Interpolation error between output times; `null` for a mean, and if there are too few output times to estimate
     /// it.
-    pub interpolation_error: Option<f64>,
+    interpolation_error: Option<f64> = found.error.map(|x| units.from_si(dimension, x));
     /// True if the interpolation error exceeds a thousandth of the curve's range.
-    pub coarse: bool,
+    coarse: bool = found.error.is_some_and(|x| !(x <= COARSE * found.range));
     /// Sensitivities to every design variable that the mechanism can follow, the largest first within each unit of
     /// variables.
-    pub sensitivities: Vec<MetricSensitivity>,
+    sensitivities: Vec<MetricSensitivity> = sensitivities;
 }
 
-/// Sensitivity of a metric to a design variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct MetricSensitivity {
+record! {
+    /// Sensitivity of a metric to a design variable.
+    MetricSensitivity::of(model: &Model, units: Units, of: Dimension, variable: &DesignVariable, d: f64) {
+        let by = variable_unit(model, units, variable);
+    }
     /// Name of the variable.
-    pub variable: String,
+    variable: String = variable.name.clone();
     /// Unit of the variable.
-    pub per: String,
+    per: String = by.clone();
     /// Derivative.
-    pub value: f64,
+    value: f64 = units.derivative_from_si(of, variable.quantity, d);
     /// Unit of the derivative.
-    pub unit: String,
+    unit: String = per(&unit(units, of), &by);
 }
 
-/// Metric of a changed design.
-#[derive(Clone, Debug, Serialize)]
-pub struct MetricChange {
+record! {
+    /// Metric of a changed design.
+    MetricChange::of(
+        model: &Model, units: Units, what_if: &WhatIf, metric: &Metric, today: &MetricValue, exact: Option<f64>,
+    ) {
+        let dimension = model.metric_dimension(metric);
+        let shown = |x: Option<f64>| x.map(|x| units.from_si(dimension, x));
+        let changed = what_if.change.iter().zip(&today.d).filter(|(by, _)| **by != 0.0);
+        let first: f64 = changed.map(|(by, d)| by * d).sum();
+    }
     /// Name.
-    pub name: String,
+    name: String = metric.name.clone();
     /// Unit.
-    pub unit: String,
+    unit: String = unit(units, dimension);
     /// Nominal value.
-    pub today: Option<f64>,
+    today: Option<f64> = shown(today.value);
     /// First-order prediction.
-    pub first: Option<f64>,
+    first: Option<f64> = shown(today.value.map(|now| now + first).filter(|x| x.is_finite()));
     /// Exact value of the changed design.
-    pub exact: Option<f64>,
+    exact: Option<f64> = shown(exact);
 }
 
 impl MetricFact {
     /// Metrics of a solution.
     pub fn all(model: &Model, units: Units, solution: &Solution) -> Vec<Self> {
         let values = metrics(model, solution);
-        model.metrics.iter().zip(values).map(|(m, value)| Self::new(model, units, m, value)).collect()
-    }
-
-    fn new(model: &Model, units: Units, metric: &Metric, found: MetricValue) -> Self {
-        let dimension = model.metric_dimension(metric);
-        let sensitivity = |(v, d): (usize, &f64)| {
-            let variable = &model.variables[v];
-            let by = variable_unit(model, units, variable);
-            MetricSensitivity {
-                variable: variable.name.clone(),
-                value: units.derivative_from_si(dimension, variable.quantity, *d),
-                unit: per(&unit(units, dimension), &by),
-                per: by,
-            }
-        };
-        let known = found.d.iter().enumerate().filter(|(_, d)| d.is_finite());
-        let mut sensitivities: Vec<_> = known.map(sensitivity).collect();
-        sensitivities.sort_by(|a, b| a.per.cmp(&b.per).then(b.value.abs().total_cmp(&a.value.abs())));
-        Self {
-            name: metric.name.clone(),
-            what: what(model, units, metric),
-            value: found.value.map(|x| units.from_si(dimension, x)),
-            unit: unit(units, dimension),
-            time: found.time,
-            interpolation_error: found.error.map(|x| units.from_si(dimension, x)),
-            coarse: found.error.is_some_and(|x| !(x <= COARSE * found.range)),
-            sensitivities,
-        }
+        model.metrics.iter().zip(values).map(|(m, value)| Self::of(model, units, m, &value)).collect()
     }
 
     /// Table of the metrics with their most influential variables.
     pub fn table(facts: &[Self]) -> Option<Table> {
-        const SHOWN: usize = 3;
-        let row = |m: &Self| {
-            let mut strongest: Vec<String> = Vec::new();
-            let mut units: Vec<&str> = m.sensitivities.iter().map(|s| s.per.as_str()).collect();
-            units.dedup();
-            for by in units {
-                let of_unit = m.sensitivities.iter().filter(|s| s.per == by && s.value != 0.0).take(SHOWN);
-                strongest
-                    .extend(of_unit.map(|s| format!("{} {} {}", s.variable, rounded(s.value, 3), s.unit)));
+        let note = match facts.iter().any(|m| m.coarse) {
+            true => {
+                "Between output times these curves are interpolated; the error is an estimate, and more output times make it smaller."
             }
-            vec![
-                m.name.clone(),
-                m.what.clone(),
-                m.value.map_or("not reached".into(), |x| with_unit(x, &m.unit)),
-                m.time.map_or(String::new(), |t| format!("{} s", number(t))),
-                m.interpolation_error
-                    .filter(|_| m.coarse)
-                    .map_or(String::new(), |x| format!("{} {}", rounded(x, 2), m.unit)),
-                strongest.join("; "),
-            ]
+            false => "",
         };
-        (!facts.is_empty()).then(|| {
-            Table {
-                title: "Metrics".into(),
-                note: match facts.iter().any(|m| m.coarse) {
-                    true => "Between output times these curves are interpolated; the error is an estimate, and more output times make it smaller.".into(),
-                    false => String::new(),
-                },
-                header: ["metric", "definition", "value", "at t", "estimated error", "most influential variables"].map(String::from).to_vec(),
-                rows: facts.iter().map(row).collect(),
-            }
-            .without_empty_columns()
-        })
+        let error = |m: &Self| {
+            let error = m.interpolation_error.filter(|_| m.coarse);
+            error.map_or(String::new(), |x| format!("{} {}", rounded(x, 2), m.unit))
+        };
+        let columns: [Column<'_, &Self>; 6] = [
+            ("metric", &|m| m.name.clone()),
+            ("definition", &|m| m.what.clone()),
+            ("value", &|m| m.value.map_or("not reached".into(), |x| with_unit(x, &m.unit))),
+            ("at t", &|m| m.time.map_or(String::new(), |t| format!("{} s", number(t)))),
+            ("estimated error", &|m| error(m)),
+            ("most influential variables", &|m| m.most_influential()),
+        ];
+        Table::of("Metrics", note, &columns, facts).if_any().map(Table::without_empty_columns)
+    }
+
+    /// The most influential variables of each unit, with their sensitivities.
+    fn most_influential(&self) -> String {
+        const SHOWN: usize = 3;
+        let mut units: Vec<&str> = self.sensitivities.iter().map(|s| s.per.as_str()).collect();
+        units.dedup();
+        let of_unit =
+            |by| self.sensitivities.iter().filter(move |s| s.per == by && s.value != 0.0).take(SHOWN);
+        let largest = units.into_iter().flat_map(of_unit);
+        let text = largest.map(|s| format!("{} {} {}", s.variable, rounded(s.value, 3), s.unit));
+        text.collect::<Vec<_>>().join("; ")
     }
 }
 
@@ -143,36 +128,21 @@ impl MetricChange {
     pub fn all(model: &Model, units: Units, what_if: &WhatIf) -> Vec<Self> {
         let (now, other) = (&what_if.today, &what_if.exact);
         let (today, exact) = (metrics(model, now), metrics_beside(model, now, other));
-        let change = |(k, metric): (usize, &Metric)| {
-            let dimension = model.metric_dimension(metric);
-            let shown = |x: Option<f64>| x.map(|x| units.from_si(dimension, x));
-            let changed = what_if.change.iter().zip(&today[k].d).filter(|(by, _)| **by != 0.0);
-            let first: f64 = changed.map(|(by, d)| by * d).sum();
-            Self {
-                name: metric.name.clone(),
-                unit: unit(units, dimension),
-                today: shown(today[k].value),
-                first: shown(today[k].value.map(|now| now + first).filter(|x| x.is_finite())),
-                exact: shown(exact[k]),
-            }
-        };
-        model.metrics.iter().enumerate().map(change).collect()
+        let values = model.metrics.iter().zip(today).zip(exact);
+        values.map(|((metric, now), exact)| Self::of(model, units, what_if, metric, &now, exact)).collect()
     }
 
     /// Table of the changed metrics.
     pub fn table(changes: &[Self]) -> Option<Table> {
-        let row = |m: &Self| {
-            let shown = |x: Option<f64>| x.map_or("-".into(), |x| with_unit(x, &m.unit));
-            let change = m.exact.zip(m.today).map(|(x, now)| x - now);
-            vec![m.name.clone(), shown(m.today), shown(m.first), shown(m.exact), shown(change)]
-        };
-        let header = ["metric", "nominal", "predicted, 1st order", "changed", "change"];
-        (!changes.is_empty()).then(|| Table {
-            title: "Metrics".into(),
-            note: String::new(),
-            header: header.map(String::from).to_vec(),
-            rows: changes.iter().map(row).collect(),
-        })
+        let shown = |m: &Self, x: Option<f64>| x.map_or("-".into(), |x| with_unit(x, &m.unit));
+        let columns: [Column<'_, &Self>; 5] = [
+            ("metric", &|m| m.name.clone()),
+            ("nominal", &|m| shown(m, m.today)),
+            ("predicted, 1st order", &|m| shown(m, m.first)),
+            ("changed", &|m| shown(m, m.exact)),
+            ("change", &|m| shown(m, m.exact.zip(m.today).map(|(x, now)| x - now))),
+        ];
+        Table::of("Metrics", "", &columns, changes).if_any()
     }
 }
 

@@ -1,9 +1,8 @@
 //! Result of an optimisation: nominal and optimised goals, limits and variables, in the model's units.
 
-use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
 use hardpoint::model::{
-    Change, DesignVariable, Dimension, LimitTarget, Model, OptimizationSettings, OutputSource,
+    Change, DesignVariable, Dimension, LimitTarget, Model, OptimizationSettings, VariableId,
 };
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::optimize::{
@@ -13,9 +12,10 @@ use hardpoint_study::optimize::{
 use hardpoint_study::{Motions, Progress, Step};
 use serde::Serialize;
 
-use crate::facts::variable_unit;
-use crate::figures::{error, number, seconds, some_of, symbol, unit, with_unit};
+use crate::figures::{error, number, some_of, symbol, unit, variable_unit, with_unit};
 use crate::page::{Payload, Table};
+use crate::record::record;
+use crate::study::{BeforeAfter, Evaluations, MovedHardpoint, case_name, titled};
 
 /// Multiplier, as a fraction of the objective per range of a variable, below which an active constraint is not
 /// reported.
@@ -23,69 +23,290 @@ const SLIGHT: f64 = 1e-9;
 /// Maximum number of failed designs that are reported.
 const REFUSED: usize = 20;
 
-/// Result of an optimisation, in the model's units. Serialised as `summary.json` of `hardpoint optimize`.
-#[derive(Clone, Debug, Serialize)]
-pub struct OptimizeFacts {
+/// A finished search, with its inputs.
+#[derive(Clone, Copy)]
+struct Search<'a> {
+    file: &'a ModelFile,
+    asked: &'a OptimizationSettings,
+    found: &'a Optimization,
+}
+
+impl<'a> Search<'a> {
+    fn model(&self) -> &'a Model {
+        &self.file.model
+    }
+
+    fn units(&self) -> Units {
+        self.file.units
+    }
+
+    fn best(&self) -> Option<&'a SearchResult> {
+        self.found.best.map(|k| &self.found.searches[k])
+    }
+
+    /// Status of the best search, or else of the first.
+    fn status(&self) -> Status {
+        self.best().or(self.found.searches.first()).map_or(Status::NoStart, |s| s.status)
+    }
+
+    /// The optimised design.
+    fn judged(&self) -> Option<&'a DesignAssessment> {
+        self.best()?.found.as_ref()
+    }
+
+    /// The nominal design, or else the optimised one: both have the same goals and limits.
+    fn any(&self) -> Option<&'a DesignAssessment> {
+        self.found.nominal.as_ref().or(self.judged())
+    }
+
+    /// A value of the nominal and of the optimised design.
+    fn before_after(&self, of: impl Fn(&DesignAssessment) -> Option<f64>) -> BeforeAfter {
+        BeforeAfter { before: self.found.nominal.as_ref().and_then(&of), after: self.judged().and_then(&of) }
+    }
+
+    /// Designs that could not be evaluated, with the numbers of their searches.
+    fn refused(&self) -> impl Iterator<Item = (usize, &'a FailedDesign)> {
+        let searches = self.found.searches.iter().enumerate();
+        searches.flat_map(|(k, s)| s.refused.iter().map(move |r| (k, r)))
+    }
+}
+
+record! {
+    /// Result of an optimisation, in the model's units. Serialised as `summary.json` of `hardpoint optimize`.
+    OptimizeFacts::without_message(search: Search<'_>) {
+        let Search { file, asked, found } = search;
+        let (model, best) = (search.model(), search.best());
+        let [goals, limits] = search.any().map_or([0; 2], |j| [j.goals.len(), j.limits.len()]);
+        let variable = |b| move |k| SearchedVariable::of(search, b, k);
+        let variables = best.into_iter().flat_map(|b| (0..asked.variables.len()).map(variable(b)));
+        let hardpoints = search.judged().map(|j| MovedHardpoint::all(model, file.units, &j.design));
+        let iterations = best.into_iter().flat_map(|b| &b.iterations);
+        let iterations = iterations.map(|i| IterationFact::of(model, file.units, i));
+    }
     /// Program and version.
-    pub generator: String,
+    generator: String = crate::GENERATOR.into();
     /// Kind of study.
-    pub study: &'static str,
+    study: &'static str = "optimize";
     /// Name of the model.
-    pub model: String,
+    model: String = model.name.clone();
     /// Name of the model file.
-    pub file: String,
+    file: String = file.file_name().into();
     /// Outcome of the best search: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or
     /// `no_start`; or `not_reproduced` if the saved design does not move like the optimum, or `not_saved` if it could
     /// not be saved.
-    pub status: &'static str,
+    status: &'static str = status_word(search.status());
     /// Status in words, with an instruction.
-    pub message: String,
+    message: String = String::new();
     /// Objective of the nominal and the optimised design: dimensionless sum over the goals.
-    pub objective: BeforeAfter,
+    objective: BeforeAfter = search.before_after(|j| Some(j.objective));
     /// Largest violation of a limit, as a fraction of its change over the bounds of the most influential variable.
-    pub violation: BeforeAfter,
+    violation: BeforeAfter = search.before_after(|j| Some(j.violation));
     /// Minimum margin to a singular position over all motions, of the nominal and the optimised design.
-    pub margin: BeforeAfter,
+    margin: BeforeAfter = search.before_after(|j| j.margin);
     /// Saved design, read back from the file and solved again; `null` if none was saved.
-    pub saved: Option<SavedFact>,
+    saved: Option<SavedFact> = None;
     /// Residual of the optimality (KKT) conditions: the part of the gradient that neither bounds nor limits balance,
     /// relative to the scale of the goals; 0 if all misfits vanish.
-    pub kkt: Option<f64>,
+    kkt: Option<f64> = best.map(|b| b.optimality.residual).filter(|r| r.is_finite());
     /// Number of the start of the best search; 0 is the nominal design.
-    pub best_start: Option<usize>,
+    best_start: Option<usize> = found.best;
     /// Cost of the search.
-    pub evaluations: Evaluations,
+    evaluations: Evaluations = Evaluations::of(found.cost);
     /// Goals of the optimisation.
-    pub goals: Vec<GoalFact>,
+    goals: Vec<GoalFact> = (0..goals).map(|k| GoalFact::of(search, k)).collect();
     /// Limits of the optimisation.
-    pub limits: Vec<LimitFact>,
+    limits: Vec<LimitFact> = (0..limits).map(|k| LimitFact::of(search, k)).collect();
     /// Searched variables.
-    pub variables: Vec<SearchedVariable>,
+    variables: Vec<SearchedVariable> = variables.collect();
     /// Hardpoints that the optimised design moves.
-    pub hardpoints: Vec<MovedHardpoint>,
+    hardpoints: Vec<MovedHardpoint> = hardpoints.unwrap_or_default();
     /// Iterations of the best search.
-    pub iterations: Vec<IterationFact>,
+    iterations: Vec<IterationFact> = iterations.collect();
     /// All searches.
-    pub starts: Vec<StartFact>,
+    starts: Vec<StartFact> = found.searches.iter().enumerate().map(|(k, s)| StartFact::of(k, s)).collect();
     /// The first designs that could not be evaluated.
-    pub refused: Vec<RefusedFact>,
+    refused: Vec<RefusedFact> = search.refused().take(REFUSED).map(|(k, r)| RefusedFact::of(search, k, r)).collect();
     /// Number of designs that could not be evaluated.
-    pub refused_count: usize,
+    refused_count: usize = search.refused().count();
     /// Further diagnostics.
-    pub diagnostics: Vec<Diagnostic>,
+    diagnostics: Vec<Diagnostic> = Vec::new();
     /// Written files.
-    pub files: Vec<String>,
+    files: Vec<String> = Vec::new();
     /// Duration, s.
-    pub seconds: f64,
+    seconds: f64 = 0.0;
 }
 
-/// Value of the nominal design and of the optimised one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct BeforeAfter {
-    /// Nominal value; `null` if the nominal design cannot be evaluated.
-    pub before: Option<f64>,
-    /// Optimised value; `null` if no design was found.
-    pub after: Option<f64>,
+record! {
+    /// Goal in one motion.
+    GoalFact::of(search: Search<'_>, k: usize) {
+        let (model, units) = (search.model(), search.units());
+        let (goal, motion, _) = search.any().expect("a goal of a design").goals[k];
+        let goal = &search.asked.goals[goal];
+        let metric = &model.metrics[goal.metric];
+        let dimension = model.metric_dimension(metric);
+        let shown = |x: f64| units.from_si(dimension, x);
+    }
+    /// Name.
+    name: String = goal.name.clone();
+    /// Metric of the goal.
+    metric: String = metric.name.clone();
+    /// Name of the case; `null` if the model has no cases.
+    case: Option<String> = case_name(model, motion);
+    /// Unit of the metric.
+    unit: String = unit(units, dimension);
+    /// Target; `null` if the metric is minimised.
+    target: Option<f64> = goal.target.or(metric.take.target().map(|_| 0.0)).map(shown);
+    /// Weight per unit.
+    weight: f64 = goal.weight * unit_in_si(units, dimension);
+    /// Nominal and optimised value.
+    #[serde(flatten)]
+    value: BeforeAfter = search.before_after(|j| j.goals.get(k).map(|g| shown(g.2)));
+}
+
+record! {
+    /// Limit, in one motion if it is on a metric.
+    LimitFact::of(search: Search<'_>, k: usize) {
+        let (model, units) = (search.model(), search.units());
+        let (place, motion, _) = search.any().expect("a limit of a design").limits[k];
+        let limit = &search.asked.limits[place];
+        let hardpoint = |h: hardpoint::model::HardpointId| model.hardpoints[h.0].name.as_str();
+        let (dimension, of) = match limit.of {
+            LimitTarget::Metric(m) => {
+                let metric = &model.metrics[m];
+                (model.metric_dimension(metric), format!("metric `{}`", metric.name))
+            }
+            LimitTarget::Coordinate(h, axis) => {
+                (Dimension::LENGTH, format!("`{}.{}`", hardpoint(h), ["x", "y", "z"][axis]))
+            }
+            LimitTarget::Distance(a, b) => {
+                (Dimension::LENGTH, format!("distance of `{}` and `{}`", hardpoint(a), hardpoint(b)))
+            }
+            LimitTarget::Length(j) => (Dimension::LENGTH, format!("length of `{}`", model.joints[j.0].name)),
+        };
+        let shown = |x: f64| units.from_si(dimension, x);
+        let binding = search.best().into_iter().flat_map(|b| &b.optimality.binding);
+        let binds = |(what, worth): &(ActiveConstraint, f64)| match *what {
+            ActiveConstraint::Least(l, m) if l == place && m == motion => Some(("min", *worth)),
+            ActiveConstraint::Most(l, m) if l == place && m == motion => Some(("max", *worth)),
+            _ => None,
+        };
+        let binds = binding.filter_map(binds).next();
+    }
+    /// Name.
+    name: String = limit.name.clone();
+    /// Limited quantity.
+    of: String = of;
+    /// Name of the case; `null` if the limit is not on a metric, or the model has no cases.
+    case: Option<String> = motion.and_then(|m| case_name(model, m));
+    /// Unit.
+    unit: String = unit(units, dimension);
+    /// Lower end.
+    min: Option<f64> = limit.least.map(shown);
+    /// Upper end.
+    max: Option<f64> = limit.most.map(shown);
+    /// Nominal and optimised value.
+    #[serde(flatten)]
+    value: BeforeAfter = search.before_after(|j| j.limits.get(k).map(|l| shown(l.2)));
+    /// Active end: `min` or `max`.
+    binds: Option<&'static str> = binds.map(|b| b.0);
+    /// Decrease of the objective per unit by which the active end is relaxed.
+    worth: Option<f64> = binds.map(|b| b.1 * unit_in_si(units, dimension));
+}
+
+record! {
+    /// Searched variable.
+    SearchedVariable::of(search: Search<'_>, best: &SearchResult, k: usize) {
+        let (file, model, units) = (search.file, search.model(), search.units());
+        let end = best.found.as_ref().map_or(&best.start, |j| &j.design);
+        let objective = best.found.as_ref().map_or(0.0, |j| j.objective.abs());
+        let v = search.asked.variables[k];
+        let variable = &model.variables[v.0];
+        let shown = |x: f64| units.from_si(variable.quantity, x);
+        let bounds = variable.bounds.unwrap_or_default();
+        let binds = |(what, worth): &(ActiveConstraint, f64)| match *what {
+            ActiveConstraint::Lower(of) if of == k => Some(("lower", *worth)),
+            ActiveConstraint::Upper(of) if of == k => Some(("upper", *worth)),
+            _ => None,
+        };
+        let is_relevant = |(_, worth): &(&str, f64)| worth * (bounds[1] - bounds[0]) > SLIGHT * objective;
+        let binds = best.optimality.binding.iter().filter_map(binds).find(is_relevant);
+    }
+    /// Name.
+    name: String = variable.name.clone();
+    /// Unit.
+    unit: String = variable_unit(model, units, variable);
+    /// Start of the best search, as a change from the nominal design.
+    start: f64 = without_round_off(shown(best.start[v.0]), bounds.map(shown));
+    /// End of the best search, as a change from the nominal design.
+    end: f64 = without_round_off(shown(end[v.0]), bounds.map(shown));
+    /// Bounds of the change.
+    bounds: [f64; 2] = bounds.map(shown);
+    /// Nominal value of the number that the variable changes; `null` if it changes more than one number.
+    nominal: Option<f64> = nominal(file, variable).map(shown);
+    /// Active bound: `lower` or `upper`.
+    binds: Option<&'static str> = binds.map(|b| b.0);
+    /// Decrease of the objective per unit by which the active bound is relaxed.
+    worth: Option<f64> = binds.map(|b| b.1 * unit_in_si(units, variable.quantity));
+    /// Contribution to the change of the objective along the path of the best search.
+    work: f64 = best.work[k];
+}
+
+record! {
+    /// Iteration of a search.
+    IterationFact::of(model: &Model, units: Units, i: &Iteration) {
+        let variable = i.most.map(|(v, by)| (&model.variables[v.0], by));
+    }
+    /// Number of the iteration; 0 is the start.
+    iteration: usize = i.number;
+    /// Objective at the iteration.
+    objective: f64 = i.objective;
+    /// Violation at the iteration, as [`OptimizeFacts::violation`].
+    violation: f64 = i.violation;
+    /// Step: largest change of a variable as a fraction of its bounds.
+    step: f64 = i.step;
+    /// Variable with the largest change.
+    moved: Option<String> = variable.map(|(v, _)| v.name.clone());
+    /// Change of that variable, in `unit`.
+    by: Option<f64> = variable.map(|(v, by)| units.from_si(v.quantity, by));
+    /// Unit.
+    unit: Option<String> = variable.map(|(v, _)| symbol(units, v.quantity).to_owned());
+    /// Number of designs evaluated so far.
+    designs: usize = i.designs;
+}
+
+record! {
+    /// Search from one start.
+    StartFact::of(k: usize, search: &SearchResult) {}
+    /// Number of the start; 0 is the nominal design.
+    start: usize = k;
+    /// Status at the end.
+    status: &'static str = status_word(search.status);
+    /// Objective of its best design.
+    objective: Option<f64> = search.found.as_ref().map(|f| f.objective);
+    /// Violation of its best design, as [`OptimizeFacts::violation`].
+    violation: Option<f64> = search.found.as_ref().map(|f| f.violation);
+    /// Number of iterations.
+    iterations: usize = search.iterations.len().saturating_sub(1);
+    /// Number of evaluated designs.
+    designs: usize = search.cost.designs;
+    /// Number of these that could not be evaluated.
+    refused: usize = search.refused.len();
+}
+
+record! {
+    /// Design that could not be evaluated.
+    RefusedFact::of(search: Search<'_>, start: usize, refused: &FailedDesign) {
+        let (model, units) = (search.model(), search.units());
+        let value = |v: &VariableId| units.from_si(model.variables[v.0].quantity, refused.design[v.0]);
+    }
+    /// Number of the search.
+    start: usize = start;
+    /// Name of the case.
+    case: Option<String> = refused.motion.and_then(|m| case_name(model, m));
+    /// Reason.
+    why: String = refused.why.clone();
+    /// Values of the searched variables, in their units.
+    values: Vec<f64> = search.asked.variables.iter().map(value).collect();
 }
 
 /// Saved design, read back from the file and solved again.
@@ -103,148 +324,6 @@ pub struct SavedFact {
     pub why: Option<String>,
 }
 
-/// Cost of an optimisation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Evaluations {
-    /// Number of evaluated designs.
-    pub designs: usize,
-    /// Number of solved motions.
-    pub motions: usize,
-    /// Number of solved output times, each with its sensitivities.
-    pub steps: usize,
-}
-
-/// Goal in one motion.
-#[derive(Clone, Debug, Serialize)]
-pub struct GoalFact {
-    /// Name.
-    pub name: String,
-    /// Metric of the goal.
-    pub metric: String,
-    /// Name of the case; `null` if the model has no cases.
-    pub case: Option<String>,
-    /// Unit of the metric.
-    pub unit: String,
-    /// Target; `null` if the metric is minimised.
-    pub target: Option<f64>,
-    /// Weight per unit.
-    pub weight: f64,
-    /// Nominal and optimised value.
-    #[serde(flatten)]
-    pub value: BeforeAfter,
-}
-
-/// Limit, in one motion if it is on a metric.
-#[derive(Clone, Debug, Serialize)]
-pub struct LimitFact {
-    /// Name.
-    pub name: String,
-    /// Limited quantity.
-    pub of: String,
-    /// Name of the case; `null` if the limit is not on a metric, or the model has no cases.
-    pub case: Option<String>,
-    /// Unit.
-    pub unit: String,
-    /// Lower end.
-    pub min: Option<f64>,
-    /// Upper end.
-    pub max: Option<f64>,
-    /// Nominal and optimised value.
-    #[serde(flatten)]
-    pub value: BeforeAfter,
-    /// Active end: `min` or `max`.
-    pub binds: Option<&'static str>,
-    /// Decrease of the objective per unit by which the active end is relaxed.
-    pub worth: Option<f64>,
-}
-
-/// Searched variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct SearchedVariable {
-    /// Name.
-    pub name: String,
-    /// Unit.
-    pub unit: String,
-    /// Start of the best search, as a change from the nominal design.
-    pub start: f64,
-    /// End of the best search, as a change from the nominal design.
-    pub end: f64,
-    /// Bounds of the change.
-    pub bounds: [f64; 2],
-    /// Nominal value of the number that the variable changes; `null` if it changes more than one number.
-    pub nominal: Option<f64>,
-    /// Active bound: `lower` or `upper`.
-    pub binds: Option<&'static str>,
-    /// Decrease of the objective per unit by which the active bound is relaxed.
-    pub worth: Option<f64>,
-    /// Contribution to the change of the objective along the path of the best search.
-    pub work: f64,
-}
-
-/// Hardpoint that the optimised design moves, in the length unit.
-#[derive(Clone, Debug, Serialize)]
-pub struct MovedHardpoint {
-    /// Name.
-    pub name: String,
-    /// Nominal coordinates.
-    pub before: [f64; 3],
-    /// Optimised coordinates.
-    pub after: [f64; 3],
-}
-
-/// Iteration of a search.
-#[derive(Clone, Debug, Serialize)]
-pub struct IterationFact {
-    /// Number of the iteration; 0 is the start.
-    pub iteration: usize,
-    /// Objective at the iteration.
-    pub objective: f64,
-    /// Violation at the iteration, as [`OptimizeFacts::violation`].
-    pub violation: f64,
-    /// Step: largest change of a variable as a fraction of its bounds.
-    pub step: f64,
-    /// Variable with the largest change.
-    pub moved: Option<String>,
-    /// Change of that variable, in `unit`.
-    pub by: Option<f64>,
-    /// Unit.
-    pub unit: Option<String>,
-    /// Number of designs evaluated so far.
-    pub designs: usize,
-}
-
-/// Search from one start.
-#[derive(Clone, Debug, Serialize)]
-pub struct StartFact {
-    /// Number of the start; 0 is the nominal design.
-    pub start: usize,
-    /// Status at the end.
-    pub status: &'static str,
-    /// Objective of its best design.
-    pub objective: Option<f64>,
-    /// Violation of its best design, as [`OptimizeFacts::violation`].
-    pub violation: Option<f64>,
-    /// Number of iterations.
-    pub iterations: usize,
-    /// Number of evaluated designs.
-    pub designs: usize,
-    /// Number of these that could not be evaluated.
-    pub refused: usize,
-}
-
-/// Design that could not be evaluated.
-#[derive(Clone, Debug, Serialize)]
-pub struct RefusedFact {
-    /// Number of the search.
-    pub start: usize,
-    /// Name of the case.
-    pub case: Option<String>,
-    /// Reason.
-    pub why: String,
-    /// Values of the searched variables, in their units.
-    pub values: Vec<f64>,
-}
-
 /// Word for a status in JSON.
 pub fn status_word(status: Status) -> &'static str {
     match status {
@@ -260,11 +339,6 @@ pub fn status_word(status: Status) -> &'static str {
 /// SI value of one user unit of a quantity.
 fn unit_in_si(units: Units, of: impl Into<Dimension>) -> f64 {
     1.0 / units.from_si(of.into(), 1.0)
-}
-
-/// Name of the case of a motion; `None` if the model has no cases.
-pub fn case_name(model: &Model, motion: usize) -> Option<String> {
-    model.cases.get(motion).map(|case| case.name.clone())
 }
 
 /// Line of text on a counted step of an optimisation, shown during the search.
@@ -364,61 +438,10 @@ fn in_words(status: Status) -> &'static str {
 impl OptimizeFacts {
     /// Collects the facts of an optimisation.
     pub fn of(file: &ModelFile, asked: &OptimizationSettings, found: &Optimization) -> Self {
-        let (model, units) = (&file.model, file.units);
-        let best = found.best.map(|k| &found.searches[k]);
-        let judged = best.and_then(|b| b.found.as_ref());
-        let worst = found.searches.first().map_or(Status::NoStart, |s| s.status);
-        let status = best.map_or(worst, |b| b.status);
-        let before_after = |of: fn(&DesignAssessment) -> f64| BeforeAfter {
-            before: found.nominal.as_ref().map(of),
-            after: judged.map(of),
-        };
-        let refused =
-            found.searches.iter().enumerate().flat_map(|(k, s)| s.refused.iter().map(move |r| (k, r)));
-        let refused_fact = |(start, refused): (usize, &FailedDesign)| RefusedFact {
-            start,
-            case: refused.motion.and_then(|m| case_name(model, m)),
-            why: refused.why.clone(),
-            values: asked
-                .variables
-                .iter()
-                .map(|v| units.from_si(model.variables[v.0].quantity, refused.design[v.0]))
-                .collect(),
-        };
-        let mut facts = Self {
-            generator: crate::GENERATOR.into(),
-            study: "optimize",
-            model: model.name.clone(),
-            file: file.file_name().into(),
-            status: status_word(status),
-            message: String::new(),
-            objective: before_after(|j| j.objective),
-            violation: before_after(|j| j.violation),
-            margin: BeforeAfter {
-                before: found.nominal.as_ref().and_then(|j| j.margin),
-                after: judged.and_then(|j| j.margin),
-            },
-            saved: None,
-            kkt: best.map(|b| b.optimality.residual).filter(|r| r.is_finite()),
-            best_start: found.best,
-            evaluations: Evaluations {
-                designs: found.cost.designs,
-                motions: found.cost.motions,
-                steps: found.cost.steps,
-            },
-            goals: goals(model, units, asked, found, judged),
-            limits: limits(model, units, asked, found, best),
-            variables: best.map_or(Vec::new(), |b| variables(file, asked, b)),
-            hardpoints: judged.map_or(Vec::new(), |j| moved(model, units, &j.design)),
-            iterations: best.map_or(Vec::new(), |b| iterations(model, units, b)),
-            starts: found.searches.iter().enumerate().map(|(k, s)| start(k, s)).collect(),
-            refused_count: refused.clone().count(),
-            refused: refused.take(REFUSED).map(refused_fact).collect(),
-            diagnostics: Vec::new(),
-            files: Vec::new(),
-            seconds: 0.0,
-        };
-        facts.message = facts.sentence(model, status, found);
+        let search = Search { file, asked, found };
+        let mut facts = Self::without_message(search);
+        let status = search.status();
+        facts.message = facts.sentence(&file.model, status, found);
         let begun = found.searches.iter().filter(|s| s.status != Status::Interrupted).count();
         if begun < found.searches.len() && status != Status::Interrupted {
             let all = found.searches.len();
@@ -472,92 +495,59 @@ impl OptimizeFacts {
     /// Tables for printing: goals, limits, variables.
     pub fn tables(&self) -> Vec<Table> {
         let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
-        let header = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
-        let has_cases =
-            self.goals.iter().any(|g| g.case.is_some()) || self.limits.iter().any(|l| l.case.is_some());
-        let named = |name: &str, case: &Option<String>| match case {
-            Some(case) if has_cases => format!("{name} ({case})"),
-            _ => name.to_owned(),
+        let binds = |end: Option<&'static str>, worth: Option<f64>, unit: &str| match (end, worth) {
+            (Some(end), Some(worth)) => {
+                format!("{end}; 1 {} more is worth {}", unit_name(unit), self.worth(worth))
+            }
+            (end, _) => end.unwrap_or_default().into(),
         };
-        let goal = |g: &GoalFact| {
-            let target = g.target.map_or("small".into(), |t| with_unit(t, &g.unit));
-            vec![
-                named(&g.name, &g.case),
-                optional(g.value.before, &g.unit),
-                optional(g.value.after, &g.unit),
-                target,
-            ]
-        };
-        let mut tables = vec![Table {
-            title: "Goals".into(),
-            note: String::new(),
-            header: header(&["goal", "nominal", "optimised", "target"]),
-            rows: self.goals.iter().map(goal).collect(),
-        }];
-        if !self.limits.is_empty() {
-            let limit = |l: &LimitFact| {
-                let binds = l.binds.map_or(String::new(), |end| match l.worth {
-                    Some(worth) => {
-                        format!("{end}; 1 {} more is worth {}", unit_name(&l.unit), self.worth(worth))
-                    }
-                    None => end.into(),
-                });
-                vec![
-                    named(&l.name, &l.case),
-                    optional(l.value.before, &l.unit),
-                    optional(l.value.after, &l.unit),
-                    l.wanted(),
-                    binds,
-                ]
-            };
-            tables.push(Table {
-                title: "Limits".into(),
-                note: String::new(),
-                header: header(&["limit", "nominal", "optimised", "required", "active"]),
-                rows: self.limits.iter().map(limit).collect(),
-            });
-        }
+        let goals = Table::of(
+            "Goals",
+            "",
+            &[
+                ("goal", &|g: &&GoalFact| titled(&g.name, &g.case)),
+                ("nominal", &|g| optional(g.value.before, &g.unit)),
+                ("optimised", &|g| optional(g.value.after, &g.unit)),
+                ("target", &|g| g.target.map_or("small".into(), |t| with_unit(t, &g.unit))),
+            ],
+            &self.goals,
+        );
+        let limits = Table::of(
+            "Limits",
+            "",
+            &[
+                ("limit", &|l: &&LimitFact| titled(&l.name, &l.case)),
+                ("nominal", &|l| optional(l.value.before, &l.unit)),
+                ("optimised", &|l| optional(l.value.after, &l.unit)),
+                ("required", &|l| l.wanted()),
+                ("active", &|l| binds(l.binds, l.worth, &l.unit)),
+            ],
+            &self.limits,
+        );
         let total: f64 = self.variables.iter().map(|v| v.work.abs()).sum();
-        let variable = |v: &SearchedVariable| {
-            let binds = v.binds.map_or(String::new(), |end| match v.worth {
-                Some(worth) => format!("{end}; 1 {} more is worth {}", unit_name(&v.unit), self.worth(worth)),
-                None => end.into(),
-            });
-            let work = if total > 0.0 { format!("{:.0} %", 100.0 * -v.work / total) } else { String::new() };
-            let [low, high] = v.bounds;
-            vec![
-                v.name.clone(),
-                with_unit(v.value(v.start), &v.unit),
-                with_unit(v.value(v.end), &v.unit),
-                signed(v.end - v.start, &v.unit),
-                format!("{} to {}", number(v.value(low)), number(v.value(high))),
-                work,
-                binds,
-            ]
+        let work = |v: &SearchedVariable| {
+            if total > 0.0 { format!("{:.0} %", 100.0 * -v.work / total) } else { String::new() }
         };
-        if !self.variables.is_empty() {
-            tables.push(Table {
-                title: "Design".into(),
-                note: "Start, optimised value and bounds are values of the number that the variable changes; where it changes several, they are \
-                    changes of the design configuration. Work is a variable's share of what was gained, along the way."
-                    .into(),
-                header: header(&["variable", "start", "optimised", "change", "bounds", "work", "active bound"]),
-                rows: self.variables.iter().map(variable).collect(),
-            });
-        }
-        if !self.hardpoints.is_empty() {
-            let row = |h: &MovedHardpoint| {
-                let place = |p: [f64; 3]| p.map(number).join(", ");
-                vec![h.name.clone(), place(h.before), place(h.after)]
-            };
-            tables.push(Table {
-                title: "Moved hardpoints".into(),
-                note: String::new(),
-                header: header(&["hardpoint", "nominal", "optimised"]),
-                rows: self.hardpoints.iter().map(row).collect(),
-            });
-        }
-        tables
+        let variables = Table::of(
+            "Design",
+            "Start, optimised value and bounds are values of the number that the variable changes; where it changes several, they are \
+             changes of the design configuration. Work is a variable's share of what was gained, along the way.",
+            &[
+                ("variable", &|v: &&SearchedVariable| v.name.clone()),
+                ("start", &|v| with_unit(v.value(v.start), &v.unit)),
+                ("optimised", &|v| with_unit(v.value(v.end), &v.unit)),
+                ("change", &|v| signed(v.end - v.start, &v.unit)),
+                ("bounds", &|v| {
+                    format!("{} to {}", number(v.value(v.bounds[0])), number(v.value(v.bounds[1])))
+                }),
+                ("work", &|v| work(v)),
+                ("active bound", &|v| binds(v.binds, v.worth, &v.unit)),
+            ],
+            &self.variables,
+        );
+        let more =
+            [limits.if_any(), variables.if_any(), MovedHardpoint::table(&self.hardpoints, "optimised")];
+        std::iter::once(goals).chain(more.into_iter().flatten()).collect()
     }
 
     /// Facts of the result, line by line.
@@ -643,52 +633,30 @@ impl OptimizeFacts {
     /// Turns the page of the nominal design into that of the search: the result comes first among the checks, and the
     /// page opens on the curve of the first goal of this motion, over its abscissa.
     pub fn page(&self, mut page: Payload, model: &Model, outputs: &[Output]) -> Payload {
-        let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
         let goal = |g: &GoalFact| model.metrics.iter().find(|m| m.name == g.metric);
-        if let Some(metric) = self.goals.iter().find_map(goal) {
-            page.first = place(metric.of).or(page.first);
-            page.over = metric.over.and_then(place);
-        }
-        let rows = self.rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
-        let result = Table {
-            title: "The search".into(),
-            note: String::new(),
-            header: ["", "is"].map(String::from).to_vec(),
-            rows,
-        };
-        let mut checks = vec![result];
-        checks.extend(self.tables());
-        checks.extend([self.iteration_table()]);
-        checks.append(&mut page.checks);
-        Payload { checks, ..page }
+        page.open_on(self.goals.iter().find_map(goal), outputs);
+        let tables = self.tables().into_iter().chain([self.iteration_table()]);
+        page.put_first("The search", self.rows(), &[], tables);
+        page
     }
 
     fn iteration_table(&self) -> Table {
-        let row = |i: &IterationFact| {
-            let moved = i.moved.as_ref().zip(i.by).map_or(String::new(), |(name, by)| {
-                format!("{name} {}", with_unit(by, i.unit.as_deref().unwrap_or_default()))
-            });
-            vec![
-                i.iteration.to_string(),
-                number(i.objective),
-                exceeded(i.violation).unwrap_or_else(|| "kept".into()),
-                moved,
-                i.designs.to_string(),
-            ]
+        let moved = |i: &IterationFact| {
+            let by = |by| with_unit(by, i.unit.as_deref().unwrap_or_default());
+            i.moved.as_ref().zip(i.by).map_or(String::new(), |(name, x)| format!("{name} {}", by(x)))
         };
-        Table {
-            title: "Iterations".into(),
-            note: String::new(),
-            header: ["iteration", "objective", "limits exceeded by", "moved most", "designs"]
-                .map(String::from)
-                .to_vec(),
-            rows: self.iterations.iter().map(row).collect(),
-        }
-    }
-
-    /// Line about the duration.
-    pub fn time_line(&self) -> String {
-        seconds(self.seconds)
+        Table::of(
+            "Iterations",
+            "",
+            &[
+                ("iteration", &|i: &&IterationFact| i.iteration.to_string()),
+                ("objective", &|i| number(i.objective)),
+                ("limits exceeded by", &|i| exceeded(i.violation).unwrap_or_else(|| "kept".into())),
+                ("moved most", &|i| moved(i)),
+                ("designs", &|i| i.designs.to_string()),
+            ],
+            &self.iterations,
+        )
     }
 }
 
@@ -726,84 +694,6 @@ impl LimitFact {
 
 /// A limit that is exceeded by less than this fraction of its value is reported as satisfied.
 const MISSED: f64 = 1e-7;
-
-fn goals(
-    model: &Model,
-    units: Units,
-    asked: &OptimizationSettings,
-    found: &Optimization,
-    judged: Option<&DesignAssessment>,
-) -> Vec<GoalFact> {
-    let some = found.nominal.as_ref().or(judged);
-    let taken = some.map_or(&[][..], |j| &j.goals[..]);
-    let fact = |(k, (goal, motion, _)): (usize, &(usize, usize, f64))| {
-        let goal = &asked.goals[*goal];
-        let metric = &model.metrics[goal.metric];
-        let dimension = model.metric_dimension(metric);
-        let shown = |x: f64| units.from_si(dimension, x);
-        let value = |j: Option<&DesignAssessment>| j.and_then(|j| j.goals.get(k)).map(|g| shown(g.2));
-        GoalFact {
-            name: goal.name.clone(),
-            metric: metric.name.clone(),
-            case: case_name(model, *motion),
-            unit: unit(units, dimension),
-            target: goal.target.or(metric.take.target().map(|_| 0.0)).map(shown),
-            weight: goal.weight * unit_in_si(units, dimension),
-            value: BeforeAfter { before: value(found.nominal.as_ref()), after: value(judged) },
-        }
-    };
-    taken.iter().enumerate().map(fact).collect()
-}
-
-fn limits(
-    model: &Model,
-    units: Units,
-    asked: &OptimizationSettings,
-    found: &Optimization,
-    best: Option<&SearchResult>,
-) -> Vec<LimitFact> {
-    let judged = best.and_then(|b| b.found.as_ref());
-    let some = found.nominal.as_ref().or(judged);
-    let taken = some.map_or(&[][..], |j| &j.limits[..]);
-    let hardpoint = |h: hardpoint::model::HardpointId| model.hardpoints[h.0].name.as_str();
-    let fact = |(k, (limit, motion, _)): (usize, &(usize, Option<usize>, f64))| {
-        let (place, limit) = (*limit, &asked.limits[*limit]);
-        let (dimension, of) = match limit.of {
-            LimitTarget::Metric(m) => {
-                let metric = &model.metrics[m];
-                (model.metric_dimension(metric), format!("metric `{}`", metric.name))
-            }
-            LimitTarget::Coordinate(h, axis) => {
-                (Dimension::LENGTH, format!("`{}.{}`", hardpoint(h), ["x", "y", "z"][axis]))
-            }
-            LimitTarget::Distance(a, b) => {
-                (Dimension::LENGTH, format!("distance of `{}` and `{}`", hardpoint(a), hardpoint(b)))
-            }
-            LimitTarget::Length(j) => (Dimension::LENGTH, format!("length of `{}`", model.joints[j.0].name)),
-        };
-        let shown = |x: f64| units.from_si(dimension, x);
-        let value = |j: Option<&DesignAssessment>| j.and_then(|j| j.limits.get(k)).map(|l| shown(l.2));
-        let binding = best.into_iter().flat_map(|b| &b.optimality.binding);
-        let binds = |(what, worth): &(ActiveConstraint, f64)| match *what {
-            ActiveConstraint::Least(l, m) if l == place && m == *motion => Some(("min", *worth)),
-            ActiveConstraint::Most(l, m) if l == place && m == *motion => Some(("max", *worth)),
-            _ => None,
-        };
-        let binds = binding.filter_map(binds).next();
-        LimitFact {
-            name: limit.name.clone(),
-            of,
-            case: motion.and_then(|m| case_name(model, m)),
-            unit: unit(units, dimension),
-            min: limit.least.map(shown),
-            max: limit.most.map(shown),
-            value: BeforeAfter { before: value(found.nominal.as_ref()), after: value(judged) },
-            binds: binds.map(|b| b.0),
-            worth: binds.map(|b| b.1 * unit_in_si(units, dimension)),
-        }
-    };
-    taken.iter().enumerate().map(fact).collect()
-}
 
 /// A change below this fraction of the bounds is round-off.
 const ROUND_OFF: f64 = 1e-15;
@@ -895,74 +785,5 @@ impl OptimizeFacts {
         } else {
             self.message = format!("{}; {message}", self.message);
         }
-    }
-}
-
-fn variables(file: &ModelFile, asked: &OptimizationSettings, best: &SearchResult) -> Vec<SearchedVariable> {
-    let (model, units) = (&file.model, file.units);
-    let end = best.found.as_ref().map_or(&best.start, |j| &j.design);
-    let objective = best.found.as_ref().map_or(0.0, |j| j.objective.abs());
-    let fact = |(k, v): (usize, &hardpoint::model::VariableId)| {
-        let variable = &model.variables[v.0];
-        let shown = |x: f64| units.from_si(variable.quantity, x);
-        let bounds = variable.bounds.unwrap_or_default();
-        let binds = |(what, worth): &(ActiveConstraint, f64)| match *what {
-            ActiveConstraint::Lower(of) if of == k => Some(("lower", *worth)),
-            ActiveConstraint::Upper(of) if of == k => Some(("upper", *worth)),
-            _ => None,
-        };
-        let is_relevant = |(_, worth): &(&str, f64)| worth * (bounds[1] - bounds[0]) > SLIGHT * objective;
-        let binds = best.optimality.binding.iter().filter_map(binds).find(is_relevant);
-        SearchedVariable {
-            name: variable.name.clone(),
-            unit: variable_unit(model, units, variable),
-            start: without_round_off(shown(best.start[v.0]), bounds.map(shown)),
-            end: without_round_off(shown(end[v.0]), bounds.map(shown)),
-            bounds: bounds.map(shown),
-            nominal: nominal(file, variable).map(shown),
-            binds: binds.map(|b| b.0),
-            worth: binds.map(|b| b.1 * unit_in_si(units, variable.quantity)),
-            work: best.work[k],
-        }
-    };
-    asked.variables.iter().enumerate().map(fact).collect()
-}
-
-pub(crate) fn moved(model: &Model, units: Units, design: &[f64]) -> Vec<MovedHardpoint> {
-    let [before, after] = [&[][..], design].map(|d| model.hardpoint_places(d));
-    let named = model.hardpoints.iter().zip(before.iter().zip(&after)).filter(|(h, _)| !h.unnamed);
-    let shown = |p: hardpoint::space::Vec3| p.to_array().map(|x| units.from_si(Quantity::Length, x));
-    let moved = named.filter(|(_, (a, b))| (**a - **b).norm() > 0.0);
-    moved
-        .map(|(h, (a, b))| MovedHardpoint { name: h.name.clone(), before: shown(*a), after: shown(*b) })
-        .collect()
-}
-
-fn iterations(model: &Model, units: Units, search: &SearchResult) -> Vec<IterationFact> {
-    let fact = |i: &Iteration| {
-        let variable = i.most.map(|(v, by)| (&model.variables[v.0], by));
-        IterationFact {
-            iteration: i.number,
-            objective: i.objective,
-            violation: i.violation,
-            step: i.step,
-            moved: variable.map(|(v, _)| v.name.clone()),
-            by: variable.map(|(v, by)| units.from_si(v.quantity, by)),
-            unit: variable.map(|(v, _)| symbol(units, v.quantity).to_owned()),
-            designs: i.designs,
-        }
-    };
-    search.iterations.iter().map(fact).collect()
-}
-
-fn start(k: usize, search: &SearchResult) -> StartFact {
-    StartFact {
-        start: k,
-        status: status_word(search.status),
-        objective: search.found.as_ref().map(|f| f.objective),
-        violation: search.found.as_ref().map(|f| f.violation),
-        iterations: search.iterations.len().saturating_sub(1),
-        designs: search.cost.designs,
-        refused: search.refused.len(),
     }
 }

@@ -50,9 +50,15 @@ impl From<&[f64]> for Curve {
     }
 }
 
+impl From<Vec<f32>> for Curve {
+    fn from(values: Vec<f32>) -> Self {
+        Self { values, tracks: Vec::new() }
+    }
+}
+
 impl FromIterator<f64> for Curve {
     fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
-        Self { values: values.into_iter().map(|value| value as f32).collect(), tracks: Vec::new() }
+        values.into_iter().map(|value| value as f32).collect::<Vec<f32>>().into()
     }
 }
 

@@ -25,7 +25,9 @@ use hardpoint_file::{Appearance, ModelFile, Units};
 use hardpoint_study::Comparison;
 use hardpoint_study::difference::Difference;
 
-use crate::course::{Course, RoundOff, settled};
+use hardpoint_table::series::{self, Scale, settled};
+
+use crate::course::{Course, RoundOff};
 use crate::encoding::{packed, size_in_page};
 use crate::facts::{Facts, VariableAdmissibility};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
@@ -35,7 +37,6 @@ use crate::page::{
     Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
-use crate::validity::ValidityFact;
 
 /// Approximate maximum number of output times on a page.
 const MOST_STEPS: usize = 1000;
@@ -203,7 +204,7 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
         checks: MetricFact::table(&summary.metrics)
             .into_iter()
             .chain(summary.assembly.iter().flat_map(|a| a.tables()))
-            .chain(ValidityFact::table(summary))
+            .chain(summary.validity_table())
             .chain(summary.model.tables())
             .collect(),
         model: Some(ModelText {
@@ -440,10 +441,6 @@ impl Span {
     }
 }
 
-/// Orders of time derivative of a body's origin.
-type Orders = [fn(&BodySensitivity) -> Vec3; 3];
-const ORIGIN: Orders = [|s| s.dr, |s| s.dv, |s| s.da];
-
 impl<'a> Compose<'a> {
     fn new(request: &Request<'a>, alone: Option<&'a DriverRates>, detail: Detail) -> Self {
         let &Request { file, analysis, course, .. } = request;
@@ -557,15 +554,19 @@ impl<'a> Compose<'a> {
     /// First-order motion of every body by a variable.
     fn shifts(&self, b: usize) -> Vec<Curve> {
         let by = self.model.variables[b].quantity;
-        let shown = self.derivatives_shown(b, Dimension::LENGTH);
-        let least_turn = self.round_off.of(b, Kind::Angle.into(), 0);
-        let turn_shown = self.units.derivative_from_si(Kind::Number, by, 1.0);
-        let of_body = |body: usize| {
+        let [place, ..] = self.derivatives_shown(b, Dimension::LENGTH);
+        let turn = Scale {
+            per_si: self.units.derivative_from_si(Kind::Number, by, 1.0),
+            round_off: self.round_off.of(b, Kind::Angle.into(), 0),
+        };
+        let of_body = |body: usize| -> Curve {
+            if !self.course.stores_shifts() {
+                return series::of_shift(self.solution, &self.steps, (VariableId(b), body), [place, turn])
+                    .into();
+            }
             let at = |&k: &usize| {
-                let [x, y, z, turn @ ..] = self.course.shift(k, b, body).unwrap_or_default();
-                let place = [x, y, z].map(|x| shown(0, x));
-                let turn = turn.map(|x| settled(x, least_turn) * turn_shown);
-                place.into_iter().chain(turn)
+                let [x, y, z, turned @ ..] = self.course.shift(k, b, body).unwrap_or_default();
+                [x, y, z].map(|x| place.shown(x)).into_iter().chain(turned.map(|x| turn.shown(x)))
             };
             self.steps.iter().flat_map(at).collect()
         };
@@ -584,51 +585,70 @@ impl<'a> Compose<'a> {
                     d.outputs[k / d.stride * columns + m][order]
                 })
             });
-            let exact = |k: usize, order: usize| measured.derivative(k, VariableId(b), m, order);
-            list.push(self.sensitivity(
-                list.len(),
-                (output.dimension, output.known.orders),
-                b,
-                exact,
-                overlay,
-            ));
-        }
-        for (body, axis) in (1..bodies).flat_map(|body| (0..3).map(move |axis| (body, axis))) {
-            if !self.detail.bodies {
-                break;
-            }
-            let of = |s: &BodySensitivity, order: usize| ORIGIN[order](s).to_array()[axis];
-            let overlay = difference.zip(comparison.as_ref()).filter(|_| self.detail.body_differences);
-            let overlay = overlay.map(|(d, comparison)| {
-                (d, comparison.of_origin(BodyId(body)), move |k: usize, order: usize| {
-                    of(&d.bodies[k / d.stride * bodies + body], order)
-                })
+            let scales = self.derivatives_shown(b, output.dimension);
+            let orders = output.known.orders;
+            let exact = [0, 1, 2].map(|order| -> Curve {
+                let of = (VariableId(b), m, order);
+                if order < orders {
+                    series::of_output(self.solution, &self.steps, of, scales[order]).into()
+                } else {
+                    Curve::default()
+                }
             });
-            let exact = |k: usize, order: usize| match order {
-                0 => self.course.shift(k, b, body).map_or(f64::NAN, |s| s[axis]),
-                _ => self.solution.sensitivities.at(k, b).map_or(f64::NAN, |s| of(&s.body(body), order)),
-            };
+            list.push(self.sensitivity(list.len(), (b, orders), scales, exact, overlay));
+        }
+        let bodies_shown = if self.detail.bodies { bodies } else { 1 };
+        for body in 1..bodies_shown {
+            let scales = self.derivatives_shown(b, Dimension::LENGTH);
             let orders = if self.detail.body_rates { 3 } else { 1 };
-            list.push(self.sensitivity(list.len(), (Dimension::LENGTH, orders), b, exact, overlay));
+            let mut exact = self.of_origin(b, body, orders, scales);
+            for axis in 0..3 {
+                let of = |s: &BodySensitivity, order: usize| series::ORIGIN[order](s).to_array()[axis];
+                let overlay = difference.zip(comparison.as_ref()).filter(|_| self.detail.body_differences);
+                let overlay = overlay.map(|(d, comparison)| {
+                    (d, comparison.of_origin(BodyId(body)), move |k: usize, order: usize| {
+                        of(&d.bodies[k / d.stride * bodies + body], order)
+                    })
+                });
+                let exact = exact.each_mut().map(|curves| std::mem::take(&mut curves[axis]));
+                list.push(self.sensitivity(list.len(), (b, orders), scales, exact, overlay));
+            }
         }
         list
+    }
+
+    /// Derivatives of x, y and z of a body's origin by variable b, for each order of time derivative.
+    fn of_origin(&self, b: usize, body: usize, orders: usize, scales: [Scale; 3]) -> [[Curve; 3]; 3] {
+        [0, 1, 2].map(|order| {
+            if order >= orders {
+                return Default::default();
+            }
+            if order == 0 && self.course.stores_shifts() {
+                let of = |axis: usize| {
+                    move |k: usize| {
+                        scales[0].shown(self.course.shift(k, b, body).map_or(f64::NAN, |s| s[axis]))
+                    }
+                };
+                return [0, 1, 2].map(|axis| self.curve(of(axis)));
+            }
+            series::of_origin(self.solution, &self.steps, (VariableId(b), body, order), scales[order])
+                .map(Curve::from)
+        })
     }
 
     /// Sensitivity, with the comparison if there is one.
     fn sensitivity<F: Fn(usize, usize) -> f64>(
         &self,
         quantity: usize,
-        (kind, orders): (Dimension, usize),
-        b: usize,
-        exact: impl Fn(usize, usize) -> f64,
+        (b, orders): (usize, usize),
+        scales: [Scale; 3],
+        [value, rate, accel]: [Curve; 3],
         overlay: Option<(&Difference, [f64; 3], F)>,
     ) -> Sensitivity {
-        let shown = self.derivatives_shown(b, kind);
-        let [value, rate, accel] = self.curves(orders, |k, order| shown(order, exact(k, order)));
         let fd = overlay.map(|(d, worst, difference)| {
             let stride = shown_stride_of_marks(d.stride, self.detail.stride, self.steps.len());
             let marks = |order: usize| {
-                let of = |&k: &usize| shown(order, difference(k, order));
+                let of = |&k: &usize| scales[order].shown(difference(k, order));
                 let steps = self.steps.iter().step_by(stride).filter(|_| order < orders);
                 steps.map(of).collect::<Curve>()
             };
@@ -648,11 +668,10 @@ impl<'a> Compose<'a> {
         Sensitivity { quantity, value, rate, accel, fd }
     }
 
-    /// Returns the conversion of a derivative by variable b from SI to the user's units; round-off becomes 0.
-    fn derivatives_shown(&self, b: usize, kind: Dimension) -> impl Fn(usize, f64) -> f64 + use<> {
+    /// Returns the conversions of a derivative by variable b, by the order of its time derivative.
+    fn derivatives_shown(&self, b: usize, kind: Dimension) -> [Scale; 3] {
         let per_si = self.units.derivative_from_si(kind, self.model.variables[b].quantity, 1.0);
-        let round_off = [0, 1, 2].map(|order| self.round_off.of(b, kind, order));
-        move |order, x| settled(x, round_off[order]) * per_si
+        [0, 1, 2].map(|order| Scale { per_si, round_off: self.round_off.of(b, kind, order) })
     }
 }
 

@@ -3,19 +3,19 @@
 use hardpoint::Solution;
 use hardpoint::joint::Quantity;
 use hardpoint::model::{Model, OutputSource};
-use hardpoint::motion::StopKind;
+use hardpoint::motion::{Stop, StopKind};
 use hardpoint::topology::Topology;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use serde::Serialize;
 
 use crate::assembly::{AssemblyFact, GapFact};
 use crate::course::Course;
-use crate::diagnose::{driver_values, named};
-use crate::facts::{Facts, variable_unit};
-use crate::figures::{order_unit, per, symbol};
+use crate::facts::Facts;
+use crate::figures::{order_unit, per, some_of, symbol, variable_unit, with_unit};
 use crate::maps::MapLine;
-use crate::margin::MarginFact;
+use crate::margin::{MarginFact, named};
 use crate::metric::MetricFact;
+use crate::page::Table;
 use crate::validity::ValidityFact;
 
 /// Contents of `summary.json`. Values are in the model's units, times in s.
@@ -213,6 +213,11 @@ pub struct Timings {
 }
 
 impl Summary {
+    /// Table of the linear ranges, with the numerical quality of the motion.
+    pub fn validity_table(&self) -> Option<Table> {
+        ValidityFact::table(&self.validity, self.margin.as_ref(), self.effort.least_pivot_ratio)
+    }
+
     /// Summary of a run, without files.
     pub fn new(file: &ModelFile, topology: &Topology, course: &Course) -> Self {
         let (model, solution) = (&file.model, &course.kept);
@@ -296,4 +301,20 @@ fn rankings(model: &Model, units: Units, course: &Course) -> Vec<Ranking> {
         }
     }
     rankings
+}
+
+/// Driver positions at a stop: `, with \`rack\` at 12.3 mm and ...`.
+pub(crate) fn driver_values(file: &ModelFile, stop: &Stop) -> String {
+    let (model, units) = (&file.model, file.units);
+    let values: Vec<String> = model
+        .drivers
+        .iter()
+        .zip(&stop.drivers)
+        .map(|(driver, value)| {
+            let quantity = model.driven(driver).quantity;
+            let value = with_unit(units.from_si(quantity, *value), symbol(units, quantity));
+            format!("`{}` at {value}", driver.name)
+        })
+        .collect();
+    if values.is_empty() { String::new() } else { format!(", with {}", some_of(&values, ", ")) }
 }

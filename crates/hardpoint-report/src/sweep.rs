@@ -7,142 +7,168 @@ use hardpoint::model::{Dimension, Model, OutputSource, SweepMethod, SweepRange, 
 use hardpoint_file::{ModelFile, Units};
 use hardpoint_study::sweep::{self, Distribution, SobolIndex, Sweep, rank_correlation, sobol_indices};
 use hardpoint_study::{Motions, StudyCost};
-use serde::Serialize;
 
 use crate::cells::Cells;
-use crate::facts::variable_unit;
-use crate::figures::{count, number, seconds, unit, with_unit};
-use crate::optimize::{BeforeAfter, Evaluations, case_name};
-use crate::page::{Fact, Payload, SweepAxis, SweepIndex, SweepPlot, Table};
-use crate::tolerance::{FailureFact, bar, header, percent, titled};
+use crate::figures::{count, number, unit, variable_unit, with_unit};
+use crate::page::{Payload, SweepAxis, SweepIndex, SweepPlot, Table};
+use crate::record::{Column, record};
+use crate::study::{BeforeAfter, Evaluations, FailureFact, bar, case_name, percent, titled};
 
 /// Maximum number of designs that are plotted and ranked.
 pub const MAX_PLOTTED: usize = 5000;
 
-/// Result of a sweep, in the model's units. Serialised as `summary.json` of `hardpoint sweep`.
-#[derive(Clone, Debug, Serialize)]
-pub struct SweepFacts {
+record! {
+    /// Result of a sweep, in the model's units. Serialised as `summary.json` of `hardpoint sweep`.
+    SweepFacts::of(swept: &SweepInputs<'_>, tally: &Tally, metrics: Vec<SweptFact>) {
+        let (file, asked) = (swept.file, swept.asked);
+        let first = metrics.first().and_then(|m| m.distribution.as_ref());
+        let best = |k: usize| first.map(|d| d.least.variables[k]);
+        let count_asked = swept.sweep.plan().count();
+        let (status, message) = if tally.designs < count_asked {
+            ("interrupted", format!("interrupted after {} of {count_asked} designs", tally.designs))
+        } else if tally.failed == tally.designs {
+            (
+                "no_design",
+                "no design reaches the end of its motion: narrow the ranges; the reasons are listed below"
+                    .to_owned(),
+            )
+        } else {
+            ("complete", format!("all {} were solved", count(tally.designs, "design")))
+        };
+    }
     /// Program and version.
-    pub generator: String,
+    generator: String = crate::GENERATOR.into();
     /// Kind of study.
-    pub study: &'static str,
+    study: &'static str = "sweep";
     /// Name of the model.
-    pub model: String,
+    model: String = file.model.name.clone();
     /// Name of the model file.
-    pub file: String,
+    file: String = file.file_name().into();
     /// Status: `complete`, `interrupted`, or `no_design` if no design reaches the end of its motion.
-    pub status: &'static str,
+    status: &'static str = status;
     /// Status in words, with an instruction.
-    pub message: String,
+    message: String = message;
     /// First metric: nominal value and minimum over the designs.
-    pub objective: BeforeAfter,
+    objective: BeforeAfter = BeforeAfter {
+        before: metrics.first().and_then(|m| m.drawn),
+        after: first.map(|d| d.least.value),
+    };
     /// Cost of the designs.
-    pub evaluations: Evaluations,
+    evaluations: Evaluations = Evaluations::of(tally.cost);
     /// Number of solved designs.
-    pub designs: usize,
+    designs: usize = tally.designs;
     /// Number of requested designs.
-    pub asked: usize,
+    asked: usize = count_asked;
     /// Method that chose the designs.
-    pub method: &'static str,
+    method: &'static str = asked.method.name();
     /// Random seed; `null` if the method is deterministic.
-    pub seed: Option<u64>,
+    seed: Option<u64> = (!matches!(asked.method, SweepMethod::Factorial | SweepMethod::Listed)).then_some(asked.seed);
     /// Swept variables.
-    pub variables: Vec<SweptVariable>,
+    variables: Vec<SweptVariable> = (0..asked.ranges.len()).map(|k| SweptVariable::of(swept, k, best(k))).collect();
     /// Results per metric and case.
-    pub metrics: Vec<SweptFact>,
+    metrics: Vec<SweptFact> = metrics;
     /// Number of designs that do not reach the end of a motion.
-    pub failed: usize,
+    failed: usize = tally.failed;
     /// Failed designs, grouped by cause.
-    pub failures: Vec<FailureFact>,
+    failures: Vec<FailureFact> = tally.failures.iter().map(|(_, _, fact)| fact.clone()).collect();
     /// Written files.
-    pub files: Vec<String>,
+    files: Vec<String> = Vec::new();
     /// Duration, s.
-    pub seconds: f64,
+    seconds: f64 = 0.0;
 }
 
-/// Swept variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct SweptVariable {
+record! {
+    /// Swept variable.
+    SweptVariable::of(swept: &SweepInputs<'_>, k: usize, best: Option<f64>) {
+        let (file, range) = (swept.file, &swept.asked.ranges[k]);
+        let variable = &file.model.variables[range.variable.0];
+    }
     /// Name.
-    pub name: String,
+    name: String = variable.name.clone();
     /// Unit.
-    pub unit: String,
+    unit: String = variable_unit(&file.model, file.units, variable);
     /// Lower end of the range: the value of a parameter, the change of any other variable.
-    pub from: f64,
+    from: f64 = file.value_of(range.variable, range.low);
     /// Upper end of the range.
-    pub to: f64,
+    to: f64 = file.value_of(range.variable, range.high);
     /// Number of levels in a factorial.
-    pub levels: Option<usize>,
+    levels: Option<usize> = (swept.asked.method == SweepMethod::Factorial).then_some(range.levels);
     /// Nominal value.
-    pub start: f64,
+    start: f64 = file.value_of(range.variable, 0.0);
     /// Value in the design with the minimum of the first metric.
-    pub end: Option<f64>,
+    end: Option<f64> = best;
 }
 
-/// Metric in one motion.
-#[derive(Clone, Debug, Serialize)]
-pub struct SweptFact {
+record! {
+    /// Metric in one motion.
+    SweptFact::of(swept: &SweepInputs<'_>, k: usize, known: Option<&Distribution>, influences: Vec<InfluenceFact>) {
+        let of = swept.sweep.metrics()[k];
+        let dimension = swept.dimension(of);
+        let nominal = swept.units().from_si(dimension, swept.sweep.nominal().metrics[k][0]);
+    }
     /// Name.
-    pub name: String,
+    name: String = swept.model().metrics[of.metric].name.clone();
     /// Name of the case; `null` if the model has no cases.
-    pub case: Option<String>,
+    case: Option<String> = swept.case(of.motion);
     /// Unit.
-    pub unit: String,
+    unit: String = unit(swept.units(), dimension);
     /// Nominal value.
-    pub drawn: Option<f64>,
+    drawn: Option<f64> = Some(nominal).filter(|x| x.is_finite());
     /// Number of designs with a value.
-    pub known: usize,
+    known: usize = known.map_or(0, |d| d.known);
     /// Distribution over these designs.
-    pub distribution: Option<DistributionFact>,
+    distribution: Option<DistributionFact> = known.map(|d| DistributionFact::of(swept, dimension, d));
     /// Influence of each variable.
-    pub influences: Vec<InfluenceFact>,
+    influences: Vec<InfluenceFact> = influences;
 }
 
-/// Distribution of a metric over the designs with a value.
-#[derive(Clone, Debug, Serialize)]
-pub struct DistributionFact {
+record! {
+    /// Distribution of a metric over the designs with a value.
+    DistributionFact::of(swept: &SweepInputs<'_>, dimension: Dimension, d: &Distribution) {
+        let shown = |x: f64| swept.units().from_si(dimension, x);
+    }
     /// Mean value.
-    pub mean: f64,
+    mean: f64 = shown(d.mean);
     /// Standard deviation.
-    pub sigma: f64,
+    sigma: f64 = shown(d.sigma);
     /// Quantiles at 5 %, 25 %, 50 %, 75 % and 95 %.
-    pub quantiles: [f64; 5],
+    quantiles: [f64; 5] = d.quantiles.map(shown);
     /// Design with the minimum.
-    pub least: ExtremeDesign,
+    least: ExtremeDesign = ExtremeDesign::of(swept, d.least.0, shown(d.least.1));
     /// Design with the maximum.
-    pub greatest: ExtremeDesign,
+    greatest: ExtremeDesign = ExtremeDesign::of(swept, d.greatest.0, shown(d.greatest.1));
 }
 
-/// Design with an extreme value of a metric.
-#[derive(Clone, Debug, Serialize)]
-pub struct ExtremeDesign {
+record! {
+    /// Design with an extreme value of a metric.
+    ExtremeDesign::of(swept: &SweepInputs<'_>, design: usize, value: f64) {}
     /// Number of the design.
-    pub design: usize,
+    design: usize = design;
     /// Value of the metric.
-    pub value: f64,
+    value: f64 = value;
     /// Values of the variables, in the order of [`SweepFacts::variables`].
-    pub variables: Vec<f64>,
+    variables: Vec<f64> = swept.variables_of(design);
 }
 
-/// Influence of a variable on a metric.
-#[derive(Clone, Debug, Serialize)]
-pub struct InfluenceFact {
+record! {
+    /// Influence of a variable on a metric.
+    InfluenceFact::of(variable: &str, rank: Option<f64>, index: Option<&SobolIndex>) {}
     /// Name of the variable.
-    pub variable: String,
+    variable: String = variable.to_owned();
     /// Spearman's rank correlation over the plotted designs: 1 or -1 if the metric always rises or falls with the
     /// variable.
-    pub rank_correlation: Option<f64>,
+    rank_correlation: Option<f64> = rank;
     /// First-order Sobol index: the part of the variance that vanishes if the variable is known. For
     /// `method = "sobol_indices"`.
-    pub first: Option<f64>,
+    first: Option<f64> = index.map(|i| i.first[0]);
     /// Standard error of `first`.
-    pub first_error: Option<f64>,
+    first_error: Option<f64> = index.map(|i| i.first[1]);
     /// Total Sobol index: the part of the variance that remains if all other variables are known.
-    pub total: Option<f64>,
+    total: Option<f64> = index.map(|i| i.total[0]);
     /// Standard error of `total`.
-    pub total_error: Option<f64>,
+    total_error: Option<f64> = index.map(|i| i.total[1]);
     /// Number of pairs of designs used for both.
-    pub pairs: Option<usize>,
+    pairs: Option<usize> = index.map(|i| i.pairs);
 }
 
 /// Inputs of [`SweepFacts`].
@@ -312,12 +338,7 @@ impl SweepInputs<'_> {
                     fact.first = fact.first.min(failure.number);
                 }
                 None => {
-                    let fact = FailureFact {
-                        case: self.case(failure.motion),
-                        why: failure.why.clone(),
-                        first: failure.number,
-                        count: 1,
-                    };
+                    let fact = FailureFact::of(self.case(failure.motion), &failure.why, failure.number, 1);
                     tally.failures.push((failure.code.clone(), failure.motion, fact));
                 }
             }
@@ -367,7 +388,6 @@ impl SweepInputs<'_> {
         for number in &drawn.numbers {
             drawn.variables.iter_mut().zip(self.variables_of(*number)).for_each(|(c, x)| c.push(x));
         }
-        let as_drawn = self.sweep.nominal();
         let mut metrics = Vec::new();
         for (k, of) in self.sweep.metrics().iter().enumerate() {
             let values = column(k)?;
@@ -378,96 +398,21 @@ impl SweepInputs<'_> {
                 SweepMethod::Indices => sobol_indices(&values, asked.ranges.len()),
                 _ => vec![None; asked.ranges.len()],
             };
-            let influence = |(v, index): (usize, &Option<SobolIndex>)| InfluenceFact {
-                variable: file.model.variables[asked.ranges[v].variable.0].name.clone(),
-                rank_correlation: rank_correlation(&drawn.variables[v], &some),
-                first: index.map(|i| i.first[0]),
-                first_error: index.map(|i| i.first[1]),
-                total: index.map(|i| i.total[0]),
-                total_error: index.map(|i| i.total[1]),
-                pairs: index.map(|i| i.pairs),
+            let influence = |(v, index): (usize, &Option<SobolIndex>)| {
+                let rank = rank_correlation(&drawn.variables[v], &some);
+                InfluenceFact::of(
+                    &file.model.variables[asked.ranges[v].variable.0].name,
+                    rank,
+                    index.as_ref(),
+                )
             };
-            let extreme = |(design, value): (usize, f64)| ExtremeDesign {
-                design,
-                value: shown(value),
-                variables: self.variables_of(design),
-            };
-            let distribution = Distribution::of(&values);
-            metrics.push(SweptFact {
-                name: file.model.metrics[of.metric].name.clone(),
-                case: self.case(of.motion),
-                unit: unit(self.units(), dimension),
-                drawn: Some(shown(as_drawn.metrics[k][0])).filter(|x| x.is_finite()),
-                known: distribution.as_ref().map_or(0, |d| d.known),
-                distribution: distribution.map(|d| DistributionFact {
-                    mean: shown(d.mean),
-                    sigma: shown(d.sigma),
-                    quantiles: d.quantiles.map(shown),
-                    least: extreme(d.least),
-                    greatest: extreme(d.greatest),
-                }),
-                influences: indices.iter().enumerate().map(influence).collect(),
-            });
+            let influences = indices.iter().enumerate().map(influence).collect();
+            metrics.push(SweptFact::of(self, k, Distribution::of(&values).as_ref(), influences));
             drawn.metrics.push(some);
         }
-        let facts = self.assembled(tally, metrics);
+        let facts = SweepFacts::of(self, tally, metrics);
         let plot = plot(&facts, drawn);
         Ok((facts, plot))
-    }
-
-    fn assembled(&self, tally: &Tally, metrics: Vec<SweptFact>) -> SweepFacts {
-        let (file, asked) = (self.file, self.asked);
-        let first = metrics.first().and_then(|m| m.distribution.as_ref());
-        let best = first.map(|d| &d.least.variables);
-        let variable = |(k, range): (usize, &SweepRange)| {
-            let variable = &file.model.variables[range.variable.0];
-            SweptVariable {
-                name: variable.name.clone(),
-                unit: variable_unit(&file.model, file.units, variable),
-                from: self.file.value_of(range.variable, range.low),
-                to: self.file.value_of(range.variable, range.high),
-                levels: (asked.method == SweepMethod::Factorial).then_some(range.levels),
-                start: self.file.value_of(range.variable, 0.0),
-                end: best.map(|b| b[k]),
-            }
-        };
-        let count_asked = self.sweep.plan().count();
-        let (status, message) = if tally.designs < count_asked {
-            ("interrupted", format!("interrupted after {} of {count_asked} designs", tally.designs))
-        } else if tally.failed == tally.designs {
-            (
-                "no_design",
-                "no design reaches the end of its motion: narrow the ranges; the reasons are listed below"
-                    .to_owned(),
-            )
-        } else {
-            ("complete", format!("all {} were solved", count(tally.designs, "design")))
-        };
-        let StudyCost { designs, motions, steps } = tally.cost;
-        SweepFacts {
-            generator: crate::GENERATOR.into(),
-            study: "sweep",
-            model: file.model.name.clone(),
-            file: file.file_name().into(),
-            status,
-            message,
-            objective: BeforeAfter {
-                before: metrics.first().and_then(|m| m.drawn),
-                after: first.map(|d| d.least.value),
-            },
-            evaluations: Evaluations { designs, motions, steps },
-            designs: tally.designs,
-            asked: count_asked,
-            method: asked.method.name(),
-            seed: (!matches!(asked.method, SweepMethod::Factorial | SweepMethod::Listed))
-                .then_some(asked.seed),
-            variables: asked.ranges.iter().enumerate().map(variable).collect(),
-            metrics,
-            failed: tally.failed,
-            failures: tally.failures.iter().map(|(_, _, fact)| fact.clone()).collect(),
-            files: Vec::new(),
-            seconds: 0.0,
-        }
     }
 }
 
@@ -545,72 +490,48 @@ impl SweepFacts {
     /// Further tables: metrics, variables, influences, failures.
     pub fn tables(&self) -> Vec<Table> {
         let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
-        let metric = |m: &SweptFact| {
-            let of = |f: &dyn Fn(&DistributionFact) -> f64| optional(m.distribution.as_ref().map(f), &m.unit);
-            let design = |f: &dyn Fn(&DistributionFact) -> usize| {
-                m.distribution.as_ref().map_or("-".into(), |d| f(d).to_string())
-            };
-            vec![
-                titled(&m.name, &m.case),
-                optional(m.drawn, &m.unit),
-                of(&|d| d.least.value),
-                design(&|d| d.least.design),
-                of(&|d| d.quantiles[0]),
-                of(&|d| d.quantiles[2]),
-                of(&|d| d.quantiles[4]),
-                of(&|d| d.greatest.value),
-                design(&|d| d.greatest.design),
-                of(&|d| d.mean),
-                of(&|d| d.sigma),
-                if m.known < self.designs { m.known.to_string() } else { String::new() },
-            ]
+        let of = |m: &SweptFact, f: &dyn Fn(&DistributionFact) -> f64| {
+            optional(m.distribution.as_ref().map(f), &m.unit)
         };
-        let metrics = Table {
-            title: "Metrics".into(),
-            note: "Over all designs with a value: the designs with the minimum and the maximum, and the quantiles at 5, 50 and 95 %."
-                .into(),
-            header: header(&[
-                "metric", "nominal", "minimum", "in design", "5 %", "median", "95 %", "maximum", "in design ", "mean", "sigma",
-                "known",
-            ]),
-            rows: self.metrics.iter().map(metric).collect(),
+        let design = |m: &SweptFact, f: &dyn Fn(&DistributionFact) -> usize| {
+            m.distribution.as_ref().map_or("-".into(), |d| f(d).to_string())
         };
+        let metrics = Table::of(
+            "Metrics",
+            "Over all designs with a value: the designs with the minimum and the maximum, and the quantiles at 5, 50 and 95 %.",
+            &[
+                ("metric", &|m: &&SweptFact| titled(&m.name, &m.case)),
+                ("nominal", &|m| optional(m.drawn, &m.unit)),
+                ("minimum", &|m| of(m, &|d| d.least.value)),
+                ("in design", &|m| design(m, &|d| d.least.design)),
+                ("5 %", &|m| of(m, &|d| d.quantiles[0])),
+                ("median", &|m| of(m, &|d| d.quantiles[2])),
+                ("95 %", &|m| of(m, &|d| d.quantiles[4])),
+                ("maximum", &|m| of(m, &|d| d.greatest.value)),
+                ("in design ", &|m| design(m, &|d| d.greatest.design)),
+                ("mean", &|m| of(m, &|d| d.mean)),
+                ("sigma", &|m| of(m, &|d| d.sigma)),
+                ("known", &|m| if m.known < self.designs { m.known.to_string() } else { String::new() }),
+            ],
+            &self.metrics,
+        );
+        let best = self.metrics.first().map_or("-".into(), |m| format!("least {}", titled(&m.name, &m.case)));
+        let variables = Table::of(
+            "Variables",
+            "Values of parameters; for all other variables changes from the nominal design.",
+            &[
+                ("variable", &|v: &&SweptVariable| v.name.clone()),
+                ("range", &|v| format!("{} to {}", number(v.from), with_unit(v.to, &v.unit))),
+                ("levels", &|v| v.levels.map_or(String::new(), |n| n.to_string())),
+                ("nominal", &|v| with_unit(v.start, &v.unit)),
+                (&best, &|v| optional(v.end, &v.unit)),
+            ],
+            &self.variables,
+        );
         let mut tables = vec![metrics.without_empty_columns()];
         tables.extend(self.influence_tables());
-        let row = |v: &SweptVariable| {
-            vec![
-                v.name.clone(),
-                format!("{} to {}", number(v.from), with_unit(v.to, &v.unit)),
-                v.levels.map_or(String::new(), |n| n.to_string()),
-                with_unit(v.start, &v.unit),
-                v.end.map_or("-".into(), |x| with_unit(x, &v.unit)),
-            ]
-        };
-        let best = self.metrics.first().map_or("-".into(), |m| format!("least {}", titled(&m.name, &m.case)));
-        let variables = Table {
-            title: "Variables".into(),
-            note: "Values of parameters; for all other variables changes from the nominal design.".into(),
-            header: vec!["variable".into(), "range".into(), "levels".into(), "nominal".into(), best],
-            rows: self.variables.iter().map(row).collect(),
-        };
         tables.push(variables.without_empty_columns());
-        if !self.failures.is_empty() {
-            let row = |f: &FailureFact| {
-                vec![
-                    f.case.clone().unwrap_or_default(),
-                    f.why.clone(),
-                    f.count.to_string(),
-                    f.first.to_string(),
-                ]
-            };
-            let failures = Table {
-                title: "Failed designs".into(),
-                note: "The tables contain their rows, with the reason.".into(),
-                header: header(&["case", "first failure", "designs", "first"]),
-                rows: self.failures.iter().map(row).collect(),
-            };
-            tables.push(failures.without_empty_columns());
-        }
+        tables.extend(FailureFact::table(&self.failures, "The tables contain their rows, with the reason."));
         tables
     }
 
@@ -619,38 +540,27 @@ impl SweepFacts {
         let indices = self.method == SweepMethod::Indices.name();
         let known = self.metrics.iter().filter(|m| m.distribution.as_ref().is_some_and(|d| d.sigma > 0.0));
         if !indices {
-            let mut head = vec!["variable".to_owned()];
-            head.extend(known.clone().map(|m| titled(&m.name, &m.case)));
-            let row = |(k, v): (usize, &SweptVariable)| {
-                let mut row = vec![v.name.clone()];
-                let of = |m: &SweptFact| m.influences[k].rank_correlation;
-                row.extend(known.clone().map(|m| of(m).map_or("-".into(), |r| format!("{r:+.2}"))));
-                row
+            let titles: Vec<String> = known.clone().map(|m| titled(&m.name, &m.case)).collect();
+            let cell = |m: &SweptFact, k: usize| {
+                m.influences[k].rank_correlation.map_or("-".into(), |r| format!("{r:+.2}"))
             };
-            let rows: Vec<_> = self.variables.iter().enumerate().map(row).collect();
-            return Some(Table {
-                title: "Rank correlations".into(),
-                note: "1 where a metric always rises with a variable, -1 where it always falls, near 0 where it does neither.".into(),
-                header: head,
-                rows,
-            })
-            .filter(|t| t.header.len() > 1)
-            .into_iter()
-            .collect();
+            let cells: Vec<_> = known.map(|m| move |r: &(usize, &SweptVariable)| cell(m, r.0)).collect();
+            let name = |r: &(usize, &SweptVariable)| r.1.name.clone();
+            let mut columns: Vec<Column<'_, (usize, &SweptVariable)>> = vec![("variable", &name)];
+            columns.extend(titles.iter().zip(&cells).map(|(title, cell)| (title.as_str(), cell as _)));
+            let correlations = Table::of(
+                "Rank correlations",
+                "1 where a metric always rises with a variable, -1 where it always falls, near 0 where it does neither.",
+                &columns,
+                self.variables.iter().enumerate(),
+            );
+            return Some(correlations).filter(|t| t.header.len() > 1).into_iter().collect();
         }
         let table = |m: &SweptFact| {
             let mut by_total: Vec<&InfluenceFact> = m.influences.iter().collect();
             by_total.sort_by(|a, b| b.total.unwrap_or(-1.0).total_cmp(&a.total.unwrap_or(-1.0)));
             let with_error = |x: Option<f64>, e: Option<f64>| {
                 x.zip(e).map_or("-".into(), |(x, e)| format!("{x:.3} ± {e:.3}"))
-            };
-            let row = |i: &&InfluenceFact| {
-                vec![
-                    i.variable.clone(),
-                    with_error(i.first, i.first_error),
-                    with_error(i.total, i.total_error),
-                    bar(i.total.unwrap_or(0.0)),
-                ]
             };
             let pairs = m.influences.iter().filter_map(|i| i.pairs).min().unwrap_or(0);
             let all = self.designs / (self.variables.len() + 2);
@@ -659,21 +569,21 @@ impl SweepFacts {
             } else {
                 ""
             };
-            Table {
-                title: format!("Sobol indices of {}", titled(&m.name, &m.case)),
-                note: format!(
+            Table::of(
+                format!("Sobol indices of {}", titled(&m.name, &m.case)),
+                format!(
                     "Part of the variance due to the variable alone, and including interactions with others; from {pairs} pairs of designs.{missing}"
                 ),
-                header: header(&["variable", "first order", "total", ""]),
-                rows: by_total.iter().map(row).collect(),
-            }
+                &[
+                    ("variable", &|i: &&InfluenceFact| i.variable.clone()),
+                    ("first order", &|i| with_error(i.first, i.first_error)),
+                    ("total", &|i| with_error(i.total, i.total_error)),
+                    ("", &|i| bar(i.total.unwrap_or(0.0))),
+                ],
+                by_total,
+            )
         };
         known.map(table).collect()
-    }
-
-    /// Line about the duration.
-    pub fn time_line(&self) -> String {
-        seconds(self.seconds)
     }
 
     /// Turns the page of a motion of the nominal design into that of the sweep: the result comes first among the
@@ -686,20 +596,9 @@ impl SweepFacts {
         mut page: Payload,
         outputs: &[Output],
     ) -> Payload {
-        let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
         let first = swept.sweep.metrics().iter().find(|m| m.motion == motion);
-        if let Some(metric) = first.map(|m| &swept.model().metrics[m.metric]) {
-            page.first = place(metric.of).or(page.first);
-            page.over = metric.over.and_then(place);
-        }
-        let cards = self.rows().into_iter().filter(|(what, _)| ["failed"].contains(what));
-        page.summary.splice(0..0, cards.map(|(what, is)| Fact { label: what.into(), value: is }));
-        let rows = self.rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
-        let result =
-            Table { title: "The sweep".into(), note: String::new(), header: header(&["", "is"]), rows };
-        let mut checks = vec![result];
-        checks.extend(self.tables());
-        checks.append(&mut page.checks);
-        Payload { checks, sweep: Some(plot.clone()), ..page }
+        page.open_on(first.map(|m| &swept.model().metrics[m.metric]), outputs);
+        page.put_first("The sweep", self.rows(), &["failed"], self.tables());
+        Payload { sweep: Some(plot.clone()), ..page }
     }
 }

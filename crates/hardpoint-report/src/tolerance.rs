@@ -4,20 +4,20 @@ use std::io::Write;
 
 use hardpoint::measure::Output;
 use hardpoint::model::{AllocationRule, Dimension, LimitTarget, Model, OutputSource, ToleranceSettings};
-use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::tolerance::{
-    Allocation, AllocationError, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledMetric, SpreadModel,
-    ToleranceResult, Yield,
+    Allocation, AllocationError, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledCurve, SampledMetric,
+    SpreadModel, ToleranceResult, Yield,
 };
 use hardpoint_study::{EvaluationError, Motions};
-use serde::{Serialize, Serializer};
+use hardpoint_table::csv::CsvWriter;
+use serde::Serializer;
 
 use crate::diagnose;
-use crate::facts::variable_unit;
-use crate::figures::{count, number, rounded, seconds, some_of, unit, with_unit};
-use crate::optimize::{BeforeAfter, Evaluations, case_name};
-use crate::page::{Curve, Design, DesignCurves, DesignKind, Fact, Payload, Table};
+use crate::figures::{count, number, rounded, some_of, unit, variable_unit, with_unit};
+use crate::page::{Curve, Design, DesignCurves, DesignKind, Payload, Table};
+use crate::record::{Column, record, write_rows};
+use crate::study::{BeforeAfter, Evaluations, FailureFact, bar, case_name, percent, titled};
 
 /// Half width of a band in standard deviations: 99.73 % of a normal distribution.
 const BAND: f64 = 3.0;
@@ -25,216 +25,299 @@ const BAND: f64 = 3.0;
 const SLIGHT: f64 = 1e-3;
 /// Number of standard errors above which Monte Carlo and derivatives differ.
 const ERRORS: f64 = 3.0;
-/// Number of marks in a full bar of a table.
-const BAR: f64 = 40.0;
 /// Number of bars in a histogram.
 const BARS: usize = 24;
 
-/// Result of a tolerance study, in the model's units. Serialised as `summary.json` of `hardpoint tolerance`.
-#[derive(Clone, Debug, Serialize)]
-pub struct ToleranceFacts {
+record! {
+    /// Result of a tolerance study, in the model's units. Serialised as `summary.json` of `hardpoint tolerance`.
+    pub ToleranceFacts::of(studied: &ToleranceInputs<'_>) {
+        let ToleranceInputs { file, asked, found, .. } = *studied;
+        let part = |of: &MonteCarlo| of.all.map(Yield::part);
+        let loose = found.allocation.as_ref().and_then(|a| a.sampled.as_ref());
+        let failures = found.sampled.iter().flat_map(|s| &s.failures);
+        let failures = failures.map(|f| FailureFact::of(studied.case(f.motion), &f.why, f.first, f.count));
+        let samples = found.sampled.as_ref().map_or(0, |s| s.samples);
+        let metrics: Vec<SpreadFact> = (0..found.metrics.len()).map(|k| SpreadFact::of(studied, k)).collect();
+        let inaccurate = metrics.iter().filter_map(|m| Some(format!("`{}` ({})", m.titled(), m.nonlinear.as_ref()?)));
+        let inaccurate: Vec<String> = inaccurate.collect();
+        let instead = if samples > 0 { "use the sampled designs" } else { "sample designs with `samples`" };
+        let (linear, accuracy) = match inaccurate.is_empty() {
+            true => {
+                let less = percent(NONLINEAR);
+                ("complete", format!("the linear result is accurate: second derivatives add less than {less}"))
+            }
+            false => {
+                let which = some_of(&inaccurate, ", ");
+                ("nonlinear", format!("the linear result is inaccurate for {which}: {instead}"))
+            }
+        };
+        let (status, message) = match found.interrupted {
+            true => ("interrupted", format!("interrupted after {samples} of {} designs; {accuracy}", asked.samples)),
+            false => (linear, accuracy),
+        };
+    }
     /// Program and version.
-    pub generator: String,
+    generator: String = crate::GENERATOR.into();
     /// Kind of study.
-    pub study: &'static str,
+    study: &'static str = "tolerance";
     /// Name of the model.
-    pub model: String,
+    model: String = file.model.name.clone();
     /// Name of the model file.
-    pub file: String,
+    file: String = file.file_name().into();
     /// Status: `complete`, `interrupted`, or `nonlinear` if second derivatives show that the linear result is
     /// inaccurate.
-    pub status: &'static str,
+    status: &'static str = status;
     /// Status in words, with an instruction.
-    pub message: String,
+    message: String = message;
     /// Yield of all limits, 0 to 1: with the original and with the allocated tolerances.
-    pub objective: BeforeAfter,
+    objective: BeforeAfter = BeforeAfter {
+        before: found.sampled.as_ref().and_then(part),
+        after: loose.or(found.sampled.as_ref()).and_then(part),
+    };
     /// Cost of the study.
-    pub evaluations: Evaluations,
+    evaluations: Evaluations = Evaluations::of(found.cost);
     /// Number of sampled designs.
-    pub samples: usize,
+    samples: usize = samples;
     /// Random seed.
-    pub seed: u64,
+    seed: u64 = asked.seed;
     /// Toleranced variables.
-    pub variables: Vec<ToleratedFact>,
+    variables: Vec<ToleratedFact> = (0..found.variables.len()).map(|k| ToleratedFact::of(studied, k)).collect();
     /// Toleranced variables that the mechanism cannot follow.
-    pub left_out: Vec<String>,
+    left_out: Vec<String> = found.left_out.iter().map(|v| file.model.variables[v.0].name.clone()).collect();
     /// Spread per metric and case.
-    pub metrics: Vec<SpreadFact>,
+    metrics: Vec<SpreadFact> = metrics;
     /// Metrics without a nominal value.
-    pub unknown: Vec<String>,
+    unknown: Vec<String> = found.unknown.iter().map(|(m, _)| file.model.metrics[*m].name.clone()).collect();
     /// Yield per limit and case.
-    pub limits: Vec<YieldFact>,
+    limits: Vec<YieldFact> = (0..found.limits.len()).map(|k| YieldFact::of(studied, k)).collect();
     /// Number of sampled designs that do not reach the end of a motion.
-    pub failed: usize,
+    failed: usize = found.sampled.as_ref().map_or(0, |s| s.failed);
     /// Failed designs, grouped by cause.
-    pub failures: Vec<FailureFact>,
+    failures: Vec<FailureFact> = failures.collect();
     /// Allocated tolerances, if requested.
-    pub allocation: Option<AllocationFact>,
+    allocation: Option<AllocationFact> = found.allocation.as_ref().map(|a| AllocationFact::of(studied, a));
     /// Written files.
-    pub files: Vec<String>,
+    files: Vec<String> = Vec::new();
     /// Duration, s.
-    pub seconds: f64,
+    seconds: f64 = 0.0;
 }
 
-/// Toleranced variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct ToleratedFact {
+record! {
+    /// Toleranced variable.
+    ToleratedFact::of(studied: &ToleranceInputs<'_>, k: usize) {
+        let (model, of) = (studied.model(), studied.found.variables[k]);
+        let (variable, tolerance) = (&model.variables[of.variable.0], &studied.asked.tolerances[of.tolerance]);
+        let shown = |x: f64| studied.units().from_si(variable.quantity, x);
+        let found = studied.found.allocation.as_ref().filter(|a| a.error.is_none());
+        let sought = found.and_then(|a| a.tolerances.iter().find(|t| t.tolerance == of.tolerance));
+    }
     /// Name.
-    pub name: String,
+    name: String = variable.name.clone();
     /// Tolerance that it belongs to: its own name, or that of a point.
-    pub tolerance: String,
+    tolerance: String = tolerance.name.clone();
     /// Unit.
-    pub unit: String,
+    unit: String = variable_unit(model, studied.units(), variable);
     /// Distribution: `uniform`, `normal` or `truncated`.
-    pub distribution: &'static str,
+    distribution: &'static str = tolerance.scatter.name();
     /// Original tolerance (reach of the deviation).
-    pub start: f64,
+    start: f64 = shown(tolerance.reach);
     /// Allocated tolerance; the original one if none were allocated; `null` if no limit constrains it.
-    pub end: Option<f64>,
+    end: Option<f64> = sought.map_or(Some(tolerance.reach), |t| t.after).map(shown);
     /// Standard deviation of the deviation.
-    pub sigma: f64,
+    sigma: f64 = shown(of.sigma);
     /// Relative cost of its tolerance.
-    pub cost: Option<f64>,
+    cost: Option<f64> = tolerance.cost;
 }
 
-/// Metric in one motion.
-#[derive(Clone, Debug, Serialize)]
-pub struct SpreadFact {
+record! {
+    /// Metric in one motion.
+    SpreadFact::of(studied: &ToleranceInputs<'_>, k: usize) {
+        let (of, dimension) = (&studied.found.metrics[k], studied.dimension(&studied.found.metrics[k]));
+        let units = studied.units();
+        let shown = |x: f64| units.from_si(dimension, x);
+        let found = studied.found;
+        let drawn = found.sampled.as_ref().map(|s| &s.metrics[k]).filter(|drawn| drawn.known > 1);
+        let model_shares = &found.contributions[k];
+        let mut why = Vec::new();
+        if found.is_nonlinear(k) {
+            match of.nonlinearity().filter(|x| x.is_finite()) {
+                None => why.push("second derivatives are unknown".to_owned()),
+                Some(part) if part > NONLINEAR => {
+                    why.push(format!("the second-order part is {} of sigma", percent(part)))
+                }
+                Some(_) => (),
+            }
+            if found.differs_from_samples(k) {
+                why.push("sigma of the sampled designs differs".into());
+            }
+            if found.fails_often() {
+                why.push("some designs do not reach the end".into());
+            }
+        }
+        let mut contributions: Vec<Contribution> = (0..of.d.len()).map(|v| Contribution::of(studied, k, v)).collect();
+        contributions.sort_by(|a, b| b.share.abs().total_cmp(&a.share.abs()));
+    }
     /// Name.
-    pub name: String,
+    name: String = studied.model().metrics[of.metric].name.clone();
     /// Name of the case; `null` if the model has no cases.
-    pub case: Option<String>,
+    case: Option<String> = studied.case(of.motion);
     /// Unit.
-    pub unit: String,
+    unit: String = unit(units, dimension);
     /// Nominal value.
-    pub nominal: f64,
+    nominal: f64 = shown(of.nominal);
     /// Second-order mean.
-    pub mean: Option<f64>,
+    mean: Option<f64> = of.second.map(|_| shown(of.mean()));
     /// First-order standard deviation: root sum square.
-    pub rss: f64,
+    rss: f64 = shown(of.sigma);
     /// Second-order standard deviation.
-    pub sigma: Option<f64>,
+    sigma: Option<f64> = of.second.map(|s| shown(s.sigma));
     /// Second-order part relative to the first-order standard deviation.
-    pub nonlinearity: Option<f64>,
+    nonlinearity: Option<f64> = of.nonlinearity().filter(|x| x.is_finite());
     /// Worst-case minimum.
-    pub least: ExtremeFact,
+    least: ExtremeFact = ExtremeFact::of(&of.worst[0], &shown);
     /// Worst-case maximum.
-    pub greatest: ExtremeFact,
+    greatest: ExtremeFact = ExtremeFact::of(&of.worst[1], &shown);
     /// Model of the spread and the contributions: `linear`, `second_order` or `drawn`.
     #[serde(serialize_with = "as_word")]
-    pub told_by: SpreadModel,
+    told_by: SpreadModel = model_shares.model;
     /// Reason why linear statistics are inaccurate; `null` if they are valid.
-    pub nonlinear: Option<String>,
+    nonlinear: Option<String> = (!why.is_empty()).then(|| why.join(", "));
     /// Contributions of the variables to the variance, the largest first.
-    pub contributions: Vec<Contribution>,
+    contributions: Vec<Contribution> = contributions;
     /// Fraction due to interactions of several variables; `null` if it is distributed among them.
-    pub together: Option<f64>,
+    together: Option<f64> = model_shares.together;
     /// Monte Carlo statistics.
-    pub sampled: Option<SampledFact>,
+    sampled: Option<SampledFact> = drawn.map(|drawn| SampledFact::of(of, drawn, &shown));
 }
 
-/// Worst-case minimum or maximum.
-#[derive(Clone, Debug, Serialize)]
-pub struct ExtremeFact {
+record! {
+    /// Worst-case minimum or maximum.
+    ExtremeFact::of(e: &Extreme, shown: &dyn Fn(f64) -> f64) {}
     /// First-order value.
-    pub first: f64,
+    first: f64 = shown(e.first);
     /// Second-order value.
-    pub second: Option<f64>,
+    second: Option<f64> = e.second.map(shown);
     /// Exact value, with the deviations of the second-order worst case.
-    pub exact: Option<f64>,
+    exact: Option<f64> = e.exact.map(shown);
     /// Reason why the exact value is missing.
-    pub why: Option<String>,
+    why: Option<String> = e.why.clone();
 }
 
-/// Contribution of a variable to a variance.
-#[derive(Clone, Debug, Serialize)]
-pub struct Contribution {
+record! {
+    /// Contribution of a variable to a variance.
+    Contribution::of(studied: &ToleranceInputs<'_>, k: usize, v: usize) {
+        let (of, model_shares) = (&studied.found.metrics[k], &studied.found.contributions[k]);
+        let (units, dimension) = (studied.units(), studied.dimension(of));
+        let quantity = studied.model().variables[studied.found.variables[v].variable.0].quantity;
+    }
     /// Name.
-    pub variable: String,
+    variable: String = studied.variable_name(v).to_owned();
     /// Fraction of the variance; may be negative for correlated variables.
-    pub share: f64,
+    share: f64 = model_shares.shares[v];
     /// Derivative of the metric by the variable, in its unit per the variable's.
-    pub d: f64,
+    d: f64 = units.from_si(dimension, of.d[v]) / units.from_si(quantity, 1.0);
 }
 
-/// Statistics of a metric over the sampled designs.
-#[derive(Clone, Debug, Serialize)]
-pub struct SampledFact {
+record! {
+    /// Statistics of a metric over the sampled designs.
+    SampledFact::of(of: &MetricSpread, drawn: &SampledMetric, shown: &dyn Fn(f64) -> f64) {
+        let off = of.sigma - drawn.sigma[0];
+        let differs = off.abs() > ERRORS * drawn.sigma[1];
+    }
     /// Number of designs with a value.
-    pub known: usize,
+    known: usize = drawn.known;
     /// Mean value.
-    pub mean: f64,
+    mean: f64 = shown(drawn.mean[0]);
     /// Standard error of the mean.
-    pub mean_error: f64,
+    mean_error: f64 = shown(drawn.mean[1]);
     /// Standard deviation.
-    pub sigma: f64,
+    sigma: f64 = shown(drawn.sigma[0]);
     /// Standard error of `sigma`.
-    pub sigma_error: f64,
+    sigma_error: f64 = shown(drawn.sigma[1]);
     /// Skewness: 0 for a normal distribution.
-    pub skewness: f64,
+    skewness: f64 = drawn.skewness;
     /// Kurtosis: 3 for a normal distribution.
-    pub kurtosis: f64,
+    kurtosis: f64 = drawn.kurtosis;
     /// Minimum, 0.135 % quantile, median, 99.865 % quantile, maximum.
-    pub quantiles: [f64; 5],
+    quantiles: [f64; 5] = drawn.quantiles.map(shown);
     /// Relative error of the first-order standard deviation; `null` if it is less than three standard errors.
-    pub rss_off: Option<f64>,
+    rss_off: Option<f64> = differs.then(|| off / drawn.sigma[0]);
 }
 
-/// Limit in one motion.
-#[derive(Clone, Debug, Serialize)]
-pub struct YieldFact {
+record! {
+    /// Limit in one motion.
+    YieldFact::of(studied: &ToleranceInputs<'_>, k: usize) {
+        let found = &studied.found.limits[k];
+        let limit = &studied.asked.limits[found.limit];
+        let of = &studied.found.metrics[found.spread];
+        assert_eq!(limit.of, LimitTarget::Metric(of.metric));
+        let (units, dimension) = (studied.units(), studied.dimension(of));
+        let shown = |x: f64| units.from_si(dimension, x);
+        let worth = studied.found.allocation.as_ref().filter(|a| a.error.is_none()).map(|a| a.worth[k]);
+    }
     /// Name.
-    pub name: String,
+    name: String = limit.name.clone();
     /// Metric of the limit.
-    pub metric: String,
+    metric: String = studied.model().metrics[of.metric].name.clone();
     /// Name of the case; `null` if the model has no cases.
-    pub case: Option<String>,
+    case: Option<String> = studied.case(of.motion);
     /// Unit.
-    pub unit: String,
+    unit: String = unit(units, dimension);
     /// Lower end.
-    pub min: Option<f64>,
+    min: Option<f64> = limit.least.map(shown);
     /// Upper end.
-    pub max: Option<f64>,
+    max: Option<f64> = limit.most.map(shown);
     /// Yield of a normal distribution with the moments from derivatives, 0 to 1.
-    pub by_moments: f64,
+    by_moments: f64 = found.by_moments;
     /// Yield of the sampled designs, 0 to 1.
-    pub sampled: Option<f64>,
+    sampled: Option<f64> = found.sampled.map(Yield::part);
     /// Standard error of `sampled`.
-    pub error: Option<f64>,
+    error: Option<f64> = found.sampled.map(Yield::error);
     /// Lagrange multiplier in an allocation: the cost saved if the limit were relaxed by one unit.
-    pub worth: Option<f64>,
+    worth: Option<f64> = worth.map(|w| w / shown(1.0));
 }
 
-/// Designs that failed for the same reason.
-#[derive(Clone, Debug, Serialize)]
-pub struct FailureFact {
-    /// Name of the case; `null` if the model has no cases.
-    pub case: Option<String>,
-    /// Description of the first failure.
-    pub why: String,
-    /// Number of the first failed design.
-    pub first: usize,
-    /// Number of failed designs.
-    pub count: usize,
-}
-
-/// Allocated tolerances.
-#[derive(Clone, Debug, Serialize)]
-pub struct AllocationFact {
+record! {
+    /// Allocated tolerances.
+    AllocationFact::of(studied: &ToleranceInputs<'_>, found: &Allocation) {
+        let name = |k: usize| {
+            let limit = &studied.asked.limits[studied.found.limits[k].limit];
+            titled(&limit.name, &studied.case(studied.found.metrics[studied.found.limits[k].spread].motion))
+        };
+        let status = match found.error {
+            None => "found".to_owned(),
+            Some(AllocationError::NoCosts) => "none of the variables that can be followed has a cost".into(),
+            Some(AllocationError::NoLimits) => "there is no limit to keep".into(),
+            Some(AllocationError::NominalExceeds(k)) => {
+                format!("limit `{}` is violated by the nominal design: change the design first", name(k))
+            }
+            Some(AllocationError::Fixed(k)) => {
+                format!("tolerances without a cost exhaust the room of limit `{}`: give them one", name(k))
+            }
+        };
+        let (rule, sigmas) = match found.rule {
+            AllocationRule::Rss { sigmas } => (AllocationRule::NAMES[0], Some(sigmas)),
+            AllocationRule::Worst => (AllocationRule::NAMES[1], None),
+        };
+        let all = found.sampled.as_ref().and_then(|s| s.all);
+    }
     /// Rule: `rss` or `worst_case`.
-    pub rule: &'static str,
+    rule: &'static str = rule;
     /// Number of standard deviations that have to fit between the limits.
-    pub sigmas: Option<f64>,
+    sigmas: Option<f64> = sigmas;
     /// Status: `found`, or the reason why there are none.
-    pub status: String,
+    status: String = status;
     /// Sum of `cost / tolerance` over all tolerances with a cost, in the file's units.
-    pub cost: BeforeAfter,
+    cost: BeforeAfter = BeforeAfter {
+        before: Some(found.cost[0]),
+        after: found.error.is_none().then_some(found.cost[1]),
+    };
     /// Residual of the optimality (KKT) conditions.
-    pub kkt: Option<f64>,
+    kkt: Option<f64> = Some(found.residual).filter(|r| r.is_finite());
     /// Yield of designs sampled from these tolerances, 0 to 1.
-    pub sampled: Option<f64>,
+    sampled: Option<f64> = all.map(Yield::part);
     /// Standard error of `sampled`.
-    pub error: Option<f64>,
+    error: Option<f64> = all.map(Yield::error);
 }
 
 /// Inputs of [`ToleranceFacts`].
@@ -296,108 +379,68 @@ impl ToleranceInputs<'_> {
 
     /// Writes `metrics.csv`: a row for each metric and motion.
     pub fn write_metrics(&self, out: impl Write) -> csv::Result<()> {
-        let facts = ToleranceFacts::of(self);
-        let mut csv = CsvWriter::new(out);
-        csv.row([
-            "metric",
-            "case",
-            "unit",
-            "nominal",
-            "rss",
-            "mean",
-            "sigma",
-            "nonlinearity",
-            "least",
-            "greatest",
-            "least_exact",
-            "greatest_exact",
-            "drawn_mean",
-            "drawn_sigma",
-        ])?;
-        for m in &facts.metrics {
-            let optional = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
-            csv.row([
-                m.name.clone(),
-                m.case.clone().unwrap_or_default(),
-                m.unit.clone(),
-                m.nominal.to_string(),
-                m.rss.to_string(),
-                optional(m.mean),
-                optional(m.sigma),
-                optional(m.nonlinearity),
-                m.least.second.unwrap_or(m.least.first).to_string(),
-                m.greatest.second.unwrap_or(m.greatest.first).to_string(),
-                optional(m.least.exact),
-                optional(m.greatest.exact),
-                optional(m.sampled.as_ref().map(|s| s.mean)),
-                optional(m.sampled.as_ref().map(|s| s.sigma)),
-            ])?;
-        }
-        csv.end()?;
-        Ok(())
+        let text = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+        let columns: [Column<'_, SpreadFact>; 14] = [
+            ("metric", &|m| m.name.clone()),
+            ("case", &|m| m.case.clone().unwrap_or_default()),
+            ("unit", &|m| m.unit.clone()),
+            ("nominal", &|m| m.nominal.to_string()),
+            ("rss", &|m| m.rss.to_string()),
+            ("mean", &|m| text(m.mean)),
+            ("sigma", &|m| text(m.sigma)),
+            ("nonlinearity", &|m| text(m.nonlinearity)),
+            ("least", &|m| m.least.best_derived().to_string()),
+            ("greatest", &|m| m.greatest.best_derived().to_string()),
+            ("least_exact", &|m| text(m.least.exact)),
+            ("greatest_exact", &|m| text(m.greatest.exact)),
+            ("drawn_mean", &|m| text(m.sampled.as_ref().map(|s| s.mean))),
+            ("drawn_sigma", &|m| text(m.sampled.as_ref().map(|s| s.sigma))),
+        ];
+        write_rows(out, &columns, ToleranceFacts::of(self).metrics)
     }
 
     /// Writes `contributions.csv`: a row for each metric, motion and variable.
     pub fn write_contributions(&self, out: impl Write) -> csv::Result<()> {
         let facts = ToleranceFacts::of(self);
-        let mut csv = CsvWriter::new(out);
-        csv.row(["metric", "case", "variable", "share", "derivative"])?;
-        for m in &facts.metrics {
-            for c in &m.contributions {
-                let case = m.case.clone().unwrap_or_default();
-                csv.row([&m.name, &case, &c.variable, &c.share.to_string(), &c.d.to_string()])?;
-            }
-        }
-        csv.end()?;
-        Ok(())
+        let rows = facts.metrics.iter().flat_map(|m| m.contributions.iter().map(move |c| (m, c)));
+        let columns: [Column<'_, (&SpreadFact, &Contribution)>; 5] = [
+            ("metric", &|(m, _)| m.name.clone()),
+            ("case", &|(m, _)| m.case.clone().unwrap_or_default()),
+            ("variable", &|(_, c)| c.variable.clone()),
+            ("share", &|(_, c)| c.share.to_string()),
+            ("derivative", &|(_, c)| c.d.to_string()),
+        ];
+        write_rows(out, &columns, rows)
     }
 
     /// Writes `bands.csv`: a row for each measure, motion and output time.
     pub fn write_bands(&self, out: impl Write) -> csv::Result<()> {
-        let mut csv = CsvWriter::new(out);
-        csv.row([
-            "measure",
-            "case",
-            "unit",
-            "time",
-            "nominal",
-            "rss",
-            "mean",
-            "sigma",
-            "least",
-            "greatest",
-            "drawn_mean",
-            "drawn_sigma",
-            "drawn_least",
-            "drawn_greatest",
-        ])?;
-        for (c, curve) in self.found.curves.iter().enumerate() {
-            let of = OutputSource::Measure(curve.measure);
-            let dimension = self.model().dimension(of);
-            let shown = |x: f64| self.units().from_si(dimension, x);
-            let drawn = self.found.sampled.as_ref().map(|s| &s.curves[c]);
-            for (k, band) in curve.bands.iter().enumerate() {
-                let [mean, sigma] = curve.moments(k);
-                let mut row = vec![
-                    self.model().measures[curve.measure].name.clone(),
-                    self.case(curve.motion).unwrap_or_default(),
-                    unit(self.units(), dimension),
-                    curve.times[k].to_string(),
-                ];
-                let numbers = [band.nominal, band.sigma, mean, sigma, band.worst[0], band.worst[1]];
-                row.extend(numbers.map(|x| shown(x).to_string()));
-                let of = |list: Option<&Vec<f64>>| list.map_or(String::new(), |l| shown(l[k]).to_string());
-                row.extend([
-                    of(drawn.map(|d| &d.mean)),
-                    of(drawn.map(|d| &d.sigma)),
-                    of(drawn.map(|d| &d.least)),
-                    of(drawn.map(|d| &d.greatest)),
-                ]);
-                csv.row(row)?;
-            }
-        }
-        csv.end()?;
-        Ok(())
+        let of = |r: &(usize, usize)| (&self.found.curves[r.0], r.1);
+        let dimension = |r: &(usize, usize)| self.model().dimension(OutputSource::Measure(of(r).0.measure));
+        let shown = |r: &(usize, usize), x: f64| self.units().from_si(dimension(r), x).to_string();
+        let drawn = |r: &(usize, usize), list: fn(&SampledCurve) -> &Vec<f64>| {
+            let sampled = self.found.sampled.as_ref();
+            sampled.map_or(String::new(), |s| shown(r, list(&s.curves[r.0])[r.1]))
+        };
+        let band = |r: &(usize, usize)| &of(r).0.bands[r.1];
+        let columns: [Column<'_, (usize, usize)>; 14] = [
+            ("measure", &|r| self.model().measures[of(r).0.measure].name.clone()),
+            ("case", &|r| self.case(of(r).0.motion).unwrap_or_default()),
+            ("unit", &|r| unit(self.units(), dimension(r))),
+            ("time", &|r| of(r).0.times[r.1].to_string()),
+            ("nominal", &|r| shown(r, band(r).nominal)),
+            ("rss", &|r| shown(r, band(r).sigma)),
+            ("mean", &|r| shown(r, of(r).0.moments(r.1)[0])),
+            ("sigma", &|r| shown(r, of(r).0.moments(r.1)[1])),
+            ("least", &|r| shown(r, band(r).worst[0])),
+            ("greatest", &|r| shown(r, band(r).worst[1])),
+            ("drawn_mean", &|r| drawn(r, |c| &c.mean)),
+            ("drawn_sigma", &|r| drawn(r, |c| &c.sigma)),
+            ("drawn_least", &|r| drawn(r, |c| &c.least)),
+            ("drawn_greatest", &|r| drawn(r, |c| &c.greatest)),
+        ];
+        let curves = self.found.curves.iter().enumerate();
+        write_rows(out, &columns, curves.flat_map(|(c, curve)| (0..curve.bands.len()).map(move |k| (c, k))))
     }
 
     /// Writes `samples.csv`: a row for each sampled design, with its deviations and its metrics; empty without samples.
@@ -437,13 +480,9 @@ impl ToleranceInputs<'_> {
         mut page: Payload,
         outputs: &[Output],
     ) -> Payload {
-        let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
         let of_limit = self.found.limits.iter().map(|l| l.spread).chain(0..self.found.metrics.len());
         let first = of_limit.map(|s| &self.found.metrics[s]).find(|m| m.motion == motion);
-        if let Some(metric) = first.map(|m| &self.model().metrics[m.metric]) {
-            page.first = place(metric.of).or(page.first);
-            page.over = metric.over.and_then(place);
-        }
+        page.open_on(first.map(|m| &self.model().metrics[m.metric]), outputs);
         let designs: Vec<Design> = [(-BAND, "mean - 3 sigma"), (BAND, "mean + 3 sigma")]
             .map(|(by, name)| self.band(motion, by, name, &page, outputs))
             .into_iter()
@@ -453,16 +492,9 @@ impl ToleranceInputs<'_> {
             // Bands are computed at fixed times, so the abscissa is time.
             page.over = None;
         }
-        let cards = facts.rows().into_iter().filter(|(what, _)| ["yield", "failed"].contains(what));
-        page.summary.splice(0..0, cards.map(|(what, is)| Fact { label: what.into(), value: is }));
-        let rows = facts.rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
-        let result =
-            Table { title: "Tolerances".into(), note: String::new(), header: header(&["", "is"]), rows };
-        let mut checks = vec![result];
-        checks.extend(facts.tables());
-        checks.extend(self.histograms(motion));
-        checks.append(&mut page.checks);
-        Payload { checks, ..page }
+        let tables = facts.tables().into_iter().chain(self.histograms(motion));
+        page.put_first("Tolerances", facts.rows(), &["yield", "failed"], tables);
+        page
     }
 
     /// Edge of the bands of a motion, as the curves of a design.
@@ -521,31 +553,19 @@ impl ToleranceInputs<'_> {
         }
         let most = counts.iter().copied().max().unwrap_or(1) as f64;
         let (units, dimension) = (self.units(), self.dimension(of));
-        let row = |(k, n): (usize, &usize)| {
-            let middle = units.from_si(dimension, least + (k as f64 + 0.5) * width);
-            vec![with_unit(middle, &unit(units, dimension)), n.to_string(), bar(*n as f64 / most)]
-        };
-        Some(Table {
-            title: format!("Histogram of {}", self.model().metrics[of.metric].name),
-            note: format!("Of {} designs sampled from the tolerances.", drawn.known),
-            header: header(&["about", "designs", ""]),
-            rows: counts.iter().enumerate().map(row).collect(),
-        })
+        let middle = |k: usize| units.from_si(dimension, least + (k as f64 + 0.5) * width);
+        let histogram = Table::of(
+            format!("Histogram of {}", self.model().metrics[of.metric].name),
+            format!("Of {} designs sampled from the tolerances.", drawn.known),
+            &[
+                ("about", &|r: &(usize, &usize)| with_unit(middle(r.0), &unit(units, dimension))),
+                ("designs", &|r| r.1.to_string()),
+                ("", &|r| bar(*r.1 as f64 / most)),
+            ],
+            counts.iter().enumerate(),
+        );
+        Some(histogram)
     }
-}
-
-pub(crate) fn header(names: &[&str]) -> Vec<String> {
-    names.iter().map(|n| (*n).to_owned()).collect()
-}
-
-/// Bar of a table as text, with a length proportional to a fraction.
-pub(crate) fn bar(part: f64) -> String {
-    "▇".repeat((BAR * part.clamp(0.0, 1.0)).round() as usize)
-}
-
-/// Fraction as a percentage.
-pub(crate) fn percent(part: f64) -> String {
-    format!("{} %", rounded(100.0 * part, 4))
 }
 
 /// Yield with its standard error.
@@ -554,65 +574,6 @@ fn yield_text(part: f64, error: f64) -> String {
 }
 
 impl ToleranceFacts {
-    /// Collects the facts of a tolerance study.
-    pub fn of(studied: &ToleranceInputs<'_>) -> Self {
-        let ToleranceInputs { file, asked, found, .. } = *studied;
-        let part = |of: &MonteCarlo| of.all.map(Yield::part);
-        let loose = found.allocation.as_ref().and_then(|a| a.sampled.as_ref());
-        let mut facts = Self {
-            generator: crate::GENERATOR.into(),
-            study: "tolerance",
-            model: file.model.name.clone(),
-            file: file.file_name().into(),
-            status: "complete",
-            message: String::new(),
-            objective: BeforeAfter {
-                before: found.sampled.as_ref().and_then(part),
-                after: loose.or(found.sampled.as_ref()).and_then(part),
-            },
-            evaluations: Evaluations {
-                designs: found.cost.designs,
-                motions: found.cost.motions,
-                steps: found.cost.steps,
-            },
-            samples: found.sampled.as_ref().map_or(0, |s| s.samples),
-            seed: asked.seed,
-            variables: (0..found.variables.len()).map(|k| tolerated(studied, k)).collect(),
-            left_out: found.left_out.iter().map(|v| file.model.variables[v.0].name.clone()).collect(),
-            metrics: (0..found.metrics.len()).map(|k| spread(studied, k)).collect(),
-            unknown: found.unknown.iter().map(|(m, _)| file.model.metrics[*m].name.clone()).collect(),
-            limits: (0..found.limits.len()).map(|k| limit(studied, k)).collect(),
-            failed: found.sampled.as_ref().map_or(0, |s| s.failed),
-            failures: found.sampled.as_ref().map_or(Vec::new(), |s| failures(studied, s)),
-            allocation: found.allocation.as_ref().map(|a| allocation(studied, a)),
-            files: Vec::new(),
-            seconds: 0.0,
-        };
-        let nonlinear: Vec<String> = facts
-            .metrics
-            .iter()
-            .filter_map(|m| Some(format!("`{}` ({})", m.titled(), m.nonlinear.as_ref()?)))
-            .collect();
-        let instead =
-            if facts.samples > 0 { "use the sampled designs" } else { "sample designs with `samples`" };
-        facts.message = if nonlinear.is_empty() {
-            format!("the linear result is accurate: second derivatives add less than {}", percent(NONLINEAR))
-        } else {
-            format!("the linear result is inaccurate for {}: {instead}", some_of(&nonlinear, ", "))
-        };
-        if !nonlinear.is_empty() {
-            facts.status = "nonlinear";
-        }
-        if found.interrupted {
-            facts.status = "interrupted";
-            facts.message = format!(
-                "interrupted after {} of {} designs; {}",
-                facts.samples, asked.samples, facts.message
-            );
-        }
-        facts
-    }
-
     /// Facts of the result, line by line.
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = vec![("result", self.message.clone())];
@@ -667,147 +628,110 @@ impl ToleranceFacts {
     /// Further tables: metrics, contributions, limits, tolerances, failures.
     pub fn tables(&self) -> Vec<Table> {
         let optional = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
-        let metric = |m: &SpreadFact| {
-            let off = m.sampled.as_ref().and_then(|s| s.rss_off).map_or("-".into(), percent);
-            let worst = |e: &ExtremeFact| match &e.why {
-                Some(_) => "does not move".into(),
-                None => optional(e.exact.or(e.second).or(Some(e.first)), &m.unit),
-            };
-            let [mean, sigma] = m.best_moments();
-            vec![
-                m.titled(),
-                with_unit(m.nominal, &m.unit),
-                optional(mean, &m.unit),
-                optional(sigma, &m.unit),
-                word_of(m.told_by).replace('_', " "),
-                with_unit(m.rss, &m.unit),
-                optional(m.sigma, &m.unit),
-                off,
-                m.nonlinearity.map_or("not known".into(), percent),
-                worst(&m.least),
-                worst(&m.greatest),
-            ]
+        let worst = |e: &ExtremeFact, unit: &str| match &e.why {
+            Some(_) => "does not move".into(),
+            None => with_unit(e.exact.unwrap_or(e.best_derived()), unit),
         };
-        let mut tables = vec![Table {
-            title: "Metrics".into(),
-            note: "Mean and standard deviation (sigma) are of the sampled designs where the linear result is inaccurate. RSS is the root sum \
-                square. Worst case: with every deviation at its most unfavourable value."
-                .into(),
-            header: header(&[
-                "metric", "nominal", "mean", "sigma", "from", "RSS", "2nd order", "RSS error", "nonlinearity", "minimum", "maximum",
-            ]),
-            rows: self.metrics.iter().map(metric).collect(),
-        }];
-        let drawn = |m: &SpreadFact| {
-            let s = m.sampled.as_ref()?;
-            let mut row = vec![m.titled(), with_unit(s.mean, &m.unit), with_unit(s.sigma, &m.unit)];
-            row.extend([rounded(s.skewness, 3), rounded(s.kurtosis, 3)]);
-            row.extend(s.quantiles.map(|x| with_unit(x, &m.unit)));
-            Some(row)
-        };
-        let rows: Vec<Vec<String>> = self.metrics.iter().filter_map(drawn).collect();
-        if !rows.is_empty() {
-            let few = if self.failed > 0 { " Failed designs are not included." } else { "" };
-            tables.push(Table {
-                title: "Sampled designs".into(),
-                note: format!(
-                    "Skewness is 0 and kurtosis 3 of a normal distribution; 99.73 % of the designs are between the quantiles 0.135 % and \
-                     99.865 %.{few}"
-                ),
-                header: header(&[
-                    "metric", "mean", "sigma", "skewness", "kurtosis", "minimum", "0.135 %", "median", "99.865 %", "maximum",
-                ]),
-                rows,
-            });
-        }
+        let metrics = Table::of(
+            "Metrics",
+            "Mean and standard deviation (sigma) are of the sampled designs where the linear result is inaccurate. RSS is the root sum \
+             square. Worst case: with every deviation at its most unfavourable value.",
+            &[
+                ("metric", &|m: &&SpreadFact| m.titled()),
+                ("nominal", &|m| with_unit(m.nominal, &m.unit)),
+                ("mean", &|m| optional(m.best_moments()[0], &m.unit)),
+                ("sigma", &|m| optional(m.best_moments()[1], &m.unit)),
+                ("from", &|m| word_of(m.told_by).replace('_', " ")),
+                ("RSS", &|m| with_unit(m.rss, &m.unit)),
+                ("2nd order", &|m| optional(m.sigma, &m.unit)),
+                ("RSS error", &|m| m.sampled.as_ref().and_then(|s| s.rss_off).map_or("-".into(), percent)),
+                ("nonlinearity", &|m| m.nonlinearity.map_or("not known".into(), percent)),
+                ("minimum", &|m| worst(&m.least, &m.unit)),
+                ("maximum", &|m| worst(&m.greatest, &m.unit)),
+            ],
+            &self.metrics,
+        );
+        let few = if self.failed > 0 { " Failed designs are not included." } else { "" };
+        let quantile = |(m, s): &(&SpreadFact, &SampledFact), k: usize| with_unit(s.quantiles[k], &m.unit);
+        let sampled = Table::of(
+            "Sampled designs",
+            format!(
+                "Skewness is 0 and kurtosis 3 of a normal distribution; 99.73 % of the designs are between the quantiles 0.135 % and \
+                 99.865 %.{few}"
+            ),
+            &[
+                ("metric", &|(m, _): &(&SpreadFact, &SampledFact)| m.titled()),
+                ("mean", &|(m, s)| with_unit(s.mean, &m.unit)),
+                ("sigma", &|(m, s)| with_unit(s.sigma, &m.unit)),
+                ("skewness", &|(_, s)| rounded(s.skewness, 3)),
+                ("kurtosis", &|(_, s)| rounded(s.kurtosis, 3)),
+                ("minimum", &|r| quantile(r, 0)),
+                ("0.135 %", &|r| quantile(r, 1)),
+                ("median", &|r| quantile(r, 2)),
+                ("99.865 %", &|r| quantile(r, 3)),
+                ("maximum", &|r| quantile(r, 4)),
+            ],
+            self.metrics.iter().filter_map(|m| Some((m, m.sampled.as_ref()?))),
+        );
+        let mut tables = vec![metrics];
+        tables.extend(sampled.if_any());
         for m in &self.metrics {
             let listed = m.contributions.iter().filter(|c| c.share.abs() >= SLIGHT);
-            let mut rows: Vec<Vec<String>> =
-                listed.map(|c| vec![c.variable.clone(), percent(c.share), bar(c.share)]).collect();
-            if let Some(part) = m.together.filter(|part| *part >= SLIGHT) {
-                rows.push(vec!["interactions".into(), percent(part), bar(part)]);
-            }
-            if !rows.is_empty() {
-                let note = match m.told_by {
-                    SpreadModel::Linear => "",
-                    SpreadModel::SecondOrder => "From first and second derivatives.",
-                    SpreadModel::Sampled => {
-                        "From the sampled designs: the variance of the mean at given deviations of each variable."
-                    }
-                };
-                tables.push(Table {
-                    title: format!("Contributions to {}", m.titled()),
-                    note: note.into(),
-                    header: header(&["variable", "of the variance", ""]),
-                    rows,
-                });
-            }
-        }
-        if !self.limits.is_empty() {
-            let row = |l: &YieldFact| {
-                vec![
-                    l.titled(),
-                    optional(l.min, &l.unit),
-                    optional(l.max, &l.unit),
-                    l.sampled.zip(l.error).map_or("-".into(), |(p, e)| yield_text(p, e)),
-                    percent(l.by_moments),
-                ]
+            let together = m.together.filter(|part| *part >= SLIGHT).map(|part| ("interactions", part));
+            let note = match m.told_by {
+                SpreadModel::Linear => "",
+                SpreadModel::SecondOrder => "From first and second derivatives.",
+                SpreadModel::Sampled => {
+                    "From the sampled designs: the variance of the mean at given deviations of each variable."
+                }
             };
-            tables.push(Table {
-                title: "Limits".into(),
-                note:
-                    "Yield: fraction of the sampled designs, and of a normal distribution with the moments."
-                        .into(),
-                header: header(&["limit", "at least", "at most", "sampled", "by moments"]),
-                rows: self.limits.iter().map(row).collect(),
-            });
+            let contributions = Table::of(
+                format!("Contributions to {}", m.titled()),
+                note,
+                &[
+                    ("variable", &|c: &(&str, f64)| c.0.to_owned()),
+                    ("of the variance", &|c| percent(c.1)),
+                    ("", &|c| bar(c.1)),
+                ],
+                listed.map(|c| (c.variable.as_str(), c.share)).chain(together),
+            );
+            tables.extend(contributions.if_any());
         }
-        let row = |v: &ToleratedFact| {
-            let end = if self.allocation.is_some() {
-                v.end.map_or("any".into(), |x| format!("±{}", with_unit(x, &v.unit)))
-            } else {
-                String::new()
-            };
-            vec![
-                v.name.clone(),
-                if v.tolerance == v.name { String::new() } else { v.tolerance.clone() },
-                format!("±{}", with_unit(v.start, &v.unit)),
-                v.distribution.to_owned(),
-                with_unit(v.sigma, &v.unit),
-                v.cost.map_or(String::new(), number),
-                end,
-            ]
+        let limits = Table::of(
+            "Limits",
+            "Yield: fraction of the sampled designs, and of a normal distribution with the moments.",
+            &[
+                ("limit", &|l: &&YieldFact| l.titled()),
+                ("at least", &|l| optional(l.min, &l.unit)),
+                ("at most", &|l| optional(l.max, &l.unit)),
+                ("sampled", &|l| l.sampled.zip(l.error).map_or("-".into(), |(p, e)| yield_text(p, e))),
+                ("by moments", &|l| percent(l.by_moments)),
+            ],
+            &self.limits,
+        );
+        tables.extend(limits.if_any());
+        let loosest = |v: &ToleratedFact| match (&self.allocation, v.end) {
+            (None, _) => String::new(),
+            (Some(_), None) => "any".into(),
+            (Some(_), Some(x)) => format!("±{}", with_unit(x, &v.unit)),
         };
-        let tolerances = Table {
-            title: "Variables".into(),
-            note: String::new(),
-            header: header(&["variable", "point", "tolerance", "distribution", "sigma", "cost", "loosest"]),
-            rows: self.variables.iter().map(row).collect(),
-        };
-        tables.push(tolerances.without_empty_columns());
-        if !self.failures.is_empty() {
-            let row = |f: &FailureFact| {
-                vec![
-                    f.case.clone().unwrap_or_default(),
-                    f.why.clone(),
-                    f.count.to_string(),
-                    f.first.to_string(),
-                ]
-            };
-            let failures = Table {
-                title: "Failed designs".into(),
-                note: String::new(),
-                header: header(&["case", "first failure", "designs", "first"]),
-                rows: self.failures.iter().map(row).collect(),
-            };
-            tables.push(failures.without_empty_columns());
-        }
+        let variables = Table::of(
+            "Variables",
+            "",
+            &[
+                ("variable", &|v: &&ToleratedFact| v.name.clone()),
+                ("point", &|v| if v.tolerance == v.name { String::new() } else { v.tolerance.clone() }),
+                ("tolerance", &|v| format!("±{}", with_unit(v.start, &v.unit))),
+                ("distribution", &|v| v.distribution.to_owned()),
+                ("sigma", &|v| with_unit(v.sigma, &v.unit)),
+                ("cost", &|v| v.cost.map_or(String::new(), number)),
+                ("loosest", &|v| loosest(v)),
+            ],
+            &self.variables,
+        );
+        tables.push(variables.without_empty_columns());
+        tables.extend(FailureFact::table(&self.failures, ""));
         tables
-    }
-
-    /// Line about the duration.
-    pub fn time_line(&self) -> String {
-        seconds(self.seconds)
     }
 }
 
@@ -841,175 +765,20 @@ impl SpreadFact {
     }
 }
 
+impl ExtremeFact {
+    /// Value from derivatives: second-order if it is known.
+    fn best_derived(&self) -> f64 {
+        self.second.unwrap_or(self.first)
+    }
+}
+
 impl YieldFact {
     fn titled(&self) -> String {
         titled(&self.name, &self.case)
     }
 }
 
-pub(crate) fn titled(name: &str, case: &Option<String>) -> String {
-    case.as_ref().map_or(name.to_owned(), |case| format!("{name} ({case})"))
-}
-
 /// Standard error of a fraction of a number of designs.
 fn standard_error(part: f64, of: usize) -> f64 {
     Yield { kept: (part * of as f64).round() as usize, of }.error()
-}
-
-fn tolerated(studied: &ToleranceInputs<'_>, k: usize) -> ToleratedFact {
-    let (model, of) = (studied.model(), studied.found.variables[k]);
-    let (variable, tolerance) = (&model.variables[of.variable.0], &studied.asked.tolerances[of.tolerance]);
-    let shown = |x: f64| studied.units().from_si(variable.quantity, x);
-    let found = studied.found.allocation.as_ref().filter(|a| a.error.is_none());
-    let sought = found.and_then(|a| a.tolerances.iter().find(|t| t.tolerance == of.tolerance));
-    ToleratedFact {
-        name: variable.name.clone(),
-        tolerance: tolerance.name.clone(),
-        unit: variable_unit(model, studied.units(), variable),
-        distribution: tolerance.scatter.name(),
-        start: shown(tolerance.reach),
-        end: sought.map_or(Some(tolerance.reach), |t| t.after).map(shown),
-        sigma: shown(of.sigma),
-        cost: tolerance.cost,
-    }
-}
-
-fn spread(studied: &ToleranceInputs<'_>, k: usize) -> SpreadFact {
-    let (of, dimension) = (&studied.found.metrics[k], studied.dimension(&studied.found.metrics[k]));
-    let units = studied.units();
-    let shown = |x: f64| units.from_si(dimension, x);
-    let extreme = |e: &Extreme| ExtremeFact {
-        first: shown(e.first),
-        second: e.second.map(shown),
-        exact: e.exact.map(shown),
-        why: e.why.clone(),
-    };
-    let found = studied.found;
-    let model_shares = &found.contributions[k];
-    let mut why = Vec::new();
-    if found.is_nonlinear(k) {
-        match of.nonlinearity().filter(|x| x.is_finite()) {
-            None => why.push("second derivatives are unknown".to_owned()),
-            Some(part) if part > NONLINEAR => {
-                why.push(format!("the second-order part is {} of sigma", percent(part)))
-            }
-            Some(_) => (),
-        }
-        if found.differs_from_samples(k) {
-            why.push("sigma of the sampled designs differs".into());
-        }
-        if found.fails_often() {
-            why.push("some designs do not reach the end".into());
-        }
-    }
-    let contribution = |v: usize| {
-        let quantity = studied.model().variables[studied.found.variables[v].variable.0].quantity;
-        Contribution {
-            variable: studied.variable_name(v).to_owned(),
-            share: model_shares.shares[v],
-            d: shown(of.d[v]) / units.from_si(quantity, 1.0),
-        }
-    };
-    let mut contributions: Vec<Contribution> = (0..of.d.len()).map(contribution).collect();
-    contributions.sort_by(|a, b| b.share.abs().total_cmp(&a.share.abs()));
-    let sampled = |s: &MonteCarlo| {
-        let drawn = &s.metrics[k];
-        let off = of.sigma - drawn.sigma[0];
-        let differs = off.abs() > ERRORS * drawn.sigma[1];
-        (drawn.known > 1).then(|| SampledFact {
-            known: drawn.known,
-            mean: shown(drawn.mean[0]),
-            mean_error: shown(drawn.mean[1]),
-            sigma: shown(drawn.sigma[0]),
-            sigma_error: shown(drawn.sigma[1]),
-            skewness: drawn.skewness,
-            kurtosis: drawn.kurtosis,
-            quantiles: drawn.quantiles.map(shown),
-            rss_off: differs.then(|| off / drawn.sigma[0]),
-        })
-    };
-    SpreadFact {
-        name: studied.model().metrics[of.metric].name.clone(),
-        case: studied.case(of.motion),
-        unit: unit(units, dimension),
-        nominal: shown(of.nominal),
-        mean: of.second.map(|_| shown(of.mean())),
-        rss: shown(of.sigma),
-        sigma: of.second.map(|s| shown(s.sigma)),
-        nonlinearity: of.nonlinearity().filter(|x| x.is_finite()),
-        least: extreme(&of.worst[0]),
-        greatest: extreme(&of.worst[1]),
-        told_by: model_shares.model,
-        nonlinear: (!why.is_empty()).then(|| why.join(", ")),
-        contributions,
-        together: model_shares.together,
-        sampled: studied.found.sampled.as_ref().and_then(sampled),
-    }
-}
-
-fn limit(studied: &ToleranceInputs<'_>, k: usize) -> YieldFact {
-    let found = &studied.found.limits[k];
-    let limit = &studied.asked.limits[found.limit];
-    let of = &studied.found.metrics[found.spread];
-    assert_eq!(limit.of, LimitTarget::Metric(of.metric));
-    let (units, dimension) = (studied.units(), studied.dimension(of));
-    let shown = |x: f64| units.from_si(dimension, x);
-    let worth = studied.found.allocation.as_ref().filter(|a| a.error.is_none()).map(|a| a.worth[k]);
-    YieldFact {
-        name: limit.name.clone(),
-        metric: studied.model().metrics[of.metric].name.clone(),
-        case: studied.case(of.motion),
-        unit: unit(units, dimension),
-        min: limit.least.map(shown),
-        max: limit.most.map(shown),
-        by_moments: found.by_moments,
-        sampled: found.sampled.map(Yield::part),
-        error: found.sampled.map(Yield::error),
-        worth: worth.map(|w| w / shown(1.0)),
-    }
-}
-
-fn failures(studied: &ToleranceInputs<'_>, sampled: &MonteCarlo) -> Vec<FailureFact> {
-    let fact = |f: &hardpoint_study::tolerance::FailureGroup| FailureFact {
-        case: studied.case(f.motion),
-        why: f.why.clone(),
-        first: f.first,
-        count: f.count,
-    };
-    sampled.failures.iter().map(fact).collect()
-}
-
-fn allocation(studied: &ToleranceInputs<'_>, found: &Allocation) -> AllocationFact {
-    let name = |k: usize| {
-        let limit = &studied.asked.limits[studied.found.limits[k].limit];
-        titled(&limit.name, &studied.case(studied.found.metrics[studied.found.limits[k].spread].motion))
-    };
-    let status = match found.error {
-        None => "found".to_owned(),
-        Some(AllocationError::NoCosts) => "none of the variables that can be followed has a cost".into(),
-        Some(AllocationError::NoLimits) => "there is no limit to keep".into(),
-        Some(AllocationError::NominalExceeds(k)) => {
-            format!("limit `{}` is violated by the nominal design: change the design first", name(k))
-        }
-        Some(AllocationError::Fixed(k)) => {
-            format!("tolerances without a cost exhaust the room of limit `{}`: give them one", name(k))
-        }
-    };
-    let (rule, sigmas) = match found.rule {
-        AllocationRule::Rss { sigmas } => (AllocationRule::NAMES[0], Some(sigmas)),
-        AllocationRule::Worst => (AllocationRule::NAMES[1], None),
-    };
-    let all = found.sampled.as_ref().and_then(|s| s.all);
-    AllocationFact {
-        rule,
-        sigmas,
-        status,
-        cost: BeforeAfter {
-            before: Some(found.cost[0]),
-            after: found.error.is_none().then_some(found.cost[1]),
-        },
-        kkt: Some(found.residual).filter(|r| r.is_finite()),
-        sampled: all.map(Yield::part),
-        error: all.map(Yield::error),
-    }
 }

@@ -6,10 +6,10 @@ use hardpoint_file::Units;
 use hardpoint_study::Validity;
 use serde::Serialize;
 
-use crate::facts::variable_unit;
-use crate::figures::rounded;
+use crate::figures::{rounded, variable_unit};
+use crate::margin::MarginFact;
 use crate::page::Table;
-use crate::summary::Summary;
+use crate::record::Column;
 
 /// Linear range of the sensitivities by one variable.
 #[derive(Clone, Debug, Serialize)]
@@ -72,24 +72,22 @@ impl ValidityFact {
     }
 
     /// Table of the linear ranges, with the numerical quality of the motion.
-    pub fn table(summary: &Summary) -> Option<Table> {
-        let row = |v: &Self| {
-            let reach = match v.linear_up_to {
-                Some(x) => Some(format!("{} {}", rounded(x, 2), v.unit)),
-                None => v.exactly_linear.then(|| "exactly linear".into()),
-            };
-            Some(vec![v.variable.clone(), reach?, v.limited_by.clone().unwrap_or_default()])
+    pub fn table(facts: &[Self], margin: Option<&MarginFact>, least_pivot_ratio: f64) -> Option<Table> {
+        let reach = |v: &Self| match v.linear_up_to {
+            Some(x) => Some(format!("{} {}", rounded(x, 2), v.unit)),
+            None => v.exactly_linear.then(|| "exactly linear".into()),
         };
-        let rows: Vec<Vec<String>> = summary.validity.iter().filter_map(row).collect();
-        let margin = summary.margin.as_ref().map_or(String::new(), |m| format!(" Margin: {}.", m.line()));
-        let pivots = rounded(summary.effort.least_pivot_ratio, 2);
-        (!rows.is_empty()).then(|| Table {
-            title: "Linear range of sensitivities".into(),
-            note: format!(
-                "Prediction: change of the variable in either direction at which the second-order part of the named measure is 5 % of the first-order part. Numerics: the smallest pivot is {pivots} of the largest.{margin}"
-            ),
-            header: ["variable", "linear range", "limited by"].map(String::from).to_vec(),
-            rows,
-        })
+        let margin = margin.map_or(String::new(), |m| format!(" Margin: {}.", m.line()));
+        let pivots = rounded(least_pivot_ratio, 2);
+        let columns: [Column<'_, (&Self, String)>; 3] = [
+            ("variable", &|v| v.0.variable.clone()),
+            ("linear range", &|v| v.1.clone()),
+            ("limited by", &|v| v.0.limited_by.clone().unwrap_or_default()),
+        ];
+        let note = format!(
+            "Prediction: change of the variable in either direction at which the second-order part of the named measure is 5 % of the first-order part. Numerics: the smallest pivot is {pivots} of the largest.{margin}"
+        );
+        let rows = facts.iter().filter_map(|v| Some((v, reach(v)?)));
+        Table::of("Linear range of sensitivities", note, &columns, rows).if_any()
     }
 }

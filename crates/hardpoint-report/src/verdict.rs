@@ -7,8 +7,7 @@ use hardpoint_study::difference::DifferenceScheme;
 use hardpoint_study::verify::{CheckOutcome, Verification};
 use serde::Serialize;
 
-use crate::facts::variable_unit;
-use crate::figures::{error, number, rounded};
+use crate::figures::{error, number, rounded, variable_unit};
 use crate::page::Table;
 
 /// Contents of `verify.json`. Steps are in the variable's unit, times in s.
@@ -170,33 +169,27 @@ impl Verdict {
 
     /// Table of the variables, each with the quantity of the largest error at its step of best agreement.
     pub fn table(&self) -> Table {
-        let row = |c: &CheckFact| {
-            let outcome = match c.outcome {
-                Outcome::Passed => "passed",
-                Outcome::Failed => "FAILED",
-                Outcome::CannotFollow => "cannot follow",
-                Outcome::NotSolved => "NOT SOLVED",
-            };
-            let mut row = vec![c.variable.clone(), outcome.to_owned()];
-            match &c.worst {
-                Some(b) => row.extend([
-                    error(b.error),
-                    step_text(b.step, &c.unit),
-                    b.quantity.clone(),
-                    format!("{} s", number(b.time)),
-                ]),
-                None => row.extend(std::iter::repeat_n(String::new(), 4)),
-            }
-            row
+        let outcome = |c: &CheckFact| match c.outcome {
+            Outcome::Passed => "passed",
+            Outcome::Failed => "FAILED",
+            Outcome::CannotFollow => "cannot follow",
+            Outcome::NotSolved => "NOT SOLVED",
         };
-        Table {
-            title: "Worst quantity of each variable, at its own best step".into(),
-            note: String::new(),
-            header: ["variable", "outcome", "agrees to", "at step", "worst quantity", "at t"]
-                .map(String::from)
-                .to_vec(),
-            rows: self.checks.iter().map(row).collect(),
-        }
+        let worst =
+            |c: &CheckFact, of: &dyn Fn(&StepFact) -> String| c.worst.as_ref().map_or(String::new(), of);
+        Table::of(
+            "Worst quantity of each variable, at its own best step",
+            "",
+            &[
+                ("variable", &|c: &&CheckFact| c.variable.clone()),
+                ("outcome", &|c| outcome(c).to_owned()),
+                ("agrees to", &|c| worst(c, &|s| error(s.error))),
+                ("at step", &|c| worst(c, &|s| step_text(s.step, &c.unit))),
+                ("worst quantity", &|c| worst(c, &|s| s.quantity.clone())),
+                ("at t", &|c| worst(c, &|s| format!("{} s", number(s.time)))),
+            ],
+            &self.checks,
+        )
     }
 
     /// Table of the error against the step, one row per variable; steps as fractions of the natural step.

@@ -4,23 +4,23 @@
 use std::io::Write;
 
 use hardpoint::Solution;
-use hardpoint::model::{Model, OutputSource, VariableId};
+use hardpoint::measure::Output;
+use hardpoint::model::{DesignVariable, Model, OutputSource, VariableId};
 use hardpoint::topology::Topology;
-use hardpoint_file::csv_table::CsvWriter;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::Magnitude;
 use hardpoint_study::whatif::{WhatIf, repeats_coordinate};
 use serde::Serialize;
 
 use crate::GENERATOR;
-use crate::columns::Column;
+use crate::columns;
 use crate::course::{MarginCourse, RoundOff};
 use crate::diagnose::out_of_bounds;
-use crate::facts::variable_unit;
-use crate::figures::{names, number, per, rounded, unit, with_unit};
+use crate::figures::{names, number, per, rounded, unit, variable_unit, with_unit};
 use crate::margin::MarginFact;
 use crate::metric::MetricChange;
 use crate::page::{Payload, Table};
+use crate::record::{Column, record, write_curves};
 
 /// Contents of `whatif.json`. Values are in the model's units, times in s.
 #[derive(Clone, Debug, Serialize)]
@@ -51,27 +51,22 @@ pub struct WhatIfFacts {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Change of a variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct ChangeFact {
+record! {
+    /// Change of a variable.
+    ChangeFact::of(model: &Model, units: Units, variable: &DesignVariable, by: f64) {}
     /// Name of the variable.
-    pub variable: String,
+    variable: String = variable.name.clone();
     /// Change, in `unit`.
-    pub by: f64,
+    by: f64 = units.from_si(variable.quantity, by);
     /// Unit; `1` for a plain number.
-    pub unit: String,
+    unit: String = variable_unit(model, units, variable);
 }
 
 impl ChangeFact {
     /// Changes of the variables of a model, from a change in SI.
     pub fn all(model: &Model, units: Units, change: &[f64]) -> Vec<Self> {
         let changed = model.variables.iter().zip(change).filter(|(_, by)| **by != 0.0);
-        let fact = |(variable, by): (&hardpoint::model::DesignVariable, &f64)| Self {
-            variable: variable.name.clone(),
-            by: units.from_si(variable.quantity, *by),
-            unit: variable_unit(model, units, variable),
-        };
-        changed.map(fact).collect()
+        changed.map(|(variable, by)| Self::of(model, units, variable, *by)).collect()
     }
 
     /// Changes in a line: `A.x by 2 mm, B.y by -1 mm`.
@@ -81,57 +76,74 @@ impl ChangeFact {
     }
 }
 
-/// Curves of a measure.
-#[derive(Clone, Debug, Serialize)]
-pub struct MeasureFact {
+record! {
+    /// Curves of a measure.
+    MeasureFact::of(units: Units, what_if: &WhatIf, m: usize) {
+        let measured = &what_if.today.measured;
+        let output = &measured.outputs[m];
+        let shown = |x: f64| units.from_si(output.dimension, x);
+        let quality = what_if.prediction_quality(m);
+        let steps = || 0..what_if.len();
+        let prediction = |order: usize| match quality {
+            Some(f) if f.errors[order].is_some() => {
+                steps().map(|k| shown(what_if.predicted(k, m)[order])).collect()
+            }
+            _ => Vec::new(),
+        };
+        let change = steps()
+            .map(|k| (what_if.exact(k, m) - measured.value(k, m)[0], k))
+            .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    }
     /// Name of the measure.
-    pub measure: String,
+    measure: String = output.name.clone();
     /// Unit.
-    pub unit: String,
+    unit: String = unit(units, output.dimension);
     /// Largest exact change over the motion, with its sign.
-    pub change: Option<f64>,
+    change: Option<f64> = change.map(|(x, _)| shown(x));
     /// Time of the largest change, s.
-    pub time: Option<f64>,
+    time: Option<f64> = change.map(|(_, k)| what_if.today.motion.times[k]);
     /// Largest errors of the first-order and of the second-order prediction; `null` if unknown, for example for a
     /// velocity.
-    pub errors: Option<[Option<f64>; 2]>,
+    errors: Option<[Option<f64>; 2]> = quality.map(|f| f.errors.map(|e| e.map(shown)));
     /// Factor by which the change can be scaled before its second-order part reaches 5 % of its first-order part;
     /// `null` if the measure is exactly linear along the change, or does not change to first order.
-    pub linear_up_to: Option<f64>,
+    linear_up_to: Option<f64> = quality.and_then(|f| f.linear_up_to).filter(|x| x.is_finite());
     /// True if the measure is exactly linear along the change: its second-order part is round-off.
-    pub exactly_linear: bool,
+    exactly_linear: bool = quality.and_then(|f| f.linear_up_to).is_some_and(f64::is_infinite);
     /// Nominal curve over the output times.
-    pub today: Vec<f64>,
+    today: Vec<f64> = steps().map(|k| shown(measured.value(k, m)[0])).collect();
     /// First-order prediction; empty if nothing is predicted.
-    pub first: Vec<f64>,
+    first: Vec<f64> = prediction(0);
     /// Second-order prediction; empty if nothing is predicted.
-    pub second: Vec<f64>,
+    second: Vec<f64> = prediction(1);
     /// Exact curve of the re-solved design.
-    pub exact: Vec<f64>,
+    exact: Vec<f64> = steps().map(|k| shown(what_if.exact(k, m))).collect();
 }
 
-/// Influence of a variable on a measure.
-#[derive(Clone, Debug, Serialize)]
-pub struct InfluenceFact {
+record! {
+    /// Influence of a variable on a measure.
+    InfluenceFact::of(model: &Model, units: Units, output: &Output, variable: &DesignVariable, most: f64, time: f64) {
+        let by = variable_unit(model, units, variable);
+    }
     /// Name of the measure.
-    pub measure: String,
+    measure: String = output.name.clone();
     /// Name of the variable.
-    pub variable: String,
+    variable: String = variable.name.clone();
     /// Largest derivative over the motion, with its sign.
-    pub largest: f64,
+    largest: f64 = units.derivative_from_si(output.dimension, variable.quantity, most);
     /// Time of the largest derivative, s.
-    pub time: f64,
+    time: f64 = time;
     /// Unit of the derivative.
-    pub unit: String,
+    unit: String = per(&unit(units, output.dimension), &by);
     /// Unit of the variable.
-    pub per: String,
+    per: String = by;
     /// Unit of the measure.
-    pub of: String,
+    of: String = unit(units, output.dimension);
     /// First-order change of the measure due to the variable's typical change, in the measure's unit; `null` if the
     /// file gives none.
-    pub typical: Option<f64>,
+    typical: Option<f64> = variable.typical.map(|t| units.from_si(output.dimension, t * most));
     /// First-order change of the measure due to the variable's tolerance, in either direction.
-    pub tolerance: Option<f64>,
+    tolerance: Option<f64> = variable.tolerance.map(|t| units.from_si(output.dimension, (t * most).abs()));
 }
 
 impl WhatIfFacts {
@@ -142,44 +154,18 @@ impl WhatIfFacts {
         let margin = |s: &Solution| {
             MarginFact::new(model, file.units, topology, &MarginCourse::of(&s.motion), &s.motion)
         };
-        let measured = &what_if.today.measured;
-        let mut facts = Self {
+        Self {
             change,
             follows: follows(model, what_if),
             margins: [margin(&what_if.today), margin(&what_if.exact)],
+            measures: (0..what_if.today.measured.outputs.len())
+                .map(|m| MeasureFact::of(units, what_if, m))
+                .collect(),
             metrics: MetricChange::all(model, units, what_if),
             times: what_if.today.motion.times[..what_if.len()].to_vec(),
             diagnostics: [file.remarks.clone(), out_of_bounds(file, &what_if.change)].concat(),
             ..self
-        };
-        for (m, output) in measured.outputs.iter().enumerate() {
-            let shown = |x: f64| units.from_si(output.dimension, x);
-            let quality = what_if.prediction_quality(m);
-            let steps = || 0..what_if.len();
-            let prediction = |order: usize| match quality {
-                Some(f) if f.errors[order].is_some() => {
-                    steps().map(|k| shown(what_if.predicted(k, m)[order])).collect()
-                }
-                _ => Vec::new(),
-            };
-            let change = (0..what_if.len())
-                .map(|k| (what_if.exact(k, m) - measured.value(k, m)[0], k))
-                .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-            facts.measures.push(MeasureFact {
-                measure: output.name.clone(),
-                unit: unit(units, output.dimension),
-                change: change.map(|(x, _)| shown(x)),
-                time: change.map(|(_, k)| what_if.today.motion.times[k]),
-                errors: quality.map(|f| f.errors.map(|e| e.map(shown))),
-                linear_up_to: quality.and_then(|f| f.linear_up_to).filter(|x| x.is_finite()),
-                exactly_linear: quality.and_then(|f| f.linear_up_to).is_some_and(f64::is_infinite),
-                today: steps().map(|k| shown(measured.value(k, m)[0])).collect(),
-                first: prediction(0),
-                second: prediction(1),
-                exact: steps().map(|k| shown(what_if.exact(k, m))).collect(),
-            });
         }
-        facts
     }
 
     /// Ranking of the variables only, for a model whose design is not changed.
@@ -221,43 +207,28 @@ impl WhatIfFacts {
             let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             if x.is_empty() { "-".into() } else { format!("{} to {}", number(low), number(high)) }
         };
-        let some = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| format!("{} {unit}", rounded(x, 3)));
-        let row = |m: &MeasureFact| {
-            vec![
-                m.measure.clone(),
-                m.unit.clone(),
-                range(&m.today),
-                range(&m.exact),
-                some(m.change, ""),
-                m.time.map_or("-".into(), |t| format!("{} s", number(t))),
-                some(m.errors.and_then(|e| e[0]), ""),
-                some(m.errors.and_then(|e| e[1]), ""),
-                match m.linear_up_to {
-                    Some(x) => format!("{} x", rounded(x, 2)),
-                    None => if m.exactly_linear { "exactly linear" } else { "-" }.into(),
-                },
-            ]
+        let some = |x: Option<f64>| x.map_or("-".into(), |x| format!("{} ", rounded(x, 3)));
+        let linear = |m: &MeasureFact| match m.linear_up_to {
+            Some(x) => format!("{} x", rounded(x, 2)),
+            None => if m.exactly_linear { "exactly linear" } else { "-" }.into(),
         };
-        Table {
-            title: format!("What if {}", self.change_line()),
-            note: "Predictions come from the nominal derivatives, without solving again; the exact curves are re-solved. \
-                   \"Linear range\": factor on this change at which the second-order part is 5 % of the first-order part."
-                .into(),
-            header: [
-                "measure",
-                "unit",
-                "nominal",
-                "changed",
-                "largest change",
-                "at t",
-                "error of 1st order",
-                "error of 2nd order",
-                "linear range",
-            ]
-            .map(String::from)
-            .to_vec(),
-            rows: self.measures.iter().filter(|m| wanted(&m.measure)).map(row).collect(),
-        }
+        Table::of(
+            format!("What if {}", self.change_line()),
+            "Predictions come from the nominal derivatives, without solving again; the exact curves are re-solved. \
+             \"Linear range\": factor on this change at which the second-order part is 5 % of the first-order part.",
+            &[
+                ("measure", &|m: &&MeasureFact| m.measure.clone()),
+                ("unit", &|m| m.unit.clone()),
+                ("nominal", &|m| range(&m.today)),
+                ("changed", &|m| range(&m.exact)),
+                ("largest change", &|m| some(m.change)),
+                ("at t", &|m| m.time.map_or("-".into(), |t| format!("{} s", number(t)))),
+                ("error of 1st order", &|m| some(m.errors.and_then(|e| e[0]))),
+                ("error of 2nd order", &|m| some(m.errors.and_then(|e| e[1]))),
+                ("linear range", &|m| linear(m)),
+            ],
+            self.measures.iter().filter(|m| wanted(&m.measure)),
+        )
     }
 
     /// Most influential variables of a measure, the largest first; at most `shown` of each unit, without those that
@@ -270,25 +241,22 @@ impl WhatIfFacts {
                 units.push(&i.per);
             }
         });
-        let mut rows = Vec::new();
-        for unit in units {
-            for (rank, i) in of_measure().filter(|i| i.per == unit).take(shown).enumerate() {
-                let at = format!("{} s", number(i.time));
-                let typical = i.typical.map_or(String::new(), |x| with_unit(x, &i.of));
-                let tolerance = i.tolerance.map_or(String::new(), |x| format!("±{}", with_unit(x, &i.of)));
-                let largest = with_unit(i.largest, &i.unit);
-                rows.push(vec![(rank + 1).to_string(), i.variable.clone(), largest, at, typical, tolerance]);
-            }
-        }
-        Table {
-            title: format!("Most influential variables of {measure}"),
-            note: if rows.is_empty() { "No variable moves it.".into() } else { String::new() },
-            header: ["rank", "by variable", "largest", "at t", "by a typical change", "by its tolerance"]
-                .map(String::from)
-                .to_vec(),
-            rows,
-        }
-        .without_empty_columns()
+        let of_unit = |unit| of_measure().filter(move |i| i.per == unit).take(shown).enumerate();
+        let rows: Vec<_> = units.into_iter().flat_map(of_unit).collect();
+        let note = if rows.is_empty() { "No variable moves it." } else { "" };
+        let optional = |x: Option<f64>, sign: &str, unit: &str| {
+            x.map_or(String::new(), |x| format!("{sign}{}", with_unit(x, unit)))
+        };
+        let columns: [Column<'_, (usize, &InfluenceFact)>; 6] = [
+            ("rank", &|r| (r.0 + 1).to_string()),
+            ("by variable", &|r| r.1.variable.clone()),
+            ("largest", &|r| with_unit(r.1.largest, &r.1.unit)),
+            ("at t", &|r| format!("{} s", number(r.1.time))),
+            ("by a typical change", &|r| optional(r.1.typical, "", &r.1.of)),
+            ("by its tolerance", &|r| optional(r.1.tolerance, "±", &r.1.of)),
+        ];
+        Table::of(format!("Most influential variables of {measure}"), note, &columns, rows)
+            .without_empty_columns()
     }
 
     /// Names of the ranked measures, each once.
@@ -307,23 +275,13 @@ impl WhatIfFacts {
     /// # Errors
     /// If `out` cannot be written.
     pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
-        let mut header = vec!["t [s]".to_owned()];
-        for m in &self.measures {
-            let column = |name: &str| Column { name: format!("{} {name}", m.measure), unit: m.unit.clone() };
-            header.extend(m.curves().map(|(name, _)| column(name).header()));
-        }
-        let mut writer = CsvWriter::new(out);
-        writer.row(&header)?;
-        for (k, t) in self.times.iter().enumerate() {
-            let mut row = vec![*t];
-            for m in &self.measures {
-                row.extend(m.curves().map(|(_, curve)| curve[k]));
-            }
-            writer.numbers(row)?;
-            writer.end_row()?;
-        }
-        writer.end()?;
-        Ok(())
+        let column = |m: &MeasureFact, name| columns::Column {
+            name: format!("{} {name}", m.measure),
+            unit: m.unit.clone(),
+        };
+        let curves = self.measures.iter().flat_map(|m| m.curves().map(move |(name, curve)| (m, name, curve)));
+        let curves = curves.map(|(m, name, curve)| (column(m, name).header(), curve));
+        write_curves(out, &self.times, &curves.collect::<Vec<_>>())
     }
 
     /// Turns the page of the nominal design into that of the changed one: the result comes first among the checks, and
@@ -349,13 +307,7 @@ impl WhatIfFacts {
         if self.change.is_empty() {
             return Vec::new();
         }
-        let rows = self.change_rows().into_iter().map(|(what, is)| vec![what.into(), is]).collect();
-        let change = Table {
-            title: "The change".into(),
-            note: String::new(),
-            header: ["", "is"].map(String::from).to_vec(),
-            rows,
-        };
+        let change = Table::of_lines("The change", self.change_rows());
         let metrics = MetricChange::table(&self.metrics)
             .map(|t| Table { title: "Metrics, nominal and changed".into(), ..t });
         [change, self.table(wanted)].into_iter().chain(metrics).collect()
@@ -426,18 +378,7 @@ fn influence(model: &Model, units: Units, today: &Solution) -> Vec<InfluenceFact
             let Some(k) = known.max_by(|a, b| at(a).abs().total_cmp(&at(b).abs())) else { continue };
             let moves = at(&k).abs() > round_off.of(v, output.dimension, 0);
             let most = if moves { at(&k) } else { 0.0 };
-            let by = variable_unit(model, units, variable);
-            facts.push(InfluenceFact {
-                measure: output.name.clone(),
-                variable: variable.name.clone(),
-                largest: units.derivative_from_si(output.dimension, variable.quantity, most),
-                time: today.motion.times[k],
-                unit: per(&unit(units, output.dimension), &by),
-                per: by,
-                of: unit(units, output.dimension),
-                typical: variable.typical.map(|t| units.from_si(output.dimension, t * most)),
-                tolerance: variable.tolerance.map(|t| units.from_si(output.dimension, (t * most).abs())),
-            });
+            facts.push(InfluenceFact::of(model, units, output, variable, most, today.motion.times[k]));
         }
         facts[first..].sort_by(|a, b| b.largest.abs().total_cmp(&a.largest.abs()));
     }

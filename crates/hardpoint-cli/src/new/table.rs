@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calamine::{Data, Reader};
-use hardpoint_file::csv_table::original;
+use hardpoint_table::csv::original;
 
 /// Maximum size of a file.
 const LARGEST: u64 = 16 << 20;

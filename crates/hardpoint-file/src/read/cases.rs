@@ -6,13 +6,15 @@ use hardpoint::draft::{CaseDraft, FormulaDraft, FormulaOf, GridDraft, OtherDrive
 use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
 
-use crate::diagnostic::shown;
-use crate::format::{Kinds, NUMBER, Shape, Table, table};
-use crate::places::EntryPlace;
-use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject, Value};
+use crate::values::{
+    EntryPlace, Field, Fields, Kinds, MOST_ENTRIES, NUMBER, Reader, Shape, Subject, Table, Value, shown,
+    table,
+};
 
-use super::results::{MOST_TIMES, TIME};
-use super::{LOAD_MODES, LOADS, Raw, law};
+use super::elements::{LOAD_MODES, LOADS};
+use super::raw::Raw;
+use super::times::{MOST_TIMES, TIME};
+use super::{law, times};
 
 /// Maximum number of cases.
 const MOST_CASES: usize = 1000;
@@ -61,231 +63,223 @@ const REST: Shape = Shape::Words(&[
 ]);
 const RESTS: [OtherDrivers; 2] = [OtherDrivers::Held, OtherDrivers::AsAbove];
 
-impl Reader<'_> {
-    pub(super) fn cases(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        let entries = self.entries(model, "cases", "case");
-        if let (Some(f), true) = (model.get("cases"), entries.len() > MOST_CASES) {
-            let message = format!("there are {} cases", entries.len());
-            self.senseless(f.value.span(), message).help = Some(format!("give at most {MOST_CASES}"));
-            raw.draft.unread.note(Section::Model, 0, "cases");
-            return;
-        }
-        let driven = raw.draft.drivers.iter().zip(&raw.driven).map(|(d, q)| (d.name.clone(), *q));
-        let driven: HashMap<String, Quantity> = driven.collect();
-        let mut outputs = 0;
-        for entry in entries {
-            let fields = self.entry("case", &entry, CASE.keys());
-            let mut place = EntryPlace::of(&fields);
-            if fields.get("grid").is_some() {
-                for key in ["laws", "other_drivers", "loads", "time"] {
-                    let why = "a `grid` defines positions of two drivers; all others are fixed in the design configuration, and it has no time";
-                    self.out_of_place(&fields, key, why);
-                }
-                let sweeps = self.given(&fields, "grid", |r, f| r.sweeps(&fields, f, &mut place, &driven));
-                self.push(raw, Section::Grids, place);
-                raw.draft.grids.push(GridDraft { name: entry.0, sweeps: sweeps.unwrap_or_default() });
-                continue;
-            }
-            let formulas = &mut raw.draft.formulas;
-            let laws = self.given(&fields, "laws", |r, f| {
-                r.case_laws(&entry.0, &fields, f, &mut place, &driven, formulas)
-            });
-            let rest = self.word_of(&fields, "other_drivers").map(|k| RESTS[k]);
-            let mut times = self.given(&fields, "time", |r, f| {
-                r.times(&format!("`time` of {}", fields.what), &fields.subject("time"), f)
-            });
-            outputs += times.as_ref().unwrap_or(&raw.draft.times).len();
-            if outputs > MOST_TIMES as usize {
-                let message = format!("the cases have more than {MOST_TIMES} output times together");
-                self.senseless(entry.1.clone(), message).help = Some("ask for fewer `steps`".into());
-                self.unread.push("time");
-                times = Some(Vec::new());
-            }
-            let load_mode = fields.get("loads").is_some().then(|| self.word_of(&fields, "loads")).flatten();
-            let load_mode = load_mode.map(|k| LOAD_MODES[k]);
-            let laws = laws.unwrap_or_default();
-            if rest == Some(OtherDrivers::AsAbove) && !self.unread.contains(&"laws") {
-                self.laws_of_their_own(&fields, &laws, raw);
-            }
-            self.push(raw, Section::Cases, place);
-            let rest = rest.unwrap_or_default();
-            raw.draft.cases.push(CaseDraft { name: entry.0, laws, rest, times, load_mode });
-        }
-        self.only_grids(raw);
+pub(super) fn cases(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    let entries = r.entries(model, "cases", "case");
+    if let (Some(f), true) = (model.get("cases"), entries.len() > MOST_CASES) {
+        let message = format!("there are {} cases", entries.len());
+        r.senseless(f.value.span(), message).help = Some(format!("give at most {MOST_CASES}"));
+        raw.draft.unread.note(Section::Model, 0, "cases");
+        return;
     }
-
-    /// HP0104: drivers without a law in any case.
-    fn only_grids(&mut self, raw: &Raw) {
-        if !raw.draft.cases.is_empty() || raw.draft.grids.is_empty() {
-            return;
-        }
-        for k in &raw.without_law {
-            let name = shown(&raw.draft.drivers[*k].name);
-            let at = raw.places.list(Section::Drivers)[*k].find("name", None);
-            let message = format!("driver `{name}` has no `law`, and no case gives it one");
-            let d = self.report("HP0104", at, message);
-            d.notes.push("cases with a `grid` define positions of drivers, not laws".into());
-            d.help = Some("add it, for example `law = \"10*t\"`".into());
-        }
-    }
-
-    /// Two drivers and their positions, in SI.
-    fn sweeps(
-        &mut self,
-        fields: &Fields<'_>,
-        f: Field<'_>,
-        place: &mut EntryPlace,
-        driven: &HashMap<String, Quantity>,
-    ) -> Option<Vec<(String, Vec<f64>)>> {
-        let subject = fields.subject("grid");
-        let table = self.table(f.value, &subject, "a table of two drivers' names and positions")?;
-        if table.len() > MOST_ENTRIES {
-            self.too_many(f.value.span(), &subject.name, table.len());
-            return None;
-        }
-        let mut entries: Vec<_> = table.iter().collect();
-        // In the order of the text: the first one varies along the rows.
-        entries.sort_by_key(|(name, _)| name.span().start);
-        let (mut sweeps, mut items, mut complete) = (Vec::new(), Vec::new(), true);
-        for (name, value) in entries {
-            let Some(driver) = self.short(name.get_ref(), name.span(), "the name of a driver") else {
-                complete = false;
-                continue;
-            };
-            let what = format!("driver `{}` in the grid of {}", shown(&driver), fields.what);
-            let subject = Subject {
-                name: format!("the range of {what}"),
-                example: "for example `{ from = -80, to = 80, steps = 8 }`".into(),
-            };
-            let unit = self.units.to_si(driven.get(&driver).copied().unwrap_or(Quantity::Number), 1.0);
-            match self.positions(&what, &subject, value) {
-                Some(values) => {
-                    items.push(name.span());
-                    sweeps.push((driver, values.into_iter().map(|v| v * unit).collect()));
-                }
-                None => complete = false,
+    let driven = raw.draft.drivers.iter().zip(&raw.driven).map(|(d, q)| (d.name.clone(), *q));
+    let driven: HashMap<String, Quantity> = driven.collect();
+    let mut outputs = 0;
+    for entry in entries {
+        let fields = r.entry("case", &entry, CASE.keys());
+        let mut place = EntryPlace::of(&fields);
+        if fields.get("grid").is_some() {
+            for key in ["laws", "other_drivers", "loads", "time"] {
+                let why = "a `grid` defines positions of two drivers; all others are fixed in the design configuration, and it has no time";
+                r.out_of_place(&fields, key, why);
             }
+            let sweeps = r.given(&fields, "grid", |r, f| sweeps(r, &fields, f, &mut place, &driven));
+            raw.push(r, Section::Grids, place);
+            raw.draft.grids.push(GridDraft { name: entry.0, sweeps: sweeps.unwrap_or_default() });
+            continue;
         }
-        place.items("grid", items);
-        complete.then_some(sweeps)
-    }
-
-    /// Positions of a driver, in its unit.
-    fn positions(&mut self, what: &str, subject: &Subject, value: &Value<'_>) -> Option<Vec<f64>> {
-        let table = self.table(value, subject, "a table with `from`, `to` and `steps`")?;
-        let fields = self.fields(what, value.span(), table, SWEEP.keys());
-        if let Some(f) = fields.get("at") {
-            for key in ["from", "to", "steps"] {
-                self.out_of_place(&fields, key, "the positions are listed in `at` already");
-            }
-            let subject = fields.subject("at");
-            let Some(list) = f.value.get_ref().as_array().filter(|list| list.len() > 1) else {
-                self.wrong(f.value, &subject, "a list of at least two positions");
-                return None;
-            };
-            if list.len() > MOST_POSITIONS as usize {
-                self.too_many(f.value.span(), &subject.name, list.len());
-                return None;
-            }
-            let places: Vec<_> = list.iter().map(|v| self.number(v, &subject)).collect();
-            let places: Vec<f64> = places.into_iter().collect::<Option<_>>()?;
-            if let Some(k) = (1..places.len()).find(|&k| places[k] <= places[k - 1]) {
-                let message = format!("the position {} of {what} comes after {}", places[k], places[k - 1]);
-                self.senseless(list[k].span(), message).help =
-                    Some("list the positions in increasing order".into());
-                return None;
-            }
-            return Some(places);
-        }
-        let ends = ["from", "to", "steps"].map(|key| self.need(&fields, key));
-        let [from, to, steps] = ["from", "to", "steps"].map(|key| {
-            let subject = fields.subject(key);
-            fields.get(key).and_then(|f| self.number(f.value, &subject))
+        let formulas = &mut raw.draft.formulas;
+        let laws = r
+            .given(&fields, "laws", |r, f| case_laws(r, &entry.0, &fields, f, &mut place, &driven, formulas));
+        let rest = r.word_of(&fields, "other_drivers").map(|k| RESTS[k]);
+        let mut times = r.given(&fields, "time", |r, f| {
+            times::times(r, &format!("`time` of {}", fields.what), &fields.subject("time"), f)
         });
-        let (Some(from), Some(to), Some(steps), [_, Some(end), Some(count)]) = (from, to, steps, ends) else {
+        outputs += times.as_ref().unwrap_or(&raw.draft.times).len();
+        if outputs > MOST_TIMES as usize {
+            let message = format!("the cases have more than {MOST_TIMES} output times together");
+            r.senseless(entry.1.clone(), message).help = Some("ask for fewer `steps`".into());
+            r.unread.push("time");
+            times = Some(Vec::new());
+        }
+        let load_mode = fields.get("loads").is_some().then(|| r.word_of(&fields, "loads")).flatten();
+        let load_mode = load_mode.map(|k| LOAD_MODES[k]);
+        let laws = laws.unwrap_or_default();
+        if rest == Some(OtherDrivers::AsAbove) && !r.unread.contains(&"laws") {
+            laws_of_their_own(r, &fields, &laws, raw);
+        }
+        raw.push(r, Section::Cases, place);
+        let rest = rest.unwrap_or_default();
+        raw.draft.cases.push(CaseDraft { name: entry.0, laws, rest, times, load_mode });
+    }
+    only_grids(r, raw);
+}
+
+/// HP0104: drivers without a law in any case.
+fn only_grids(r: &mut Reader<'_>, raw: &Raw) {
+    if !raw.draft.cases.is_empty() || raw.draft.grids.is_empty() {
+        return;
+    }
+    for k in &raw.without_law {
+        let name = shown(&raw.draft.drivers[*k].name);
+        let at = raw.places.list(Section::Drivers)[*k].find("name", None);
+        let message = format!("driver `{name}` has no `law`, and no case gives it one");
+        let d = r.report("HP0104", at, message);
+        d.notes.push("cases with a `grid` define positions of drivers, not laws".into());
+        d.help = Some("add it, for example `law = \"10*t\"`".into());
+    }
+}
+
+/// Two drivers and their positions, in SI.
+fn sweeps(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    f: Field<'_>,
+    place: &mut EntryPlace,
+    driven: &HashMap<String, Quantity>,
+) -> Option<Vec<(String, Vec<f64>)>> {
+    let subject = fields.subject("grid");
+    let table = r.table(f.value, &subject, "a table of two drivers' names and positions")?;
+    if table.len() > MOST_ENTRIES {
+        r.too_many(f.value.span(), &subject.name, table.len());
+        return None;
+    }
+    let mut entries: Vec<_> = table.iter().collect();
+    // In the order of the text: the first one varies along the rows.
+    entries.sort_by_key(|(name, _)| name.span().start);
+    let (mut sweeps, mut items, mut complete) = (Vec::new(), Vec::new(), true);
+    for (name, value) in entries {
+        let Some(driver) = r.short(name.get_ref(), name.span(), "the name of a driver") else {
+            complete = false;
+            continue;
+        };
+        let what = format!("driver `{}` in the grid of {}", shown(&driver), fields.what);
+        let subject = Subject {
+            name: format!("the range of {what}"),
+            example: "for example `{ from = -80, to = 80, steps = 8 }`".into(),
+        };
+        let unit = r.units.to_si(driven.get(&driver).copied().unwrap_or(Quantity::Number), 1.0);
+        match positions(r, &what, &subject, value) {
+            Some(values) => {
+                items.push(name.span());
+                sweeps.push((driver, values.into_iter().map(|v| v * unit).collect()));
+            }
+            None => complete = false,
+        }
+    }
+    place.items("grid", items);
+    complete.then_some(sweeps)
+}
+
+/// Positions of a driver, in its unit.
+fn positions(r: &mut Reader<'_>, what: &str, subject: &Subject, value: &Value<'_>) -> Option<Vec<f64>> {
+    let table = r.table(value, subject, "a table with `from`, `to` and `steps`")?;
+    let fields = r.fields(what, value.span(), table, SWEEP.keys());
+    if let Some(f) = fields.get("at") {
+        for key in ["from", "to", "steps"] {
+            r.out_of_place(&fields, key, "the positions are listed in `at` already");
+        }
+        let subject = fields.subject("at");
+        let Some(list) = f.value.get_ref().as_array().filter(|list| list.len() > 1) else {
+            r.wrong(f.value, &subject, "a list of at least two positions");
             return None;
         };
-        if !(steps >= 1.0 && steps < f64::from(MOST_POSITIONS) && steps.fract() == 0.0) {
-            let message = format!("`steps` of {what} cannot be {steps}");
-            self.senseless(count.value.span(), message).help = Some(format!(
-                "give the number of intervals, a whole number from 1 to {}",
-                MOST_POSITIONS - 1
-            ));
+        if list.len() > MOST_POSITIONS as usize {
+            r.too_many(f.value.span(), &subject.name, list.len());
             return None;
         }
-        if to <= from {
-            let message = format!("the range of {what} goes from {from} to {to}");
-            self.senseless(end.value.span(), message).help = Some("give a `to` above `from`".into());
+        let places: Vec<_> = list.iter().map(|v| r.number(v, &subject)).collect();
+        let places: Vec<f64> = places.into_iter().collect::<Option<_>>()?;
+        if let Some(k) = (1..places.len()).find(|&k| places[k] <= places[k - 1]) {
+            let message = format!("the position {} of {what} comes after {}", places[k], places[k - 1]);
+            r.senseless(list[k].span(), message).help = Some("list the positions in increasing order".into());
             return None;
         }
-        // Each position interpolates both ends, so that symmetric ranges include zero exactly, and whole numbers stay
-        // whole.
-        Some((0..=steps as usize).map(|k| (from * (steps - k as f64) + to * k as f64) / steps).collect())
+        return Some(places);
     }
+    let ends = ["from", "to", "steps"].map(|key| r.need(&fields, key));
+    let [from, to, steps] = ["from", "to", "steps"].map(|key| {
+        let subject = fields.subject(key);
+        fields.get(key).and_then(|f| r.number(f.value, &subject))
+    });
+    let (Some(from), Some(to), Some(steps), [_, Some(end), Some(count)]) = (from, to, steps, ends) else {
+        return None;
+    };
+    if !(steps >= 1.0 && steps < f64::from(MOST_POSITIONS) && steps.fract() == 0.0) {
+        let message = format!("`steps` of {what} cannot be {steps}");
+        r.senseless(count.value.span(), message).help =
+            Some(format!("give the number of intervals, a whole number from 1 to {}", MOST_POSITIONS - 1));
+        return None;
+    }
+    if to <= from {
+        let message = format!("the range of {what} goes from {from} to {to}");
+        r.senseless(end.value.span(), message).help = Some("give a `to` above `from`".into());
+        return None;
+    }
+    // Each position interpolates both ends, so that symmetric ranges include zero exactly, and whole numbers stay
+    // whole.
+    Some((0..=steps as usize).map(|k| (from * (steps - k as f64) + to * k as f64) / steps).collect())
+}
 
-    /// HP0104: drivers without a law in this case.
-    fn laws_of_their_own(&mut self, fields: &Fields<'_>, laws: &[(String, Law)], raw: &Raw) {
-        let named: HashSet<&str> = laws.iter().map(|law| law.0.as_str()).collect();
-        let without = raw.without_law.iter().map(|k| &raw.draft.drivers[*k].name);
-        let without: Vec<&String> = without.filter(|name| !named.contains(name.as_str())).collect();
-        let Some(first) = without.first() else { return };
-        let names: Vec<String> = without.iter().map(|name| format!("`{}`", shown(name))).collect();
-        let names = hardpoint::draft::some_of(&names, ", ", 12);
-        let what = if without.len() == 1 { "driver" } else { "drivers" };
-        let at = fields.get("other_drivers").map_or(fields.at.clone(), |f| f.value.span());
-        let message = format!("{} leaves {what} {names} without a `law`", fields.what);
-        self.report("HP0104", at, message).help = Some(format!(
-            "give one in the case, like `laws = {{ {first} = \"10*t\" }}`, or in `[drivers.{first}]`, or fix it with `other_drivers = \"fixed\"`"
-        ));
-    }
+/// HP0104: drivers without a law in this case.
+fn laws_of_their_own(r: &mut Reader<'_>, fields: &Fields<'_>, laws: &[(String, Law)], raw: &Raw) {
+    let named: HashSet<&str> = laws.iter().map(|law| law.0.as_str()).collect();
+    let without = raw.without_law.iter().map(|k| &raw.draft.drivers[*k].name);
+    let without: Vec<&String> = without.filter(|name| !named.contains(name.as_str())).collect();
+    let Some(first) = without.first() else { return };
+    let names: Vec<String> = without.iter().map(|name| format!("`{}`", shown(name))).collect();
+    let names = hardpoint::draft::some_of(&names, ", ", 12);
+    let what = if without.len() == 1 { "driver" } else { "drivers" };
+    let at = fields.get("other_drivers").map_or(fields.at.clone(), |f| f.value.span());
+    let message = format!("{} leaves {what} {names} without a `law`", fields.what);
+    r.report("HP0104", at, message).help = Some(format!(
+        "give one in the case, like `laws = {{ {first} = \"10*t\" }}`, or in `[drivers.{first}]`, or fix it with `other_drivers = \"fixed\"`"
+    ));
+}
 
-    /// Laws of a case, in SI.
-    fn case_laws(
-        &mut self,
-        case: &str,
-        fields: &Fields<'_>,
-        f: Field<'_>,
-        place: &mut EntryPlace,
-        driven: &HashMap<String, Quantity>,
-        formulas: &mut Vec<FormulaDraft>,
-    ) -> Option<Vec<(String, Law)>> {
-        let subject = fields.subject("laws");
-        let table = self.table(f.value, &subject, "a table of drivers' names and laws")?;
-        if table.len() > MOST_ENTRIES {
-            self.too_many(f.value.span(), &subject.name, table.len());
-            return None;
-        }
-        let (mut laws, mut names, mut values) = (Vec::new(), Vec::new(), Vec::new());
-        let mut complete = true;
-        for (name, value) in table {
-            let Some(driver) = self.short(name.get_ref(), name.span(), "the name of a driver") else {
-                complete = false;
-                continue;
-            };
-            let of = format!("driver `{}` in {}", shown(&driver), fields.what);
-            let subject = Subject {
-                name: format!("the law of {of}"),
-                example: "for example `\"30*sin(2*pi*t)\"`".into(),
-            };
-            let law = self.law_in(&of, &subject, value);
-            let quantity = driven.get(&driver).copied().unwrap_or(Quantity::Number);
-            for (parameter, expression) in self.law_formulas.drain(..) {
-                let of = FormulaOf::CaseLaw(case.to_owned(), driver.clone(), parameter);
-                formulas.push(FormulaDraft { of, expression });
-            }
-            complete &= law.is_some();
-            if let Some(law) = law {
-                names.push(name.span());
-                values.push(value.span());
-                laws.push((driver, law.scaled(self.units.to_si(quantity, 1.0))));
-            }
-        }
-        place.items("laws", names);
-        place.items("law", values);
-        if !complete {
-            self.unread.push("laws");
-            self.unread.push("law");
-        }
-        Some(laws)
+/// Laws of a case, in SI.
+fn case_laws(
+    r: &mut Reader<'_>,
+    case: &str,
+    fields: &Fields<'_>,
+    f: Field<'_>,
+    place: &mut EntryPlace,
+    driven: &HashMap<String, Quantity>,
+    formulas: &mut Vec<FormulaDraft>,
+) -> Option<Vec<(String, Law)>> {
+    let subject = fields.subject("laws");
+    let table = r.table(f.value, &subject, "a table of drivers' names and laws")?;
+    if table.len() > MOST_ENTRIES {
+        r.too_many(f.value.span(), &subject.name, table.len());
+        return None;
     }
+    let (mut laws, mut names, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    let mut complete = true;
+    for (name, value) in table {
+        let Some(driver) = r.short(name.get_ref(), name.span(), "the name of a driver") else {
+            complete = false;
+            continue;
+        };
+        let of = format!("driver `{}` in {}", shown(&driver), fields.what);
+        let subject =
+            Subject { name: format!("the law of {of}"), example: "for example `\"30*sin(2*pi*t)\"`".into() };
+        let law = law::law_in(r, &of, &subject, value);
+        let quantity = driven.get(&driver).copied().unwrap_or(Quantity::Number);
+        for (parameter, expression) in r.law_formulas.drain(..) {
+            let of = FormulaOf::CaseLaw(case.to_owned(), driver.clone(), parameter);
+            formulas.push(FormulaDraft { of, expression });
+        }
+        complete &= law.is_some();
+        if let Some(law) = law {
+            names.push(name.span());
+            values.push(value.span());
+            laws.push((driver, law.scaled(r.units.to_si(quantity, 1.0))));
+        }
+    }
+    place.items("laws", names);
+    place.items("law", values);
+    if !complete {
+        r.unread.push("laws");
+        r.unread.push("law");
+    }
+    Some(laws)
 }

@@ -4,11 +4,12 @@ use hardpoint::draft::{CouplerDraft, CouplerKindDraft, Section, TermDraft};
 use hardpoint::joint::Quantity;
 use hardpoint::model::Transmission;
 
-use crate::format::{JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table};
-use crate::places::EntryPlace;
-use crate::tree::{Fields, Reader};
+use crate::values::{
+    EntryPlace, Fields, JOINT, Key, Kinds, LENGTH, NUMBER, Reader, Shape, TWO_NUMBERS, Table, keys, table,
+};
 
-use super::{COORDINATE, Raw, type_of};
+use super::joints::COORDINATE;
+use super::raw::Raw;
 
 pub(crate) const COUPLER: Kinds = Kinds {
     name: "Coupler",
@@ -25,35 +26,35 @@ static TYPES: [(Table, Read); 6] = [
             /// Two gears: `teeth[0] angle[0] + teeth[1] angle[1] = 0`, or minus for an internal gear.
             "gear", GEARS
         },
-        |r, fields, _, _| r.gears(fields, false),
+        |r, fields, _, _| gears(r, fields, false),
     ),
     (
         table! {
             /// Two bevel gears, with the same relation as `gear`.
             "bevel", GEARS
         },
-        |r, fields, _, _| r.gears(fields, true),
+        |r, fields, _, _| gears(r, fields, true),
     ),
     (
         table! {
             /// A rack and its pinion: `displacement = radius x angle`.
             "rack", RACK
         },
-        |r, fields, _, place| r.rack(fields, place),
+        |r, fields, _, place| rack(r, fields, place),
     ),
     (
         table! {
             /// Another name of `rack`.
             "rack_and_pinion", RACK
         },
-        |r, fields, _, place| r.rack(fields, place),
+        |r, fields, _, place| rack(r, fields, place),
     ),
     (
         table! {
             /// A belt or chain: `radii[0] angle[0] = radii[1] angle[1]`, or minus for a crossed one.
             "belt", BELT
         },
-        |r, fields, _, _| r.belt(fields),
+        |r, fields, _, _| belt(r, fields),
     ),
     (
         table! {
@@ -65,7 +66,7 @@ static TYPES: [(Table, Read); 6] = [
             /// mechanism is assembled to it.
             or("0.0") "constant": NUMBER, "2.5";
         },
-        |r, fields, raw, _| r.linear(fields, raw),
+        |r, fields, raw, _| linear(r, fields, raw),
     ),
 ];
 const GEARS: &[Key] = keys! {
@@ -104,63 +105,61 @@ pub(super) const TERM: Table = table! {
     must "coefficient": NUMBER, "2";
 };
 
-impl Reader<'_> {
-    pub(super) fn couplers(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        for entry in self.entries(model, "couplers", "coupler") {
-            let Some((table, read)) = self.entry_type("coupler", &entry, &TYPES) else { continue };
-            let fields = self.entry("coupler", &entry, table.typed_keys());
-            let mut place = EntryPlace::of(&fields);
-            if let Some(kind) = read(self, &fields, raw, &mut place) {
-                self.push(raw, Section::Couplers, place);
-                let constant = match kind {
-                    CouplerKindDraft::Linear(_) => self.number_of(&fields, "constant").unwrap_or_default(),
-                    CouplerKindDraft::Pair { .. } => 0.0,
-                };
-                raw.draft.couplers.push(CouplerDraft { name: entry.0, kind, constant });
-            }
+pub(super) fn couplers(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    for entry in r.entries(model, "couplers", "coupler") {
+        let Some((table, read)) = r.entry_type("coupler", &entry, &TYPES) else { continue };
+        let fields = r.entry("coupler", &entry, table.typed_keys());
+        let mut place = EntryPlace::of(&fields);
+        if let Some(kind) = read(r, &fields, raw, &mut place) {
+            raw.push(r, Section::Couplers, place);
+            let constant = match kind {
+                CouplerKindDraft::Linear(_) => r.number_of(&fields, "constant").unwrap_or_default(),
+                CouplerKindDraft::Pair { .. } => 0.0,
+            };
+            raw.draft.couplers.push(CouplerDraft { name: entry.0, kind, constant });
         }
     }
+}
 
-    fn gears(&mut self, fields: &Fields<'_>, bevel: bool) -> Option<CouplerKindDraft> {
-        let joints = self.names_of(fields, "joints");
-        let teeth = self.list_of(fields, "teeth", "two numbers of teeth");
-        let internal = self.flag_of(fields, "internal");
-        let by = Transmission::Gears { teeth: teeth?, internal: internal?, bevel };
-        Some(CouplerKindDraft::Pair { by, joints: joints? })
-    }
+fn gears(r: &mut Reader<'_>, fields: &Fields<'_>, bevel: bool) -> Option<CouplerKindDraft> {
+    let joints = r.names_of(fields, "joints");
+    let teeth = r.list_of(fields, "teeth", "two numbers of teeth");
+    let internal = r.flag_of(fields, "internal");
+    let by = Transmission::Gears { teeth: teeth?, internal: internal?, bevel };
+    Some(CouplerKindDraft::Pair { by, joints: joints? })
+}
 
-    fn rack(&mut self, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<CouplerKindDraft> {
-        let [rack, pinion] = ["rack", "pinion"].map(|key| self.name_of(fields, key));
-        let radius = self.number_of(fields, "radius");
-        let named = ["rack", "pinion"].iter().filter_map(|key| fields.get(key));
-        place.items("joints", named.map(|f| f.value.span()).collect());
-        let by = Transmission::Rack { radius: radius? };
-        Some(CouplerKindDraft::Pair { by, joints: [rack?, pinion?] })
-    }
+fn rack(r: &mut Reader<'_>, fields: &Fields<'_>, place: &mut EntryPlace) -> Option<CouplerKindDraft> {
+    let [rack, pinion] = ["rack", "pinion"].map(|key| r.name_of(fields, key));
+    let radius = r.number_of(fields, "radius");
+    let named = ["rack", "pinion"].iter().filter_map(|key| fields.get(key));
+    place.items("joints", named.map(|f| f.value.span()).collect());
+    let by = Transmission::Rack { radius: radius? };
+    Some(CouplerKindDraft::Pair { by, joints: [rack?, pinion?] })
+}
 
-    fn belt(&mut self, fields: &Fields<'_>) -> Option<CouplerKindDraft> {
-        let joints = self.names_of(fields, "joints");
-        let radii = self.list_of(fields, "radii", "two radii");
-        let crossed = self.flag_of(fields, "crossed");
-        let by = Transmission::Belt { radii: radii?, crossed: crossed? };
-        Some(CouplerKindDraft::Pair { by, joints: joints? })
-    }
+fn belt(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<CouplerKindDraft> {
+    let joints = r.names_of(fields, "joints");
+    let radii = r.list_of(fields, "radii", "two radii");
+    let crossed = r.flag_of(fields, "crossed");
+    let by = Transmission::Belt { radii: radii?, crossed: crossed? };
+    Some(CouplerKindDraft::Pair { by, joints: joints? })
+}
 
-    /// The file's sum of `coefficient x coordinate` is zero in the file's units; so it must be in SI.
-    fn linear(&mut self, fields: &Fields<'_>, raw: &Raw) -> Option<CouplerKindDraft> {
-        let terms = self.tables(fields, "terms", &TERM)?;
-        let terms: Vec<_> = terms
-            .iter()
-            .map(|term| {
-                let joint = self.name_of(term, "joint");
-                let coordinate = self.name_if(term, "coordinate");
-                let coefficient = self.number_of(term, "coefficient");
-                let (joint, coordinate) = (joint?, coordinate?);
-                let quantity = type_of(raw, &joint).and_then(|kind| kind.quantity_of(coordinate.as_deref()));
-                let per_si = self.units.of(quantity.unwrap_or(Quantity::Number)).1;
-                Some(TermDraft { joint, coordinate, coefficient: coefficient? * per_si })
-            })
-            .collect();
-        terms.into_iter().collect::<Option<_>>().map(CouplerKindDraft::Linear)
-    }
+/// The file's sum of `coefficient x coordinate` is zero in the file's units; so it must be in SI.
+fn linear(r: &mut Reader<'_>, fields: &Fields<'_>, raw: &Raw) -> Option<CouplerKindDraft> {
+    let terms = r.tables(fields, "terms", &TERM)?;
+    let terms: Vec<_> = terms
+        .iter()
+        .map(|term| {
+            let joint = r.name_of(term, "joint");
+            let coordinate = r.name_if(term, "coordinate");
+            let coefficient = r.number_of(term, "coefficient");
+            let (joint, coordinate) = (joint?, coordinate?);
+            let quantity = raw.type_of(&joint).and_then(|kind| kind.quantity_of(coordinate.as_deref()));
+            let per_si = r.units.of(quantity.unwrap_or(Quantity::Number)).1;
+            Some(TermDraft { joint, coordinate, coefficient: coefficient? * per_si })
+        })
+        .collect();
+    terms.into_iter().collect::<Option<_>>().map(CouplerKindDraft::Linear)
 }

@@ -1,15 +1,22 @@
-//! Files next to the model file, and two columns of a CSV file: times and values, or another abscissa and values.
+//! Two columns of a CSV file: times and values, or another abscissa and values.
 
-use std::path::{Component, Path};
+use std::path::Path;
 
-use crate::diagnostic::{closest, shown};
-use crate::tree::{Folder, Reader};
-use crate::{LARGEST_FILE, neighbours};
+use toml::de::DeValue;
+
+use crate::values::{
+    DataError, Field, Fields, Reader, Shape, Subject, Table, Value, Wanted, closest, shown, text_from,
+};
 
 /// Maximum number of rows.
 const MOST_ROWS: usize = 1_000_000;
 /// Maximum number of columns that a message lists.
 const LISTED_COLUMNS: usize = 24;
+pub(super) const COLUMN: Shape = Shape::Any(
+    "Column",
+    "A column's name, or its number from 1.",
+    &[Shape::Name("a column"), Shape::Count(u32::MAX)],
+);
 
 /// A column of a file.
 pub(super) enum Column {
@@ -21,84 +28,6 @@ pub(super) enum Column {
 
 /// Default columns.
 pub(super) const FIRST_TWO: [Column; 2] = [Column::Number(1), Column::Number(2)];
-
-/// Error in a data file.
-pub(crate) struct DataError {
-    pub code: &'static str,
-    pub message: String,
-    pub notes: Vec<String>,
-    pub help: Option<String>,
-    /// True if the selection of columns is invalid.
-    pub of_columns: bool,
-}
-
-impl DataError {
-    /// HP0111: the file cannot be read.
-    pub(super) fn unreadable(message: impl Into<String>, help: &str) -> Self {
-        Self {
-            code: "HP0111",
-            message: message.into(),
-            notes: Vec::new(),
-            help: Some(help.into()),
-            of_columns: false,
-        }
-    }
-
-    /// HP0112: the file has no curve.
-    pub(super) fn content(message: impl Into<String>, help: &str) -> Self {
-        Self {
-            code: "HP0112",
-            message: message.into(),
-            notes: Vec::new(),
-            help: Some(help.into()),
-            of_columns: false,
-        }
-    }
-
-    fn of_columns(self) -> Self {
-        Self { of_columns: true, ..self }
-    }
-
-    pub(super) fn note(mut self, note: impl Into<String>) -> Self {
-        self.notes.push(note.into());
-        self
-    }
-}
-
-impl Reader<'_> {
-    /// Points of a file in the model's folder or below it.
-    pub(super) fn points_of_text(
-        &mut self,
-        name: &str,
-        columns: &[Column; 2],
-        of: &Curve,
-    ) -> Result<Vec<[f64; 2]>, DataError> {
-        let text = self.text_of_file(name, &of.wanted)?;
-        parse(text.strip_prefix('\u{feff}').unwrap_or(text), &shown(name), columns, of)
-    }
-
-    /// Text of a file in the model's folder or below it; it is stored with the model.
-    pub(super) fn text_of_file(&mut self, name: &str, wanted: &Wanted<'_>) -> Result<&str, DataError> {
-        let text = text_from(bytes_of(self.folder, name, wanted)?, name)?;
-        Ok(self.texts.entry(name.to_owned()).insert_entry(text).into_mut())
-    }
-}
-
-/// Descriptions of a requested file, for messages.
-pub(super) struct Wanted<'a> {
-    /// Purpose of the file.
-    pub purpose: &'a str,
-    /// Kind of file, with its article.
-    pub kind: &'a str,
-    /// Ending of its name, to suggest other files in the folder.
-    pub ending: &'a str,
-    /// Example of a name.
-    pub example: &'a str,
-    /// Instruction if the model has no folder.
-    pub without_folder: &'a str,
-    /// Instruction if the file is too large.
-    pub too_large: &'a str,
-}
 
 /// Descriptions of a curve in a file, for messages.
 pub(super) struct Curve {
@@ -127,7 +56,6 @@ pub(super) const TABLE: Curve = Curve {
     unit: " s",
     write: "write a time in s and a value on each line, like `0.5, 12.5`",
 };
-
 /// Target of a metric.
 pub(super) const TARGET: Curve = Curve {
     wanted: Wanted {
@@ -141,7 +69,6 @@ pub(super) const TARGET: Curve = Curve {
     unit: "",
     write: "write an abscissa and a value on each line, in the units of the model file, like `-20, 0.15`",
 };
-
 /// Force of a spring.
 pub(super) const FORCE: Curve = Curve {
     wanted: Wanted {
@@ -156,114 +83,106 @@ pub(super) const FORCE: Curve = Curve {
     write: "write a deflection in the model's length unit and a force in N on each line, like `12.5, 340`",
 };
 
-/// Text of a file.
-pub(super) fn text_from(bytes: Vec<u8>, name: &str) -> Result<String, DataError> {
-    String::from_utf8(bytes).map_err(|_| {
-        let message = format!("the file `{}` is not a text in UTF-8", shown(name));
-        DataError::unreadable(message, "save it as UTF-8 text")
-    })
-}
-
-/// Bytes of a file in the model's folder or below it.
-pub(super) fn bytes_of(folder: Folder<'_>, name: &str, wanted: &Wanted<'_>) -> Result<Vec<u8>, DataError> {
-    let path = inside(name, wanted)?;
-    let known = name;
-    let name = shown(name);
-    let folder = match folder {
-        Folder::On(folder) => folder,
-        Folder::Given(texts) => match texts.get(known) {
-            Some(text) => return Ok(text.clone().into_bytes()),
-            None => {
-                let message = format!("the file `{name}` is not part of this model");
-                return Err(DataError::unreadable(message, wanted.without_folder));
+/// Points, the name of a file that holds them, or a table with it.
+pub(super) fn points_given(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    f: Field<'_>,
+    table_of_file: &'static Table,
+    of: &Curve,
+) -> Option<Vec<[f64; 2]>> {
+    let subject = fields.subject(f.key);
+    match f.value.get_ref() {
+        DeValue::Table(table) => {
+            let fields = r.fields(subject.name, f.value.span(), table, table_of_file.keys());
+            let file = r.need(&fields, "file")?;
+            points_in_file(r, &fields, file, of)
+        }
+        DeValue::String(name) => match points_of_text(r, name, &FIRST_TWO, of) {
+            Ok(points) => Some(points),
+            Err(e) => {
+                r.data_error(f.value.span(), e);
+                None
             }
         },
-        Folder::None => {
-            let message = format!("the file `{name}` cannot be read: this model is a text without a folder");
-            return Err(DataError::unreadable(message, wanted.without_folder));
-        }
-    };
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let failed = |e: std::io::Error| match e.kind() {
-        std::io::ErrorKind::NotFound => {
-            let message = format!("there is no file `{name}` next to the model file");
-            let mut error =
-                DataError::unreadable(message, "the path counts from the folder of the model file");
-            let (note, close) = neighbours(&folder.join(path), wanted.ending);
-            error.notes.extend(note);
-            // The name in the model does not contain the reader's folder.
-            let prefix = folder.join("").display().to_string();
-            error.help = close.map(|c| c.replacen(&prefix, "", 1)).or(error.help);
-            error
-        }
-        _ => DataError::unreadable(format!("the file `{name}` cannot be read"), "check its permissions")
-            .note(e.to_string()),
-    };
-    let full = folder.join(path).canonicalize().map_err(failed)?;
-    if !full.starts_with(folder.canonicalize().map_err(failed)?) {
-        return Err(leaves(&name, wanted).note("it is a link to a place outside"));
+        _ => pairs(r, f.value, &subject, of.abscissa),
     }
-    let meta = std::fs::metadata(&full).map_err(failed)?;
-    if !meta.is_file() {
-        let message = format!("`{name}` is not a file");
-        return Err(DataError::unreadable(message, &format!("name {} in the model's folder", wanted.kind)));
-    }
-    if meta.len() > LARGEST_FILE {
-        let message = format!("the file `{name}` is too large for a {}", wanted.purpose);
-        return Err(DataError::unreadable(message, wanted.too_large)
-            .note(format!("at most {} MiB are read", LARGEST_FILE >> 20)));
-    }
-    std::fs::read(&full).map_err(failed)
 }
 
-/// Path of a file in the model's folder, valid on all systems; `None` for other paths.
-fn inside<'n>(name: &'n str, wanted: &Wanted<'_>) -> Result<&'n Path, DataError> {
-    let path = Path::new(name);
-    if name.trim().is_empty() {
-        let message = format!("the name of the {}'s file is empty", wanted.purpose);
-        return Err(DataError::unreadable(message, &format!("name {}", wanted.kind)));
-    }
-    let is_absolute = path.has_root() || name.starts_with('\\') || name.as_bytes().get(1) == Some(&b':');
-    if is_absolute || path.components().any(|c| c == Component::ParentDir) || name.contains("..\\") {
-        return Err(leaves(&shown(name), wanted));
-    }
-    if name.contains('\\') {
-        let message = format!("the path `{}` has a `\\`", shown(name));
-        return Err(DataError::unreadable(message, "separate folders with `/`; that works on every system"));
-    }
-    Ok(path)
+/// A list of pairs of numbers.
+fn pairs(r: &mut Reader<'_>, value: &Value<'_>, subject: &Subject, abscissa: &str) -> Option<Vec<[f64; 2]>> {
+    let expected = format!("points `[{abscissa}, value]`, or the name of a CSV file");
+    let list = r.list(value, subject, &expected)?;
+    list.iter().map(|pair| r.numbers::<2>(pair, subject, &expected)).collect()
 }
 
-fn leaves(name: &str, wanted: &Wanted<'_>) -> DataError {
-    let help = "put it into the folder of the model file, or a folder in it, and name it from there, like";
-    DataError::unreadable(
-        format!("the file `{name}` is not in the model's folder"),
-        &format!("{help} `{}`", wanted.example),
-    )
+/// The points of a file, whose name a field gives and whose columns another.
+pub(super) fn points_in_file(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    f: Field<'_>,
+    of: &Curve,
+) -> Option<Vec<[f64; 2]>> {
+    let columns = columns(r, fields, of);
+    let name = r.text(fields, f)?;
+    let columns = columns?;
+    match points_of_text(r, &name, &columns, of) {
+        Ok(points) => Some(points),
+        Err(e) => {
+            let at = fields.get("columns").filter(|_| e.of_columns).unwrap_or(f);
+            r.data_error(at.value.span(), e);
+            None
+        }
+    }
+}
+
+/// The two columns of a file, by name or number; the first two where none are named.
+fn columns(r: &mut Reader<'_>, fields: &Fields<'_>, of: &Curve) -> Option<[Column; 2]> {
+    let Some(f) = fields.get("columns") else { return Some(FIRST_TWO) };
+    let subject = fields.subject("columns");
+    let expected =
+        format!("two columns, of the {} and of the value, each a name or a number from 1", of.abscissa);
+    let list = match f.value.get_ref().as_array() {
+        Some(list) if list.len() == 2 => list,
+        _ => {
+            r.wrong(f.value, &subject, &expected);
+            return None;
+        }
+    };
+    let [time, value] = [0, 1].map(|k| match list[k].get_ref() {
+        DeValue::String(_) => r.name(&list[k], &subject, &expected).map(Column::Named),
+        _ => {
+            let number = r.number(&list[k], &subject)?;
+            if !((1.0..=1e6).contains(&number) && number.fract() == 0.0) {
+                r.senseless(list[k].span(), format!("{} cannot be {number}", subject.name)).help =
+                    Some("columns are counted from 1".into());
+                return None;
+            }
+            Some(Column::Number(number as usize))
+        }
+    });
+    Some([time?, value?])
+}
+
+/// Points of a file in the model's folder or below it.
+pub(super) fn points_of_text(
+    r: &mut Reader<'_>,
+    name: &str,
+    columns: &[Column; 2],
+    of: &Curve,
+) -> Result<Vec<[f64; 2]>, DataError> {
+    let text = r.text_of_file(name, &of.wanted)?;
+    parse(text.strip_prefix('\u{feff}').unwrap_or(text), &shown(name), columns, of)
 }
 
 fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Vec<[f64; 2]>, DataError> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .delimiter(delimiter(text))
-        .from_reader(text.as_bytes());
+    let mut reader = records_of(text);
     let mut record = csv::StringRecord::new();
     let mut header: Option<Vec<String>> = None;
     let mut taken = None;
     let mut points: Vec<[f64; 2]> = Vec::new();
     let unit = of.unit;
-    loop {
-        match reader.read_record(&mut record) {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(e) => {
-                let message = format!("`{name}` is not a CSV file");
-                return Err(DataError::content(message, "check its quotes").note(e.to_string()));
-            }
-        }
+    while reader.read_record(&mut record).map_err(|e| no_csv(name, &e))? {
         let line = record.position().map_or(0, csv::Position::line);
         let is_first = header.is_none() && taken.is_none();
         if is_first && !record.iter().any(|field| unquoted(field).parse::<f64>().is_ok()) {
@@ -304,6 +223,34 @@ fn parse(text: &str, name: &str, columns: &[Column; 2], of: &Curve) -> Result<Ve
         return Err(DataError::content(message, of.write));
     }
     Ok(points)
+}
+
+/// Name, in quotes for messages, and text of a CSV file in any folder, whose first line `names` something.
+pub(super) fn text_at(path: &Path, names: &str) -> Result<(String, String), DataError> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|e| {
+        let message = format!("the file `{}` cannot be read", shown(&name));
+        DataError::unreadable(message, &format!("name a CSV file whose first line names {names}"))
+            .note(e.to_string())
+    })?;
+    let text = text_from(bytes, &name)?;
+    Ok((name, text))
+}
+
+/// Reader of the records of a CSV text.
+pub(super) fn records_of(text: &str) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .delimiter(delimiter(text))
+        .from_reader(text.as_bytes())
+}
+
+/// HP0112: a text without records.
+pub(super) fn no_csv(name: &str, e: &csv::Error) -> DataError {
+    DataError::content(format!("`{name}` is not a CSV file"), "check its quotes").note(e.to_string())
 }
 
 /// Delimiter of the columns: a tab or a semicolon, if the first line has one, or a comma.

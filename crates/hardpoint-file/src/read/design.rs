@@ -9,13 +9,13 @@ use hardpoint::law::ParameterKind;
 use hardpoint::model::End;
 use hardpoint::space::Vec3;
 
-use crate::format::{
-    ANGLE, BODY, DRIVER, HARDPOINT, JOINT, Key, Kinds, LENGTH, NUMBER, Shape, TWO_NUMBERS, Table, keys, table,
+use crate::values::{
+    ANGLE, AXES, BODY, DIRECTION, DRIVER, EntryPlace, Fields, HARDPOINT, JOINT, Key, Kinds, LENGTH, LINE,
+    NUMBER, Reader, Shape, TWO_NUMBERS, Table, Value, axis_named, keys, table,
 };
-use crate::places::EntryPlace;
-use crate::tree::{AXES, DIRECTION, Fields, LINE, Reader, Value, axis_named};
 
-use super::Raw;
+use super::parameters;
+use super::raw::Raw;
 
 pub(crate) const VARIABLE: Kinds = Kinds {
     name: "Variable",
@@ -48,7 +48,7 @@ static KINDS: &[(Table, Read)] = &[
             /// A hardpoint's name, or a list of names, that move as the mirror image of `move`.
             may "mirrored": HARDPOINTS, "\"A_right\"";
         },
-        |r, fields, name, _, place| r.moves(fields, name, place),
+        |r, fields, name, _, place| moves(r, fields, name, place),
     ),
     (
         variable! {
@@ -75,7 +75,7 @@ static KINDS: &[(Table, Read)] = &[
         },
         |r, fields, name, _, place| {
             place.changes(fields, "fields");
-            Some(vec![(name.to_owned(), r.velocity_fields(fields)?)])
+            Some(vec![(name.to_owned(), velocity_fields(r, fields)?)])
         },
     ),
     (
@@ -87,7 +87,7 @@ static KINDS: &[(Table, Read)] = &[
         },
         |r, fields, name, _, place| {
             place.changes(fields, "markers");
-            Some(vec![(name.to_owned(), r.markers(fields)?)])
+            Some(vec![(name.to_owned(), markers(r, fields)?)])
         },
     ),
     (
@@ -101,7 +101,7 @@ static KINDS: &[(Table, Read)] = &[
         },
         |r, fields, name, _, place| {
             place.changes(fields, "shape");
-            let bodies = r.several(fields, "shape", &mut Vec::new());
+            let bodies = several(r, fields, "shape", &mut Vec::new());
             let field = r.given(fields, "field", |r, f| {
                 let table =
                     r.table(f.value, &fields.subject("field"), "a table with the motion of the points")?;
@@ -136,7 +136,7 @@ static KINDS: &[(Table, Read)] = &[
         },
         |r, fields, name, raw, place| {
             place.changes(fields, "driver");
-            one(name, r.law_parameter(fields, raw)?)
+            one(name, law_parameter(r, fields, raw)?)
         },
     ),
 ];
@@ -258,7 +258,7 @@ static FIELDS: &[(Table, ReadField)] = &[
                 .iter()
                 .map(|f| {
                     let at = r.name_of(f, "at");
-                    let v = r.optional_vector(f, "move");
+                    let v = optional_vector(r, f, "move");
                     Some((at?, v?))
                 })
                 .collect();
@@ -280,190 +280,180 @@ fn one(name: &str, change: ChangeDraft) -> Option<Changes> {
     Some(vec![(name.to_owned(), vec![change])])
 }
 
-impl Reader<'_> {
-    /// `twins` are further changes of variables, by name.
-    pub(super) fn design(&mut self, model: &Fields<'_>, raw: &mut Raw, twins: &HashMap<String, Value<'_>>) {
-        for entry in self.entries(model, "design", "design variable") {
-            let fields = self.entry("design variable", &entry, VARIABLE.keys());
-            let mut place = EntryPlace::of(&fields);
-            let fixed_length = self.flag_of(&fields, "fixed_length");
-            let kind = self.led_by(&fields, KINDS, ["change", "this variable is given"]);
-            let mut variables = kind.and_then(|(_, read)| read(self, &fields, &entry.0, raw, &mut place));
-            if let (Some((_, read)), Some(all), Some(twin)) = (kind, &mut variables, twins.get(&entry.0)) {
-                let twin = (entry.0.clone(), entry.1.clone(), twin);
-                let fields = self.entry("design variable", &twin, VARIABLE.keys());
-                let others = read(self, &fields, &twin.0, raw, &mut EntryPlace::of(&fields));
-                for (one, other) in all.iter_mut().zip(others.into_iter().flatten()) {
-                    one.1.extend(other.1);
-                }
-            }
-            if variables.is_none() {
-                self.unread.push("name");
-            }
-            let variables = variables.unwrap_or_else(|| vec![(entry.0.clone(), Vec::new())]);
-            let quantity = ChangeDraft::quantity_of(&variables[0].1, |_| None, |driver| raw.driver(driver));
-            let (bounds, [typical, tolerance]) = self.range(&fields, quantity);
-            let fixed_length = fixed_length.unwrap_or(false);
-            let unread = std::mem::take(&mut self.unread);
-            for (name, changes) in variables {
-                self.unread.clone_from(&unread);
-                self.push(raw, Section::Design, place.clone());
-                raw.draft.design.push(VariableDraft {
-                    name,
-                    changes,
-                    fixed_length,
-                    bounds,
-                    typical,
-                    tolerance,
-                });
+/// `twins` are further changes of variables, by name.
+pub(super) fn design(
+    r: &mut Reader<'_>,
+    model: &Fields<'_>,
+    raw: &mut Raw,
+    twins: &HashMap<String, Value<'_>>,
+) {
+    for entry in r.entries(model, "design", "design variable") {
+        let fields = r.entry("design variable", &entry, VARIABLE.keys());
+        let mut place = EntryPlace::of(&fields);
+        let fixed_length = r.flag_of(&fields, "fixed_length");
+        let kind = r.led_by(&fields, KINDS, ["change", "this variable is given"]);
+        let mut variables = kind.and_then(|(_, read)| read(r, &fields, &entry.0, raw, &mut place));
+        if let (Some((_, read)), Some(all), Some(twin)) = (kind, &mut variables, twins.get(&entry.0)) {
+            let twin = (entry.0.clone(), entry.1.clone(), twin);
+            let fields = r.entry("design variable", &twin, VARIABLE.keys());
+            let others = read(r, &fields, &twin.0, raw, &mut EntryPlace::of(&fields));
+            for (one, other) in all.iter_mut().zip(others.into_iter().flatten()) {
+                one.1.extend(other.1);
             }
         }
+        if variables.is_none() {
+            r.unread.push("name");
+        }
+        let variables = variables.unwrap_or_else(|| vec![(entry.0.clone(), Vec::new())]);
+        let quantity = ChangeDraft::quantity_of(&variables[0].1, |_| None, |driver| raw.driver(driver));
+        let (bounds, [typical, tolerance]) = parameters::range(r, &fields, quantity);
+        let fixed_length = fixed_length.unwrap_or(false);
+        let unread = std::mem::take(&mut r.unread);
+        for (name, changes) in variables {
+            r.unread.clone_from(&unread);
+            raw.push(r, Section::Design, place.clone());
+            raw.draft.design.push(VariableDraft { name, changes, fixed_length, bounds, typical, tolerance });
+        }
     }
+}
 
-    /// Hardpoints that move together along one direction, or along each of the three axes.
-    fn moves(
-        &mut self,
-        fields: &Fields<'_>,
-        name: &str,
-        place: &mut EntryPlace,
-    ) -> Option<Vec<(String, Vec<ChangeDraft>)>> {
-        let mut items = Vec::new();
-        let hardpoints = self.several(fields, "move", &mut items);
-        let mirrored = self.mirrored(fields, &mut items);
-        place.items("changes", items);
-        let along = self.given(fields, "along", |r, f| match f.value.get_ref().as_str() {
-            Some("xyz") => {
-                Some(["x", "y", "z"].map(|a| (format!("{name}_{a}"), axis_named(a))).into_iter().collect())
+/// Hardpoints that move together along one direction, or along each of the three axes.
+fn moves(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    name: &str,
+    place: &mut EntryPlace,
+) -> Option<Vec<(String, Vec<ChangeDraft>)>> {
+    let mut items = Vec::new();
+    let hardpoints = several(r, fields, "move", &mut items);
+    let mirrored = mirrored(r, fields, &mut items);
+    place.items("changes", items);
+    let along = r.given(fields, "along", |r, f| match f.value.get_ref().as_str() {
+        Some("xyz") => {
+            Some(["x", "y", "z"].map(|a| (format!("{name}_{a}"), axis_named(a))).into_iter().collect())
+        }
+        Some(word) if axis_named(word).is_none() => {
+            let known = ["x", "y", "z", "-x", "-y", "-z", "xyz"];
+            r.unknown_word(f.value.span(), &fields.subject("along"), word, &known);
+            None
+        }
+        _ => {
+            let subject = fields.subject("along");
+            let unit = r.vector(f.value, &subject)?.unit();
+            if unit.is_none() {
+                r.senseless(f.value.span(), format!("{} has no direction", subject.name)).help =
+                    Some(subject.example);
             }
-            Some(word) if axis_named(word).is_none() => {
-                let known = ["x", "y", "z", "-x", "-y", "-z", "xyz"];
-                r.unknown_word(f.value.span(), &fields.subject("along"), word, &known);
-                None
-            }
-            _ => {
-                let subject = fields.subject("along");
-                let unit = r.vector(f.value, &subject)?.unit();
-                if unit.is_none() {
-                    r.senseless(f.value.span(), format!("{} has no direction", subject.name)).help =
-                        Some(subject.example);
-                }
-                Some(vec![(name.to_owned(), Some(unit?))])
-            }
+            Some(vec![(name.to_owned(), Some(unit?))])
+        }
+    });
+    let (hardpoints, mirrored, along): (_, _, Vec<(String, Option<Vec3>)>) = (hardpoints?, mirrored?, along?);
+    let changes = |v: Option<Vec3>| {
+        let velocity = v.unwrap_or(Vec3::ZERO);
+        let one = |h: &String| ChangeDraft::Move { hardpoint: h.clone(), velocity };
+        let other = mirrored.iter().flat_map(|(normal, names)| {
+            let velocity = velocity.mirrored(*normal);
+            names.iter().map(move |h| ChangeDraft::Move { hardpoint: h.clone(), velocity })
         });
-        let (hardpoints, mirrored, along): (_, _, Vec<(String, Option<Vec3>)>) =
-            (hardpoints?, mirrored?, along?);
-        let changes = |v: Option<Vec3>| {
-            let velocity = v.unwrap_or(Vec3::ZERO);
-            let one = |h: &String| ChangeDraft::Move { hardpoint: h.clone(), velocity };
-            let other = mirrored.iter().flat_map(|(normal, names)| {
-                let velocity = velocity.mirrored(*normal);
-                names.iter().map(move |h| ChangeDraft::Move { hardpoint: h.clone(), velocity })
-            });
-            hardpoints.iter().map(one).chain(other).collect()
-        };
-        Some(along.into_iter().map(|(name, v)| (name, changes(v))).collect())
-    }
+        hardpoints.iter().map(one).chain(other).collect()
+    };
+    Some(along.into_iter().map(|(name, v)| (name, changes(v))).collect())
+}
 
-    /// Reads one name or several; their locations are added to `places`.
-    fn several(
-        &mut self,
-        fields: &Fields<'_>,
-        key: &str,
-        places: &mut Vec<Range<usize>>,
-    ) -> Option<Vec<String>> {
-        let Shape::Any(_, _, [one, _]) = fields.key(key).shape else { return None };
-        let (subject, expected) = (fields.subject(key), format!("{} or a list of names", one.noun()));
-        self.given(fields, key, |r, f| {
-            if f.value.get_ref().is_str() {
-                places.push(f.value.span());
-                return r.name(f.value, &subject, &expected).map(|n| vec![n]);
-            }
-            let list = r.list(f.value, &subject, &expected)?;
-            places.extend(list.iter().map(|v| v.span()));
-            let names: Vec<_> = list.iter().map(|v| r.name(v, &subject, &expected)).collect();
-            names.into_iter().collect()
+/// Reads one name or several; their locations are added to `places`.
+fn several(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    key: &str,
+    places: &mut Vec<Range<usize>>,
+) -> Option<Vec<String>> {
+    let Shape::Any(_, _, [one, _]) = fields.key(key).shape else { return None };
+    let (subject, expected) = (fields.subject(key), format!("{} or a list of names", one.noun()));
+    r.given(fields, key, |r, f| {
+        if f.value.get_ref().is_str() {
+            places.push(f.value.span());
+            return r.name(f.value, &subject, &expected).map(|n| vec![n]);
+        }
+        let list = r.list(f.value, &subject, &expected)?;
+        places.extend(list.iter().map(|v| v.span()));
+        let names: Vec<_> = list.iter().map(|v| r.name(v, &subject, &expected)).collect();
+        names.into_iter().collect()
+    })
+}
+
+/// Normal of the mirror and the mirrored hardpoints, if any; their locations follow the others.
+fn mirrored(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    items: &mut Vec<Range<usize>>,
+) -> Option<Option<(Vec3, Vec<String>)>> {
+    let both = ["mirror", "mirrored"];
+    if both.iter().all(|key| fields.get(key).is_none()) {
+        return Some(None);
+    }
+    for key in both {
+        r.need(fields, key);
+    }
+    let normal = r.word_of(fields, "mirror").map(|k| Vec3::AXES[k]);
+    let names = several(r, fields, "mirrored", items);
+    Some(Some((normal?, names?)))
+}
+
+/// A parameter of a driver's law. The variable is in the file's unit of the parameter: a length or an angle is
+/// converted where the variable is, and a rate of one, which is a plain number to the core, here.
+fn law_parameter(r: &mut Reader<'_>, fields: &Fields<'_>, raw: &Raw) -> Option<ChangeDraft> {
+    let [driver, parameter] = ["driver", "parameter"].map(|key| r.name_of(fields, key));
+    let (driver, parameter) = (driver?, parameter?);
+    let kind = raw.driver(&driver).and_then(|(law, driven)| {
+        let parameter = law.parameters().into_iter().find(|p| p.name == parameter)?;
+        Some((parameter.kind, driven))
+    });
+    let rate = match kind {
+        Some((ParameterKind::ValueRate(_), driven)) => r.units.to_si(driven, 1.0),
+        _ => 1.0,
+    };
+    Some(ChangeDraft::Law { driver, parameter, rate })
+}
+
+fn velocity_fields(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Vec<ChangeDraft>> {
+    let changes: Vec<_> = r
+        .tables(fields, "fields", &FIELD)?
+        .iter()
+        .map(|f| {
+            let [joint, body] = ["joint", "body"].map(|key| r.name_of(f, key));
+            let [v, u] = ["V", "U"].map(|key| optional_vector(r, f, key));
+            Some(ChangeDraft::Field { joint: joint?, body: body?, v: v?, u: u? })
         })
-    }
+        .collect();
+    changes.into_iter().collect()
+}
 
-    /// Normal of the mirror and the mirrored hardpoints, if any; their locations follow the others.
-    fn mirrored(
-        &mut self,
-        fields: &Fields<'_>,
-        items: &mut Vec<Range<usize>>,
-    ) -> Option<Option<(Vec3, Vec<String>)>> {
-        let both = ["mirror", "mirrored"];
-        if both.iter().all(|key| fields.get(key).is_none()) {
-            return Some(None);
-        }
-        for key in both {
-            self.need(fields, key);
-        }
-        let normal = self.word_of(fields, "mirror").map(|k| Vec3::AXES[k]);
-        let names = self.several(fields, "mirrored", items);
-        Some(Some((normal?, names?)))
-    }
-
-    /// A parameter of a driver's law. The variable is in the file's unit of the parameter: a length or an angle is
-    /// converted where the variable is, and a rate of one, which is a plain number to the core, here.
-    fn law_parameter(&mut self, fields: &Fields<'_>, raw: &Raw) -> Option<ChangeDraft> {
-        let [driver, parameter] = ["driver", "parameter"].map(|key| self.name_of(fields, key));
-        let (driver, parameter) = (driver?, parameter?);
-        let kind = raw.driver(&driver).and_then(|(law, driven)| {
-            let parameter = law.parameters().into_iter().find(|p| p.name == parameter)?;
-            Some((parameter.kind, driven))
-        });
-        let rate = match kind {
-            Some((ParameterKind::ValueRate(_), driven)) => self.units.to_si(driven, 1.0),
-            _ => 1.0,
-        };
-        Some(ChangeDraft::Law { driver, parameter, rate })
-    }
-
-    fn velocity_fields(&mut self, fields: &Fields<'_>) -> Option<Vec<ChangeDraft>> {
-        let changes: Vec<_> = self
-            .tables(fields, "fields", &FIELD)?
-            .iter()
-            .map(|f| {
-                let [joint, body] = ["joint", "body"].map(|key| self.name_of(f, key));
-                let [v, u] = ["V", "U"].map(|key| self.optional_vector(f, key));
-                Some(ChangeDraft::Field { joint: joint?, body: body?, v: v?, u: u? })
-            })
-            .collect();
-        changes.into_iter().collect()
-    }
-
-    fn markers(&mut self, fields: &Fields<'_>) -> Option<Vec<ChangeDraft>> {
-        let changes: Vec<_> = self
-            .tables(fields, "markers", &MARKER)?
-            .iter()
-            .map(|f| {
-                let joint = self.name_of(f, "joint");
-                let end = self.word_of(f, "on").map(|k| [End::I, End::J, End::Both][k]);
-                let [position, rotation] = ["move", "turn"].map(|key| self.optional_vector(f, key));
-                Some(ChangeDraft::Marker {
-                    joint: joint?,
-                    end: end?,
-                    position: position?,
-                    rotation: rotation?,
-                })
-            })
-            .collect();
-        let mut changes: Vec<_> = changes.into_iter().collect::<Option<_>>()?;
-        // Per unit of a length or an angle the numbers are directions; those of a plain number have units.
-        if ChangeDraft::quantity_of(&changes, |_| None, |_| None) == Quantity::Number {
-            let [length, angle] = [Quantity::Length, Quantity::Angle].map(|q| self.units.to_si(q, 1.0));
-            for change in &mut changes {
-                if let ChangeDraft::Marker { position, rotation, .. } = change {
-                    (*position, *rotation) = (*position * length, *rotation * angle);
-                }
+fn markers(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Vec<ChangeDraft>> {
+    let changes: Vec<_> = r
+        .tables(fields, "markers", &MARKER)?
+        .iter()
+        .map(|f| {
+            let joint = r.name_of(f, "joint");
+            let end = r.word_of(f, "on").map(|k| [End::I, End::J, End::Both][k]);
+            let [position, rotation] = ["move", "turn"].map(|key| optional_vector(r, f, key));
+            Some(ChangeDraft::Marker { joint: joint?, end: end?, position: position?, rotation: rotation? })
+        })
+        .collect();
+    let mut changes: Vec<_> = changes.into_iter().collect::<Option<_>>()?;
+    // Per unit of a length or an angle the numbers are directions; those of a plain number have units.
+    if ChangeDraft::quantity_of(&changes, |_| None, |_| None) == Quantity::Number {
+        let [length, angle] = [Quantity::Length, Quantity::Angle].map(|q| r.units.to_si(q, 1.0));
+        for change in &mut changes {
+            if let ChangeDraft::Marker { position, rotation, .. } = change {
+                (*position, *rotation) = (*position * length, *rotation * angle);
             }
         }
-        Some(changes)
     }
+    Some(changes)
+}
 
-    /// Three numbers, converted to SI as declared; zeros if left out.
-    fn optional_vector(&mut self, fields: &Fields<'_>, key: &str) -> Option<Vec3> {
-        let numbers = self.list_of::<3>(fields, key, "three numbers");
-        if fields.get(key).is_none() { Some(Vec3::ZERO) } else { numbers.map(Vec3::from) }
-    }
+/// Three numbers, converted to SI as declared; zeros if left out.
+fn optional_vector(r: &mut Reader<'_>, fields: &Fields<'_>, key: &str) -> Option<Vec3> {
+    let numbers = r.list_of::<3>(fields, key, "three numbers");
+    if fields.get(key).is_none() { Some(Vec3::ZERO) } else { numbers.map(Vec3::from) }
 }

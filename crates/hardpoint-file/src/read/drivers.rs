@@ -4,12 +4,14 @@ use hardpoint::draft::{DrivenDraft, DriverDraft, FormulaDraft, FormulaOf, Sectio
 use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
 
-use crate::format::{BODY, JOINT, Kinds, OUTPUT, Shape, Table, keys, table};
-use crate::places::EntryPlace;
-use crate::read::results::POINT_REF;
-use crate::tree::{Fields, LINE, Reader};
+use crate::values::{
+    BODY, EntryPlace, Fields, JOINT, Kinds, LINE, OUTPUT, Reader, Shape, Table, keys, table,
+};
 
-use super::{COORDINATE, Raw, law, type_of};
+use super::joints::COORDINATE;
+use super::points::POINT_REF;
+use super::raw::Raw;
+use super::{law, points};
 
 pub(crate) const DRIVER: Kinds = Kinds {
     name: "Driver",
@@ -69,7 +71,7 @@ static FORMS: &[(Table, Read)] = &[
             must "along": LINE, "\"z\"";
         },
         |r, fields, place| {
-            let point = r.point_of(fields, "point");
+            let point = points::point_of(r, fields, "point");
             let along = r.line_of(fields, "along", place);
             Some(DrivenDraft::Position { point: point?, along: along? })
         },
@@ -85,7 +87,7 @@ static FORMS: &[(Table, Read)] = &[
             must "to": POINT_REF, "\"Q\"";
         },
         |r, fields, _| {
-            let [from, to] = ["from", "to"].map(|key| r.point_of(fields, key));
+            let [from, to] = ["from", "to"].map(|key| points::point_of(r, fields, key));
             Some(DrivenDraft::Distance { from: from?, to: to? })
         },
     ),
@@ -124,37 +126,35 @@ static FORMS: &[(Table, Read)] = &[
     ),
 ];
 
-impl Reader<'_> {
-    pub(super) fn drivers(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        for entry in self.entries(model, "drivers", "driver") {
-            let fields = self.entry("driver", &entry, DRIVER.keys());
-            let mut place = EntryPlace::of(&fields);
-            let words = ["prescribed quantity", "the prescribed quantity is given"];
-            let form = self.led_by(&fields, FORMS, words);
-            let drives = form.and_then(|(_, read)| read(self, &fields, &mut place));
-            let from_zero = self.word_of(&fields, "counted_from") == Some(1);
-            let law = self.given(&fields, "law", |r, f| r.law(&fields, f));
-            if fields.get("law").is_none() {
-                if model.get("cases").is_some() {
-                    raw.without_law.push(raw.draft.drivers.len());
-                } else {
-                    self.need(&fields, "law");
-                    self.unread.push("law");
-                }
+pub(super) fn drivers(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    for entry in r.entries(model, "drivers", "driver") {
+        let fields = r.entry("driver", &entry, DRIVER.keys());
+        let mut place = EntryPlace::of(&fields);
+        let words = ["prescribed quantity", "the prescribed quantity is given"];
+        let form = r.led_by(&fields, FORMS, words);
+        let drives = form.and_then(|(_, read)| read(r, &fields, &mut place));
+        let from_zero = r.word_of(&fields, "counted_from") == Some(1);
+        let law = r.given(&fields, "law", |r, f| law::law(r, &fields, f));
+        if fields.get("law").is_none() {
+            if model.get("cases").is_some() {
+                raw.without_law.push(raw.draft.drivers.len());
+            } else {
+                r.need(&fields, "law");
+                r.unread.push("law");
             }
-            let drives = drives.unwrap_or(DrivenDraft::Unread);
-            // The core reports an unknown joint or coordinate.
-            let quantity = drives.quantity(&raw.draft.measures, |joint| type_of(raw, joint));
-            let quantity = quantity.unwrap_or(Quantity::Number);
-            let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(self.units.to_si(quantity, 1.0));
-            self.push(raw, Section::Drivers, place);
-            raw.driven.push(quantity);
-            for (parameter, expression) in self.law_formulas.drain(..) {
-                raw.draft
-                    .formulas
-                    .push(FormulaDraft { of: FormulaOf::Law(entry.0.clone(), parameter), expression });
-            }
-            raw.draft.drivers.push(DriverDraft { name: entry.0, drives, from_zero, law });
         }
+        let drives = drives.unwrap_or(DrivenDraft::Unread);
+        // The core reports an unknown joint or coordinate.
+        let quantity = drives.quantity(&raw.draft.measures, |joint| raw.type_of(joint));
+        let quantity = quantity.unwrap_or(Quantity::Number);
+        let law = law.unwrap_or_else(|| Law::constant(0.0)).scaled(r.units.to_si(quantity, 1.0));
+        raw.push(r, Section::Drivers, place);
+        raw.driven.push(quantity);
+        for (parameter, expression) in r.law_formulas.drain(..) {
+            raw.draft
+                .formulas
+                .push(FormulaDraft { of: FormulaOf::Law(entry.0.clone(), parameter), expression });
+        }
+        raw.draft.drivers.push(DriverDraft { name: entry.0, drives, from_zero, law });
     }
 }

@@ -2,22 +2,22 @@
 
 use std::ops::Range;
 
+use hardpoint::expression::Expression;
 use hardpoint::joint::Quantity;
-use hardpoint::{
-    expression::Expression,
-    law::{self, Law, LawError, SplineDegree, SplineEndRates, SplineEnds},
-};
+use hardpoint::law::{self, Law, LawError, SplineDegree, SplineEndRates, SplineEnds};
 use toml::de::{DeTable, DeValue};
 
-use crate::diagnostic::{Severity, closest, shown};
-use crate::format::{ANGLE, Kinds, NUMBER, Shape, TWO_NUMBERS, Table, table};
-use crate::read::data;
-use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject, Value};
-use crate::units::AngleUnit;
+use crate::values::{
+    ANGLE, Field, Fields, Kinds, MOST_ENTRIES, NUMBER, Reader, Severity, Shape, Subject, TWO_NUMBERS, Table,
+    Value, closest, shown, table,
+};
+use hardpoint_table::AngleUnit;
+
+use super::data;
+use super::data::COLUMN;
 
 /// Maximum number of pieces of a sequence, whose cost grows with their square.
 const MOST_PIECES: usize = 500;
-
 /// A law of motion.
 pub(crate) const LAW: Shape = Shape::Any(
     "Law",
@@ -27,6 +27,7 @@ pub(crate) const LAW: Shape = Shape::Any(
 );
 pub(crate) const LAW_TABLE: Kinds =
     Kinds { name: "LawTable", doc: "", typed: true, tables: || TYPES.iter().map(|t| &t.0).collect() };
+
 /// Reads a law from its fields; the text names its owner.
 type Read = fn(&mut Reader<'_>, &str, &Fields<'_>) -> Option<Law>;
 
@@ -48,7 +49,7 @@ static TYPES: &[(Table, Read)] = &[
             let numbers = r.numbers_of(fields, ["amplitude", "frequency", "phase", "offset"]);
             let [amplitude, frequency, phase, offset] = numbers?;
             let law = Law::harmonic(law::Harmonic { amplitude, frequency, phase, offset });
-            r.made(fields, fields.at.clone(), law)
+            made(r, fields, fields.at.clone(), law)
         },
     ),
     (
@@ -62,7 +63,7 @@ static TYPES: &[(Table, Read)] = &[
         },
         |r, _, fields| {
             let [speed, offset] = r.numbers_of(fields, ["speed", "offset"])?;
-            r.made(fields, fields.at.clone(), Law::constant_speed(law::ConstantSpeed { speed, offset }))
+            made(r, fields, fields.at.clone(), Law::constant_speed(law::ConstantSpeed { speed, offset }))
         },
     ),
     (
@@ -72,7 +73,7 @@ static TYPES: &[(Table, Read)] = &[
             /// c0, c1, c2, ..., in the driver's unit per s to the power of the number.
             must "coefficients": Shape::some(&NUMBER), "[0, 1, 2]";
         },
-        |r, _, fields| r.polynomial(fields),
+        |r, _, fields| polynomial(r, fields),
     ),
     (
         table! {
@@ -89,7 +90,7 @@ static TYPES: &[(Table, Read)] = &[
             /// 3 (the acceleration jumps at both ends), 5 (the jerk does) or 7 (neither).
             or("5") "degree": Shape::OneOf(&[3, 5, 7]), "5";
         },
-        |r, _, fields| r.smooth_step(fields),
+        |r, _, fields| smooth_step(r, fields),
     ),
     (
         table! {
@@ -111,7 +112,7 @@ static TYPES: &[(Table, Read)] = &[
             let [from, to, start, end, ramp] =
                 r.numbers_of(fields, ["from", "to", "start", "end", "ramp"])?;
             let at = fields.get("ramp").map_or(fields.at.clone(), |f| f.value.span());
-            r.made(fields, at, Law::trapezoid(law::Trapezoid { from, to, start, end, ramp }))
+            made(r, fields, at, Law::trapezoid(law::Trapezoid { from, to, start, end, ramp }))
         },
     ),
     (
@@ -137,7 +138,7 @@ static TYPES: &[(Table, Read)] = &[
             /// Acceleration at the last point, of a quintic with clamped ends, in the driver's unit per s^2.
             or("0.0") "end_acceleration": NUMBER, "0";
         },
-        |r, _, fields| r.table_law(fields),
+        |r, _, fields| table_law(r, fields),
     ),
     (
         table! {
@@ -146,7 +147,7 @@ static TYPES: &[(Table, Read)] = &[
             /// The pieces, in order.
             must "pieces": Shape::List(&Shape::Table(&PIECE), [1, MOST_PIECES]), "[{ duration = 1, law = \"10*t\" }, { law = 0 }]";
         },
-        |r, of, fields| r.sequence(of, fields),
+        |r, of, fields| sequence(r, of, fields),
     ),
     (
         table! {
@@ -157,9 +158,10 @@ static TYPES: &[(Table, Read)] = &[
             /// Names and values of the parameters.
             or("{}") "parameters": Shape::Entries("a parameter of the law", &NUMBER), "{ a = 25, w = 6.28 }";
         },
-        |r, of, fields| r.expression_with_parameters(of, fields),
+        |r, of, fields| expression_with_parameters(r, of, fields),
     ),
 ];
+
 const ENDS: Shape = Shape::Words(&[
     (
         "clamped",
@@ -178,402 +180,339 @@ pub(super) const PIECE: Table = table! {
     /// True if its values are relative to the end of the previous piece.
     or("true") "continued": Shape::Flag, "true";
 };
-pub(super) const COLUMN: Shape = Shape::Any(
-    "Column",
-    "A column's name, or its number from 1.",
-    &[Shape::Name("a column"), Shape::Count(u32::MAX)],
-);
 const EXPECTED: &str = "an expression in `t` in quotes, a number, or a table with a `type`";
 
-impl Reader<'_> {
-    /// The law of a driver, in the file's units.
-    pub(super) fn law(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Law> {
-        self.law_in(&fields.what, &fields.subject(f.key), f.value)
-    }
+/// The law of a driver, in the file's units.
+pub(super) fn law(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Law> {
+    law_in(r, &fields.what, &fields.subject(f.key), f.value)
+}
 
-    /// Reads a law; `of` names its owner.
-    pub(super) fn law_in(&mut self, of: &str, subject: &Subject, value: &Value<'_>) -> Option<Law> {
-        match value.get_ref() {
-            DeValue::String(_) => self.law_text(of, value, &[]),
-            DeValue::Integer(_) | DeValue::Float(_) => self.number(value, subject).map(Law::constant),
-            DeValue::Table(table) => self.law_table(of, subject, value, table),
-            _ => {
-                self.wrong(value, subject, EXPECTED);
-                None
-            }
+/// Reads a law; `of` names its owner.
+pub(super) fn law_in(r: &mut Reader<'_>, of: &str, subject: &Subject, value: &Value<'_>) -> Option<Law> {
+    match value.get_ref() {
+        DeValue::String(_) => law_text(r, of, value, &[]),
+        DeValue::Integer(_) | DeValue::Float(_) => r.number(value, subject).map(Law::constant),
+        DeValue::Table(table) => law_table(r, of, subject, value, table),
+        _ => {
+            r.wrong(value, subject, EXPECTED);
+            None
         }
     }
+}
 
-    fn law_text(&mut self, of: &str, value: &Value<'_>, parameters: &[(&str, f64)]) -> Option<Law> {
-        let text = value.get_ref().as_str()?;
-        let mut parameters = parameters.to_vec();
-        for name in Law::names(text) {
-            if !parameters.iter().any(|p| p.0 == name)
-                && let Some(value) = self.named_in_law(of, value, name)?
-            {
-                parameters.push((name, value));
-            }
-        }
-        match Law::parse_with(text, &parameters) {
-            Ok(law) => {
-                self.degrees_in_functions(of, value, text, &parameters);
-                Some(law)
-            }
-            Err(error) => {
-                let unknown =
-                    text.get(error.span.clone()).filter(|_| error.message.starts_with("unknown name"));
-                let close = unknown.and_then(|name| closest(name, self.nominal.names()));
-                let close = close.map(|c| format!("did you mean the parameter `{c}`?"));
-                let at = self.inside(value, text, error.span);
-                let message = format!("invalid law of {of}: {}", error.message);
-                self.report("HP0108", at, message).help = close.or(error.help);
-                None
-            }
-        }
-    }
-
-    /// HP0114: the argument of a trigonometric function looks like degrees, but it is in rad.
-    fn degrees_in_functions(&mut self, of: &str, value: &Value<'_>, text: &str, parameters: &[(&str, f64)]) {
-        if self.units.angle != AngleUnit::Degree {
-            return;
-        }
-        for (function, argument) in trigonometric(text) {
-            let Some(inside) = text.get(argument.clone()) else { continue };
-            let Some([offset, rate]) = linear(inside, parameters) else { continue };
-            if !looks_like_degrees(rate) && !looks_like_degrees(offset) {
-                continue;
-            }
-            let call = format!("{function}({})", shown(inside));
-            let at = self.inside(value, text, argument);
-            let message = format!("`{call}` in the law of {of} is not in degrees: functions take radians");
-            let right = in_radians(function, [offset, rate]);
-            let d = self.remark(Severity::Warning, "HP0114", at, message);
-            d.notes.push("the file's unit for angles, deg, applies to values only".into());
-            d.help = Some(format!("write `{right}` for degrees"));
-        }
-    }
-
-    /// The value of a parameter of the file that the text of a law names; `Some(None)` if there is none of that name.
-    fn named_in_law(&mut self, of: &str, value: &Value<'_>, name: &str) -> Option<Option<f64>> {
-        let Some((number, quantity)) = self.nominal.parameter(name) else { return Some(None) };
-        if quantity == Quantity::Angle {
-            let message = format!("the law of {of} cannot be read: parameter `{name}` is an angle");
-            let d = self.report("HP0108", value.span(), message);
-            d.notes.push(
-                "in a law, values of the driver are in the file's unit and arguments of functions in rad"
-                    .into(),
-            );
-            d.help =
-                Some(format!("declare `{name}` as a plain number, in the unit in which the law takes it"));
-            return None;
-        }
-        let expression = Expression::parse(name).ok()?.with_unit(self.units.length.per_metre());
-        // Further errors of an invalid parameter are not reported.
-        let number = number.map_or(1.0, |x| self.units.from_si(quantity, x));
-        self.law_formulas.push((name.to_owned(), expression));
-        Some(Some(number))
-    }
-
-    fn law_table<'a>(
-        &mut self,
-        of: &str,
-        subject: &Subject,
-        value: &'a Value<'a>,
-        table: &'a DeTable<'a>,
-    ) -> Option<Law> {
-        let at = value.span();
-        let (declared, read) = self.kind_of(table, &subject.name, at.clone(), "a law", TYPES)?;
-        let fields = self.fields(format!("the law of {of}"), at, table, declared.typed_keys());
-        read(self, of, &fields)
-    }
-
-    /// HP0110: parameters that do not define a law.
-    fn made(&mut self, fields: &Fields<'_>, at: Range<usize>, law: Result<Law, LawError>) -> Option<Law> {
-        match law {
-            Ok(law) => Some(law),
-            Err(error) => {
-                let message = format!("{} is invalid: {}", fields.what, error.message);
-                self.report("HP0110", at, message).help = error.help;
-                None
-            }
-        }
-    }
-
-    fn polynomial(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let f = self.need(fields, "coefficients")?;
-        let subject = fields.subject(f.key);
-        let list = self.list(f.value, &subject, "a list of numbers: of 1, t, t^2, ...")?;
-        let numbers = list.iter().enumerate().map(|(k, v)| {
-            let name = format!("coefficient {k} of {}", fields.what);
-            self.number(v, &Subject { name, example: subject.example.clone() })
-        });
-        let numbers: Vec<_> = numbers.collect();
-        let numbers: Vec<f64> = numbers.into_iter().collect::<Option<_>>()?;
-        self.made(fields, f.value.span(), Law::polynomial(&numbers))
-    }
-
-    fn smooth_step(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let numbers = self.numbers_of(fields, ["from", "to", "start", "end", "degree"]);
-        let [from, to, start, end, degree] = numbers?;
-        let known = [3.0, 5.0, 7.0].contains(&degree);
-        // A degree that is no whole number is none of the three either.
-        let degree = if known { degree as u32 } else { 0 };
-        let at =
-            fields.get(if known { "end" } else { "degree" }).map_or(fields.at.clone(), |f| f.value.span());
-        if !known {
-            let written = self.source.text.get(at.clone()).unwrap_or_default().to_owned();
-            let message = format!("{} is invalid: a smooth step has no degree {written}", fields.what);
-            self.report("HP0110", at, message).help = Some(
-                "give 3, 5 or 7: with 3 the acceleration jumps at both ends, with 5 the jerk, with 7 neither"
-                    .into(),
-            );
-            return None;
-        }
-        self.made(fields, at, Law::smooth_step(law::SmoothStep { from, to, start, end, degree }))
-    }
-
-    fn sequence(&mut self, of: &str, fields: &Fields<'_>) -> Option<Law> {
-        let f = self.need(fields, "pieces")?;
-        let subject = fields.subject(f.key);
-        let list = self.list(f.value, &subject, "a list of tables")?;
-        if list.len() > MOST_PIECES {
-            self.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len()))
-                .notes
-                .push(format!("a sequence has at most {MOST_PIECES} pieces"));
-            return None;
-        }
-        let count = list.len();
-        let mut pieces = Vec::new();
-        for (k, v) in list.into_iter().enumerate() {
-            let what = format!("piece {k} of the law of {of}");
-            let Some(table) = self.table(v, &subject, "a list of tables") else { continue };
-            let piece = self.fields(what.clone(), v.span(), table, PIECE.keys());
-            let is_last = k + 1 == count;
-            let duration = match (is_last, piece.get("duration")) {
-                (true, None) => Some(None),
-                (_, None) => self.need(&piece, "duration").and(None),
-                _ => self.number_of(&piece, "duration").map(Some),
-            };
-            if let (Some(Some(seconds)), Some(f)) = (duration, piece.get("duration"))
-                && seconds <= 0.0
-            {
-                let message = format!("{what} lasts {seconds} s");
-                self.report("HP0110", f.value.span(), message).help =
-                    Some("give a duration greater than zero, in s".into());
-                continue;
-            }
-            let before = self.law_formulas.len();
-            let law =
-                self.need(&piece, "law").and_then(|f| self.law_in(&what, &piece.subject("law"), f.value));
-            for (name, _) in &mut self.law_formulas[before..] {
-                *name = format!("piece[{k}].{name}");
-            }
-            let continued = self.flag_of(&piece, "continued");
-            if let (Some(duration), Some(law), Some(continued)) = (duration, law, continued) {
-                pieces.push(law::Piece { duration, law, continued });
-            }
-        }
-        if pieces.len() < count {
-            return None;
-        }
-        self.made(fields, f.value.span(), Law::sequence(pieces))
-    }
-
-    fn expression_with_parameters(&mut self, of: &str, fields: &Fields<'_>) -> Option<Law> {
-        let text = self.need(fields, "law");
-        if let Some(f) = text
-            && f.value.get_ref().as_str().is_none()
+fn law_text(r: &mut Reader<'_>, of: &str, value: &Value<'_>, parameters: &[(&str, f64)]) -> Option<Law> {
+    let text = value.get_ref().as_str()?;
+    let mut parameters = parameters.to_vec();
+    for name in Law::names(text) {
+        if !parameters.iter().any(|p| p.0 == name)
+            && let Some(value) = named_in_law(r, of, value, name)?
         {
-            self.wrong(f.value, &fields.subject("law"), "an expression in `t`, in quotes");
+            parameters.push((name, value));
+        }
+    }
+    match Law::parse_with(text, &parameters) {
+        Ok(law) => {
+            degrees_in_functions(r, of, value, text, &parameters);
+            Some(law)
+        }
+        Err(error) => {
+            let unknown = text.get(error.span.clone()).filter(|_| error.message.starts_with("unknown name"));
+            let close = unknown.and_then(|name| closest(name, r.nominal.names()));
+            let close = close.map(|c| format!("did you mean the parameter `{c}`?"));
+            let at = r.inside(value, text, error.span);
+            let message = format!("invalid law of {of}: {}", error.message);
+            r.report("HP0108", at, message).help = close.or(error.help);
+            None
+        }
+    }
+}
+
+/// HP0114: the argument of a trigonometric function looks like degrees, but it is in rad.
+fn degrees_in_functions(
+    r: &mut Reader<'_>,
+    of: &str,
+    value: &Value<'_>,
+    text: &str,
+    parameters: &[(&str, f64)],
+) {
+    if r.units.angle != AngleUnit::Degree {
+        return;
+    }
+    for (function, argument) in trigonometric(text) {
+        let Some(inside) = text.get(argument.clone()) else { continue };
+        let Some([offset, rate]) = linear(inside, parameters) else { continue };
+        if !looks_like_degrees(rate) && !looks_like_degrees(offset) {
+            continue;
+        }
+        let call = format!("{function}({})", shown(inside));
+        let at = r.inside(value, text, argument);
+        let message = format!("`{call}` in the law of {of} is not in degrees: functions take radians");
+        let right = in_radians(function, [offset, rate]);
+        let d = r.remark(Severity::Warning, "HP0114", at, message);
+        d.notes.push("the file's unit for angles, deg, applies to values only".into());
+        d.help = Some(format!("write `{right}` for degrees"));
+    }
+}
+
+/// The value of a parameter of the file that the text of a law names; `Some(None)` if there is none of that name.
+fn named_in_law(r: &mut Reader<'_>, of: &str, value: &Value<'_>, name: &str) -> Option<Option<f64>> {
+    let Some((number, quantity)) = r.nominal.parameter(name) else { return Some(None) };
+    if quantity == Quantity::Angle {
+        let message = format!("the law of {of} cannot be read: parameter `{name}` is an angle");
+        let d = r.report("HP0108", value.span(), message);
+        d.notes.push(
+            "in a law, values of the driver are in the file's unit and arguments of functions in rad".into(),
+        );
+        d.help = Some(format!("declare `{name}` as a plain number, in the unit in which the law takes it"));
+        return None;
+    }
+    let expression = Expression::parse(name).ok()?.with_unit(r.units.length.per_metre());
+    // Further errors of an invalid parameter are not reported.
+    let number = number.map_or(1.0, |x| r.units.from_si(quantity, x));
+    r.law_formulas.push((name.to_owned(), expression));
+    Some(Some(number))
+}
+
+fn law_table<'a>(
+    r: &mut Reader<'_>,
+    of: &str,
+    subject: &Subject,
+    value: &'a Value<'a>,
+    table: &'a DeTable<'a>,
+) -> Option<Law> {
+    let at = value.span();
+    let (declared, read) = r.kind_of(table, &subject.name, at.clone(), "a law", TYPES)?;
+    let fields = r.fields(format!("the law of {of}"), at, table, declared.typed_keys());
+    read(r, of, &fields)
+}
+
+/// HP0110: parameters that do not define a law.
+fn made(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    at: Range<usize>,
+    law: Result<Law, LawError>,
+) -> Option<Law> {
+    match law {
+        Ok(law) => Some(law),
+        Err(error) => {
+            let message = format!("{} is invalid: {}", fields.what, error.message);
+            r.report("HP0110", at, message).help = error.help;
+            None
+        }
+    }
+}
+
+fn polynomial(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Law> {
+    let f = r.need(fields, "coefficients")?;
+    let subject = fields.subject(f.key);
+    let list = r.list(f.value, &subject, "a list of numbers: of 1, t, t^2, ...")?;
+    let numbers = list.iter().enumerate().map(|(k, v)| {
+        let name = format!("coefficient {k} of {}", fields.what);
+        r.number(v, &Subject { name, example: subject.example.clone() })
+    });
+    let numbers: Vec<_> = numbers.collect();
+    let numbers: Vec<f64> = numbers.into_iter().collect::<Option<_>>()?;
+    made(r, fields, f.value.span(), Law::polynomial(&numbers))
+}
+
+fn smooth_step(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Law> {
+    let numbers = r.numbers_of(fields, ["from", "to", "start", "end", "degree"]);
+    let [from, to, start, end, degree] = numbers?;
+    let known = [3.0, 5.0, 7.0].contains(&degree);
+    // A degree that is no whole number is none of the three either.
+    let degree = if known { degree as u32 } else { 0 };
+    let at = fields.get(if known { "end" } else { "degree" }).map_or(fields.at.clone(), |f| f.value.span());
+    if !known {
+        let written = r.source.text.get(at.clone()).unwrap_or_default().to_owned();
+        let message = format!("{} is invalid: a smooth step has no degree {written}", fields.what);
+        r.report("HP0110", at, message).help = Some(
+            "give 3, 5 or 7: with 3 the acceleration jumps at both ends, with 5 the jerk, with 7 neither"
+                .into(),
+        );
+        return None;
+    }
+    made(r, fields, at, Law::smooth_step(law::SmoothStep { from, to, start, end, degree }))
+}
+
+fn sequence(r: &mut Reader<'_>, of: &str, fields: &Fields<'_>) -> Option<Law> {
+    let f = r.need(fields, "pieces")?;
+    let subject = fields.subject(f.key);
+    let list = r.list(f.value, &subject, "a list of tables")?;
+    if list.len() > MOST_PIECES {
+        r.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len()))
+            .notes
+            .push(format!("a sequence has at most {MOST_PIECES} pieces"));
+        return None;
+    }
+    let count = list.len();
+    let mut pieces = Vec::new();
+    for (k, v) in list.into_iter().enumerate() {
+        let what = format!("piece {k} of the law of {of}");
+        let Some(table) = r.table(v, &subject, "a list of tables") else { continue };
+        let piece = r.fields(what.clone(), v.span(), table, PIECE.keys());
+        let is_last = k + 1 == count;
+        let duration = match (is_last, piece.get("duration")) {
+            (true, None) => Some(None),
+            (_, None) => r.need(&piece, "duration").and(None),
+            _ => r.number_of(&piece, "duration").map(Some),
+        };
+        if let (Some(Some(seconds)), Some(f)) = (duration, piece.get("duration"))
+            && seconds <= 0.0
+        {
+            let message = format!("{what} lasts {seconds} s");
+            r.report("HP0110", f.value.span(), message).help =
+                Some("give a duration greater than zero, in s".into());
+            continue;
+        }
+        let before = r.law_formulas.len();
+        let law = r.need(&piece, "law").and_then(|f| law_in(r, &what, &piece.subject("law"), f.value));
+        for (name, _) in &mut r.law_formulas[before..] {
+            *name = format!("piece[{k}].{name}");
+        }
+        let continued = r.flag_of(&piece, "continued");
+        if let (Some(duration), Some(law), Some(continued)) = (duration, law, continued) {
+            pieces.push(law::Piece { duration, law, continued });
+        }
+    }
+    if pieces.len() < count {
+        return None;
+    }
+    made(r, fields, f.value.span(), Law::sequence(pieces))
+}
+
+fn expression_with_parameters(r: &mut Reader<'_>, of: &str, fields: &Fields<'_>) -> Option<Law> {
+    let text = r.need(fields, "law");
+    if let Some(f) = text
+        && f.value.get_ref().as_str().is_none()
+    {
+        r.wrong(f.value, &fields.subject("law"), "an expression in `t`, in quotes");
+        return None;
+    }
+    let mut parameters: Vec<(String, f64)> = Vec::new();
+    if let Some(f) = fields.get("parameters") {
+        let subject = fields.subject("parameters");
+        let table = r.table(f.value, &subject, "a table of names and numbers")?;
+        if table.len() > MOST_ENTRIES {
+            r.too_many(f.value.span(), &subject.name, table.len());
             return None;
         }
-        let mut parameters: Vec<(String, f64)> = Vec::new();
-        if let Some(f) = fields.get("parameters") {
-            let subject = fields.subject("parameters");
-            let table = self.table(f.value, &subject, "a table of names and numbers")?;
-            if table.len() > MOST_ENTRIES {
-                self.too_many(f.value.span(), &subject.name, table.len());
-                return None;
-            }
-            for (name, value) in table {
-                let subject = Subject {
-                    name: format!("parameter `{}` of {}", shown(name.get_ref()), fields.what),
-                    example: "for example `parameters = { a = 25 }`".into(),
-                };
-                let name = self.short(name.get_ref(), name.span(), "the name of a parameter");
-                let number = match value.get_ref().is_str() {
-                    true => self.law_parameter_formula(name.as_deref(), value, &subject),
-                    false => self.number(value, &subject),
-                };
-                parameters.push((name?, number?));
-            }
-        }
-        let text = text?;
-        let parameters: Vec<(&str, f64)> = parameters.iter().map(|(n, x)| (n.as_str(), *x)).collect();
-        self.law_text(of, text.value, &parameters)
-    }
-
-    /// The value of an expression for a parameter of a law, which follows the design.
-    fn law_parameter_formula(
-        &mut self,
-        name: Option<&str>,
-        value: &Value<'_>,
-        subject: &Subject,
-    ) -> Option<f64> {
-        let expression = self.expression(value, subject)?;
-        match self.nominal.value(&expression) {
-            Ok(number) => {
-                self.law_formulas.push((name?.to_owned(), expression));
-                Some(number)
-            }
-            Err(why) => {
-                self.no_constant(value, subject, why);
-                None
-            }
+        for (name, value) in table {
+            let subject = Subject {
+                name: format!("parameter `{}` of {}", shown(name.get_ref()), fields.what),
+                example: "for example `parameters = { a = 25 }`".into(),
+            };
+            let name = r.short(name.get_ref(), name.span(), "the name of a parameter");
+            let number = match value.get_ref().is_str() {
+                true => law_parameter_formula(r, name.as_deref(), value, &subject),
+                false => r.number(value, &subject),
+            };
+            parameters.push((name?, number?));
         }
     }
+    let text = text?;
+    let parameters: Vec<(&str, f64)> = parameters.iter().map(|(n, x)| (n.as_str(), *x)).collect();
+    law_text(r, of, text.value, &parameters)
+}
 
-    fn table_law(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let degree = self.word_of(fields, "spline").map(|k| [SplineDegree::Cubic, SplineDegree::Quintic][k]);
-        let ends = self.ends(fields, degree);
-        let points = match (fields.get("points"), fields.get("file")) {
-            (Some(f), file) => {
-                if file.is_some() {
-                    self.out_of_place(
-                        fields,
-                        "file",
-                        "the points of this table are given by `points` already",
-                    );
-                }
-                self.out_of_place(fields, "columns", "`columns` goes with `file`");
-                self.points_of_table(fields, f).map(|p| (p, f))
-            }
-            (None, Some(f)) => self.points_of_file(fields, f).map(|p| (p, f)),
-            (None, None) => {
-                let message = format!("{} has no `points`", fields.what);
-                self.report("HP0104", fields.at.clone(), message).help = Some(
-                    "give `points = [[0, 0], [1, 5], [2, 0]]`, or `file = \"travel.csv\"` next to the model file"
-                        .into(),
-                );
-                None
-            }
-        };
-        let (degree, ends, (points, f)) = (degree?, ends?, points?);
-        let (times, values) = points.into_iter().map(|[t, x]| (t, x)).unzip();
-        self.made(fields, f.value.span(), Law::table(&law::Table { times, values, degree, ends }))
-    }
-
-    fn ends(&mut self, fields: &Fields<'_>, degree: Option<SplineDegree>) -> Option<SplineEnds> {
-        let kind = self.word_of(fields, "ends")?;
-        let keys = ["start_speed", "start_acceleration", "end_speed", "end_acceleration"];
-        if kind > 0 {
-            for key in keys {
-                self.out_of_place(fields, key, "speeds and accelerations go with `ends = \"clamped\"`");
-            }
-            return Some(if kind == 1 { SplineEnds::Natural } else { SplineEnds::Periodic });
+/// The value of an expression for a parameter of a law, which follows the design.
+fn law_parameter_formula(
+    r: &mut Reader<'_>,
+    name: Option<&str>,
+    value: &Value<'_>,
+    subject: &Subject,
+) -> Option<f64> {
+    let expression = r.expression(value, subject)?;
+    match r.nominal.value(&expression) {
+        Ok(number) => {
+            r.law_formulas.push((name?.to_owned(), expression));
+            Some(number)
         }
-        if degree == Some(SplineDegree::Cubic) {
-            for key in [keys[1], keys[3]] {
-                let why = "the acceleration at the ends of a cubic spline follows from its points; \
-                           with `spline = \"quintic\"` it can be given";
-                self.out_of_place(fields, key, why);
-            }
-        }
-        let [start, start_rate, end, end_rate] = self.numbers_of(fields, keys)?;
-        let start = SplineEndRates { speed: start, acceleration: start_rate };
-        let end = SplineEndRates { speed: end, acceleration: end_rate };
-        match degree {
-            // Reported above.
-            Some(SplineDegree::Cubic) if start.acceleration != 0.0 || end.acceleration != 0.0 => None,
-            _ => Some(SplineEnds::Clamped { start, end }),
+        Err(why) => {
+            r.no_constant(value, subject, why);
+            None
         }
     }
+}
 
-    fn points_of_table(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
-        let subject = fields.subject(f.key);
-        let list = self.list(f.value, &subject, "a list of pairs of time and value")?;
-        let points: Vec<_> = list
-            .iter()
-            .enumerate()
-            .map(|(k, v)| {
-                let subject = Subject {
-                    name: format!("point {k} of {}", fields.what),
-                    example: subject.example.clone(),
-                };
-                self.numbers::<2>(v, &subject, "a pair of time and value, `[t, x]`")
-            })
-            .collect();
-        let points: Vec<[f64; 2]> = points.into_iter().collect::<Option<_>>()?;
-        if let Some(k) = (1..points.len()).find(|&k| points[k][0] <= points[k - 1][0]) {
-            let (before, after) = (points[k - 1][0], points[k][0]);
-            let message = format!("the times of a table must increase, but {after} s follows {before} s");
-            self.report("HP0110", list[k].span(), message).help = Some(
-                if before == after { "remove one of the two points" } else { "sort the points by time" }
+fn table_law(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Law> {
+    let degree = r.word_of(fields, "spline").map(|k| [SplineDegree::Cubic, SplineDegree::Quintic][k]);
+    let ends = ends(r, fields, degree);
+    let points = match (fields.get("points"), fields.get("file")) {
+        (Some(f), file) => {
+            if file.is_some() {
+                r.out_of_place(fields, "file", "the points of this table are given by `points` already");
+            }
+            r.out_of_place(fields, "columns", "`columns` goes with `file`");
+            points_of_table(r, fields, f).map(|p| (p, f))
+        }
+        (None, Some(f)) => points_of_file(r, fields, f).map(|p| (p, f)),
+        (None, None) => {
+            let message = format!("{} has no `points`", fields.what);
+            r.report("HP0104", fields.at.clone(), message).help = Some(
+                "give `points = [[0, 0], [1, 5], [2, 0]]`, or `file = \"travel.csv\"` next to the model file"
                     .into(),
             );
-            return None;
+            None
         }
-        Some(points)
-    }
+    };
+    let (degree, ends, (points, f)) = (degree?, ends?, points?);
+    let (times, values) = points.into_iter().map(|[t, x]| (t, x)).unzip();
+    made(r, fields, f.value.span(), Law::table(&law::Table { times, values, degree, ends }))
+}
 
-    fn points_of_file(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
-        self.points_in_file(fields, f, &data::TABLE)
+fn ends(r: &mut Reader<'_>, fields: &Fields<'_>, degree: Option<SplineDegree>) -> Option<SplineEnds> {
+    let kind = r.word_of(fields, "ends")?;
+    let keys = ["start_speed", "start_acceleration", "end_speed", "end_acceleration"];
+    if kind > 0 {
+        for key in keys {
+            r.out_of_place(fields, key, "speeds and accelerations go with `ends = \"clamped\"`");
+        }
+        return Some(if kind == 1 { SplineEnds::Natural } else { SplineEnds::Periodic });
     }
-
-    /// The points of a file, whose name a field gives and whose columns another.
-    pub(super) fn points_in_file(
-        &mut self,
-        fields: &Fields<'_>,
-        f: Field<'_>,
-        of: &data::Curve,
-    ) -> Option<Vec<[f64; 2]>> {
-        let columns = self.columns(fields, of);
-        let name = self.text(fields, f)?;
-        let columns = columns?;
-        match self.points_of_text(&name, &columns, of) {
-            Ok(points) => Some(points),
-            Err(e) => {
-                let at = fields.get("columns").filter(|_| e.of_columns).unwrap_or(f);
-                self.data_error(at.value.span(), e);
-                None
-            }
+    if degree == Some(SplineDegree::Cubic) {
+        for key in [keys[1], keys[3]] {
+            let why = "the acceleration at the ends of a cubic spline follows from its points; \
+                       with `spline = \"quintic\"` it can be given";
+            r.out_of_place(fields, key, why);
         }
     }
-
-    /// Reports an error of a data file, at the place that names the file.
-    pub(super) fn data_error(&mut self, at: Range<usize>, e: data::DataError) {
-        let d = self.report(e.code, at, e.message);
-        d.notes = e.notes;
-        d.help = e.help;
+    let [start, start_rate, end, end_rate] = r.numbers_of(fields, keys)?;
+    let start = SplineEndRates { speed: start, acceleration: start_rate };
+    let end = SplineEndRates { speed: end, acceleration: end_rate };
+    match degree {
+        // Reported above.
+        Some(SplineDegree::Cubic) if start.acceleration != 0.0 || end.acceleration != 0.0 => None,
+        _ => Some(SplineEnds::Clamped { start, end }),
     }
+}
 
-    /// The two columns of a file, by name or number; the first two where none are named.
-    fn columns(&mut self, fields: &Fields<'_>, of: &data::Curve) -> Option<[data::Column; 2]> {
-        let Some(f) = fields.get("columns") else { return Some(data::FIRST_TWO) };
-        let subject = fields.subject("columns");
-        let expected =
-            format!("two columns, of the {} and of the value, each a name or a number from 1", of.abscissa);
-        let list = match f.value.get_ref().as_array() {
-            Some(list) if list.len() == 2 => list,
-            _ => {
-                self.wrong(f.value, &subject, &expected);
-                return None;
-            }
-        };
-        let [time, value] = [0, 1].map(|k| match list[k].get_ref() {
-            DeValue::String(_) => self.name(&list[k], &subject, &expected).map(data::Column::Named),
-            _ => {
-                let number = self.number(&list[k], &subject)?;
-                if !((1.0..=1e6).contains(&number) && number.fract() == 0.0) {
-                    self.senseless(list[k].span(), format!("{} cannot be {number}", subject.name)).help =
-                        Some("columns are counted from 1".into());
-                    return None;
-                }
-                Some(data::Column::Number(number as usize))
-            }
-        });
-        Some([time?, value?])
+fn points_of_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+    let subject = fields.subject(f.key);
+    let list = r.list(f.value, &subject, "a list of pairs of time and value")?;
+    let points: Vec<_> = list
+        .iter()
+        .enumerate()
+        .map(|(k, v)| {
+            let subject =
+                Subject { name: format!("point {k} of {}", fields.what), example: subject.example.clone() };
+            r.numbers::<2>(v, &subject, "a pair of time and value, `[t, x]`")
+        })
+        .collect();
+    let points: Vec<[f64; 2]> = points.into_iter().collect::<Option<_>>()?;
+    if let Some(k) = (1..points.len()).find(|&k| points[k][0] <= points[k - 1][0]) {
+        let (before, after) = (points[k - 1][0], points[k][0]);
+        let message = format!("the times of a table must increase, but {after} s follows {before} s");
+        r.report("HP0110", list[k].span(), message).help = Some(
+            if before == after { "remove one of the two points" } else { "sort the points by time" }.into(),
+        );
+        return None;
     }
+    Some(points)
+}
+
+fn points_of_file(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+    data::points_in_file(r, fields, f, &data::TABLE)
 }
 
 /// The arguments of `sin`, `cos` and `tan` in the text of a law.

@@ -1,126 +1,258 @@
-//! Measurements of a mechanism: a CSV file of readings in postures of the drivers.
+//! Measurements of a model: columns of a table assigned to drivers and outputs, values in SI.
 
 use std::path::Path;
 
-use super::data::{DataError, delimiter, number, text_from, unquoted};
-use super::sweep::bare;
-use crate::csv_table::original;
-use crate::diagnostic::shown;
+use hardpoint::measure::outputs;
+use hardpoint::model::{Dimension, DriverId, Measurements, Reading};
 
-/// Maximum number of rows: each is a posture that is solved separately.
-const MOST_ROWS: usize = 100_000;
+use crate::values::{Diagnostic, Diagnostics, Severity, Source, closest, shown};
 
-/// Column names and their units from the first line, and the numbers below; empty cells are `None`.
-pub(crate) struct Readings {
-    pub names: Vec<(String, Option<String>)>,
-    /// With the line of each.
-    pub rows: Vec<(u64, Vec<Option<f64>>)>,
+use super::model_file::ModelFile;
+use super::readings::{Readings, readings_at};
+
+/// Contents of a measurement file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredData {
+    /// Postures and readings, in SI.
+    pub measurements: Measurements,
+    /// Line of each posture in the file.
+    pub lines: Vec<u64>,
+    /// Drivers that the file does not name: they are in the design configuration.
+    pub as_drawn: Vec<DriverId>,
 }
 
-/// Reads the table of a file in any folder.
-pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
-    let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|e| {
-        let message = format!("the file `{}` cannot be read", shown(&name));
-        DataError::unreadable(message, "name a CSV file whose first line names drivers and measured outputs")
-            .note(e.to_string())
-    })?;
-    let text = text_from(bytes, &name)?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    let name = shown(&name);
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .delimiter(delimiter(text))
-        .from_reader(text.as_bytes());
-    let no_csv = |e: csv::Error| {
-        DataError::content(format!("`{name}` is not a CSV file"), "check its quotes").note(e.to_string())
-    };
-    let mut record = csv::StringRecord::new();
-    let write = "write names on the first line, like `crank, slider.x, sigma slider.x`, and numbers on each line below";
-    if !reader.read_record(&mut record).map_err(no_csv)? {
-        return Err(DataError::content(format!("`{name}` is empty"), write));
+/// Contents of a column.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Holds {
+    /// Values of a driver.
+    Driver(usize),
+    /// Readings of an output.
+    Output(usize),
+    /// Standard deviations of an output's readings.
+    Sigma(usize),
+}
+
+/// Reason why measurements cannot be used.
+struct Refusal {
+    code: &'static str,
+    message: String,
+    notes: Vec<String>,
+    help: Option<String>,
+}
+
+impl Refusal {
+    fn new(code: &'static str, message: String, help: impl Into<String>) -> Self {
+        Self { code, message, notes: Vec::new(), help: Some(help.into()) }
     }
-    let mut names: Vec<(String, Option<String>)> =
-        record.iter().map(|field| named(original(unquoted(field)))).collect();
-    if names.iter().all(|(n, _)| n.parse::<f64>().is_ok()) {
-        let line = record.position().map_or(1, csv::Position::line);
-        if let Some(above) = headed(text, names.len()) {
-            let message = format!(
-                "`{name}`, line {above} begins with `#`: the names of the columns are a comment there"
-            );
-            let help = "remove that `#`; to leave the first column out, put quotes round its name, like `\"#crank\"`";
-            return Err(DataError::content(message, help));
-        }
-        let message = format!("`{name}`, line {line}: there are numbers in place of names");
-        return Err(DataError::content(message, write));
+
+    fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
     }
-    let mut rows = Vec::new();
-    let mut is_first = true;
-    while reader.read_record(&mut record).map_err(no_csv)? {
-        let line = record.position().map_or(0, csv::Position::line);
-        if record.len() > names.len() {
-            let message =
-                format!("`{name}`, line {line} has {} cells for {} columns", record.len(), names.len());
-            return Err(DataError::content(message, "give one cell for each name of the first line"));
-        }
-        // Units may be on a line of their own, below the names.
-        if std::mem::take(&mut is_first) && is_units(&record) {
-            for (cell, (title, unit)) in record.iter().zip(&mut names) {
-                let below = unquoted(cell).trim_matches(['[', ']', '(', ')', ' ']);
-                let below = Some(below).filter(|u| u.chars().any(char::is_alphanumeric)).map(str::to_owned);
-                if let (Some(own), Some(below)) = (&unit, &below)
-                    && own != below
-                {
-                    let message = format!(
-                        "`{name}`, line {line}: `{}` is in `{}` here, and in `{}` above",
-                        shown(title),
-                        shown(below),
-                        shown(own)
-                    );
-                    return Err(DataError::content(message, "give one unit to each column"));
-                }
-                *unit = below.or_else(|| unit.take());
-            }
-            continue;
-        }
-        let cell = |(k, (title, _)): (usize, &(String, Option<String>))| {
-            let text = record.get(k).map(unquoted).filter(|text| !text.is_empty());
-            let here = format!("`{name}`, line {line}, column {} (`{}`)", k + 1, shown(title));
-            text.map(|text| number(Some(text), &here, "")).transpose()
+}
+
+impl ModelFile {
+    /// Reads measurements from a CSV file at any place: the first line names drivers, outputs (measures, and points as
+    /// `P.x`) and standard deviations (`sigma toe`); each line below is a posture, in the units of the model file.
+    /// `sigmas` are those of outputs without a cell for it, in their units. Empty cells were not measured.
+    ///
+    /// # Errors
+    /// Returns the errors of the file.
+    pub fn measured(&self, path: &Path, sigmas: &[(String, f64)]) -> Result<MeasuredData, Diagnostics> {
+        let name = path.display().to_string();
+        let source = Source::new(&name, "");
+        let rejected = |r: Refusal| {
+            let d = source.diagnostic(Severity::Error, r.code, r.message, None);
+            let d = r.notes.into_iter().fold(d, Diagnostic::note);
+            Diagnostics::new(source.clone(), vec![r.help.into_iter().fold(d, Diagnostic::help)])
         };
-        rows.push((line, names.iter().enumerate().map(cell).collect::<Result<_, _>>()?));
-        if rows.len() > MOST_ROWS {
-            let message = format!("`{name}` has more than {MOST_ROWS} rows");
-            return Err(DataError::content(message, "keep those that were measured in different postures"));
+        let table = readings_at(path).map_err(|e| {
+            rejected(Refusal { code: e.code, message: e.message, notes: e.notes, help: e.help })
+        })?;
+        self.measurements(&table, &shown(&name), sigmas).map_err(rejected)
+    }
+
+    fn measurements(
+        &self,
+        table: &Readings,
+        file: &str,
+        sigmas: &[(String, f64)],
+    ) -> Result<MeasuredData, Refusal> {
+        let holds = self.columns(table, file)?;
+        let given = self.sigmas_given(sigmas)?;
+        let drivers = &self.model.drivers;
+        let has = |wanted: Holds| holds.iter().position(|h| *h == Some(wanted));
+        let as_drawn =
+            (0..drivers.len()).filter(|d| has(Holds::Driver(*d)).is_none()).map(DriverId).collect();
+        let mut found = MeasuredData { measurements: Measurements::default(), lines: Vec::new(), as_drawn };
+        let drawn: Vec<f64> = (0..drivers.len()).map(|d| self.model.as_drawn(DriverId(d))).collect();
+        let outputs = outputs(&self.model);
+        for (line, cells) in &table.rows {
+            let here = |column: usize| {
+                format!("`{file}`, line {line}, column {} (`{}`)", column + 1, shown(&table.names[column].0))
+            };
+            let mut positions = drawn.clone();
+            let posture = found.lines.len();
+            for (column, (holds, cell)) in holds.iter().zip(cells).enumerate() {
+                match (holds, cell) {
+                    (Some(Holds::Driver(d)), Some(x)) => {
+                        positions[*d] = self.units.to_si(self.model.driven(&drivers[*d]).quantity, *x);
+                    }
+                    (Some(Holds::Driver(_)), None) => {
+                        let help = "give the value of every driver of the first line";
+                        return Err(Refusal::new("HP0112", format!("{} is missing", here(column)), help));
+                    }
+                    (Some(Holds::Sigma(_)), Some(x)) if !(*x > 0.0) => {
+                        let help = "give a number above zero, or leave the cell empty";
+                        return Err(Refusal::new("HP0249", format!("{} cannot be {x}", here(column)), help)
+                            .note("it is the standard deviation of a reading"));
+                    }
+                    (Some(Holds::Output(m)), Some(x)) => {
+                        let in_si = |x: f64| x / self.units.from_si(outputs[*m].dimension, 1.0);
+                        let own = has(Holds::Sigma(*m)).and_then(|column| cells[column]);
+                        let (output, value) = (*m, in_si(*x));
+                        let sigma = own.or(given[*m]).map(in_si);
+                        found.measurements.readings.push(Reading { posture, output, value, sigma });
+                    }
+                    _ => {}
+                }
+            }
+            found.measurements.postures.push(positions);
+            found.lines.push(*line);
+        }
+        self.can_be_compared(&found, file)?;
+        Ok(found)
+    }
+
+    /// Contents of every column; `None` for columns that begin with `#`.
+    fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<Holds>>, Refusal> {
+        let mut found: Vec<Option<Holds>> = Vec::new();
+        for (column, (name, unit)) in table.names.iter().enumerate() {
+            let note = format!("it is the title of column {} of `{file}`", column + 1);
+            if name.starts_with('#') {
+                found.push(None);
+                continue;
+            }
+            let holds = self.held(name).map_err(|help| {
+                let message = format!("`{}` is neither a driver nor an output", shown(name));
+                Refusal::new("HP0248", message, help).note(note.clone())
+            })?;
+            if let Some((unit, expected)) = unit.as_deref().zip(self.unit_of(holds)).filter(|(a, b)| a != b) {
+                let message =
+                    format!("`{}` is in `{}`, and the model file has {expected}", shown(name), shown(unit));
+                let help = format!("write it in {expected}, or change `units` of the model file");
+                return Err(Refusal::new("HP0248", message, help).note(note));
+            }
+            if found.contains(&Some(holds)) {
+                let message = format!("`{}` is the title of two columns of `{file}`", shown(name));
+                return Err(Refusal::new("HP0248", message, "remove one of the two"));
+            }
+            found.push(Some(holds));
+        }
+        if !found.iter().any(|h| matches!(h, Some(Holds::Output(_)))) {
+            let message = format!("`{file}` has no column of readings");
+            let help =
+                "add a column that is headed by a measure, or by a point's component, like `wheel_centre.z`";
+            return Err(Refusal::new("HP0248", message, help));
+        }
+        for (column, holds) in found.iter().enumerate() {
+            if let Some(Holds::Sigma(m)) = holds
+                && !found.contains(&Some(Holds::Output(*m)))
+            {
+                let message = format!("`{}` has no column of readings", shown(&table.names[column].0));
+                let help = "add the column of its readings, or remove this one";
+                return Err(Refusal::new("HP0248", message, help)
+                    .note(format!("it is the title of column {}", column + 1)));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Contents that a name refers to; the error suggests similar names.
+    fn held(&self, name: &str) -> Result<Holds, String> {
+        let outputs = outputs(&self.model);
+        let of = |name: &str| outputs.iter().position(|o| o.name == name);
+        if let Some(m) = name.strip_prefix("sigma ").and_then(|name| of(name.trim())) {
+            return Ok(Holds::Sigma(m));
+        }
+        // A name that both have is that of the driver: the reading is the value that it prescribes.
+        if let Some(d) = self.model.drivers.iter().position(|d| d.name == name) {
+            return Ok(Holds::Driver(d));
+        }
+        let all = self.model.drivers.iter().map(|d| d.name.as_str());
+        let known = all.chain(outputs.iter().map(|o| o.name.as_str()));
+        of(name).map(Holds::Output).ok_or_else(|| match closest(name, known) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "name a driver, a measure, a point's component like `P.x`, or a standard deviation like `sigma toe`; \
+                     a name that begins with `#` leaves its column out"
+                .into(),
+        })
+    }
+
+    /// Unit of a length or an angle.
+    fn unit_of(&self, holds: Holds) -> Option<&'static str> {
+        let dimension = match holds {
+            Holds::Driver(d) => self.model.driven(&self.model.drivers[d]).quantity.into(),
+            Holds::Output(m) | Holds::Sigma(m) => outputs(&self.model)[m].dimension,
+        };
+        match dimension {
+            Dimension::LENGTH => Some(self.units.length.symbol()),
+            Dimension::ANGLE => Some(self.units.angle.symbol()),
+            _ => None,
         }
     }
-    if rows.is_empty() {
-        return Err(DataError::content(format!("`{name}` has no readings"), write));
+
+    /// Standard deviation from the command line for each output, in its unit.
+    fn sigmas_given(&self, sigmas: &[(String, f64)]) -> Result<Vec<Option<f64>>, Refusal> {
+        let outputs = outputs(&self.model);
+        let mut given = vec![None; outputs.len()];
+        for (name, sigma) in sigmas {
+            let Some(m) = outputs.iter().position(|o| o.name == *name) else {
+                let near = closest(name, outputs.iter().map(|o| o.name.as_str()));
+                let help = near.map_or("name a measure, or a point's component like `P.x`".into(), |near| {
+                    format!("did you mean `{near}`?")
+                });
+                let message =
+                    format!("`--sigma` names `{}`, and nothing is measured by that name", shown(name));
+                return Err(Refusal::new("HP0249", message, help));
+            };
+            if !(*sigma > 0.0 && sigma.is_finite()) {
+                let message = format!("the standard deviation of `{name}` cannot be {sigma}");
+                return Err(Refusal::new("HP0249", message, "give a number above zero"));
+            }
+            given[m] = Some(*sigma);
+        }
+        Ok(given)
     }
-    Ok(Readings { names, rows })
-}
 
-/// Comment line (`#`) above the first row with the same number of cells: it is a header.
-fn headed(text: &str, columns: usize) -> Option<usize> {
-    let delimiter = char::from(delimiter(text));
-    let above = text.lines().enumerate().take_while(|(_, l)| l.trim().is_empty() || l.starts_with('#'));
-    let heads = |line: &str| line.starts_with('#') && line.split(delimiter).count() == columns;
-    above.filter(|(_, l)| heads(l)).last().map(|(k, _)| k + 1)
-}
-
-/// Returns whether a line has at least one word and no number.
-fn is_units(record: &csv::StringRecord) -> bool {
-    let mut cells = record.iter().map(unquoted);
-    cells.clone().any(|cell| cell.chars().any(char::is_alphabetic))
-        && cells.all(|cell| cell.parse::<f64>().is_err() && !cell.starts_with(|c: char| c.is_ascii_digit()))
-}
-
-/// Splits a column title into name and unit: `toe [deg]`.
-fn named(title: &str) -> (String, Option<String>) {
-    let name = bare(title);
-    let unit = title[name.len()..].trim().strip_prefix('[').and_then(|u| u.strip_suffix(']'));
-    (name.to_owned(), unit.map(str::to_owned))
+    /// HP0248, HP0249: readings of what is at rest, all with standard deviations or all alike.
+    fn can_be_compared(&self, found: &MeasuredData, file: &str) -> Result<(), Refusal> {
+        let outputs = outputs(&self.model);
+        let readings = &found.measurements.readings;
+        let moving = readings.iter().map(|r| &outputs[r.output]);
+        if let Some(output) = moving.clone().find(|o| !self.model.is_known_at_rest(o.source)) {
+            let message =
+                format!("`{}` cannot be compared: it has no value for a mechanism at rest", output.name);
+            return Err(Refusal::new("HP0248", message, "remove its column, or begin its title with `#`")
+                .note("every line is a posture with the positions of all drivers"));
+        }
+        let Some(without) = readings.iter().find(|r| r.sigma.is_none()) else { return Ok(()) };
+        let (name, line) = (&outputs[without.output].name, found.lines[without.posture]);
+        let like = format!("add a column `sigma {name}`, or `--sigma {name}=0.01`, in its unit");
+        if readings.iter().any(|r| r.sigma.is_some()) {
+            let message =
+                format!("`{file}`, line {line}: `{name}` has no standard deviation, and others have one");
+            return Err(Refusal::new("HP0249", message, like));
+        }
+        if let Some(other) = moving.clone().find(|o| o.dimension != outputs[without.output].dimension) {
+            let message = format!(
+                "`{name}` and `{}` cannot be weighed against each other without standard deviations",
+                other.name
+            );
+            return Err(Refusal::new("HP0249", message, like).note(
+                "they have different units; only readings with a single unit may have no standard deviations",
+            ));
+        }
+        Ok(())
+    }
 }

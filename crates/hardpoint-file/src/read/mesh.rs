@@ -5,19 +5,18 @@ mod gltf;
 mod obj;
 mod stl;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::path::Path;
 
 use hardpoint::model::{OpenSurface, Solid};
 use hardpoint::space::Vec3;
 
-use crate::diagnostic::{closest, shown};
-use crate::drawing::{MESH_FRAMES, Mesh, MeshFrame};
-use crate::format::{NUMBER, Shape, Table, table};
-use crate::tree::{Field, Fields, Folder, Reader};
+use crate::values::{
+    DataError, Field, Fields, Folder, NUMBER, Reader, Shape, Table, Wanted, bytes_of, closest, shown, table,
+};
 
-use super::data::{DataError, Wanted, bytes_of};
+use super::drawing::{MESH_FRAMES, Mesh, MeshFrame};
 
 /// Maximum number of triangles: more make a page slow without a visible difference.
 const MOST_TRIANGLES: usize = 200_000;
@@ -168,137 +167,143 @@ pub(crate) enum BodyMesh {
     Faulty,
 }
 
-impl Reader<'_> {
-    /// Reads the shape of a body: a file name, or a table with it.
-    pub(super) fn mesh(&mut self, body: &Fields<'_>, f: Field<'_>) -> Option<MeshDraft> {
-        if f.value.get_ref().is_str() {
-            let file = (self.text(body, f)?, f.value.span());
-            return Some(MeshDraft { file, frame: MeshFrame::World, scale: 1.0, mirror: None });
-        }
-        let subject = body.subject(f.key);
-        let table = self.table(f.value, &subject, "the name of a file, or a table with it")?;
-        let what = format!("the mesh of {}", body.what);
-        let fields = self.fields(what, f.value.span(), table, MESH_TABLE.keys());
-        let frame = self.word_of(&fields, "frame").map(|k| MeshFrame::ALL[k]);
-        let scale = self.number_of(&fields, "scale");
-        let mirror = self.word_of(&fields, "mirror");
-        let file = self.need(&fields, "file");
-        let name = file.and_then(|file| self.text(&fields, file));
-        if let (Some(x), Some(f)) = (scale.filter(|x| !(*x > 0.0)), fields.get("scale")) {
-            let message = format!("{} cannot be {x}", fields.subject("scale").name);
-            self.senseless(f.value.span(), message).help =
-                Some("give the size of one unit of the file in the model's length unit, like `0.001`".into());
+/// Entries of the bodies' shapes, by name.
+pub(crate) type Meshes = BTreeMap<String, BodyMesh>;
+
+/// Reads the shape of a body: a file name, or a table with it.
+pub(super) fn mesh(r: &mut Reader<'_>, body: &Fields<'_>, f: Field<'_>) -> Option<MeshDraft> {
+    if f.value.get_ref().is_str() {
+        let file = (r.text(body, f)?, f.value.span());
+        return Some(MeshDraft { file, frame: MeshFrame::World, scale: 1.0, mirror: None });
+    }
+    let subject = body.subject(f.key);
+    let table = r.table(f.value, &subject, "the name of a file, or a table with it")?;
+    let what = format!("the mesh of {}", body.what);
+    let fields = r.fields(what, f.value.span(), table, MESH_TABLE.keys());
+    let frame = r.word_of(&fields, "frame").map(|k| MeshFrame::ALL[k]);
+    let scale = r.number_of(&fields, "scale");
+    let mirror = r.word_of(&fields, "mirror");
+    let file = r.need(&fields, "file");
+    let name = file.and_then(|file| r.text(&fields, file));
+    if let (Some(x), Some(f)) = (scale.filter(|x| !(*x > 0.0)), fields.get("scale")) {
+        let message = format!("{} cannot be {x}", fields.subject("scale").name);
+        r.senseless(f.value.span(), message).help =
+            Some("give the size of one unit of the file in the model's length unit, like `0.001`".into());
+        return None;
+    }
+    Some(MeshDraft { file: (name?, file?.value.span()), frame: frame?, scale: scale?, mirror })
+}
+
+/// Reads a mesh for drawings.
+pub(super) fn drawn(r: &mut Reader<'_>, said: &MeshDraft) -> Option<Mesh> {
+    // Drawings do not affect results, and the page has the shapes already: its engine needs no readers of meshes.
+    if cfg!(target_family = "wasm") || matches!(r.folder, Folder::Given(_)) {
+        return None;
+    }
+    let (name, at) = &said.file;
+    let found = match triangles_of(r.folder, name) {
+        Ok(found) => found,
+        Err(e) => {
+            r.data_error(at.clone(), e);
             return None;
         }
-        Some(MeshDraft { file: (name?, file?.value.span()), frame: frame?, scale: scale?, mirror })
-    }
+    };
+    let metres = |x: f64| r.units.length.metres(x * said.scale);
+    let vertex = |&[x, y, z]: &[f64; 3]| {
+        let at = Vec3::new(x, y, z).map(metres);
+        said.mirror.map_or(at, |axis| at.mirrored(Vec3::AXES[axis]))
+    };
+    let vertices = found.vertices.iter().map(vertex).collect();
+    // A mirror reverses the orientation of the corners.
+    let corners = |[a, b, c]: [u32; 3]| if said.mirror.is_some() { [a, c, b] } else { [a, b, c] };
+    let triangles = found.triangles.into_iter().map(corners).collect();
+    Some(Mesh { file: name.clone(), frame: said.frame, vertices, triangles })
+}
 
-    /// Reads a mesh for drawings.
-    pub(super) fn drawn(&mut self, said: &MeshDraft) -> Option<Mesh> {
-        // Drawings do not affect results, and the page has the shapes already: its engine needs no readers of meshes.
-        if cfg!(target_family = "wasm") || matches!(self.folder, Folder::Given(_)) {
-            return None;
-        }
-        let (name, at) = &said.file;
-        let found = match triangles_of(self.folder, name) {
-            Ok(found) => found,
-            Err(e) => {
-                self.data_error(at.clone(), e);
-                return None;
-            }
-        };
-        let metres = |x: f64| self.units.length.metres(x * said.scale);
-        let vertex = |&[x, y, z]: &[f64; 3]| {
-            let at = Vec3::new(x, y, z).map(metres);
-            said.mirror.map_or(at, |axis| at.mirrored(Vec3::AXES[axis]))
-        };
-        let vertices = found.vertices.iter().map(vertex).collect();
-        // A mirror reverses the orientation of the corners.
-        let corners = |[a, b, c]: [u32; 3]| if said.mirror.is_some() { [a, c, b] } else { [a, b, c] };
-        let triangles = found.triangles.into_iter().map(corners).collect();
-        Some(Mesh { file: name.clone(), frame: said.frame, vertices, triangles })
-    }
-
-    /// Solid enclosed by the surface of a mass: the mesh under this key, or else that of its body.
-    pub(super) fn solid(&mut self, mass: &Fields<'_>, key: &'static str) -> Option<Solid> {
-        let said = match mass.get(key) {
-            Some(f) => self.mesh(mass, f)?,
-            None => {
-                // Errors of the body are reported at its own entry.
-                let f = mass.get("body")?;
-                let body = f.value.get_ref().as_str()?;
-                match self.meshes.get(body).cloned() {
-                    Some(BodyMesh::Said(said)) => said,
-                    Some(BodyMesh::Faulty) => return None,
-                    None if body == "ground" => {
-                        let message = format!("{} is on ground, where it has no effect", mass.what);
-                        self.report("HP0251", f.value.span(), message).help =
-                            Some("put it on the body that it belongs to, or remove it".into());
-                        return None;
-                    }
-                    None => {
-                        let close = closest(body, self.meshes.keys().map(String::as_str)).map(str::to_owned);
-                        let message = format!("there is no body named `{}`", shown(body));
-                        self.report("HP0204", f.value.span(), message).help =
-                            close.map(|c| format!("did you mean `{c}`?"));
-                        return None;
-                    }
-                    Some(BodyMesh::None) => {
-                        let message =
-                            format!("{} has no `{key}`, and neither has body `{}`", mass.what, shown(body));
-                        self.report("HP0104", mass.at.clone(), message).help =
-                            Some(format!("add it, for example {}", mass.example(key)));
-                        return None;
-                    }
+/// Solid enclosed by the surface of a mass: the mesh under this key, or else that of its body.
+pub(super) fn solid(
+    r: &mut Reader<'_>,
+    meshes: &Meshes,
+    mass: &Fields<'_>,
+    key: &'static str,
+) -> Option<Solid> {
+    let said = match mass.get(key) {
+        Some(f) => mesh(r, mass, f)?,
+        None => {
+            // Errors of the body are reported at its own entry.
+            let f = mass.get("body")?;
+            let body = f.value.get_ref().as_str()?;
+            match meshes.get(body).cloned() {
+                Some(BodyMesh::Said(said)) => said,
+                Some(BodyMesh::Faulty) => return None,
+                None if body == "ground" => {
+                    let message = format!("{} is on ground, where it has no effect", mass.what);
+                    r.report("HP0251", f.value.span(), message).help =
+                        Some("put it on the body that it belongs to, or remove it".into());
+                    return None;
+                }
+                None => {
+                    let close = closest(body, meshes.keys().map(String::as_str)).map(str::to_owned);
+                    let message = format!("there is no body named `{}`", shown(body));
+                    r.report("HP0204", f.value.span(), message).help =
+                        close.map(|c| format!("did you mean `{c}`?"));
+                    return None;
+                }
+                Some(BodyMesh::None) => {
+                    let message =
+                        format!("{} has no `{key}`, and neither has body `{}`", mass.what, shown(body));
+                    r.report("HP0104", mass.at.clone(), message).help =
+                        Some(format!("add it, for example {}", mass.example(key)));
+                    return None;
                 }
             }
-        };
-        let place = mass.get(key).map_or_else(|| mass.at.clone(), |f| f.value.span());
-        match self.solid_in_file(&said) {
-            Ok(solid) => {
-                let solid = solid.scaled(self.units.length.metres(said.scale));
-                let solid = said.mirror.map_or(solid, |axis| solid.mirrored(axis));
-                Some(Solid { in_body: said.frame == MeshFrame::Body, ..solid })
-            }
-            Err(e) => {
-                self.data_error(place, e);
-                None
-            }
+        }
+    };
+    let place = mass.get(key).map_or_else(|| mass.at.clone(), |f| f.value.span());
+    match solid_in_file(r, &said) {
+        Ok(solid) => {
+            let solid = solid.scaled(r.units.length.metres(said.scale));
+            let solid = said.mirror.map_or(solid, |axis| solid.mirrored(axis));
+            Some(Solid { in_body: said.frame == MeshFrame::Body, ..solid })
+        }
+        Err(e) => {
+            r.data_error(place, e);
+            None
         }
     }
+}
 
-    /// Solid enclosed by the surface in a file, in the file's own unit and axes.
-    fn solid_in_file(&mut self, said: &MeshDraft) -> Result<Solid, DataError> {
-        let (name, _) = &said.file;
-        // The text of a model is passed with the mass properties of its meshes, not with the meshes.
-        let known = format!("{name} as a solid");
-        let texts = match self.folder {
-            Folder::Given(texts) => Some(texts),
-            _ => None,
-        };
-        // The engine of the page has no readers of meshes.
-        if texts.is_some() || cfg!(target_family = "wasm") {
-            let found = texts.and_then(|texts| texts.get(&known)).and_then(|text| {
-                self.texts.insert(known.clone(), text.clone());
-                let numbers: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
-                <[f64; 10]>::try_from(numbers?).ok()
-            });
-            let [volume, x, y, z, second @ ..] = found.ok_or_else(|| {
-                let message = format!("the mesh `{}` is not part of this model", shown(name));
-                DataError::unreadable(message, "read the model from its folder, where the mesh is")
-            })?;
-            return Ok(Solid { volume, centre: Vec3::new(x, y, z), second, in_body: false });
-        }
-        let Triangles { vertices, triangles, .. } = triangles_of(self.folder, name)?;
-        let vertices: Vec<Vec3> = vertices.into_iter().map(Vec3::from).collect();
-        let solid = Solid::of(&vertices, &triangles).map_err(|open| bounds_nothing(name, open))?;
-        let Solid { volume, centre, second, .. } = solid;
-        let numbers = [volume].into_iter().chain(centre.to_array()).chain(second);
-        // The shortest text that is read back as the same number
-        let numbers: Vec<String> = numbers.map(|x| format!("{x:e}")).collect();
-        self.texts.insert(known, numbers.join(" "));
-        Ok(solid)
+/// Solid enclosed by the surface in a file, in the file's own unit and axes.
+fn solid_in_file(r: &mut Reader<'_>, said: &MeshDraft) -> Result<Solid, DataError> {
+    let (name, _) = &said.file;
+    // The text of a model is passed with the mass properties of its meshes, not with the meshes.
+    let known = format!("{name} as a solid");
+    let texts = match r.folder {
+        Folder::Given(texts) => Some(texts),
+        _ => None,
+    };
+    // The engine of the page has no readers of meshes.
+    if texts.is_some() || cfg!(target_family = "wasm") {
+        let found = texts.and_then(|texts| texts.get(&known)).and_then(|text| {
+            r.texts.insert(known.clone(), text.clone());
+            let numbers: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
+            <[f64; 10]>::try_from(numbers?).ok()
+        });
+        let [volume, x, y, z, second @ ..] = found.ok_or_else(|| {
+            let message = format!("the mesh `{}` is not part of this model", shown(name));
+            DataError::unreadable(message, "read the model from its folder, where the mesh is")
+        })?;
+        return Ok(Solid { volume, centre: Vec3::new(x, y, z), second, in_body: false });
     }
+    let Triangles { vertices, triangles, .. } = triangles_of(r.folder, name)?;
+    let vertices: Vec<Vec3> = vertices.into_iter().map(Vec3::from).collect();
+    let solid = Solid::of(&vertices, &triangles).map_err(|open| bounds_nothing(name, open))?;
+    let Solid { volume, centre, second, .. } = solid;
+    let numbers = [volume].into_iter().chain(centre.to_array()).chain(second);
+    // The shortest text that is read back as the same number
+    let numbers: Vec<String> = numbers.map(|x| format!("{x:e}")).collect();
+    r.texts.insert(known, numbers.join(" "));
+    Ok(solid)
 }
 
 /// HP0118: a surface that encloses no volume.

@@ -3,13 +3,12 @@
 use hardpoint::draft::{GoalDraft, LimitDraft, LimitTargetDraft, OptimizationSettingsDraft, Section};
 use hardpoint::model::OptimizationSettings;
 
-use crate::format::{
-    HARDPOINT, JOINT, Key, Kinds, METRIC, NUMBER, Shape, TWO_NUMBERS, Table, VARIABLE, keys, table,
+use crate::values::{
+    EntryPlace, Field, Fields, HARDPOINT, JOINT, Key, Kinds, METRIC, MOST_ENTRIES, NUMBER, Reader, Shape,
+    TWO_NUMBERS, Table, VARIABLE, keys, table,
 };
-use crate::places::EntryPlace;
-use crate::tree::{Field, Fields, MOST_ENTRIES, Reader};
 
-use super::Raw;
+use super::raw::Raw;
 
 /// Maximum number of variables that are read by name.
 const MOST_VARIABLES: usize = 10_000;
@@ -67,7 +66,7 @@ static LIMITS: &[(Table, Read)] = &[
         },
         |r, fields| {
             let name = r.name_of(fields, "metric");
-            let bounds = r.bounds_of_limit(fields);
+            let bounds = bounds_of_limit(r, fields);
             Some(vec![("", LimitTargetDraft::Metric(name?), bounds?)])
         },
     ),
@@ -84,7 +83,7 @@ static LIMITS: &[(Table, Read)] = &[
             /// Range of its z.
             may "z": SIDE, "{ min = 0 }";
         },
-        |r, fields| r.boxed(fields),
+        |r, fields| boxed(r, fields),
     ),
     (
         limit! {
@@ -95,7 +94,7 @@ static LIMITS: &[(Table, Read)] = &[
         },
         |r, fields| {
             let names = r.names_of::<2>(fields, "between");
-            let bounds = r.bounds_of_limit(fields);
+            let bounds = bounds_of_limit(r, fields);
             Some(vec![("", LimitTargetDraft::Distance(names?), bounds?)])
         },
     ),
@@ -108,7 +107,7 @@ static LIMITS: &[(Table, Read)] = &[
         },
         |r, fields| {
             let name = r.name_of(fields, "length");
-            let bounds = r.bounds_of_limit(fields);
+            let bounds = bounds_of_limit(r, fields);
             Some(vec![("", LimitTargetDraft::Length(name?), bounds?)])
         },
     ),
@@ -124,173 +123,158 @@ const BOUNDS: &[Key] = keys! {
 const SIDE: Shape = Shape::Any("Side", "", &[TWO_NUMBERS, Shape::Table(&SIDE_TABLE)]);
 const SIDE_TABLE: Table = Table::new("SideTable", "One side of a box, which may be open.", BOUNDS);
 
-impl Reader<'_> {
-    pub(super) fn optimize(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        let Some(f) = model.get("optimize") else { return };
-        self.unread.clear();
-        let mut subject = model.subject("optimize");
-        subject.example = "write `[optimize]`, in single brackets, and `[optimize.goals]` below it".into();
-        let Some(table) = self.table(f.value, &subject, "one table") else {
-            return;
-        };
-        let fields = self.fields("`optimize`", f.at.0..f.at.1, table, OPTIMIZE.keys());
+pub(super) fn optimize(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    let Some(f) = model.get("optimize") else { return };
+    r.unread.clear();
+    let mut subject = model.subject("optimize");
+    subject.example = "write `[optimize]`, in single brackets, and `[optimize.goals]` below it".into();
+    let Some(table) = r.table(f.value, &subject, "one table") else {
+        return;
+    };
+    let fields = r.fields("`optimize`", f.at.0..f.at.1, table, OPTIMIZE.keys());
+    let place = EntryPlace::of(&fields);
+    let variables = r.given(&fields, "variables", |r, f| variables_of(r, &fields, f));
+    let margin = r.number_of(&fields, "min_margin");
+    let starts = r.count_of(&fields, "starts", OptimizationSettings::MOST);
+    let iterations = r.count_of(&fields, "max_iterations", OptimizationSettings::MOST);
+    r.need(&fields, "goals");
+    for key in ["goals", "limits"] {
+        let table = fields.get(key).map(|f| f.value.get_ref().as_table());
+        let is_lost = table.map_or(key == "goals", |t| t.is_none_or(|t| t.len() > MOST_ENTRIES));
+        if is_lost {
+            r.unread.push(if key == "goals" { "goals" } else { "limits" });
+        }
+    }
+    raw.push(r, Section::Optimize, place);
+    let goals = goals(r, &fields, raw);
+    let limits = limits(r, &fields, raw);
+    raw.draft.optimization = Some(OptimizationSettingsDraft {
+        variables,
+        goals,
+        limits,
+        margin,
+        starts: starts.unwrap_or(1),
+        iterations: iterations.unwrap_or(1),
+    });
+}
+
+fn goals(r: &mut Reader<'_>, optimize: &Fields<'_>, raw: &mut Raw) -> Vec<GoalDraft> {
+    let (per_metre, per_radian) = (r.units.length.per_metre(), r.units.angle.per_radian());
+    let mut goals = Vec::new();
+    for entry in r.entries_below(optimize, "optimize.", "goals", "goal") {
+        let fields = r.entry("goal", &entry, GOAL.keys());
         let place = EntryPlace::of(&fields);
-        let variables = self.given(&fields, "variables", |r, f| r.variables_of(&fields, f));
-        let margin = self.number_of(&fields, "min_margin");
-        let starts = self.count_of(&fields, "starts", OptimizationSettings::MOST);
-        let iterations = self.count_of(&fields, "max_iterations", OptimizationSettings::MOST);
-        self.need(&fields, "goals");
-        for key in ["goals", "limits"] {
-            let table = fields.get(key).map(|f| f.value.get_ref().as_table());
-            let is_lost = table.map_or(key == "goals", |t| t.is_none_or(|t| t.len() > MOST_ENTRIES));
-            if is_lost {
-                self.unread.push(if key == "goals" { "goals" } else { "limits" });
-            }
+        let metric = r.name_of(&fields, "metric");
+        let weight = r.number_of(&fields, "weight");
+        let target = r.number_of(&fields, "target");
+        if !r.unread.is_empty() {
+            r.unread.push("");
         }
-        self.push(raw, Section::Optimize, place);
-        let goals = self.goals(&fields, raw);
-        let limits = self.limits(&fields, raw);
-        raw.draft.optimization = Some(OptimizationSettingsDraft {
-            variables,
-            goals,
-            limits,
-            margin,
-            starts: starts.unwrap_or(1),
-            iterations: iterations.unwrap_or(1),
+        raw.push(r, Section::Goals, place);
+        let (metric, weight) = (metric.unwrap_or_else(|| entry.0.clone()), weight.unwrap_or(1.0));
+        goals.push(GoalDraft { name: entry.0, metric, weight, target, per_metre, per_radian });
+    }
+    goals
+}
+
+fn limits(r: &mut Reader<'_>, optimize: &Fields<'_>, raw: &mut Raw) -> Vec<LimitDraft> {
+    let (per_metre, per_radian) = (r.units.length.per_metre(), r.units.angle.per_radian());
+    let mut limits = Vec::new();
+    for entry in r.entries_below(optimize, "optimize.", "limits", "limit") {
+        let fields = r.entry("limit", &entry, LIMIT.keys());
+        let place = EntryPlace::of(&fields);
+        let before = r.found.len();
+        let kind = r.led_by(&fields, LIMITS, ["limited quantity", "the limited quantity is given"]);
+        // With keys of several kinds, further errors depend on the intended one.
+        let is_clear = r.found.len() == before;
+        let read = kind.filter(|_| is_clear).and_then(|(_, read)| read(r, &fields));
+        let read = read.unwrap_or_else(|| {
+            r.unread.push("");
+            vec![("", LimitTargetDraft::Unread, [None; 2])]
         });
+        let unread = std::mem::take(&mut r.unread);
+        for (axis, of, [least, most]) in read {
+            r.unread.clone_from(&unread);
+            raw.push(r, Section::Limits, place.clone());
+            let name = if axis.is_empty() { entry.0.clone() } else { format!("{}.{axis}", entry.0) };
+            limits.push(LimitDraft { name, of, least, most, per_metre, per_radian });
+        }
     }
+    limits
+}
 
-    fn goals(&mut self, optimize: &Fields<'_>, raw: &mut Raw) -> Vec<GoalDraft> {
-        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
-        let mut goals = Vec::new();
-        for entry in self.entries_below(optimize, "optimize.", "goals", "goal") {
-            let fields = self.entry("goal", &entry, GOAL.keys());
-            let place = EntryPlace::of(&fields);
-            let metric = self.name_of(&fields, "metric");
-            let weight = self.number_of(&fields, "weight");
-            let target = self.number_of(&fields, "target");
-            if !self.unread.is_empty() {
-                self.unread.push("");
-            }
-            self.push(raw, Section::Goals, place);
-            let (metric, weight) = (metric.unwrap_or_else(|| entry.0.clone()), weight.unwrap_or(1.0));
-            goals.push(GoalDraft { name: entry.0, metric, weight, target, per_metre, per_radian });
-        }
-        goals
+/// Sides of a box.
+fn boxed(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Vec<One>> {
+    let before = r.found.len();
+    for key in ["min", "max", "equal"] {
+        let why = "a hardpoint is limited along each axis: `x = [10, 20]`, or `z = { min = 0 }`";
+        r.out_of_place(fields, key, why);
     }
+    let name = r.name_of(fields, "hardpoint");
+    if r.found.len() > before {
+        return None;
+    }
+    let axes = ["x", "y", "z"];
+    if axes.iter().all(|key| fields.get(key).is_none()) {
+        let message = format!("{} has no axis", fields.what);
+        r.report("HP0104", fields.at.clone(), message).help =
+            Some("give at least one of `x = [10, 20]`, `y = { min = 0 }`, `z = { equal = 5 }`".into());
+        return None;
+    }
+    let sides = axes.map(|key| r.given(fields, key, |r, f| side(r, fields, f)));
+    let complete = axes.iter().zip(&sides).all(|(key, side)| side.is_some() || fields.get(key).is_none());
+    let name = name.filter(|_| complete)?;
+    let sides = (0..3).zip(axes).zip(sides);
+    let limit = |((k, axis), side): ((usize, &'static str), Option<Bounds>)| {
+        side.map(|side| (axis, LimitTargetDraft::Coordinate(name.clone(), k), side))
+    };
+    Some(sides.filter_map(limit).collect())
+}
 
-    fn limits(&mut self, optimize: &Fields<'_>, raw: &mut Raw) -> Vec<LimitDraft> {
-        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
-        let mut limits = Vec::new();
-        for entry in self.entries_below(optimize, "optimize.", "limits", "limit") {
-            let fields = self.entry("limit", &entry, LIMIT.keys());
-            let place = EntryPlace::of(&fields);
-            let before = self.found.len();
-            let kind = self.led_by(&fields, LIMITS, ["limited quantity", "the limited quantity is given"]);
-            // With keys of several kinds, further errors depend on the intended one.
-            let is_clear = self.found.len() == before;
-            let read = kind.filter(|_| is_clear).and_then(|(_, read)| read(self, &fields));
-            let read = read.unwrap_or_else(|| {
-                self.unread.push("");
-                vec![("", LimitTargetDraft::Unread, [None; 2])]
-            });
-            let unread = std::mem::take(&mut self.unread);
-            for (axis, of, [least, most]) in read {
-                self.unread.clone_from(&unread);
-                self.push(raw, Section::Limits, place.clone());
-                let name = if axis.is_empty() { entry.0.clone() } else { format!("{}.{axis}", entry.0) };
-                limits.push(LimitDraft { name, of, least, most, per_metre, per_radian });
-            }
-        }
-        limits
-    }
+/// Two numbers, or a table with one of them.
+fn side(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Bounds> {
+    let subject = fields.subject(f.key);
+    let Some(table) = f.value.get_ref().as_table() else {
+        let expected = "the least and the most, or a table like `{ min = 10 }`";
+        return r.numbers::<2>(f.value, &subject, expected).map(|b| b.map(Some));
+    };
+    let fields = r.fields(subject.name, f.value.span(), table, SIDE_TABLE.keys());
+    bounds_of_limit(r, &fields)
+}
 
-    /// Sides of a box.
-    fn boxed(&mut self, fields: &Fields<'_>) -> Option<Vec<One>> {
-        let before = self.found.len();
-        for key in ["min", "max", "equal"] {
-            let why = "a hardpoint is limited along each axis: `x = [10, 20]`, or `z = { min = 0 }`";
-            self.out_of_place(fields, key, why);
+/// `min` and `max`, or `equal`. HP0104 where there is none of them.
+fn bounds_of_limit(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Bounds> {
+    let has = |key: &str| fields.get(key).is_some();
+    if !has("min") && !has("max") && !has("equal") {
+        if !fields.lost {
+            let message = format!("{} has no values", fields.what);
+            r.report("HP0104", fields.at.clone(), message).help =
+                Some("give `min = 50`, `max = 200`, both of them, or `equal = 100`".into());
         }
-        let name = self.name_of(fields, "hardpoint");
-        if self.found.len() > before {
-            return None;
-        }
-        let axes = ["x", "y", "z"];
-        if axes.iter().all(|key| fields.get(key).is_none()) {
-            let message = format!("{} has no axis", fields.what);
-            self.report("HP0104", fields.at.clone(), message).help =
-                Some("give at least one of `x = [10, 20]`, `y = { min = 0 }`, `z = { equal = 5 }`".into());
-            return None;
-        }
-        let sides = axes.map(|key| self.given(fields, key, |r, f| r.side(fields, f)));
-        let complete = axes.iter().zip(&sides).all(|(key, side)| side.is_some() || fields.get(key).is_none());
-        let name = name.filter(|_| complete)?;
-        let sides = (0..3).zip(axes).zip(sides);
-        let limit = |((k, axis), side): ((usize, &'static str), Option<Bounds>)| {
-            side.map(|side| (axis, LimitTargetDraft::Coordinate(name.clone(), k), side))
-        };
-        Some(sides.filter_map(limit).collect())
+        return None;
     }
+    if has("equal") {
+        for key in ["min", "max"] {
+            r.out_of_place(fields, key, "`equal` defines both");
+        }
+    }
+    let [min, max, equal] = ["min", "max", "equal"].map(|key| r.number_of(fields, key));
+    let read = ["min", "max", "equal"].iter().zip([min, max, equal]);
+    if read.clone().any(|(key, x)| x.is_none() && has(key)) {
+        return None;
+    }
+    Some(if equal.is_some() { [equal; 2] } else { [min, max] })
+}
 
-    /// Two numbers, or a table with one of them.
-    fn side(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Bounds> {
-        let subject = fields.subject(f.key);
-        let Some(table) = f.value.get_ref().as_table() else {
-            let expected = "the least and the most, or a table like `{ min = 10 }`";
-            return self.numbers::<2>(f.value, &subject, expected).map(|b| b.map(Some));
-        };
-        let fields = self.fields(subject.name, f.value.span(), table, SIDE_TABLE.keys());
-        self.bounds_of_limit(&fields)
+/// Names of design variables.
+fn variables_of(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<String>> {
+    let (subject, expected) = (fields.subject(f.key), "a list of names of design variables");
+    let list = r.list(f.value, &subject, expected)?;
+    if list.len() > MOST_VARIABLES {
+        r.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
+            Some(format!("name at most {MOST_VARIABLES}, or leave it out for all that have bounds"));
+        return None;
     }
-
-    /// `min` and `max`, or `equal`. HP0104 where there is none of them.
-    fn bounds_of_limit(&mut self, fields: &Fields<'_>) -> Option<Bounds> {
-        let has = |key: &str| fields.get(key).is_some();
-        if !has("min") && !has("max") && !has("equal") {
-            if !fields.lost {
-                let message = format!("{} has no values", fields.what);
-                self.report("HP0104", fields.at.clone(), message).help =
-                    Some("give `min = 50`, `max = 200`, both of them, or `equal = 100`".into());
-            }
-            return None;
-        }
-        if has("equal") {
-            for key in ["min", "max"] {
-                self.out_of_place(fields, key, "`equal` defines both");
-            }
-        }
-        let [min, max, equal] = ["min", "max", "equal"].map(|key| self.number_of(fields, key));
-        let read = ["min", "max", "equal"].iter().zip([min, max, equal]);
-        if read.clone().any(|(key, x)| x.is_none() && has(key)) {
-            return None;
-        }
-        Some(if equal.is_some() { [equal; 2] } else { [min, max] })
-    }
-
-    /// Names of design variables.
-    fn variables_of(&mut self, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<String>> {
-        let (subject, expected) = (fields.subject(f.key), "a list of names of design variables");
-        let list = self.list(f.value, &subject, expected)?;
-        if list.len() > MOST_VARIABLES {
-            self.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
-                Some(format!("name at most {MOST_VARIABLES}, or leave it out for all that have bounds"));
-            return None;
-        }
-        let names: Vec<_> = list.into_iter().map(|v| self.name(v, &subject, expected)).collect();
-        names.into_iter().collect()
-    }
-
-    /// A whole number from 1.
-    pub(super) fn count_of(&mut self, fields: &Fields<'_>, key: &'static str, most: u32) -> Option<usize> {
-        let number = self.number_of(fields, key)?;
-        if number >= 1.0 && number <= f64::from(most) && number.fract() == 0.0 {
-            return Some(number as usize);
-        }
-        let at = fields.get(key).map_or(fields.at.clone(), |f| f.value.span());
-        let message = format!("{} cannot be {number}", fields.subject(key).name);
-        self.senseless(at, message).help = Some(format!("give a whole number from 1 to {most}"));
-        self.unread.push(key);
-        None
-    }
+    let names: Vec<_> = list.into_iter().map(|v| r.name(v, &subject, expected)).collect();
+    names.into_iter().collect()
 }

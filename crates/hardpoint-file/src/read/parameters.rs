@@ -6,12 +6,11 @@ use hardpoint::draft::{ChangeDraft, FormulaDraft, FormulaOf, ParameterDraft, Sec
 use hardpoint::joint::Quantity;
 use toml::de::DeValue;
 
-use crate::diagnostic::shown;
-use crate::format::{NUMBER, Shape, TWO_NUMBERS, Table, table};
-use crate::places::EntryPlace;
-use crate::tree::{Fields, Reader, Subject, Value};
+use crate::values::{
+    EntryPlace, Fields, NUMBER, Reader, Shape, Subject, TWO_NUMBERS, Table, Value, shown, table,
+};
 
-use super::Raw;
+use super::raw::Raw;
 
 pub(crate) const PARAMETER: Shape = Shape::Any(
     "Parameter",
@@ -41,107 +40,105 @@ const UNIT: Shape = Shape::Words(&[
 ]);
 const UNITS: [Quantity; 3] = [Quantity::Length, Quantity::Angle, Quantity::Number];
 
-impl Reader<'_> {
-    pub(super) fn parameters(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        for entry in self.entries(model, "parameters", "parameter") {
-            let (name, at, value) = &entry;
-            match value.get_ref() {
-                DeValue::Table(_) => self.parameter_table(&entry, raw),
-                _ => {
-                    let subject = Subject {
-                        name: format!("parameter `{}`", shown(name)),
-                        example: format!("for example `{name} = {{ value = 60, unit = \"length\" }}`"),
-                    };
-                    self.unread.clear();
-                    let mut place = EntryPlace::at(at.clone());
-                    place.key("value", value);
-                    let parameter = Parameter { name, quantity: Quantity::Number, is_design: true };
-                    self.parameter(&parameter, Some((value, subject)), None, place, raw);
-                }
+pub(super) fn parameters(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    for entry in r.entries(model, "parameters", "parameter") {
+        let (name, at, value) = &entry;
+        match value.get_ref() {
+            DeValue::Table(_) => parameter_table(r, &entry, raw),
+            _ => {
+                let subject = Subject {
+                    name: format!("parameter `{}`", shown(name)),
+                    example: format!("for example `{name} = {{ value = 60, unit = \"length\" }}`"),
+                };
+                r.unread.clear();
+                let mut place = EntryPlace::at(at.clone());
+                place.key("value", value);
+                let declared = Parameter { name, quantity: Quantity::Number, is_design: true };
+                parameter(r, &declared, Some((value, subject)), None, place, raw);
             }
         }
     }
+}
 
-    fn parameter_table(&mut self, entry: &(String, Range<usize>, &Value<'_>), raw: &mut Raw) {
-        let fields = self.entry("parameter", entry, PARAMETER_TABLE.keys());
-        let place = EntryPlace::of(&fields);
-        let quantity = self.word_of(&fields, "unit").map(|k| UNITS[k]);
-        let is_design = self.flag_of(&fields, "design");
-        let value = self.need(&fields, "value").map(|f| (f.value, fields.subject("value")));
-        let parameter = Parameter {
-            name: &entry.0,
-            quantity: quantity.unwrap_or(Quantity::Number),
-            is_design: is_design.unwrap_or(true),
+fn parameter_table(r: &mut Reader<'_>, entry: &(String, Range<usize>, &Value<'_>), raw: &mut Raw) {
+    let fields = r.entry("parameter", entry, PARAMETER_TABLE.keys());
+    let place = EntryPlace::of(&fields);
+    let quantity = r.word_of(&fields, "unit").map(|k| UNITS[k]);
+    let is_design = r.flag_of(&fields, "design");
+    let value = r.need(&fields, "value").map(|f| (f.value, fields.subject("value")));
+    let declared = Parameter {
+        name: &entry.0,
+        quantity: quantity.unwrap_or(Quantity::Number),
+        is_design: is_design.unwrap_or(true),
+    };
+    parameter(r, &declared, value, Some(&fields), place, raw);
+}
+
+fn parameter(
+    r: &mut Reader<'_>,
+    p: &Parameter<'_>,
+    value: Option<(&Value<'_>, Subject)>,
+    fields: Option<&Fields<'_>>,
+    place: EntryPlace,
+    raw: &mut Raw,
+) {
+    let name = p.name.to_owned();
+    let formula = value.as_ref().is_some_and(|(v, _)| v.get_ref().is_str());
+    let number = value.and_then(|(v, subject)| {
+        if !formula {
+            return r.number(v, &subject).map(|x| r.units.to_si(p.quantity, x));
+        }
+        let expression = r.expression(v, &subject)?;
+        raw.draft.formulas.push(FormulaDraft { of: FormulaOf::Parameter(name.clone()), expression });
+        Some(0.0)
+    });
+    if number.is_none() {
+        r.unread.push("value");
+    }
+    let number = number.unwrap_or(1.0);
+    if let (Some(fields), true) = (fields, formula || !p.is_design) {
+        let why = match formula {
+            true => "a parameter with an expression depends on others, and is not a design variable",
+            false => "with `design = false` it is not a design variable",
         };
-        self.parameter(&parameter, value, Some(&fields), place, raw);
-    }
-
-    fn parameter(
-        &mut self,
-        p: &Parameter<'_>,
-        value: Option<(&Value<'_>, Subject)>,
-        fields: Option<&Fields<'_>>,
-        place: EntryPlace,
-        raw: &mut Raw,
-    ) {
-        let name = p.name.to_owned();
-        let formula = value.as_ref().is_some_and(|(v, _)| v.get_ref().is_str());
-        let number = value.and_then(|(v, subject)| {
-            if !formula {
-                return self.number(v, &subject).map(|x| self.units.to_si(p.quantity, x));
-            }
-            let expression = self.expression(v, &subject)?;
-            raw.draft.formulas.push(FormulaDraft { of: FormulaOf::Parameter(name.clone()), expression });
-            Some(0.0)
+        let keys = ["bounds", "typical", "tolerance", "design"];
+        let keys = if formula { &keys[..] } else { &keys[..3] };
+        keys.iter().for_each(|key| r.out_of_place(fields, key, why));
+    } else if p.is_design && !formula {
+        let (bounds, [typical, tolerance]) = match fields {
+            Some(fields) => range(r, fields, p.quantity),
+            None => (None, [None; 2]),
+        };
+        let unread = r.unread.clone();
+        raw.push(r, Section::Design, place.clone());
+        r.unread = unread;
+        raw.draft.design.push(VariableDraft {
+            name: name.clone(),
+            changes: vec![ChangeDraft::Parameter { parameter: name.clone(), rate: 1.0 }],
+            bounds: bounds.map(|b| b.map(|x| x - number)),
+            typical,
+            tolerance,
+            ..VariableDraft::default()
         });
-        if number.is_none() {
-            self.unread.push("value");
-        }
-        let number = number.unwrap_or(1.0);
-        if let (Some(fields), true) = (fields, formula || !p.is_design) {
-            let why = match formula {
-                true => "a parameter with an expression depends on others, and is not a design variable",
-                false => "with `design = false` it is not a design variable",
-            };
-            let keys = ["bounds", "typical", "tolerance", "design"];
-            let keys = if formula { &keys[..] } else { &keys[..3] };
-            keys.iter().for_each(|key| self.out_of_place(fields, key, why));
-        } else if p.is_design && !formula {
-            let (bounds, [typical, tolerance]) = match fields {
-                Some(fields) => self.range(fields, p.quantity),
-                None => (None, [None; 2]),
-            };
-            let unread = self.unread.clone();
-            self.push(raw, Section::Design, place.clone());
-            self.unread = unread;
-            raw.draft.design.push(VariableDraft {
-                name: name.clone(),
-                changes: vec![ChangeDraft::Parameter { parameter: name.clone(), rate: 1.0 }],
-                bounds: bounds.map(|b| b.map(|x| x - number)),
-                typical,
-                tolerance,
-                ..VariableDraft::default()
-            });
-        }
-        self.push(raw, Section::Parameters, place);
-        raw.draft.parameters.push(ParameterDraft { name, value: number, quantity: p.quantity });
     }
+    raw.push(r, Section::Parameters, place);
+    raw.draft.parameters.push(ParameterDraft { name, value: number, quantity: p.quantity });
+}
 
-    /// Bounds, typical size and tolerance of a design variable of this quantity, in SI.
-    pub(super) fn range(
-        &mut self,
-        fields: &Fields<'_>,
-        quantity: Quantity,
-    ) -> (Option<[f64; 2]>, [Option<f64>; 2]) {
-        let units = self.units;
-        let bounds = self.list_of::<2>(fields, "bounds", "the lower and the upper bound");
-        let bounds = bounds.map(|b| b.map(|x| units.to_si(quantity, x)));
-        let sizes = ["typical", "tolerance"].map(|key| {
-            let size = self.number_of(fields, key);
-            size.map(|x| units.to_si(quantity, x))
-        });
-        (bounds, sizes)
-    }
+/// Bounds, typical size and tolerance of a design variable of this quantity, in SI.
+pub(super) fn range(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    quantity: Quantity,
+) -> (Option<[f64; 2]>, [Option<f64>; 2]) {
+    let units = r.units;
+    let bounds = r.list_of::<2>(fields, "bounds", "the lower and the upper bound");
+    let bounds = bounds.map(|b| b.map(|x| units.to_si(quantity, x)));
+    let sizes = ["typical", "tolerance"].map(|key| {
+        let size = r.number_of(fields, key);
+        size.map(|x| units.to_si(quantity, x))
+    });
+    (bounds, sizes)
 }
 
 /// Properties of a parameter besides its value.

@@ -6,14 +6,14 @@ use hardpoint::draft::{DesignListDraft, Section, SweepRangeDraft, SweepSettingsD
 use hardpoint::model::{SweepMethod, SweepSettings};
 use toml::de::DeValue;
 
-use crate::csv_table::original;
-use crate::diagnostic::shown;
-use crate::format::{METRIC, NUMBER, OUTPUT, Shape, TWO_NUMBERS, Table, table};
-use crate::places::EntryPlace;
-use crate::tree::{Fields, MOST_ENTRIES, Reader, Subject};
+use crate::values::{
+    DataError, EntryPlace, Fields, METRIC, MOST_ENTRIES, NUMBER, OUTPUT, Reader, Shape, Subject, TWO_NUMBERS,
+    Table, Wanted, shown, table,
+};
+use hardpoint_table::csv::original;
 
-use super::Raw;
-use super::data::{DataError, Wanted, delimiter, number, text_from, unquoted};
+use super::data::{no_csv, number, records_of, text_at, unquoted};
+use super::raw::Raw;
 
 /// Maximum number of designs that are read.
 const MOST_SAMPLES: u32 = SweepSettings::MOST as u32;
@@ -75,97 +75,95 @@ const LIST: Wanted<'static> = Wanted {
     too_large: "split it, and sweep over its parts one after the other",
 };
 
-impl Reader<'_> {
-    pub(super) fn sweep(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        let Some(f) = model.get("sweep") else { return };
-        self.unread.clear();
-        let mut subject = model.subject("sweep");
-        subject.example = "write `[sweep]`, in single brackets, and `[sweep.variables]` below it".into();
-        let Some(table) = self.table(f.value, &subject, "one table") else { return };
-        let fields = self.fields("`sweep`", f.at.0..f.at.1, table, SWEEP.keys());
-        let place = EntryPlace::of(&fields);
-        let method = fields.get("method").and_then(|_| self.word_of(&fields, "method"));
-        let samples = self.count_of(&fields, "samples", MOST_SAMPLES);
-        let seed = self.count_of(&fields, "seed", u32::MAX);
-        let levels = self.count_of(&fields, "levels", MOST_LEVELS);
-        let names =
-            |of: &mut Self, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
-        let metrics = names(self, "metrics", "a list of names of metrics");
-        let curves = names(self, "curves", "a list of names of measures");
-        let designs = self.given(&fields, "designs", |r, f| {
-            let name = r.name(f.value, &fields.subject(f.key), "the name of a CSV file")?;
-            let found = r.text_of_file(&name, &LIST).and_then(|text| list_in(text, &name));
-            found.map_err(|e| r.data_error(f.value.span(), e)).ok()
-        });
-        if fields.get("designs").is_some() {
-            for key in ["variables", "method", "samples", "seed", "levels"] {
-                self.out_of_place(&fields, key, "the designs are those of the file that `designs` names");
-            }
+pub(super) fn sweep(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    let Some(f) = model.get("sweep") else { return };
+    r.unread.clear();
+    let mut subject = model.subject("sweep");
+    subject.example = "write `[sweep]`, in single brackets, and `[sweep.variables]` below it".into();
+    let Some(table) = r.table(f.value, &subject, "one table") else { return };
+    let fields = r.fields("`sweep`", f.at.0..f.at.1, table, SWEEP.keys());
+    let place = EntryPlace::of(&fields);
+    let method = fields.get("method").and_then(|_| r.word_of(&fields, "method"));
+    let samples = r.count_of(&fields, "samples", MOST_SAMPLES);
+    let seed = r.count_of(&fields, "seed", u32::MAX);
+    let levels = r.count_of(&fields, "levels", MOST_LEVELS);
+    let names =
+        |of: &mut Reader<'_>, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
+    let metrics = names(r, "metrics", "a list of names of metrics");
+    let curves = names(r, "curves", "a list of names of measures");
+    let designs = r.given(&fields, "designs", |r, f| {
+        let name = r.name(f.value, &fields.subject(f.key), "the name of a CSV file")?;
+        let found = r.text_of_file(&name, &LIST).and_then(|text| list_in(text, &name));
+        found.map_err(|e| r.data_error(f.value.span(), e)).ok()
+    });
+    if fields.get("designs").is_some() {
+        for key in ["variables", "method", "samples", "seed", "levels"] {
+            r.out_of_place(&fields, key, "the designs are those of the file that `designs` names");
         }
-        let entries = fields.get("variables").map(|f| f.value.get_ref().as_table());
-        if entries.is_some_and(|t| t.is_none_or(|t| t.len() > MOST_ENTRIES)) {
-            self.unread.push("variables");
-        }
-        self.push(raw, Section::Sweep, place);
-        let ranges = self.sweep_ranges(&fields, raw);
-        let units = [self.units.length.per_metre(), self.units.angle.per_radian()];
-        let list = |(names, rows): List| DesignListDraft {
-            file: fields.get("designs").and_then(|f| f.value.get_ref().as_str()).unwrap_or_default().into(),
-            names,
-            rows,
-            per_metre: units[0],
-            per_radian: units[1],
-        };
-        raw.draft.sweeping = Some(SweepSettingsDraft {
-            method: method.map(|k| SweepMethod::NAMED[k]),
-            ranges: fields.get("variables").map(|_| ranges),
-            designs: designs.map(list),
-            levels: levels.unwrap_or(SweepSettings::LEVELS),
-            samples: samples.unwrap_or(SweepSettings::SAMPLES),
-            seed: seed.map_or(SweepSettings::SEED, |seed| seed as u64),
-            metrics,
-            curves: curves.unwrap_or_default(),
-        });
     }
+    let entries = fields.get("variables").map(|f| f.value.get_ref().as_table());
+    if entries.is_some_and(|t| t.is_none_or(|t| t.len() > MOST_ENTRIES)) {
+        r.unread.push("variables");
+    }
+    raw.push(r, Section::Sweep, place);
+    let ranges = sweep_ranges(r, &fields, raw);
+    let units = [r.units.length.per_metre(), r.units.angle.per_radian()];
+    let list = |(names, rows): List| DesignListDraft {
+        file: fields.get("designs").and_then(|f| f.value.get_ref().as_str()).unwrap_or_default().into(),
+        names,
+        rows,
+        per_metre: units[0],
+        per_radian: units[1],
+    };
+    raw.draft.sweeping = Some(SweepSettingsDraft {
+        method: method.map(|k| SweepMethod::NAMED[k]),
+        ranges: fields.get("variables").map(|_| ranges),
+        designs: designs.map(list),
+        levels: levels.unwrap_or(SweepSettings::LEVELS),
+        samples: samples.unwrap_or(SweepSettings::SAMPLES),
+        seed: seed.map_or(SweepSettings::SEED, |seed| seed as u64),
+        metrics,
+        curves: curves.unwrap_or_default(),
+    });
+}
 
-    fn sweep_ranges(&mut self, sweep: &Fields<'_>, raw: &mut Raw) -> Vec<SweepRangeDraft> {
-        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
-        let mut found = Vec::new();
-        for entry in self.entries_below(sweep, "sweep.", "variables", "design variable") {
-            let (name, at, value) = &entry;
-            let (place, ends, levels) = match value.get_ref() {
-                DeValue::Table(_) => {
-                    let fields = self.entry("the range of", &entry, RANGE.keys());
-                    let place = EntryPlace::of(&fields);
-                    let ends = ["from", "to"].map(|key| self.number_of(&fields, key));
-                    (place, ends, self.count_of(&fields, "levels", MOST_LEVELS))
-                }
-                _ => {
-                    self.unread.clear();
-                    let subject = Subject {
-                        name: format!("the range of `{}`", shown(name)),
-                        example: format!(
-                            "for example `{name} = [-5, 5]`, or `{name} = {{ from = -5, to = 5, levels = 5 }}`"
-                        ),
-                    };
-                    let mut place = EntryPlace::at(at.clone());
-                    place.key("from", value);
-                    let ends = self.numbers::<2>(value, &subject, "the lower and the upper end");
-                    if ends.is_none() {
-                        self.unread.push("from");
-                    }
-                    (place, [0, 1].map(|k| ends.map(|e| e[k])), None)
-                }
-            };
-            if !self.unread.is_empty() {
-                self.unread.push("");
+fn sweep_ranges(r: &mut Reader<'_>, sweep: &Fields<'_>, raw: &mut Raw) -> Vec<SweepRangeDraft> {
+    let (per_metre, per_radian) = (r.units.length.per_metre(), r.units.angle.per_radian());
+    let mut found = Vec::new();
+    for entry in r.entries_below(sweep, "sweep.", "variables", "design variable") {
+        let (name, at, value) = &entry;
+        let (place, ends, levels) = match value.get_ref() {
+            DeValue::Table(_) => {
+                let fields = r.entry("the range of", &entry, RANGE.keys());
+                let place = EntryPlace::of(&fields);
+                let ends = ["from", "to"].map(|key| r.number_of(&fields, key));
+                (place, ends, r.count_of(&fields, "levels", MOST_LEVELS))
             }
-            self.push(raw, Section::SweepRanges, place);
-            let [low, high] = ends;
-            found.push(SweepRangeDraft { name: entry.0, low, high, levels, per_metre, per_radian });
+            _ => {
+                r.unread.clear();
+                let subject = Subject {
+                    name: format!("the range of `{}`", shown(name)),
+                    example: format!(
+                        "for example `{name} = [-5, 5]`, or `{name} = {{ from = -5, to = 5, levels = 5 }}`"
+                    ),
+                };
+                let mut place = EntryPlace::at(at.clone());
+                place.key("from", value);
+                let ends = r.numbers::<2>(value, &subject, "the lower and the upper end");
+                if ends.is_none() {
+                    r.unread.push("from");
+                }
+                (place, [0, 1].map(|k| ends.map(|e| e[k])), None)
+            }
+        };
+        if !r.unread.is_empty() {
+            r.unread.push("");
         }
-        found
+        raw.push(r, Section::SweepRanges, place);
+        let [low, high] = ends;
+        found.push(SweepRangeDraft { name: entry.0, low, high, levels, per_metre, per_radian });
     }
+    found
 }
 
 /// Column names and rows.
@@ -173,29 +171,16 @@ pub(crate) type List = (Vec<String>, Vec<Vec<f64>>);
 
 /// List of designs in a file in any folder.
 pub(crate) fn list_at(path: &Path) -> Result<List, DataError> {
-    let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|e| {
-        let message = format!("the file `{}` cannot be read", shown(&name));
-        DataError::unreadable(message, "name a CSV file whose first line names design variables")
-            .note(e.to_string())
-    })?;
-    list_in(&text_from(bytes, &name)?, &name)
+    let (name, text) = text_at(path, "design variables")?;
+    list_in(&text, &name)
 }
 
 /// Reads a list of designs: names of variables, then their values, row by row.
 fn list_in(text: &str, name: &str) -> Result<List, DataError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let name = shown(name);
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .delimiter(delimiter(text))
-        .from_reader(text.as_bytes());
-    let no_csv = |e: csv::Error| {
-        DataError::content(format!("`{name}` is not a CSV file"), "check its quotes").note(e.to_string())
-    };
+    let mut reader = records_of(text);
+    let no_csv = |e: csv::Error| no_csv(&name, &e);
     let mut record = csv::StringRecord::new();
     let write = "write the names of design variables on the first line, like `B_x, B_z`, and their values on each line below";
     if !reader.read_record(&mut record).map_err(no_csv)? {

@@ -7,15 +7,13 @@ use hardpoint::draft::{
 use hardpoint::model::{AllocationRule, ToleranceSettings};
 use toml::de::DeValue;
 
-use crate::diagnostic::shown;
-use crate::format::{METRIC, NUMBER, OUTPUT, Shape, Table, VARIABLE, table};
-use crate::places::EntryPlace;
-use crate::tree::{Field, Fields, MOST_ENTRIES, Reader, Subject};
+use crate::values::{
+    EntryPlace, Fields, METRIC, MOST_ENTRIES, NUMBER, OUTPUT, Reader, Shape, Subject, Table, VARIABLE, shown,
+    table,
+};
 
-use super::Raw;
+use super::raw::Raw;
 
-/// Maximum number of names in a list.
-const MOST_NAMES: usize = 10_000;
 pub(crate) const TOLERANCE: Table = table! {
     /// Tolerances of the design, and the limits that it must keep. All design variables with a `tolerance` are
     /// included.
@@ -89,160 +87,135 @@ pub(super) const LIMIT: Table = table! {
     may "max": NUMBER, "0.2";
 };
 
-impl Reader<'_> {
-    pub(super) fn tolerance(&mut self, model: &Fields<'_>, raw: &mut Raw) {
-        let Some(f) = model.get("tolerance") else { return };
-        self.unread.clear();
-        let mut subject = model.subject("tolerance");
-        subject.example =
-            "write `[tolerance]`, in single brackets, and `[tolerance.variables]` below it".into();
-        let Some(table) = self.table(f.value, &subject, "one table") else { return };
-        let fields = self.fields("`tolerance`", f.at.0..f.at.1, table, TOLERANCE.keys());
+pub(super) fn tolerance(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    let Some(f) = model.get("tolerance") else { return };
+    r.unread.clear();
+    let mut subject = model.subject("tolerance");
+    subject.example = "write `[tolerance]`, in single brackets, and `[tolerance.variables]` below it".into();
+    let Some(table) = r.table(f.value, &subject, "one table") else { return };
+    let fields = r.fields("`tolerance`", f.at.0..f.at.1, table, TOLERANCE.keys());
+    let place = EntryPlace::of(&fields);
+    let scatter = scatter(r, &fields);
+    let names =
+        |of: &mut Reader<'_>, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
+    let metrics = names(r, "metrics", "a list of names of metrics");
+    let curves = names(r, "curves", "a list of names of measures");
+    let samples = r.count_of(&fields, "samples", ToleranceSettings::MOST);
+    let seed = r.count_of(&fields, "seed", u32::MAX);
+    let keep = r.number_of(&fields, "required_sigmas");
+    let rule = fields.get("allocate").and_then(|_| r.word_of(&fields, "allocate"));
+    if fields.get("required_sigmas").is_some() && rule != Some(0) {
+        r.out_of_place(&fields, "required_sigmas", "only `allocate = \"rss\"` uses standard deviations");
+    }
+    for key in ["variables", "correlations", "limits"] {
+        let table = fields.get(key).map(|f| f.value.get_ref().as_table());
+        if table.is_some_and(|t| t.is_none_or(|t| t.len() > MOST_ENTRIES)) {
+            r.unread.push(key);
+        }
+    }
+    raw.push(r, Section::Tolerance, place);
+    let tolerances = tolerances(r, &fields, raw);
+    let correlations = correlations(r, &fields, raw);
+    let limits = limits_of_tolerances(r, &fields, raw);
+    let allocation = rule.map(|rule| match rule {
+        0 => AllocationRule::Rss { sigmas: keep.unwrap_or(ToleranceSettings::SIGMAS) },
+        _ => AllocationRule::Worst,
+    });
+    raw.draft.tolerancing = Some(ToleranceSettingsDraft {
+        tolerances,
+        correlations,
+        limits,
+        metrics,
+        curves,
+        scatter,
+        samples: samples.unwrap_or(ToleranceSettings::SAMPLES),
+        seed: seed.map_or(ToleranceSettings::SEED, |seed| seed as u64),
+        allocation,
+    });
+}
+
+fn scatter(r: &mut Reader<'_>, fields: &Fields<'_>) -> ScatterDraft {
+    let kind = fields.get("distribution").and_then(|_| r.word_of(fields, "distribution"));
+    ScatterDraft { kind, sigmas: r.number_of(fields, "sigmas") }
+}
+
+fn tolerances(r: &mut Reader<'_>, tolerance: &Fields<'_>, raw: &mut Raw) -> Vec<ToleranceDraft> {
+    let (per_metre, per_radian) = (r.units.length.per_metre(), r.units.angle.per_radian());
+    let mut found = Vec::new();
+    for entry in r.entries_below(tolerance, "tolerance.", "variables", "design variable") {
+        let (name, at, value) = &entry;
+        let (place, reach, scatter, cost) = match value.get_ref() {
+            DeValue::Table(_) => {
+                let fields = r.entry("the tolerance of", &entry, ENTRY_TABLE.keys());
+                let place = EntryPlace::of(&fields);
+                let reach = r.number_of(&fields, "tolerance");
+                let scatter = scatter(r, &fields);
+                (place, reach, scatter, r.number_of(&fields, "cost"))
+            }
+            _ => {
+                r.unread.clear();
+                let subject = Subject {
+                    name: format!("the tolerance of `{}`", shown(name)),
+                    example: format!(
+                        "for example `{name} = 0.1`, or `{name} = {{ tolerance = 0.1, cost = 5 }}`"
+                    ),
+                };
+                let mut place = EntryPlace::at(at.clone());
+                place.key("tolerance", value);
+                let reach = r.number(value, &subject);
+                if reach.is_none() {
+                    r.unread.push("tolerance");
+                }
+                (place, reach, ScatterDraft::default(), None)
+            }
+        };
+        if !r.unread.is_empty() {
+            r.unread.push("");
+        }
+        raw.push(r, Section::Tolerances, place);
+        found.push(ToleranceDraft { name: entry.0, reach, scatter, cost, per_metre, per_radian });
+    }
+    found
+}
+
+fn correlations(r: &mut Reader<'_>, tolerance: &Fields<'_>, raw: &mut Raw) -> Vec<CorrelationDraft> {
+    let mut found = Vec::new();
+    for entry in r.entries_below(tolerance, "tolerance.", "correlations", "correlation") {
+        let fields = r.entry("correlation", &entry, CORRELATION.keys());
         let place = EntryPlace::of(&fields);
-        let scatter = self.scatter(&fields);
-        let names =
-            |of: &mut Self, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
-        let metrics = names(self, "metrics", "a list of names of metrics");
-        let curves = names(self, "curves", "a list of names of measures");
-        let samples = self.count_of(&fields, "samples", ToleranceSettings::MOST);
-        let seed = self.count_of(&fields, "seed", u32::MAX);
-        let keep = self.number_of(&fields, "required_sigmas");
-        let rule = fields.get("allocate").and_then(|_| self.word_of(&fields, "allocate"));
-        if fields.get("required_sigmas").is_some() && rule != Some(0) {
-            self.out_of_place(
-                &fields,
-                "required_sigmas",
-                "only `allocate = \"rss\"` uses standard deviations",
-            );
+        let between = r.names_of::<2>(&fields, "between");
+        r.need(&fields, "coefficient");
+        let coefficient = r.number_of(&fields, "coefficient");
+        if between.is_none() || coefficient.is_none() {
+            r.unread.push("");
         }
-        for key in ["variables", "correlations", "limits"] {
-            let table = fields.get(key).map(|f| f.value.get_ref().as_table());
-            if table.is_some_and(|t| t.is_none_or(|t| t.len() > MOST_ENTRIES)) {
-                self.unread.push(key);
-            }
-        }
-        self.push(raw, Section::Tolerance, place);
-        let tolerances = self.tolerances(&fields, raw);
-        let correlations = self.correlations(&fields, raw);
-        let limits = self.limits_of_tolerances(&fields, raw);
-        let allocation = rule.map(|rule| match rule {
-            0 => AllocationRule::Rss { sigmas: keep.unwrap_or(ToleranceSettings::SIGMAS) },
-            _ => AllocationRule::Worst,
-        });
-        raw.draft.tolerancing = Some(ToleranceSettingsDraft {
-            tolerances,
-            correlations,
-            limits,
-            metrics,
-            curves,
-            scatter,
-            samples: samples.unwrap_or(ToleranceSettings::SAMPLES),
-            seed: seed.map_or(ToleranceSettings::SEED, |seed| seed as u64),
-            allocation,
-        });
+        raw.push(r, Section::Correlations, place);
+        let (between, coefficient) = (between.unwrap_or_default(), coefficient.unwrap_or_default());
+        found.push(CorrelationDraft { name: entry.0, between, coefficient });
     }
+    found
+}
 
-    fn scatter(&mut self, fields: &Fields<'_>) -> ScatterDraft {
-        let kind = fields.get("distribution").and_then(|_| self.word_of(fields, "distribution"));
-        ScatterDraft { kind, sigmas: self.number_of(fields, "sigmas") }
-    }
-
-    fn tolerances(&mut self, tolerance: &Fields<'_>, raw: &mut Raw) -> Vec<ToleranceDraft> {
-        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
-        let mut found = Vec::new();
-        for entry in self.entries_below(tolerance, "tolerance.", "variables", "design variable") {
-            let (name, at, value) = &entry;
-            let (place, reach, scatter, cost) = match value.get_ref() {
-                DeValue::Table(_) => {
-                    let fields = self.entry("the tolerance of", &entry, ENTRY_TABLE.keys());
-                    let place = EntryPlace::of(&fields);
-                    let reach = self.number_of(&fields, "tolerance");
-                    let scatter = self.scatter(&fields);
-                    (place, reach, scatter, self.number_of(&fields, "cost"))
-                }
-                _ => {
-                    self.unread.clear();
-                    let subject = Subject {
-                        name: format!("the tolerance of `{}`", shown(name)),
-                        example: format!(
-                            "for example `{name} = 0.1`, or `{name} = {{ tolerance = 0.1, cost = 5 }}`"
-                        ),
-                    };
-                    let mut place = EntryPlace::at(at.clone());
-                    place.key("tolerance", value);
-                    let reach = self.number(value, &subject);
-                    if reach.is_none() {
-                        self.unread.push("tolerance");
-                    }
-                    (place, reach, ScatterDraft::default(), None)
-                }
-            };
-            if !self.unread.is_empty() {
-                self.unread.push("");
-            }
-            self.push(raw, Section::Tolerances, place);
-            found.push(ToleranceDraft { name: entry.0, reach, scatter, cost, per_metre, per_radian });
+fn limits_of_tolerances(r: &mut Reader<'_>, tolerance: &Fields<'_>, raw: &mut Raw) -> Vec<LimitDraft> {
+    let (per_metre, per_radian) = (r.units.length.per_metre(), r.units.angle.per_radian());
+    let mut found = Vec::new();
+    for entry in r.entries_below(tolerance, "tolerance.", "limits", "limit") {
+        let fields = r.entry("limit", &entry, LIMIT.keys());
+        let place = EntryPlace::of(&fields);
+        let metric = r.name_of(&fields, "metric");
+        let [least, most] = ["min", "max"].map(|key| r.number_of(&fields, key));
+        if !fields.lost && fields.get("min").is_none() && fields.get("max").is_none() {
+            let message = format!("{} has no values", fields.what);
+            r.report("HP0104", fields.at.clone(), message).help =
+                Some("give `min = 50`, `max = 200`, or both of them".into());
+            r.unread.push("");
         }
-        found
-    }
-
-    fn correlations(&mut self, tolerance: &Fields<'_>, raw: &mut Raw) -> Vec<CorrelationDraft> {
-        let mut found = Vec::new();
-        for entry in self.entries_below(tolerance, "tolerance.", "correlations", "correlation") {
-            let fields = self.entry("correlation", &entry, CORRELATION.keys());
-            let place = EntryPlace::of(&fields);
-            let between = self.names_of::<2>(&fields, "between");
-            self.need(&fields, "coefficient");
-            let coefficient = self.number_of(&fields, "coefficient");
-            if between.is_none() || coefficient.is_none() {
-                self.unread.push("");
-            }
-            self.push(raw, Section::Correlations, place);
-            let (between, coefficient) = (between.unwrap_or_default(), coefficient.unwrap_or_default());
-            found.push(CorrelationDraft { name: entry.0, between, coefficient });
+        if !r.unread.is_empty() {
+            r.unread.push("");
         }
-        found
+        raw.push(r, Section::ToleranceLimits, place);
+        let of = LimitTargetDraft::Metric(metric.unwrap_or_else(|| entry.0.clone()));
+        found.push(LimitDraft { name: entry.0, of, least, most, per_metre, per_radian });
     }
-
-    fn limits_of_tolerances(&mut self, tolerance: &Fields<'_>, raw: &mut Raw) -> Vec<LimitDraft> {
-        let (per_metre, per_radian) = (self.units.length.per_metre(), self.units.angle.per_radian());
-        let mut found = Vec::new();
-        for entry in self.entries_below(tolerance, "tolerance.", "limits", "limit") {
-            let fields = self.entry("limit", &entry, LIMIT.keys());
-            let place = EntryPlace::of(&fields);
-            let metric = self.name_of(&fields, "metric");
-            let [least, most] = ["min", "max"].map(|key| self.number_of(&fields, key));
-            if !fields.lost && fields.get("min").is_none() && fields.get("max").is_none() {
-                let message = format!("{} has no values", fields.what);
-                self.report("HP0104", fields.at.clone(), message).help =
-                    Some("give `min = 50`, `max = 200`, or both of them".into());
-                self.unread.push("");
-            }
-            if !self.unread.is_empty() {
-                self.unread.push("");
-            }
-            self.push(raw, Section::ToleranceLimits, place);
-            let of = LimitTargetDraft::Metric(metric.unwrap_or_else(|| entry.0.clone()));
-            found.push(LimitDraft { name: entry.0, of, least, most, per_metre, per_radian });
-        }
-        found
-    }
-
-    /// A list of names.
-    pub(super) fn names_in(
-        &mut self,
-        fields: &Fields<'_>,
-        f: Field<'_>,
-        expected: &str,
-    ) -> Option<Vec<String>> {
-        let subject = fields.subject(f.key);
-        let list = self.list(f.value, &subject, expected)?;
-        if list.len() > MOST_NAMES {
-            self.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
-                Some(format!("name at most {MOST_NAMES}, or leave it out for all"));
-            return None;
-        }
-        let names: Vec<_> = list.into_iter().map(|v| self.name(v, &subject, expected)).collect();
-        names.into_iter().collect()
-    }
+    found
 }

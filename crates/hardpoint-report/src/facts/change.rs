@@ -1,12 +1,9 @@
 //! Description and unit of a design variable's change.
 
-use hardpoint::joint::Quantity;
-use hardpoint::law::ParameterKind;
-use hardpoint::model::{Change, DesignVariable, Model};
+use hardpoint::model::{Change, Model};
 use hardpoint::space::Vec3;
-use hardpoint_file::Units;
 
-use crate::figures::{names, number, order_unit, rounded, symbol};
+use crate::figures::{names, number, rounded};
 
 /// Short description of a variable's change.
 pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String {
@@ -18,58 +15,6 @@ pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool)
         text += "; rods keep their lengths";
     }
     text
-}
-
-/// Unit of a design variable; `1` for a plain number.
-///
-/// To the core, a parameter of a law that is neither a length nor an angle is a plain number. The rate of change of the
-/// parameter per unit of the variable then decides whether the variable is in the user's unit or in SI.
-pub fn variable_unit(model: &Model, units: Units, variable: &DesignVariable) -> String {
-    if variable.quantity != Quantity::Number {
-        return symbol(units, variable.quantity).into();
-    }
-    let mut found = variable.changes.iter().map(|change| match change {
-        Change::Law(change) => {
-            let driver = &model.drivers[change.driver.0];
-            let quantity = model.driven(driver).quantity;
-            let kind = driver.law.parameters()[change.parameter].kind;
-            parameter_unit(units, quantity, kind, change.rate.abs())
-        }
-        _ => None,
-    });
-    let first = found.next().flatten();
-    match first {
-        Some(unit) if found.all(|other| other.as_ref() == Some(&unit)) => unit,
-        _ => "1".into(),
-    }
-}
-
-/// Unit in which a parameter changes by one, if it changes by `rate` internally.
-fn parameter_unit(units: Units, driven: Quantity, kind: ParameterKind, rate: f64) -> Option<String> {
-    let is = |size: f64| (rate - size).abs() <= 1e-12 * size;
-    match kind {
-        ParameterKind::Time if is(1.0) => Some("s".into()),
-        ParameterKind::Frequency if is(1.0) => Some("Hz".into()),
-        ParameterKind::ValueRate(power) => {
-            let per = match power {
-                1 | 2 => return in_either(units, driven, is, |u| order_unit(u, driven, power as usize)),
-                n => format!("/s^{n}"),
-            };
-            in_either(units, driven, is, |u| format!("{}{per}", symbol(u, driven)))
-        }
-        _ => None,
-    }
-}
-
-/// Text for the user's units if the rate corresponds to them, otherwise for SI units.
-fn in_either(
-    units: Units,
-    driven: Quantity,
-    is: impl Fn(f64) -> bool,
-    text: impl Fn(Units) -> String,
-) -> Option<String> {
-    let meant = [units, Units::default()].into_iter().find(|u| is(u.to_si(driven, 1.0)));
-    meant.map(text)
 }
 
 /// Formatted direction: `x`, `-z`, `(0.6, 0.8, 0)`.

@@ -7,7 +7,6 @@ mod notes;
 mod redundancy;
 mod text;
 
-pub use change::variable_unit;
 pub use redundancy::{JointReplacement, RedundancyFact};
 pub use text::outline;
 pub(crate) use text::table;
@@ -26,7 +25,7 @@ use hardpoint::topology::{Block, Closure, CutReason, Formulation, JointRole, Row
 use hardpoint_file::{ModelFile, Units};
 use serde::Serialize;
 
-use crate::figures::{count, per, rounded, symbol, unit};
+use crate::figures::{count, per, rounded, symbol, unit, variable_unit};
 
 /// Facts of a mechanism, with the names of the model file and values in the user's units.
 #[derive(Clone, Debug, Serialize)]

@@ -13,12 +13,15 @@ use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 use hardpoint_study::whatif::{WhatIf, unwrapped_value};
 
-use crate::course::settled;
+use hardpoint_table::series::settled;
+
 use crate::page::{BodyTrack, Curve, Design, DesignCurves, DesignKind, Value};
 use crate::summary::StopFact;
 use crate::whatif::follows;
 
-use super::{Compose, ORIGIN};
+use hardpoint_table::series::ORIGIN;
+
+use super::Compose;
 
 /// Hardpoints of a body coincide if their distance is less than this fraction of the mechanism's size.
 const SAME: f64 = 1e-9;

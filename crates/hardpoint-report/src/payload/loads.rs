@@ -5,7 +5,8 @@ use hardpoint::load::Loads;
 use hardpoint::model::Model;
 use hardpoint::space::Vec3;
 
-use crate::course::settled;
+use hardpoint_table::series::settled;
+
 use crate::page::{BodyPlace, Curve, LoadMark};
 
 use super::Compose;

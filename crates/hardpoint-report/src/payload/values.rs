@@ -2,7 +2,8 @@
 
 use hardpoint::model::{Dimension, Driver, OutputSource, VariableId};
 
-use crate::course::settled;
+use hardpoint_table::series::settled;
+
 use crate::facts::VariableAdmissibility;
 use crate::figures::order_unit;
 use crate::metric::MetricFact;

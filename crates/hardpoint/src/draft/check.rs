@@ -394,9 +394,23 @@ impl<'a> Checker<'a> {
         let count = numbers.map_or_else(|| candidates.clone().count(), HashMap::len);
         // A suggestion takes a comparison with every name. Beyond the errors that a user reads, it only costs time.
         let guess = self.faults.len() < GUESSES && count <= self.comparisons;
-        let close = if guess { did_you_mean(name, candidates.clone()) } else { None };
         self.comparisons -= if guess { count } else { 0 };
-        let valid: Vec<String> = candidates.take(LISTED_NAMES).map(|c| format!("`{c}`")).collect();
+        let names: Vec<&str> = candidates.take(if guess { count } else { LISTED_NAMES }).collect();
+        let close = if guess { did_you_mean(name, names.iter().copied()) } else { None };
+        self.report_unknown(what, name, at, (&names, count), close);
+        None
+    }
+
+    /// Reports HP0204 with some of the valid names and their count, and with a similar name if there is one.
+    fn report_unknown(
+        &mut self,
+        what: &str,
+        name: &str,
+        at: DraftLocation,
+        (names, count): (&[&str], usize),
+        close: Option<&str>,
+    ) {
+        let valid: Vec<String> = names.iter().take(LISTED_NAMES).map(|c| format!("`{c}`")).collect();
         let more = count.saturating_sub(valid.len());
         let on_a_body = (what == "point").then(|| self.point_at(name)).flatten();
         let fault = self.fault("HP0204", at, format!("there is no {what} named `{name}`"));
@@ -411,7 +425,6 @@ impl<'a> Checker<'a> {
             }
             None => {}
         }
-        None
     }
 
     /// Returns a suggestion if a hardpoint is named instead of a point.

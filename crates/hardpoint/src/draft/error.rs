@@ -147,10 +147,13 @@ pub fn some_of(items: &[impl AsRef<str>], separator: &str, most: usize) -> Strin
 
 /// Returns the candidate closest to a misspelt name, if at most a third of the letters differ.
 pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    closest(name, &mut candidates.into_iter())
+}
+
+fn closest<'a>(name: &str, candidates: &mut dyn Iterator<Item = &'a str>) -> Option<&'a str> {
     let lower = name.to_lowercase();
     let length = name.chars().count();
     candidates
-        .into_iter()
         .filter_map(|c| {
             let other = c.chars().count();
             let allowed = (usize::min(length, other) + 1) / 3;

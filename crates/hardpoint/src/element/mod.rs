@@ -23,6 +23,5 @@ mod friction;
 mod mesh;
 mod point_force;
 mod rigid;
-mod slide_friction;
 mod spring;
 mod wheel_force;

@@ -11,6 +11,7 @@ use crate::model::{
     Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, Wheel,
     WheelId, elements, if_mass,
 };
+use crate::number::Dual;
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
 /// Pose, velocity and acceleration of a body.
@@ -26,8 +27,19 @@ pub(crate) struct MovingBody<T> {
 
 impl<T: Real> MovingBody<T> {
     /// A body at rest, at the identity pose.
-    pub fn still() -> Self {
+    pub fn at_rest() -> Self {
         Self { pose: Pose::IDENTITY.spread(), v: Twist::zero(), a: Twist::zero() }
+    }
+
+    /// This motion with its derivative, from its design twist W and the first two rates of it: `A' = W_w x A, r' = W at
+    /// r` and (14) for V' and A'.
+    pub fn along(&self, [w0, w1, w2]: [Twist<T>; 3]) -> MovingBody<Dual<T>> {
+        let Self { pose, v, a } = *self;
+        MovingBody {
+            pose: pose.along(w0),
+            v: v.with_derivative(w1 + w0.ad(v)),
+            a: a.with_derivative(w2 + w1.ad(v) + w0.ad(a)),
+        }
     }
 
     /// Velocity of the body point at `p`.
@@ -140,7 +152,7 @@ elements!(in_loads);
 
 impl<T: Real> AppliedLoads<'_, T> {
     /// Computes per body, ground included, F = f - g: the wrench that its joints must apply.
-    pub fn needed(&self, out: &mut [Wrench<T>]) {
+    pub fn required(&self, out: &mut [Wrench<T>]) {
         out.fill(Wrench::zero());
         for k in 0..self.model.elements.len() {
             self.add(ElementId(k), out);
@@ -305,19 +317,19 @@ impl<T: Real> AppliedLoads<'_, T> {
     /// Friction coefficient per normal force, against the motion, and the viscous part: `mu r s` and `c w` of a hinge,
     /// `mu s` and `c v` of a slide, with s from -1 to 1, 0 at rest; of a ball joint, whose unit vector contains s,
     /// `mu r` and `c sqrt(omega^2 + w_0^2)`.
-    pub fn grip(&self, e: ElementId) -> [T; 2] {
+    pub fn friction_coefficients(&self, e: ElementId) -> [T; 2] {
         let Some(friction) = self.friction_of(e) else { return [T::zero(); 2] };
-        let grip = self.number(friction.coefficient);
-        let grip = friction.radius.map_or(grip, |radius| grip * self.number(radius));
+        let coulomb = self.number(friction.coefficient);
+        let coulomb = friction.radius.map_or(coulomb, |radius| coulomb * self.number(radius));
         let transition_velocity = self.transition_velocity(&friction);
         let viscous = self.or_zero(friction.viscous);
         let Some(coordinate) = friction.coordinate else {
-            return [grip, viscous * magnitude_with(self.turn(friction.joint), transition_velocity)];
+            return [coulomb, viscous * magnitude_with(self.turn(friction.joint), transition_velocity)];
         };
         let [_, rate] = self.coordinate(e, (friction.joint, coordinate));
         // s = w / sqrt(w^2 + w_0^2)
         let s = rate / (rate * rate + transition_velocity * transition_velocity).sqrt();
-        [grip * s, viscous * rate]
+        [coulomb * s, viscous * rate]
     }
 
     /// Normal forces at a friction element, from the reaction wrench of its joint on body j: the force across the axis,

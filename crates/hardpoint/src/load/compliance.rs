@@ -9,21 +9,22 @@ use crate::design::{BodyFixed, DesignMap, Geometry};
 use crate::linalg::Elimination;
 use crate::measure::{Instant, StepValues, bodies_asked_for};
 use crate::model::element::Compliance;
-use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, NumberId, VariableId, WheelId};
-use crate::motion::stepper::Stepper;
+use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, NumberId, WheelId};
+use crate::motion::mechanism::Mechanism;
 use crate::number::{Dual, Real};
-use crate::sensitivity::{PairDirection, Seconds};
+use crate::sensitivity::{PairDirection, Seconds, pair_with_variables, values_along_variable};
 use crate::space::{Mat3, Pose, Twist, Vec3};
 use crate::topology::{RowId, Topology};
 
 use super::acting::{AppliedLoads, MovingBody};
+use super::equilibrium::LoadedPosition;
 
 /// A number with its derivatives along a direction (outer) and by a variable (inner).
 type Number = Dual<Dual>;
 
 /// A direction of deflection.
 #[derive(Clone, Debug)]
-enum Way {
+enum Deflection {
     /// An elastic joint opens, against this stiffness.
     Opening(NumberId),
     /// A driver is released: its load is zero.
@@ -31,29 +32,26 @@ enum Way {
 }
 
 /// Quantities that depend on a variable, or on none.
-struct Changed {
+struct ChangedDesign {
     fixed: BodyFixed<Number>,
     geometry: Geometry<Number>,
 }
 
-/// Evaluates compliances at the position of a stepper, for one design.
+/// Evaluates compliances at the position of a mechanism, for one design.
 pub(crate) struct Compliances<'a> {
     model: &'a Model,
     asked: Vec<usize>,
-    ways: Vec<Way>,
+    ways: Vec<Deflection>,
     variables: usize,
     seconds: Seconds,
     /// Per variable; the last entry has no derivative.
-    changed: Vec<Changed>,
+    changed: Vec<ChangedDesign>,
     bodies: Vec<usize>,
     /// Per direction: resistance of the redundant constraints; empty if the mechanism follows.
     resistance: Vec<Vec<(RowId, f64)>>,
     /// Poses per direction and body.
     poses: Vec<Vec<Pose<Number>>>,
-    moving: Vec<MovingBody<Number>>,
-    laws: Vec<Number>,
-    near: Vec<Number>,
-    friction: Vec<Number>,
+    position: LoadedPosition<Number>,
 }
 
 impl<'a> Compliances<'a> {
@@ -71,38 +69,19 @@ impl<'a> Compliances<'a> {
         if asked.is_empty() {
             return None;
         }
-        let (mut ways, mut directions) = (Vec::new(), Vec::new());
-        for element in &model.elements {
-            let (joint, [slides, turns]) = match element.kind.force(model).map(|force| force.compliance) {
-                Some(Compliance::Joint(joint, stiffnesses)) => (joint, stiffnesses),
-                Some(Compliance::None | Compliance::Element) | None => continue,
-            };
-            for (axis, (slide, turn)) in Vec3::AXES.into_iter().zip(slides.into_iter().zip(turns)) {
-                let twists = [Twist { w: Vec3::ZERO, v: axis }, Twist { w: axis, v: Vec3::ZERO }];
-                for (stiffness, twist) in [slide, turn].into_iter().zip(twists) {
-                    if let Some(stiffness) = stiffness {
-                        ways.push(Way::Opening(stiffness));
-                        directions.push(PairDirection::Opening(joint, twist));
-                    }
-                }
-            }
-        }
+        let (mut ways, mut directions) = elastic_directions(model);
         let mut released: Vec<DriverId> = asked.iter().filter_map(|m| released_by(model, *m)).collect();
         released.sort_unstable();
         released.dedup();
         for driver in released {
-            ways.push(Way::Released(driver));
+            ways.push(Deflection::Released(driver));
             directions.push(PairDirection::Driver(driver));
         }
         let variables = if sensitivities { model.variables.len() } else { 0 };
-        let ways_to_go = ways.len();
-        directions.extend((0..variables).map(|v| PairDirection::Design(model.alone(VariableId(v), 1.0))));
-        let pairs: Vec<[usize; 2]> =
-            (0..variables).flat_map(|v| (0..ways_to_go).map(move |d| [d, ways_to_go + v])).collect();
+        let pairs = pair_with_variables(model, &mut directions, variables);
         let changed = |by: usize| {
-            let value = |k: usize| Dual::constant(Dual { v: values[k], d: f64::from(u8::from(k == by)) });
-            let values: Vec<Number> = (0..values.len()).map(value).collect();
-            Changed { fixed: design_map.fixed(&values), geometry: design_map.geometry(&values) }
+            let values = values_along_variable(values, by);
+            ChangedDesign { fixed: design_map.fixed(&values), geometry: design_map.geometry(&values) }
         };
         let mut bodies = bodies_asked_for(model);
         let forces = model.elements.iter().filter_map(|e| e.kind.force(model));
@@ -116,10 +95,7 @@ impl<'a> Compliances<'a> {
             seconds: Seconds::new(design_map, topology, values, &directions, &pairs),
             changed: (0..variables).chain([usize::MAX]).map(changed).collect(),
             poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; ways.len()],
-            moving: vec![MovingBody::still(); model.bodies.len()],
-            laws: vec![Dual::one(); model.elements.len()],
-            near: Vec::new(),
-            friction: vec![Dual::zero(); model.elements.len()],
+            position: LoadedPosition::new(model),
             resistance: vec![Vec::new(); ways.len()],
             ways,
             variables,
@@ -128,107 +104,116 @@ impl<'a> Compliances<'a> {
     }
 
     /// Adds the results at time t; `near` are approximate coordinates of the elements, for counting turns.
-    pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, near: &[f64], out: &mut StepValues) {
-        self.seconds.solve(stepper, t);
+    pub fn add(&mut self, mechanism: &mut Mechanism<'_>, t: f64, near: &[f64], out: &mut StepValues) {
+        self.seconds.solve(mechanism, t);
         // Includes the redundant rows, which the motion is not solved with.
-        stepper.state.finish_wrenches(&stepper.topology);
+        mechanism.state.finish_wrenches(&mechanism.topology);
         for (way, resistance) in self.resistance.iter_mut().enumerate() {
-            *resistance = self.seconds.resistance(stepper, way);
+            *resistance = self.seconds.resistance(mechanism, way);
         }
-        self.near.clear();
-        self.near.extend(near.iter().map(|x| Number::constant(Dual::constant(*x))));
+        let constants = near.iter().map(|x| Number::constant(Dual::constant(*x)));
+        self.position.near.iter_mut().zip(constants).for_each(|(to, near)| *to = near);
         for by in 0..=self.variables {
-            for (way, poses) in self.poses.iter_mut().enumerate() {
-                for &body in &self.bodies {
-                    poses[body] = if by < self.variables {
-                        self.seconds.pose(&stepper.state, by * self.ways.len() + way, body)
-                    } else {
-                        self.seconds.pose_along(&stepper.state, way, body)
-                    };
-                }
-            }
+            self.seconds.set_poses(&mechanism.state, by, &self.bodies, &mut self.poses);
             self.enter(by, out);
         }
     }
 
     /// Writes values, or derivatives by a variable.
     fn enter(&mut self, by: usize, out: &mut StepValues) {
-        let Changed { fixed, geometry } = &self.changed[by];
-        let model = self.model;
-        // Per direction: deflections of springs and bushings, each with its stiffness.
-        let mut given: Vec<Vec<(Dual, Dual)>> = Vec::new();
-        for poses in &self.poses {
-            for &b in &self.bodies {
-                self.moving[b] = MovingBody { pose: poses[b], v: Twist::zero(), a: Twist::zero() };
-            }
-            let (bodies, laws, near, friction) = (&self.moving, &self.laws, &self.near, &self.friction);
-            let acting = AppliedLoads { model, geometry, bodies, laws, near, friction };
-            let mut list = Vec::new();
-            for e in (0..model.elements.len()).map(ElementId) {
-                acting.deflections(e, |way, stiffness| list.push((way.d, stiffness.v)));
-            }
-            given.push(list);
-        }
+        let deflections = self.deflections(by);
         for &m in &self.asked {
-            let MeasureKind::Compliance { of, at, wheel, along, .. } = &model.measures[m].kind else {
-                continue;
-            };
-            let released = released_by(model, m);
-            let counts = |way: &Way| match way {
-                Way::Opening(_) => true,
-                Way::Released(driver) => Some(*driver) == released,
-            };
-            let chosen = (0..self.ways.len()).filter(|w| counts(&self.ways[*w]));
-            let (chosen, resisted): (Vec<usize>, Vec<usize>) =
-                chosen.partition(|w| self.resistance[*w].is_empty());
-            // Sum over the directions y_a r_a = 0, with r_a the resistance of the redundant constraints. If all r_a are
-            // independent, none of these joints opens, since the others are rigid. Otherwise some may open together,
-            // and the forces are not determined.
-            let is_known = are_independent(resisted.iter().map(|w| &self.resistance[*w][..]));
-            // L . Y of the output, and the work of a unit force
-            let mut gives: Vec<Dual> = Vec::new();
-            let mut works: Vec<Dual> = Vec::new();
-            for &w in &chosen {
-                let poses = &self.poses[w];
-                gives.push(Instant::new(model, fixed, poses).output(*of).d);
-                let p = match (at, wheel) {
-                    (Some(at), _) => poses[model.points[at.0].body.0].point(fixed.points[at.0]),
-                    (None, Some(wheel)) => self.contact(poses, geometry, *wheel),
-                    (None, None) => Vec3::zero(),
-                };
-                works.push(along.spread::<Number>().dot(p).d);
-            }
-            let mut stiffness = Elimination::<Dual>::new(chosen.len());
-            for (r, &a) in chosen.iter().enumerate() {
-                for (c, &b) in chosen.iter().enumerate() {
-                    // K_ab = K_a for a = b, + sum over springs k y_a y_b
-                    let mut sum = match self.ways[a] {
-                        Way::Opening(n) if a == b => geometry.numbers[n.0].v,
-                        _ => Dual::zero(),
-                    };
-                    for ((y_a, k), (y_b, _)) in given[a].iter().zip(&given[b]) {
-                        sum += *k * *y_a * *y_b;
-                    }
-                    stiffness.row_mut(r)[c] = sum;
-                }
-            }
-            // Without stiffness against a released driver the compliance is infinite.
-            let x = if !is_known {
-                Dual::constant(f64::NAN)
-            } else if chosen.is_empty() {
-                Dual::zero()
-            } else if stiffness.factor().pivot_ratio > SINGULAR {
-                stiffness.solve(&mut works);
-                gives.iter().zip(&works).fold(Dual::zero(), |sum, (l, p)| sum + *l * *p)
-            } else {
-                Dual::constant(f64::NAN)
-            };
+            let x = self.compliance(m, by, &deflections);
             if by < self.variables { out.set_d(by, m, x.d) } else { out.set(m, x.v) }
         }
     }
-}
 
-impl Compliances<'_> {
+    /// Returns per direction the deflections of springs and bushings, each with its stiffness.
+    fn deflections(&mut self, by: usize) -> Vec<Vec<(Dual, Dual)>> {
+        let Self { model, changed, poses, bodies, position, .. } = self;
+        let of_direction = |poses: &Vec<Pose<Number>>| {
+            for &b in &*bodies {
+                position.bodies[b].pose = poses[b];
+            }
+            let applied = position.loads(model, &changed[by].geometry);
+            let mut list = Vec::new();
+            for e in (0..model.elements.len()).map(ElementId) {
+                applied.deflections(e, |deflection, stiffness| list.push((deflection.d, stiffness.v)));
+            }
+            list
+        };
+        poses.iter().map(of_direction).collect()
+    }
+
+    /// Returns the compliance of measure m with its derivative by a variable; NaN if it is not determined.
+    fn compliance(&self, m: usize, by: usize, deflections: &[Vec<(Dual, Dual)>]) -> Dual {
+        let unknown = Dual::constant(f64::NAN);
+        let (model, ChangedDesign { fixed, geometry }) = (self.model, &self.changed[by]);
+        let MeasureKind::Compliance { of, at, wheel, along, .. } = &model.measures[m].kind else {
+            return unknown;
+        };
+        let released = released_by(model, m);
+        let counts = |way: &Deflection| match way {
+            Deflection::Opening(_) => true,
+            Deflection::Released(driver) => Some(*driver) == released,
+        };
+        let chosen = (0..self.ways.len()).filter(|w| counts(&self.ways[*w]));
+        let (chosen, resisted): (Vec<usize>, Vec<usize>) =
+            chosen.partition(|w| self.resistance[*w].is_empty());
+        // Sum over the directions y_a r_a = 0, with r_a the resistance of the redundant constraints. If all r_a are
+        // independent, none of these joints opens, since the others are rigid. Otherwise some may open together, and
+        // the forces are not determined.
+        if !are_independent(resisted.iter().map(|w| &self.resistance[*w][..])) {
+            return unknown;
+        }
+        if chosen.is_empty() {
+            return Dual::zero();
+        }
+        // L . Y of the output, and the work of a unit force
+        let [mut outputs, mut works] = [const { Vec::new() }; 2];
+        for &w in &chosen {
+            let poses = &self.poses[w];
+            outputs.push(Instant::new(model, fixed, poses).output(*of).d);
+            let p = match (at, wheel) {
+                (Some(at), _) => poses[model.points[at.0].body.0].point(fixed.points[at.0]),
+                (None, Some(wheel)) => self.contact(poses, geometry, *wheel),
+                (None, None) => Vec3::zero(),
+            };
+            works.push(along.spread::<Number>().dot(p).d);
+        }
+        let mut stiffness = self.stiffness(&chosen, geometry, deflections);
+        // Without stiffness against a released driver the compliance is infinite.
+        if !(stiffness.factor().pivot_ratio > SINGULAR) {
+            return unknown;
+        }
+        stiffness.solve(&mut works);
+        outputs.iter().zip(&works).fold(Dual::zero(), |sum, (l, p)| sum + *l * *p)
+    }
+
+    /// Stiffness matrix of these directions.
+    fn stiffness(
+        &self,
+        chosen: &[usize],
+        geometry: &Geometry<Number>,
+        deflections: &[Vec<(Dual, Dual)>],
+    ) -> Elimination<Dual> {
+        let mut stiffness = Elimination::new(chosen.len());
+        for (r, &a) in chosen.iter().enumerate() {
+            for (c, &b) in chosen.iter().enumerate() {
+                // K_ab = K_a for a = b, + sum over springs k y_a y_b
+                let mut sum = match self.ways[a] {
+                    Deflection::Opening(n) if a == b => geometry.numbers[n.0].v,
+                    Deflection::Opening(_) | Deflection::Released(_) => Dual::zero(),
+                };
+                for ((y_a, k), (y_b, _)) in deflections[a].iter().zip(&deflections[b]) {
+                    sum += *k * *y_a * *y_b;
+                }
+                stiffness.row_mut(r)[c] = sum;
+            }
+        }
+        stiffness
+    }
+
     /// Body point at the contact of a wheel, moved along a deflection. The road acts on this material point, while the
     /// contact point itself moves over the wheel.
     fn contact(&self, poses: &[Pose<Number>], geometry: &Geometry<Number>, wheel: WheelId) -> Vec3<Number> {
@@ -236,13 +221,33 @@ impl Compliances<'_> {
         let now = |x: Number| Dual::constant(x.v);
         let held =
             |p: &Pose<Number>| Pose { rot: Mat3 { cols: p.rot.cols.map(|c| c.map(now)) }, r: p.r.map(now) };
-        let mut bodies = vec![MovingBody::still(); poses.len()];
+        let mut bodies = vec![MovingBody::at_rest(); poses.len()];
         bodies[body].pose = held(&poses[body]);
-        let (laws, near, friction) = (&self.laws, &self.near, &self.friction);
-        let acting = AppliedLoads { model: self.model, geometry, bodies: &bodies, laws, near, friction };
+        let acting = AppliedLoads { bodies: &bodies, ..self.position.loads(self.model, geometry) };
         let contact = acting.wheel(wheel).contact();
         poses[body].point(bodies[body].pose.inverse().point(contact))
     }
+}
+
+/// Directions in which elastic joints open, with their stiffnesses.
+fn elastic_directions(model: &Model) -> (Vec<Deflection>, Vec<PairDirection>) {
+    let (mut ways, mut directions) = (Vec::new(), Vec::new());
+    for element in &model.elements {
+        let (joint, [slides, turns]) = match element.kind.force(model).map(|force| force.compliance) {
+            Some(Compliance::Joint(joint, stiffnesses)) => (joint, stiffnesses),
+            Some(Compliance::None | Compliance::Element) | None => continue,
+        };
+        for (axis, (slide, turn)) in Vec3::AXES.into_iter().zip(slides.into_iter().zip(turns)) {
+            let twists = [Twist { w: Vec3::ZERO, v: axis }, Twist { w: axis, v: Vec3::ZERO }];
+            for (stiffness, twist) in [slide, turn].into_iter().zip(twists) {
+                if let Some(stiffness) = stiffness {
+                    ways.push(Deflection::Opening(stiffness));
+                    directions.push(PairDirection::Opening(joint, twist));
+                }
+            }
+        }
+    }
+    (ways, directions)
 }
 
 /// Returns true if these vectors are linearly independent; each is given by its nonzero entries, in the order of rows.

@@ -6,13 +6,11 @@
 
 use crate::linalg::Elimination;
 use crate::model::{ElementId, JointId, Model};
-use crate::number::Dual;
 use crate::space::{Real, Vec3, Wrench};
 
 use super::acting::{AppliedLoads, force_size};
-use super::carry::{Carried, Stress};
-use super::measures::Instant;
-use super::solver::LoadSolver;
+use super::equilibrium::{SelfStress, TransmittedLoads};
+use super::measures::LoadMeasures;
 
 /// Maximum number of Newton iterations. Newton's method from zero friction takes 3 to 7 of them if there is a solution;
 /// otherwise the joints jam.
@@ -30,16 +28,15 @@ pub(super) struct Friction {
     elements: Vec<FrictionElement>,
     /// `1 + diag(c) dN/dM` at the solution.
     matrix: Elimination<f64>,
-    /// Per friction element: the moment or force, and its derivative by a variable.
+    /// Per friction element: the moment or force.
     moments: Vec<f64>,
-    changes: Vec<f64>,
 }
 
 struct FrictionElement {
     element: ElementId,
     joint: JointId,
     /// Friction coefficient c, viscous part d, and normal forces without friction.
-    grip: f64,
+    coulomb: f64,
     viscous: f64,
     normal_forces: ([Vec3; 2], usize),
     /// Normal forces of this element per unit friction moment of every friction element.
@@ -57,7 +54,7 @@ impl FrictionElement {
         Some(Self {
             element,
             joint,
-            grip: 0.0,
+            coulomb: 0.0,
             viscous: 0.0,
             normal_forces,
             per_moment,
@@ -72,7 +69,7 @@ impl Friction {
         let elements = (0..model.elements.len()).map(ElementId);
         let elements: Vec<FrictionElement> = elements.filter_map(|e| FrictionElement::of(model, e)).collect();
         let n = elements.len();
-        Self { elements, matrix: Elimination::new(n), moments: vec![0.0; n], changes: vec![0.0; n] }
+        Self { elements, matrix: Elimination::new(n), moments: vec![0.0; n] }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -81,23 +78,33 @@ impl Friction {
 
     /// Sets the joint wrenches without friction; `responses` are the wrenches of all joints due to a unit moment of
     /// each friction element.
-    pub fn set(&mut self, acting: &AppliedLoads<'_, f64>, carried: &Carried<f64>, responses: &[Vec<Wrench>]) {
+    pub fn set(
+        &mut self,
+        applied: &AppliedLoads<'_, f64>,
+        transmitted: &TransmittedLoads<f64>,
+        responses: &[Vec<Wrench>],
+    ) {
         for friction in &mut self.elements {
-            [friction.grip, friction.viscous] = acting.grip(friction.element);
-            friction.normal_forces = acting.normal_forces(friction.element, carried.joints[friction.joint.0]);
+            [friction.coulomb, friction.viscous] = applied.friction_coefficients(friction.element);
+            friction.normal_forces =
+                applied.normal_forces(friction.element, transmitted.joints[friction.joint.0]);
             // Normal forces are linear in the joint's wrench.
-            let per = |all: &Vec<Wrench>| acting.normal_forces(friction.element, all[friction.joint.0]).0;
+            let per = |all: &Vec<Wrench>| applied.normal_forces(friction.element, all[friction.joint.0]).0;
             friction.per_moment = responses.iter().map(per).collect();
         }
     }
 
     /// Solves for the friction moments. They are NaN if joints jam, or if self-stresses of redundant constraints change
     /// the normal forces.
-    pub fn solve(&mut self, acting: &AppliedLoads<'_, f64>, stresses: &[Stress<f64>]) {
+    pub fn solve(&mut self, applied: &AppliedLoads<'_, f64>, stresses: &[SelfStress<f64>]) {
         self.moments.fill(0.0);
         for friction in &mut self.elements {
-            let is_independent = |Stress { carried, most }: &Stress<f64>| {
-                Instant { acting, carried }.has_no_normal_force(friction.element, friction.joint, *most)
+            let is_independent = |SelfStress { loads, largest }: &SelfStress<f64>| {
+                LoadMeasures { applied, transmitted: loads }.has_no_normal_force(
+                    friction.element,
+                    friction.joint,
+                    *largest,
+                )
             };
             friction.is_shared = !stresses.iter().all(is_independent);
         }
@@ -117,14 +124,14 @@ impl Friction {
         let gain = |friction: &FrictionElement| {
             let (_, count) = friction.normal_forces;
             let all = friction.per_moment.iter().map(|b| b.iter().take(count).map(|f| f.norm()).sum::<f64>());
-            friction.grip.abs() * all.sum::<f64>()
+            friction.coulomb.abs() * all.sum::<f64>()
         };
         if self.elements.iter().all(|friction| gain(friction) < 1.0) {
             return false;
         }
         let (found, n) = (self.moments.clone(), self.elements.len());
         let size = |friction: &FrictionElement| {
-            friction.normal_forces.0.iter().map(|f| f.norm()).sum::<f64>() * friction.grip.abs()
+            friction.normal_forces.0.iter().map(|f| f.norm()).sum::<f64>() * friction.coulomb.abs()
         };
         let scale = self.elements.iter().map(size).chain(found.iter().map(|m| m.abs())).fold(0.0, f64::max);
         let (mut others, far) = (false, FAR * scale);
@@ -132,7 +139,7 @@ impl Friction {
         for (one, sign) in (0..=n).flat_map(|one| [(one, 1.0), (one, -1.0)]) {
             self.moments.copy_from_slice(&found);
             for (k, m) in self.moments.iter_mut().enumerate().filter(|(k, _)| one == n || *k == one) {
-                *m = sign * far * if self.elements[k].grip < 0.0 { -1.0 } else { 1.0 };
+                *m = sign * far * if self.elements[k].coulomb < 0.0 { -1.0 } else { 1.0 };
             }
             if !(0..MOST_STEPS).any(|_| self.newton()) {
                 continue;
@@ -165,15 +172,15 @@ impl Friction {
                 let normal = force_size(force);
                 size += normal;
                 for (entry, b) in row.iter_mut().zip(here) {
-                    *entry += friction.grip * force.dot(b) / normal;
+                    *entry += friction.coulomb * force.dot(b) / normal;
                 }
             }
             // M + c N + d = 0
-            rhs[k] = -(self.moments[k] + friction.grip * size + friction.viscous);
+            rhs[k] = -(self.moments[k] + friction.coulomb * size + friction.viscous);
             worst = worst.max(rhs[k].abs());
             largest = largest
                 .max(self.moments[k].abs())
-                .max((friction.grip * size).abs())
+                .max((friction.coulomb * size).abs())
                 .max(friction.viscous.abs());
         }
         self.matrix.factor();
@@ -183,15 +190,6 @@ impl Friction {
         self.matrix.solve(&mut rhs);
         self.moments.iter_mut().zip(rhs).for_each(|(m, step)| *m += step);
         false
-    }
-
-    /// Derivatives of the friction moments, from the joint wrenches at constant moments.
-    pub fn differentiate(&mut self, acting: &AppliedLoads<'_, Dual>, carried: &Carried<Dual>) {
-        for (change, friction) in self.changes.iter_mut().zip(&self.elements) {
-            // (1 + diag(c) dN/dM) M' = -(c' N + c N' + d')
-            *change = -resistance(acting, friction, carried).d;
-        }
-        self.matrix.solve(&mut self.changes);
     }
 
     /// Elements whose friction is not determined, because redundant constraints share the normal force.
@@ -215,58 +213,30 @@ impl Friction {
         self.elements.iter().map(|h| h.joint)
     }
 
-    /// Lagrange multipliers of the equations `M + c N + d = 0` for a load with these derivatives by the moments:
-    /// `E_M^T lambda = -y_M`.
-    pub fn multipliers(&self, by_moments: Vec<f64>) -> Vec<f64> {
-        let mut lambda: Vec<f64> = by_moments.iter().map(|x| -x).collect();
-        self.matrix.clone().solve_transposed(&mut lambda);
-        lambda
+    /// Solves for the Lagrange multipliers of the equations `M + c N + d = 0` of a load, given its derivatives by the
+    /// moments: `E_M^T lambda = -y_M`.
+    pub fn solve_multipliers(&self, by_moments: &mut [f64]) {
+        by_moments.iter_mut().for_each(|x| *x = -*x);
+        self.matrix.clone().solve_transposed(by_moments);
     }
 
-    /// Residuals of the equations, each times its multiplier; the sum.
-    pub fn weighted_residual(
+    /// Residual of equation k.
+    pub fn residual<T: Real>(
         &self,
-        acting: &AppliedLoads<'_, Dual>,
-        carried: &Carried<Dual>,
-        multipliers: &[f64],
-    ) -> Dual {
-        let of = |(friction, multiplier): (&FrictionElement, &f64)| {
-            // M + c N + d
-            (acting.friction[friction.element.0] + resistance(acting, friction, carried)) * *multiplier
-        };
-        self.elements.iter().zip(multipliers).map(of).fold(Dual::zero(), |sum, x| sum + x)
+        k: usize,
+        applied: &AppliedLoads<'_, T>,
+        transmitted: &TransmittedLoads<T>,
+    ) -> T {
+        let FrictionElement { element, joint, .. } = self.elements[k];
+        let [coulomb, viscous] = applied.friction_coefficients(element);
+        let (normal_forces, count) = applied.normal_forces(element, transmitted.joints[joint.0]);
+        // M + c N + d
+        let resistance = |sum: T, force| sum + coulomb * force_size(force);
+        applied.friction[element.0] + normal_forces.into_iter().take(count).fold(viscous, resistance)
     }
 
     /// Writes the moments by element.
-    pub fn enter(&self, out: &mut [f64]) {
+    pub fn write_moments(&self, out: &mut [f64]) {
         self.elements.iter().zip(&self.moments).for_each(|(friction, m)| out[friction.element.0] = *m);
     }
-
-    /// Writes the moments with their derivatives by element.
-    pub fn enter_changed(&self, out: &mut [Dual]) {
-        let both = self.moments.iter().zip(&self.changes);
-        self.elements
-            .iter()
-            .zip(both)
-            .for_each(|(friction, (v, d))| out[friction.element.0] = Dual { v: *v, d: *d });
-    }
-}
-
-impl LoadSolver<'_> {
-    /// Elements whose friction is not determined at this step, because redundant constraints share the normal force.
-    pub fn shared_friction(&self) -> impl Iterator<Item = ElementId> {
-        self.friction.shared()
-    }
-
-    /// Elements whose friction has more than one solution at this step.
-    pub fn ambiguous_friction(&self) -> impl Iterator<Item = ElementId> {
-        self.friction.ambiguous()
-    }
-}
-
-/// `c N + d`.
-fn resistance<T: Real>(acting: &AppliedLoads<'_, T>, friction: &FrictionElement, carried: &Carried<T>) -> T {
-    let [grip, viscous] = acting.grip(friction.element);
-    let (normal_forces, count) = acting.normal_forces(friction.element, carried.joints[friction.joint.0]);
-    normal_forces.into_iter().take(count).fold(viscous, |sum, force| sum + grip * force_size(force))
 }

@@ -1,253 +1,139 @@
-//! Gradient of one load by all variables, by the adjoint method: one propagation to ground per load.
+//! Gradients of loads by all variables, by the adjoint method: one propagation to ground per load.
 //!
-//! Every load is `y = sum F . Y`, with Y the twists of the bodies when its joint opens, or its driver moves alone. So
-//! `y' = sum F' . Y + sum F . Y'` is linear in the design twists W, W., W.. and in the twists of the joint frames, and
-//! its coefficients are adjoint loads like those of any output (`docs/theory.md` (48)).
-//!
-//! | here | theory | meaning |
-//! |---|---|---|
-//! | [`Weights`] | C, w | derivatives of the load by joint wrenches, driver forces, and the wrench on ground |
-//! | [`VirtualMotion`] | Y, S_Y | virtual motion due to these weights |
-//! | `loads` | P | `sum F' . Y` by W, W., W.. of each body |
-//! | [`VirtualMotion::turning`] | | `sum F . Y'` by the twists of the frames that unit twists and wrenches turn with |
+//! The coefficients of a load on the design twists ([`LoadDerivatives`]) are adjoint loads like those of any output
+//! (`docs/theory.md` (48)). Here those of the force elements are included.
 
 use crate::design::Geometry;
 use crate::model::{DriverId, ElementId, MeasureKind, Model};
 use crate::motion::kinematics::State;
+use crate::motion::stepper::Stepper;
 use crate::number::Dual;
 use crate::sensitivity::{Adjoint, Load, Support};
 use crate::space::{Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
-use super::acting::{AppliedLoads, MovingBody};
-use super::carry::{Carried, Equilibrium, LoadedPosition, changed};
-use super::measures::Instant;
 use super::solver::LoadSolver;
-use super::virtual_motion::{VirtualMotion, Weights, set, unit_twist};
 
-/// Gradients of loads at the position of a stepper. A step allocates only a few weights.
-pub(crate) struct LoadGradients {
-    /// Y, and the loads on the frames of joints.
-    virtual_motion: VirtualMotion<f64>,
-    /// Motion of the bodies with derivatives.
-    bodies: Vec<MovingBody<Dual>>,
-    laws: Vec<Dual>,
-    near: Vec<Dual>,
-    friction: Vec<Dual>,
-    carried: Carried<Dual>,
-    needed: Vec<Wrench<Dual>>,
+/// Gradients of the loads of a solver. Without friction and redundant constraints a step allocates no memory.
+pub(crate) struct LoadGradients<'a> {
+    solver: LoadSolver<'a>,
     /// Per body: the force elements that depend on its motion.
-    felt: Vec<Vec<ElementId>>,
+    forces_on: Vec<Vec<ElementId>>,
     /// Per variable: true if it changes a load while all bodies stay in place.
-    touches: Vec<bool>,
-    /// Multipliers of the friction equations, in the order of the friction elements.
-    multipliers: Vec<f64>,
-    loads: Vec<(usize, Load)>,
+    is_explicit: Vec<bool>,
+    /// Per load: its derivatives by the unit twists W and W. of one body, apart from masses.
+    slopes: Vec<[[f64; 6]; 2]>,
+    /// Per load: its coefficients on the bodies.
+    loads: Vec<Vec<(usize, Load)>>,
+    /// Per load and variable: the derivative while all bodies stay in place.
+    explicit: Vec<Vec<f64>>,
     support: Support,
     work: Vec<[f64; 3]>,
 }
 
-impl LoadGradients {
-    /// Gradients by the variables of an adjoint.
-    pub fn new(solver: &LoadSolver<'_>, topology: &Topology, adjoint: &Adjoint) -> Self {
-        let model = solver.model;
-        let bodies = model.bodies.len();
-        let mut felt = vec![Vec::new(); bodies];
+impl<'a> LoadGradients<'a> {
+    /// Gradients by the variables of an adjoint. `solver` has derivatives.
+    pub fn new(solver: LoadSolver<'a>, topology: &Topology, adjoint: &Adjoint) -> Self {
+        let model = solver.equilibrium.model;
+        let mut forces_on = vec![Vec::new(); model.bodies.len()];
         for (e, element) in model.elements.iter().enumerate() {
             let Some(force) = element.kind.force(model) else { continue };
             let [i, j] = force.acts_on.bodies(model);
-            felt[i.0].push(ElementId(e));
+            forces_on[i.0].push(ElementId(e));
             if i != j {
-                felt[j.0].push(ElementId(e));
+                forces_on[j.0].push(ElementId(e));
             }
         }
-        let moving: Vec<usize> = (1..bodies).collect();
+        let (variables, loads) = (model.variables.len(), solver.measures.len());
+        let moving: Vec<usize> = (1..model.bodies.len()).collect();
+        let changed = solver.derivatives.iter().flat_map(|d| &d.changed);
         Self {
-            virtual_motion: VirtualMotion::new(topology, bodies),
-            bodies: vec![MovingBody::still(); bodies],
-            laws: Vec::new(),
-            near: Vec::new(),
-            friction: Vec::new(),
-            carried: Carried::new(model),
-            needed: vec![Wrench::zero(); bodies],
-            felt,
-            touches: solver.changed.iter().map(|c| touches(model, &c.geometry)).collect(),
-            multipliers: Vec::new(),
-            loads: moving.iter().map(|b| (*b, [Wrench::zero(); 3])).collect(),
+            forces_on,
+            is_explicit: changed.map(|c| is_explicit(model, &c.geometry)).collect(),
+            slopes: vec![[[0.0; 6]; 2]; loads],
+            loads: vec![moving.iter().map(|b| (*b, [Wrench::zero(); 3])).collect(); loads],
+            explicit: vec![vec![0.0; variables]; loads],
             support: adjoint.support(topology, &moving),
-            work: vec![[0.0; 3]; model.variables.len()],
+            work: vec![[0.0; 3]; variables],
+            solver,
         }
     }
 
-    /// Derivatives of measure m by all variables. `solver` has evaluated the measure at this state.
-    pub fn trace(
+    /// Evaluates the loads at the position of a stepper at time t, which was set in the adjoint, and prepares their
+    /// gradients.
+    pub fn step(&mut self, one: &mut Stepper<'_>, adjoint: &Adjoint, t: f64) {
+        self.solver.step(one, t);
+        let Self { solver, forces_on, is_explicit, slopes, loads, explicit, .. } = self;
+        let LoadSolver { derivatives: Some(derivatives), equilibrium, .. } = solver else { return };
+        let friction = &equilibrium.friction;
+        for (b, forces) in forces_on.iter().enumerate().skip(1) {
+            let body = equilibrium.position.bodies[b];
+            // By W and W. alone: no applied force and no measure depends on accelerations.
+            for (order, unit) in (0..12).map(|k| (k / 6, k % 6)) {
+                let mut twists = [Twist::ZERO; 3];
+                twists[order] = Twist::UNITS[unit];
+                derivatives.position.bodies[b] = body.along(twists);
+                derivatives.require(friction, forces.iter().copied());
+                for (slopes, load) in slopes.iter_mut().zip(&derivatives.loads) {
+                    slopes[order][unit] = derivatives.partial(load, &derivatives.constant, friction);
+                }
+            }
+            derivatives.position.bodies[b] = derivatives.nominal[b];
+            for ((slopes, load), loads) in slopes.iter().zip(&derivatives.loads).zip(&mut *loads) {
+                let [mut p0, mut p1, p2] = load.by_twists[b];
+                p0 += Wrench::from_work(slopes[0]);
+                p1 += Wrench::from_work(slopes[1]);
+                // (F . W).. = F . W.. + 2 F. . W. + F.. . W: the coefficients take the place of F and its rates.
+                loads[b - 1].1 = [p2, p1.times_plus(0.5, Wrench::zero()), p0];
+            }
+        }
+        for (v, is_explicit) in is_explicit.iter().enumerate() {
+            let speeds = derivatives.transmitted.speeds.iter_mut().enumerate();
+            speeds.for_each(|(d, speed)| speed.d = adjoint.law_rate(v, DriverId(d), 1));
+            let changes = *is_explicit || derivatives.transmitted.speeds.iter().any(|speed| speed.d != 0.0);
+            if changes {
+                derivatives.require_of(friction, v);
+            }
+            for (explicit, load) in explicit.iter_mut().zip(&derivatives.loads) {
+                let partial = || derivatives.partial(load, &derivatives.changed[v].geometry, friction);
+                explicit[v] = if changes { partial() } else { 0.0 };
+            }
+        }
+    }
+
+    /// Derivatives of the solver's load n by all variables, at the position of the last step.
+    pub fn gradient(
         &mut self,
-        solver: &LoadSolver<'_>,
         adjoint: &mut Adjoint,
         (topology, state): (&Topology, &mut State<f64>),
-        m: usize,
+        n: usize,
         out: &mut [[f64; 3]],
     ) {
         out.fill([f64::NAN; 3]);
-        if solver.values[m].is_nan() {
+        let LoadSolver { derivatives: Some(derivatives), values, .. } = &self.solver else { return };
+        if values[n].is_nan() {
             return;
         }
-        let kind = &solver.model.measures[m].kind;
-        self.stand(solver);
-        self.multipliers.clear();
-        let mut weights = self.weights(solver, kind);
-        self.virtual_motion.go(&solver.bodies.places, topology, state, &weights);
-        if !solver.friction.is_empty() {
-            // y_M gives the multipliers of the friction equations; with them the moments need no derivative.
-            let by_moments = solver.friction.elements().map(|e| self.by_friction(solver, kind, &weights, e));
-            let by_moments: Vec<f64> = by_moments.collect();
-            self.multipliers = solver.friction.multipliers(by_moments);
-            weights = self.weights(solver, kind);
-            self.virtual_motion.go(&solver.bodies.places, topology, state, &weights);
-        }
-        let ground = weights.ground;
-        for n in 0..self.loads.len() {
-            let body = self.loads[n].0;
-            let still = self.bodies[body];
-            for (order, unit) in (0..18).map(|k| (k / 6, k % 6)) {
-                let mut twists = [Twist::ZERO; 3];
-                twists[order] = unit_twist(unit);
-                self.bodies[body] = changed(&solver.bodies.now.bodies[body], twists);
-                let by = self.goes(solver, &solver.constant, kind, ground, Some(body));
-                // (F . W).. = F . W.. + 2 F. . W. + F.. . W: the coefficients take the place of F and its rates.
-                let factor = [1.0, 0.5, 1.0][order];
-                set(&mut self.loads[n].1[2 - order], unit, by * factor);
-            }
-            self.bodies[body] = still;
-            // Masses are felt by a matrix of each body.
-            let Equilibrium { inertia, now, .. } = &solver.bodies;
-            let y = self.virtual_motion.twists()[body] - ground;
-            let [p0, p1, p2] = inertia[body].weights(solver.model, &now.bodies[body], y);
-            let loads = &mut self.loads[n].1;
-            loads[0] += p2;
-            loads[1] = p1.times_plus(0.5, loads[1]);
-            loads[2] += p0;
-        }
-        let Self { virtual_motion, loads, .. } = self;
-        let of = (&solver.bodies.places, &solver.bodies.transmission);
-        virtual_motion.turn(of, topology, state, &weights, |body, load| loads[body.0 - 1].1[2] += load);
         self.work.fill([0.0; 3]);
-        adjoint.add_turning_work(
-            topology,
-            state,
-            (&self.support, &self.loads),
-            &self.virtual_motion.turning,
-            &mut self.work,
-        );
-        for (v, out) in out.iter_mut().enumerate() {
-            for d in 0..self.carried.speeds.len() {
-                self.carried.speeds[d].d = adjoint.law_rate(v, DriverId(d), 1);
-            }
-            let alters = self.touches[v] || self.carried.speeds.iter().any(|speed| speed.d != 0.0);
-            let directly =
-                if alters { self.goes(solver, &solver.changed[v].geometry, kind, ground, None) } else { 0.0 };
-            out[0] = self.work[v][2] + directly;
+        let on = (&self.support, &self.loads[n][..]);
+        adjoint.add_turning_work(topology, state, on, &derivatives.loads[n].turning, &mut self.work);
+        for ((out, work), explicit) in out.iter_mut().zip(&self.work).zip(&self.explicit[n]) {
+            out[0] = work[2] + explicit;
         }
-    }
-
-    /// Copies the position and the loads of the solver, without derivatives.
-    fn stand(&mut self, solver: &LoadSolver<'_>) {
-        for b in 1..self.bodies.len() {
-            self.bodies[b] = changed(&solver.bodies.now.bodies[b], [Twist::ZERO; 3]);
-        }
-        let LoadedPosition { laws, near, friction, found, .. } = &solver.bodies.now;
-        let constant = |x: &Vec<f64>| x.iter().map(|x| Dual::constant(*x)).collect();
-        (self.laws, self.near, self.friction) = (constant(laws), constant(near), constant(friction));
-        (self.carried.drivers, self.carried.speeds) = (constant(&found.drivers), constant(&found.speeds));
-        self.carried.joints.clear();
-        self.carried.joints.extend(found.joints.iter().map(|l| l.spread()));
-        self.carried.shaking = found.shaking.spread();
-    }
-
-    /// Derivative of the load, with the weighted friction equations, along the direction that was set.
-    fn objective(
-        &self,
-        solver: &LoadSolver<'_>,
-        geometry: &Geometry<Dual>,
-        kind: &MeasureKind,
-        carried: &Carried<Dual>,
-    ) -> f64 {
-        let acting = self.acting(solver, geometry);
-        let load = Instant { acting: &acting, carried }.measure(kind);
-        load.d + solver.friction.weighted_residual(&acting, carried, &self.multipliers).d
-    }
-
-    fn acting<'s>(
-        &'s self,
-        solver: &'s LoadSolver<'_>,
-        geometry: &'s Geometry<Dual>,
-    ) -> AppliedLoads<'s, Dual> {
-        let Self { bodies, laws, near, friction, .. } = self;
-        AppliedLoads { model: solver.model, geometry, bodies, laws, near, friction }
-    }
-
-    /// Derivative of the load along the direction that was set: explicit, and through the required wrenches on Y. The
-    /// elements are those that act on `body`, or all.
-    fn goes(
-        &mut self,
-        solver: &LoadSolver<'_>,
-        geometry: &Geometry<Dual>,
-        kind: &MeasureKind,
-        ground: Twist,
-        body: Option<usize>,
-    ) -> f64 {
-        let mut needed = std::mem::take(&mut self.needed);
-        needed.fill(Wrench::zero());
-        let acting = self.acting(solver, geometry);
-        match body {
-            Some(b) => self.felt[b].iter().for_each(|e| acting.add(*e, &mut needed)),
-            None => acting.needed(&mut needed),
-        }
-        let mut sum = self.objective(solver, geometry, kind, &self.carried);
-        for (wrench, y) in needed.iter().zip(self.virtual_motion.twists()) {
-            let change = Wrench { m: wrench.m.map(|x| x.d), f: wrench.f.map(|x| x.d) };
-            // The wrench on ground is -sum F.
-            sum += change.on(*y) - change.on(ground);
-        }
-        self.needed = needed;
-        sum
-    }
-
-    /// Partial derivative by the moment of a friction element.
-    fn by_friction(
-        &mut self,
-        solver: &LoadSolver<'_>,
-        kind: &MeasureKind,
-        weights: &Weights<f64>,
-        e: ElementId,
-    ) -> f64 {
-        self.friction[e.0].d = 1.0;
-        let by = self.goes(solver, &solver.constant, kind, weights.ground, None);
-        self.friction[e.0].d = 0.0;
-        by
-    }
-
-    /// Derivatives of the load by the transmitted wrenches.
-    fn weights(&mut self, solver: &LoadSolver<'_>, kind: &MeasureKind) -> Weights<f64> {
-        let mut carried = std::mem::replace(&mut self.carried, Carried::new(solver.model));
-        let objective = |carried: &Carried<Dual>| self.objective(solver, &solver.constant, kind, carried);
-        let weights = Weights::of(kind, solver.friction.joints(), &mut carried, objective);
-        self.carried = carried;
-        weights
     }
 }
 
 /// True if a variable changes numbers, points, or markers that loads depend on.
-fn touches(model: &Model, changed: &Geometry<Dual>) -> bool {
-    let goes = |v: Vec3<Dual>| [v.x, v.y, v.z].iter().any(|x| x.d != 0.0);
+fn is_explicit(model: &Model, changed: &Geometry<Dual>) -> bool {
+    let moves = |v: Vec3<Dual>| [v.x, v.y, v.z].iter().any(|x| x.d != 0.0);
     let of_elements = model.elements.iter().filter_map(|e| e.kind.coordinate(model)).map(|(joint, _)| joint);
     let of_measures = model
         .measures
         .iter()
         .filter_map(|m| if let MeasureKind::Reaction { joint, .. } = m.kind { Some(joint) } else { None });
-    let marker = |m: &Pose<Dual>| goes(m.r) || m.rot.cols.iter().any(|c| goes(*c));
+    let marker = |m: &Pose<Dual>| moves(m.r) || m.rot.cols.iter().any(|c| moves(*c));
     changed.numbers.iter().any(|n| n.d != 0.0)
-        || changed.points.iter().chain(&changed.spin_axes).any(|p| goes(*p))
+        || changed.points.iter().chain(&changed.spin_axes).any(|p| moves(*p))
         || of_elements.chain(of_measures).any(|joint| {
             changed.markers[joint.0].iter().any(marker)
                 || changed.kept[joint.0].numbers().iter().any(|x| x.d != 0.0)

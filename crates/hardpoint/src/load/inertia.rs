@@ -1,4 +1,4 @@
-//! Wrench that the motion of a body's masses requires, as one matrix, and its derivative by the motion.
+//! Wrench that the motion of a body's masses requires, as one matrix, and its derivatives by the motion.
 //!
 //! `f = M (A - [0; g0]) + ad*(V) M V` of `docs/theory.md` (43) in twists, M the spatial inertia in the world. Masses
 //! fixed in their body move with it, `M' = ad*(W) M - M ad(W)`, so that their part of F' takes a few products per
@@ -19,6 +19,16 @@ pub(super) struct SpatialInertia<T> {
     first: Vec3<T>,
     /// I about the origin.
     second: Mat3<T>,
+}
+
+/// Inertial load of a moving body.
+#[derive(Clone, Copy)]
+pub(super) struct InertialLoad<T> {
+    v: Twist<T>,
+    /// M V.
+    momentum: Wrench<T>,
+    /// f: the wrench that the motion requires.
+    required: Wrench<T>,
 }
 
 impl<T: Real> SpatialInertia<T> {
@@ -56,72 +66,57 @@ impl<T: Real> SpatialInertia<T> {
         }
     }
 
-    /// Coefficients of W, W' and W'' in `f' . Y` of a body with this Y: the power of [`SpatialInertia::changed`] on Y,
-    /// term by term.
+    /// Coefficients of W, W. and W.. in `f' . Y` of a body with this Y, for masses that are fixed in their body:
     ///
     /// ```text
+    /// f'  =  ad*(W) f  +  M (W.. + ad(W.) V + [0; W_w x g0])  +  ad*(W.) M V  +  ad*(V) M W.
     /// P2  =  M Y,    P1  =  ad(Y)^T M V - ad(V)^T M Y - M ad(V) Y,    P0  =  ad(Y)^T f + [g0 x (M Y)_f; 0]
     /// ```
     ///
+    /// f' is the derivative in body axes, where V changes by W. and A by W.. + ad(W.) V, rotated with the body (14).
     /// Static loads have P0 only, with the weight alone as f.
-    pub fn weights(&self, model: &Model, body: &MovingBody<T>, y: Twist<T>) -> [Wrench<T>; 3] {
-        let MovingBody { v, .. } = *body;
+    pub fn weights(&self, model: &Model, body: &InertialLoad<T>, y: Twist<T>) -> [Wrench<T>; 3] {
+        let InertialLoad { v, momentum, required } = *body;
         let moved = self.on(y);
-        let mut p0 = y.ad_transposed(self.needed(model, body));
+        let mut p0 = y.ad_transposed(required);
         p0 += Wrench::moment(model.gravity.spread().cross(moved.f));
         match model.load_mode {
             LoadMode::Static => [p0, Wrench::zero(), Wrench::zero()],
             LoadMode::Dynamic => {
-                let p1 = y.ad_transposed(self.on(v)) - v.ad_transposed(moved) - self.on(v.ad(y));
+                let p1 = y.ad_transposed(momentum) - v.ad_transposed(moved) - self.on(v.ad(y));
                 [p0, p1, moved]
             }
         }
     }
 
+    /// Inertial load of a moving body.
+    pub fn load(&self, model: &Model, body: &MovingBody<T>) -> InertialLoad<T> {
+        InertialLoad { v: body.v, momentum: self.on(body.v), required: self.required(model, body) }
+    }
+
     /// f = M (A - [0; g0]) + ad*(V) M V,    ad*(X) l = -ad(X)^T l;    of static loads  f = -M [0; g0]
     #[inline]
-    fn needed(&self, model: &Model, MovingBody { v, a, .. }: &MovingBody<T>) -> Wrench<T> {
+    fn required(&self, model: &Model, MovingBody { v, a, .. }: &MovingBody<T>) -> Wrench<T> {
         let gravity: Vec3<T> = model.gravity.spread();
         match model.load_mode {
             LoadMode::Static => self.on(Twist { w: Vec3::zero(), v: -gravity }),
             LoadMode::Dynamic => self.on(Twist { w: a.w, v: a.v - gravity }) - v.ad_transposed(self.on(*v)),
         }
     }
-
-    /// Derivative f' of masses that are fixed in their body, for the design twists W, W., W..:
-    ///
-    /// ```text
-    /// f'  =  ad*(W) f  +  M (W.. + ad(W.) V + [0; W_w x g0])  +  ad*(W.) M V  +  ad*(V) M W.
-    /// ```
-    ///
-    /// This is the derivative in body axes, where V changes by W. and A by W.. + ad(W.) V, rotated with the body (14).
-    /// Static loads do not depend on V, W. and W...
-    pub fn changed(&self, model: &Model, body: &MovingBody<T>, [w0, w1, w2]: [Twist<T>; 3]) -> Wrench<T> {
-        let MovingBody { v, .. } = *body;
-        let needed = self.needed(model, body);
-        let turned = Twist { w: Vec3::zero(), v: w0.w.cross(model.gravity.spread()) };
-        let seen = match model.load_mode {
-            LoadMode::Static => self.on(turned),
-            LoadMode::Dynamic => {
-                let momentum = self.on(v);
-                self.on(w2 + w1.ad(v) + turned) - w1.ad_transposed(momentum) - v.ad_transposed(self.on(w1))
-            }
-        };
-        seen - w0.ad_transposed(needed)
-    }
 }
 
 /// Body-fixed data with the derivative by a variable.
-pub(super) struct Changed<T> {
+pub(super) struct ChangedGeometry<T> {
     pub geometry: Geometry<Dual<T>>,
     /// Masses that depend on the variable, or move within their bodies.
     pub masses: Vec<ElementId>,
 }
 
-impl<T: Real> Changed<T> {
+impl<T: Real> ChangedGeometry<T> {
     pub fn new(model: &Model, geometry: Geometry<Dual<T>>) -> Self {
-        let drawn = model.bodies.iter().map(|b| MovingBody { pose: b.frame.spread(), ..MovingBody::still() });
-        let bodies: Vec<MovingBody<Dual<T>>> = drawn.collect();
+        let nominal =
+            model.bodies.iter().map(|b| MovingBody { pose: b.frame.spread(), ..MovingBody::at_rest() });
+        let bodies: Vec<MovingBody<Dual<T>>> = nominal.collect();
         let none: &[Dual<T>] = &[];
         let acting = AppliedLoads {
             model,

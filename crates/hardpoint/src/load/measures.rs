@@ -1,21 +1,21 @@
 //! Evaluation of load measures, for any number type.
 
 use crate::model::{Axes, BodyId, ElementId, JointId, MeasureKind, ReactionPart, of_bodies};
-use crate::space::{Mat3, Real, Vec3, Wrench};
+use crate::space::{Real, Vec3, Wrench};
 
 use super::acting::AppliedLoads;
-use super::carry::Carried;
+use super::equilibrium::TransmittedLoads;
 
 /// All loads at one time.
-pub(super) struct Instant<'a, T> {
-    pub acting: &'a AppliedLoads<'a, T>,
-    pub carried: &'a Carried<T>,
+pub(super) struct LoadMeasures<'a, T> {
+    pub applied: &'a AppliedLoads<'a, T>,
+    pub transmitted: &'a TransmittedLoads<T>,
 }
 
-impl<T: Real> Instant<'_, T> {
+impl<T: Real> LoadMeasures<'_, T> {
     /// Value of a measure; for formulas and signs see `docs/loads.md`.
     pub fn measure(&self, kind: &MeasureKind) -> T {
-        let Carried { drivers, speeds, shaking, .. } = self.carried;
+        let TransmittedLoads { drivers, speeds, shaking, .. } = self.transmitted;
         match kind {
             MeasureKind::DriverForce { driver } => drivers[driver.0],
             // nu f.
@@ -23,11 +23,11 @@ impl<T: Real> Instant<'_, T> {
             MeasureKind::Reaction { joint, part, on, axes } => {
                 self.reaction(*joint, *part, *on, axes.unwrap_or_default())
             }
-            MeasureKind::SpringForce { force } => self.acting.size(*force),
-            MeasureKind::KineticEnergy { body } => self.acting.kinetic_energy(*body),
+            MeasureKind::SpringForce { force } => self.applied.size(*force),
+            MeasureKind::KineticEnergy { body } => self.applied.kinetic_energy(*body),
             MeasureKind::ShakingForce { along } => component(shaking.f, *along),
             MeasureKind::ShakingMoment { about, along } => {
-                let p = self.acting.point(*about);
+                let p = self.applied.point(*about);
                 component(shaking.m - p.cross(shaking.f), *along)
             }
             MeasureKind::Slope { .. }
@@ -40,40 +40,44 @@ impl<T: Real> Instant<'_, T> {
 
     /// Location of a joint on its body j, and the force and the moment about that point that it applies to body j.
     pub fn wrench(&self, joint: JointId) -> [Vec3<T>; 3] {
-        let AppliedLoads { model, geometry, bodies, .. } = *self.acting;
+        let AppliedLoads { model, geometry, bodies, .. } = *self.applied;
         let body = model.joints[joint.0].bodies[1];
         let place = bodies[body.0].pose.point(geometry.markers[joint.0][1].r);
-        let Wrench { m, f } = self.carried.joints[joint.0];
+        let Wrench { m, f } = self.transmitted.joints[joint.0];
         [place, f, m - place.cross(f)]
     }
 
     /// Reaction of a joint on one of its bodies.
     fn reaction(&self, joint: JointId, part: ReactionPart, on: Option<BodyId>, axes: Axes) -> T {
-        let AppliedLoads { model, geometry, bodies, .. } = *self.acting;
+        let AppliedLoads { model, geometry, bodies, .. } = *self.applied;
         let [i, j] = model.joints[joint.0].bodies;
         let end = usize::from(on.is_none_or(|on| on == j));
-        let wrench = self.carried.joints[joint.0];
+        let wrench = self.transmitted.joints[joint.0];
         let Wrench { m, f } = if end == 1 { wrench } else { Wrench::zero() - wrench };
         let body = [i, j][end];
-        let marker = bodies[body.0].pose.compose(geometry.markers[joint.0][end]);
-        // About the joint's location on that body.
-        let m = m - marker.r.cross(f);
-        let axes = match axes {
-            Axes::Global => Mat3::IDENTITY.spread(),
-            Axes::Body => self.acting.turned(body.0),
-            Axes::Joint => marker.rot,
+        let pose = bodies[body.0].pose;
+        let marker = geometry.markers[joint.0][end];
+        let z = || pose.rot * marker.rot.cols[2];
+        let along = |k: usize, v: Vec3<T>| match axes {
+            Axes::Global => v[k],
+            Axes::Body => self.applied.turned(body.0).cols[k].dot(v),
+            Axes::Joint => (pose.rot * marker.rot.cols[k]).dot(v),
         };
-        let z = marker.rot.cols[2];
-        let across = |v: Vec3<T>| (v - z * z.dot(v)).norm();
+        let across = |v: Vec3<T>| {
+            let z = z();
+            (v - z * z.dot(v)).norm()
+        };
+        // About the joint's location on that body.
+        let moment = || m - pose.point(marker.r).cross(f);
         match part {
             ReactionPart::Force => f.norm(),
-            ReactionPart::ForceAlong(k) => axes.cols[k].dot(f),
-            ReactionPart::Axial => z.dot(f),
+            ReactionPart::ForceAlong(k) => along(k, f),
+            ReactionPart::Axial => z().dot(f),
             ReactionPart::Radial => across(f),
-            ReactionPart::Moment => m.norm(),
-            ReactionPart::MomentAbout(k) => axes.cols[k].dot(m),
-            ReactionPart::Torque => z.dot(m),
-            ReactionPart::Bending => across(m),
+            ReactionPart::Moment => moment().norm(),
+            ReactionPart::MomentAbout(k) => along(k, moment()),
+            ReactionPart::Torque => z().dot(moment()),
+            ReactionPart::Bending => across(moment()),
         }
     }
 }
@@ -82,20 +86,20 @@ impl<T: Real> Instant<'_, T> {
 /// largest reaction.
 const KNOWN: f64 = 1e-8;
 
-impl<T: Real> Instant<'_, T> {
-    /// Contribution to that reaction of the self-stress of a redundant constraint, whose largest reaction is `most`;
+impl<T: Real> LoadMeasures<'_, T> {
+    /// Contribution to that reaction of the self-stress of a redundant constraint, whose largest reaction is `largest`;
     /// not above zero if it is only round-off.
-    pub fn excess(&self, kind: &MeasureKind, most: T) -> T {
-        let size = self.acting.model.size();
+    pub fn excess(&self, kind: &MeasureKind, largest: T) -> T {
+        let size = self.applied.model.size();
         let is_moment = matches!(kind, MeasureKind::Reaction { part, .. } if part.is_moment());
-        let scale = if is_moment { most * size } else { most };
+        let scale = if is_moment { largest * size } else { largest };
         self.measure(kind).abs() - scale * KNOWN
     }
 
     /// Largest joint reaction; moments are divided by the size of the mechanism.
-    pub fn most(&self) -> T {
-        let size = self.acting.model.size();
-        let joints = (0..self.acting.model.joints.len()).map(JointId);
+    pub fn largest_reaction(&self) -> T {
+        let size = self.applied.model.size();
+        let joints = (0..self.applied.model.joints.len()).map(JointId);
         joints.fold(T::zero(), |most, joint| {
             let [_, force, moment] = self.wrench(joint);
             most.larger(force.norm()).larger(moment.norm() * (1.0 / size))
@@ -103,11 +107,11 @@ impl<T: Real> Instant<'_, T> {
     }
 }
 
-impl Instant<'_, f64> {
+impl LoadMeasures<'_, f64> {
     /// True if a friction element has no normal force.
-    pub fn has_no_normal_force(&self, e: ElementId, joint: JointId, most: f64) -> bool {
-        let (forces, count) = self.acting.normal_forces(e, self.carried.joints[joint.0]);
-        forces.iter().take(count).all(|force| force.norm() <= KNOWN * most)
+    pub fn has_no_normal_force(&self, e: ElementId, joint: JointId, largest: f64) -> bool {
+        let (forces, count) = self.applied.normal_forces(e, self.transmitted.joints[joint.0]);
+        forces.iter().take(count).all(|force| force.norm() <= KNOWN * largest)
     }
 }
 

@@ -9,21 +9,23 @@
 //! | here | theory | meaning |
 //! |---|---|---|
 //! | `acting` | F = f - g | per body, required wrench minus applied wrench |
-//! | `carry` | T, mu, nu | reactions of joints and driver loads, and their derivatives by the design |
+//! | `equilibrium` | T, mu, nu | reactions of joints and driver loads |
+//! | `derivatives` | y' | derivatives of loads by the design, by virtual motion |
 //! | `solver` | | loads step after step |
 //! | `program` | | loads as part of a step's program |
 //! | `inertia` | M | spatial inertia per body, and derivatives of the inertial wrench |
 //! | `compliance` | C = Y K^-1 Y^T | deflections with elastic joints |
-//! | `gradient` | dy/db | gradient of one load by all variables |
+//! | `gradient` | dy/db | gradients of loads by all variables, adjoint |
 //! | `virtual_motion` | Y | virtual motion of a load |
 //! | `friction` | M = -c N(T) | Coulomb friction in joints |
 //! | `measures` | | evaluation of load measures |
 //!
-//! `acting`, `carry`, `virtual_motion` and `measures` are generic over the number type.
+//! `acting`, `equilibrium`, `derivatives`, `virtual_motion` and `measures` are generic over the number type.
 
 mod acting;
-mod carry;
 mod compliance;
+mod derivatives;
+mod equilibrium;
 mod friction;
 mod gradient;
 mod inertia;
@@ -39,4 +41,4 @@ pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
 pub(crate) use program::{RecordedLoads, hindrance};
 pub use results::{DriverLoad, JointLoad, Loads};
-pub(crate) use solver::LoadSolver;
+pub(crate) use solver::{LoadSolver, load_measures};

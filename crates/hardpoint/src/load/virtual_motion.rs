@@ -1,48 +1,39 @@
 //! Virtual motion of a load: every load is `y = sum F . Y`, with Y the twists of the bodies when its joint opens, or
 //! its driver moves alone (`docs/theory.md`, section 14); for any number type.
 
-use crate::constraint::{MarkerPairRates, Row};
+use crate::constraint::MarkerPairRates;
 use crate::model::{BodyId, DriverId, GROUND, JointId, MeasureKind, of_bodies};
 use crate::motion::kinematics::State;
 use crate::motion::level::Flow;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Transmission, Turning};
-use crate::space::{Twist, Vec3, Wrench};
-use crate::topology::{ClosureId, LinkId, RowId, Topology};
+use crate::space::{Twist, Wrench};
+use crate::topology::{ClosureId, LinkId, Topology};
 
-use super::carry::{Carried, DriverAt, Places};
+use super::equilibrium::{DriverSite, LoadSites, TransmittedLoads};
 
-/// Derivatives of a load by the transmitted wrenches.
+/// Derivatives of a load by the transmitted loads.
 #[derive(Debug)]
 pub(super) struct Weights<T> {
-    /// By the reaction wrenches of joints on body j.
-    joints: Vec<(JointId, Twist<T>)>,
-    /// By the driver loads.
-    drivers: Vec<(DriverId, T)>,
-    /// By the wrench on ground; zero for most loads.
-    pub ground: Twist<T>,
+    /// By the reaction wrench of a joint on body j.
+    joint: Option<(JointId, Twist<T>)>,
+    /// By the load of a driver.
+    driver: Option<(DriverId, T)>,
+    /// By the wrench on ground.
+    ground: Option<Twist<T>>,
 }
 
 impl<T: Real> Weights<T> {
-    /// Weights of a measure, from derivatives of `objective`, a function of the transmitted wrenches. The objective
-    /// also depends on the wrenches of the joints `besides`.
-    pub fn of(
-        kind: &MeasureKind,
-        besides: impl Iterator<Item = JointId>,
-        carried: &mut Carried<Dual<T>>,
-        objective: impl Fn(&Carried<Dual<T>>) -> T,
-    ) -> Self {
-        let mut weights = Self { joints: Vec::new(), drivers: Vec::new(), ground: Twist::zero() };
-        let mut joints: Vec<JointId> = besides.collect();
-        match kind {
-            MeasureKind::Reaction { joint, .. } => joints.push(*joint),
+    /// Weights of a measure; all zero.
+    pub fn of_measure(kind: &MeasureKind) -> Self {
+        let none = Self { joint: None, driver: None, ground: None };
+        match *kind {
+            MeasureKind::Reaction { joint, .. } => Self::of_joint(joint),
             MeasureKind::DriverForce { driver } | MeasureKind::DriverPower { driver } => {
-                carried.drivers[driver.0].d = T::one();
-                weights.drivers.push((*driver, objective(carried)));
-                carried.drivers[driver.0].d = T::zero();
+                Self { driver: Some((driver, T::zero())), ..none }
             }
             MeasureKind::ShakingForce { .. } | MeasureKind::ShakingMoment { .. } => {
-                weights.ground = slopes(carried, |carried| &mut carried.shaking, &objective);
+                Self { ground: Some(Twist::zero()), ..none }
             }
             MeasureKind::SpringForce { .. }
             | MeasureKind::KineticEnergy { .. }
@@ -50,50 +41,98 @@ impl<T: Real> Weights<T> {
             | MeasureKind::Compliance { .. }
             | MeasureKind::Wheel { .. }
             | MeasureKind::Axle { .. }
-            | of_bodies!() => {}
+            | of_bodies!() => none,
         }
-        joints.sort_unstable();
-        joints.dedup();
-        for joint in joints {
-            let by = slopes(carried, |carried| &mut carried.joints[joint.0], &objective);
-            weights.joints.push((joint, by));
+    }
+
+    /// Weights of a function of the reaction wrench of one joint; all zero.
+    pub fn of_joint(joint: JointId) -> Self {
+        Self { joint: Some((joint, Twist::zero())), driver: None, ground: None }
+    }
+
+    /// Sets the weights from derivatives of `objective`, a function of the transmitted loads, which have none.
+    pub fn set(
+        &mut self,
+        loads: &mut TransmittedLoads<Dual<T>>,
+        objective: impl Fn(&TransmittedLoads<Dual<T>>) -> T,
+    ) {
+        if let Some((driver, weight)) = &mut self.driver {
+            loads.drivers[driver.0].d = T::one();
+            *weight = objective(loads);
+            loads.drivers[driver.0].d = T::zero();
         }
-        weights
+        if let Some(weight) = &mut self.ground {
+            *weight = by_wrench(loads, |loads| &mut loads.shaking, &objective);
+        }
+        if let Some((joint, weight)) = &mut self.joint {
+            *weight = by_wrench(loads, |loads| &mut loads.joints[joint.0], &objective);
+        }
+    }
+
+    /// Derivative by the wrench on ground.
+    pub fn of_ground(&self) -> Twist<T> {
+        self.ground.unwrap_or(Twist::zero())
     }
 }
 
 /// Derivatives of `objective` by the components of one wrench.
-fn slopes<T: Real>(
-    carried: &mut Carried<Dual<T>>,
-    wrench: impl Fn(&mut Carried<Dual<T>>) -> &mut Wrench<Dual<T>>,
-    objective: impl Fn(&Carried<Dual<T>>) -> T,
+fn by_wrench<T: Real>(
+    loads: &mut TransmittedLoads<Dual<T>>,
+    wrench: impl Fn(&mut TransmittedLoads<Dual<T>>) -> &mut Wrench<Dual<T>>,
+    objective: impl Fn(&TransmittedLoads<Dual<T>>) -> T,
 ) -> Twist<T> {
-    let mut by = |unit: usize| {
-        seed(wrench(carried), Some(unit));
-        objective(carried)
-    };
-    let [a, b, c, x, y, z] = [0, 1, 2, 3, 4, 5].map(&mut by);
-    seed(wrench(carried), None);
-    Twist { w: Vec3::new(a, b, c), v: Vec3::new(x, y, z) }
+    let constant = *wrench(loads);
+    let by = std::array::from_fn(|unit| {
+        let mut components = constant.work();
+        components[unit].d = T::one();
+        *wrench(loads) = Wrench::from_work(components);
+        objective(loads)
+    });
+    *wrench(loads) = constant;
+    Twist::from_components(by)
 }
 
-/// Sets the derivative of one component of a wrench to one, and of the others to zero.
-fn seed<T: Real>(wrench: &mut Wrench<Dual<T>>, unit: Option<usize>) {
-    let numbers = [&mut wrench.m, &mut wrench.f].into_iter().flat_map(|v| [&mut v.x, &mut v.y, &mut v.z]);
-    for (k, x) in numbers.enumerate() {
-        x.d = if Some(k) == unit { T::one() } else { T::zero() };
+/// Derivatives of the wrenches that closures transmit, at constant multipliers, by the unit twists of their markers.
+pub(super) struct TurningClosures<T> {
+    /// Per closure: by those of marker i, then of marker j.
+    by_ends: Vec<[Wrench<T>; 12]>,
+}
+
+impl<T: Real> TurningClosures<T> {
+    pub fn new(topology: &Topology) -> Self {
+        Self { by_ends: vec![[Wrench::zero(); 12]; topology.closures.len()] }
+    }
+
+    /// Sets the derivatives at a state with these transmitted wrenches: `T_c' = -sum mu_r l'_r`.
+    pub fn set(&mut self, topology: &Topology, state: &State<T>, transmission: &Transmission<T>) {
+        let none = Twist::zero();
+        for (c, closure) in ClosureId::each(&topology.closures) {
+            for unit in 0..12 {
+                let mut ends = [none; 2];
+                ends[unit / 6] = Twist::UNITS[unit % 6].spread();
+                let mut rates = MarkerPairRates { v_i: ends[0], v_j: ends[1], a_i: none, a_j: none };
+                if let Some(k) = closure.contact {
+                    rates = state.walk(c, k, &rates);
+                }
+                let mut sum = Wrench::zero();
+                for (r, row) in closure.numbered_rows().filter(|(r, _)| topology[*r].has_wrench()) {
+                    let [l, _] = row.wrench_rates(&state.ends[c.0], &rates);
+                    sum = l.times_plus(-transmission.rows[0][r.0], sum);
+                }
+                self.by_ends[c.0][unit] = sum;
+            }
+        }
     }
 }
 
-/// Y and S_Y, and the part of the load's derivative that is due to the turning of unit twists and wrenches.
+/// Solves for virtual motions.
 pub(super) struct VirtualMotion<T> {
     flow: Flow<T>,
-    pub turning: Turning<T>,
 }
 
 impl<T: Real> VirtualMotion<T> {
     pub fn new(topology: &Topology, bodies: usize) -> Self {
-        Self { flow: Flow::new(topology, bodies, true).with_moves(), turning: Turning::new(topology) }
+        Self { flow: Flow::new(topology, bodies, true).with_moves() }
     }
 
     /// Virtual twist Y per body.
@@ -102,22 +141,28 @@ impl<T: Real> VirtualMotion<T> {
     }
 
     /// Solves for Y by (11): the weights prescribe the motion of markers i of the joints, and the speeds of drivers.
-    pub fn go(&mut self, places: &Places, topology: &Topology, state: &mut State<T>, weights: &Weights<T>) {
+    pub fn solve(
+        &mut self,
+        sites: &LoadSites,
+        topology: &Topology,
+        state: &mut State<T>,
+        weights: &Weights<T>,
+    ) {
         let Self { flow, .. } = self;
         flow.moves[0].fill(Twist::zero());
         flow.demand.fill(T::zero());
         flow.speeds[0].fill(T::zero());
-        for (joint, c) in &weights.joints {
-            let at = &places.joints[joint.0];
-            if let Some((k, forward)) = at.link {
+        if let Some((joint, c)) = &weights.joint {
+            let site = &sites.joints[joint.0];
+            if let Some((k, forward)) = site.link {
                 flow.move_link(0, (k, usize::from(!forward)), *c);
             }
-            at.closures.iter().for_each(|&closure| flow.move_end(topology, (closure, 0), *c, &state.l[0]));
+            site.closures.iter().for_each(|&closure| flow.move_end(topology, (closure, 0), *c, &state.l[0]));
         }
-        for (driver, weight) in &weights.drivers {
-            match places.drivers[driver.0] {
-                Some(DriverAt::Coordinate(c)) => flow.speeds[0][c.0] = *weight,
-                Some(DriverAt::Row(r)) => flow.demand[r.0] += *weight,
+        if let Some((driver, weight)) = weights.driver {
+            match sites.drivers[driver.0] {
+                Some(DriverSite::Coordinate(c)) => flow.speeds[0][c.0] = weight,
+                Some(DriverSite::Row(r)) => flow.demand[r.0] += weight,
                 None => {}
             }
         }
@@ -130,16 +175,15 @@ impl<T: Real> VirtualMotion<T> {
     /// Computes `sum F . Y' = sum_k T_k . x'_a S_Y,a - sum_r mu_r l'_r . (Y_j - Y_i - C)` as loads on the twists of the
     /// frames that x and l turn with, and on the coordinates before them. Calls `on` for the loads on bodies.
     pub fn turn(
-        &mut self,
-        (places, transmission): (&Places, &Transmission<T>),
-        topology: &Topology,
-        state: &State<T>,
+        &self,
+        (sites, transmission): (&LoadSites, &Transmission<T>),
+        (topology, state, turned): (&Topology, &State<T>, &TurningClosures<T>),
         weights: &Weights<T>,
+        turning: &mut Turning<T>,
         mut on: impl FnMut(BodyId, Wrench<T>),
     ) {
-        let Self { flow, turning } = self;
-        let (links, rows) = (&transmission.links[0], &transmission.rows[0]);
-        turning.pulls.fill(T::zero());
+        let Self { flow } = self;
+        let links = &transmission.links[0];
         for (k, link) in LinkId::each(&topology.links) {
             let mut later = Wrench::zero();
             for step in link.steps.iter().rev() {
@@ -156,24 +200,11 @@ impl<T: Real> VirtualMotion<T> {
         }
         for (c, closure) in ClosureId::each(&topology.closures) {
             let [i, j] = closure.bodies.map(|b| flow.twists[0][b.0]);
-            let opened =
-                weights.joints.iter().find(|(joint, _)| places.joints[joint.0].closures.contains(&c));
-            let apart = j - i - opened.map_or(Twist::zero(), |(_, twist)| *twist);
-            for (end, unit) in (0..12).map(|k| (k / 6, k % 6)) {
-                let mut ends = [Twist::zero(); 2];
-                ends[end] = unit_twist(unit).spread();
-                let none = Twist::zero();
-                let mut rates = MarkerPairRates { v_i: ends[0], v_j: ends[1], a_i: none, a_j: none };
-                if let Some(k) = closure.contact {
-                    rates = state.walk(c, k, &rates);
-                }
-                let driving = closure.numbered_rows().filter(|(r, _)| topology[*r].has_wrench());
-                let works = |(r, row): (RowId, Row)| {
-                    let [l, _] = row.wrench_rates(&state.ends[c.0], &rates);
-                    -(rows[r.0] * l.on(apart))
-                };
-                set(&mut turning.ends[c.0][end], unit, driving.map(works).fold(T::zero(), |sum, x| sum + x));
-            }
+            let opened = weights.joint.filter(|(joint, _)| sites.joints[joint.0].closures.contains(&c));
+            let apart = j - i - opened.map_or(Twist::zero(), |(_, twist)| twist);
+            let by_ends = &turned.by_ends[c.0];
+            turning.ends[c.0] =
+                [0, 6].map(|first| Wrench::from_work(std::array::from_fn(|k| by_ends[first + k].on(apart))));
         }
         // D = W + z: the frames turn with W of their body; ground has none.
         let mut on = |body: BodyId, load: Wrench<T>| {
@@ -188,16 +219,4 @@ impl<T: Real> VirtualMotion<T> {
             closure.bodies.into_iter().zip(*ends).for_each(|(body, end)| on(body, end));
         }
     }
-}
-
-/// Unit rotations about x, y and z through the world origin, followed by unit translations.
-pub(super) fn unit_twist(unit: usize) -> Twist {
-    let axis = Vec3::AXES[unit % 3];
-    if unit < 3 { Twist::turn(axis, Vec3::ZERO) } else { Twist::slide(axis) }
-}
-
-/// Sets the component of a wrench that does work on a unit twist.
-pub(super) fn set<T>(wrench: &mut Wrench<T>, unit: usize, to: T) {
-    let half = if unit < 3 { &mut wrench.m } else { &mut wrench.f };
-    *[&mut half.x, &mut half.y, &mut half.z][unit % 3] = to;
 }

@@ -34,16 +34,14 @@ pub(super) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Dual<
         let b0 = d.dpi.cross(e0);
         let b1 = d.domega.cross(e0) + s.omega.cross(b0);
         let b2 = d.dalpha.cross(e0) + s.alpha.cross(b0) + d.domega.cross(e1) + s.omega.cross(b1);
-        pair(rot.cols[k], zip([b0, b1, b2]))
+        rot.cols[k].with_derivative(zip([b0, b1, b2]))
     };
-    Pose { rot: Mat3 { cols: [column(0), column(1), column(2)] }, r: pair(r, zip([d.dr, d.dv, d.da])) }
+    Pose {
+        rot: Mat3 { cols: [column(0), column(1), column(2)] },
+        r: r.with_derivative(zip([d.dr, d.dv, d.da])),
+    }
 }
 
 fn zip<T: Copy>([x, xd, xdd]: [Vec3<T>; 3]) -> Vec3<Rates<T>> {
     Vec3::new(Jet([x.x, xd.x, xdd.x]), Jet([x.y, xd.y, xdd.y]), Jet([x.z, xd.z, xdd.z]))
-}
-
-/// A vector and its derivative.
-pub(super) fn pair<T: Copy>(v: Vec3<T>, d: Vec3<T>) -> Vec3<Dual<T>> {
-    Vec3::new(Dual { v: v.x, d: d.x }, Dual { v: v.y, d: d.y }, Dual { v: v.z, d: d.z })
 }

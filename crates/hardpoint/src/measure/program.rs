@@ -34,7 +34,7 @@ use crate::number::{Dual, Jet, Rates, record as recording};
 use crate::sensitivity::{BodySensitivity, Sensitivities};
 use crate::space::{Mat3, Pose, Vec3};
 
-use super::bodies::{moving, pair};
+use super::bodies::moving;
 use super::{Instant, MeasureResults, Output, bodies_asked_for};
 
 /// Maximum number of sums of products, one for each combination of output, variable and body, for which a program is
@@ -219,14 +219,8 @@ fn ways_of(
 fn gone(pose: Pose<RecordedRates>, way: usize, amount: RecordedRates) -> Pose<Dual<RecordedRates>> {
     // A slide: dr = e_k a;  a turn: d(column) = e_k x column a, with r at rest.
     let axis = Vec3::AXES[way % 3].map(|x| amount.times(Number::constant(x)));
-    let still = Vec3::zero();
-    let d = if way < 3 {
-        Pose { rot: Mat3 { cols: [still; 3] }, r: axis }
-    } else {
-        Pose { rot: Mat3 { cols: pose.rot.cols.map(|c| axis.cross(c)) }, r: still }
-    };
-    let cols = std::array::from_fn(|k| pair(pose.rot.cols[k], d.rot.cols[k]));
-    Pose { rot: Mat3 { cols }, r: pair(pose.r, d.r) }
+    let (slide, turn) = if way < 3 { (axis, Vec3::zero()) } else { (Vec3::zero(), axis) };
+    Pose { rot: pose.rot.along(turn), r: pose.r.with_derivative(slide) }
 }
 
 /// Body-fixed data, and their derivatives by each variable that changes some of them.

@@ -7,14 +7,13 @@ use hardpoint_tape::{Number, record};
 
 use crate::design::{BodyFixed, DesignMap};
 use crate::model::{
-    AxleMeasure, DriverId, GROUND, MeasureKind, Model, VariableId, WheelId, WheelRequirement, loads,
-    of_bodies,
+    AxleMeasure, DriverId, GROUND, MeasureKind, Model, WheelId, WheelRequirement, loads, of_bodies,
 };
 use crate::motion::kinematics::State;
+use crate::motion::mechanism::Mechanism;
 use crate::motion::step_program::RecordedStep;
-use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real, record as recording};
-use crate::sensitivity::{PairDirection, Seconds};
+use crate::sensitivity::{PairDirection, Seconds, pair_with_variables, values_along_variable};
 use crate::space::{Mat3, Pose, Vec3};
 use crate::topology::Topology;
 
@@ -56,16 +55,8 @@ impl Ways {
             return None;
         }
         let variables = if sensitivities { model.variables.len() } else { 0 };
-        let unit = |v: usize| model.alone(VariableId(v), 1.0);
-        let directions = drivers
-            .iter()
-            .map(|d| PairDirection::Driver(*d))
-            .chain((0..variables).map(|v| PairDirection::Design(unit(v))))
-            .collect();
-        let pairs = (0..variables)
-            .flat_map(|v| (0..drivers.len()).map(move |d| (d, v)))
-            .map(|(d, v)| [d, drivers.len() + v])
-            .collect();
+        let mut directions = drivers.iter().map(|d| PairDirection::Driver(*d)).collect();
+        let pairs = pair_with_variables(model, &mut directions, variables);
         Some(Self { drivers, variables, directions, pairs })
     }
 }
@@ -85,11 +76,11 @@ impl<'a> Slopes<'a> {
     }
 
     /// Writes the results at time t, the one that was begun last.
-    pub fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, out: &mut StepValues) {
-        self.seconds.solve(stepper, t);
+    pub fn add(&mut self, mechanism: &mut Mechanism<'_>, t: f64, out: &mut StepValues) {
+        self.seconds.solve(mechanism, t);
         let variables = self.variables;
         let enter = |k, by, x: Dual| if by < variables { out.set_d(by, k, x.d) } else { out.set(k, x.v) };
-        self.measure(&stepper.state, enter);
+        self.measure(&mechanism.state, enter);
     }
 }
 
@@ -143,14 +134,8 @@ impl<'a, T: Real> Slopes<'a, T> {
     fn along(design_map: &'a DesignMap<'a>, values: &[T], ways: Ways, seconds: Seconds<T>) -> Self {
         let Ways { drivers, variables, .. } = ways;
         let model = design_map.model();
-        let fixed = |by: usize| {
-            // With the driver none of it goes (the outer `d` is 0); along the variable what that moves in its body (the
-            // inner `d`).
-            let along = |k: usize| if k == by { T::one() } else { T::zero() };
-            let value = |k: usize| Dual::constant(Dual { v: values[k], d: along(k) });
-            let values: Vec<_> = (0..values.len()).map(value).collect();
-            design_map.fixed(&values)
-        };
+        // Body-fixed data do not depend on a driver: the outer derivative is zero.
+        let fixed = |by: usize| design_map.fixed(&values_along_variable(values, by));
         Self {
             model,
             seconds,
@@ -166,16 +151,7 @@ impl<'a, T: Real> Slopes<'a, T> {
     /// by that, and after the last variable with their number and the value.
     fn measure(&mut self, state: &State<T>, mut found: impl FnMut(usize, usize, Dual<T>)) {
         for by in 0..=self.variables {
-            for (d, poses) in self.poses.iter_mut().enumerate() {
-                for &body in &self.asked_for {
-                    // X + eps_q X_q + eps_b X_b + eps_q eps_b X_qb, without b for the values themselves
-                    poses[body] = if by < self.variables {
-                        self.seconds.pose(state, by * self.drivers.len() + d, body)
-                    } else {
-                        self.seconds.pose_along(state, d, body)
-                    };
-                }
-            }
+            self.seconds.set_poses(state, by, &self.asked_for, &mut self.poses);
             let alone = DriverAlone {
                 drivers: &self.drivers,
                 instants: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),

@@ -11,13 +11,18 @@ use hardpoint_tape::{LANES, Lanes};
 use crate::blocks::{AlignedLanes, Blocks, ResultBlock, lanes_of};
 use crate::model::{BodyId, VariableId};
 
+use super::advance::laws_are_resolved;
+use super::guard::{StepGuard, Steps};
 use super::kinematics::QUADRATIC;
+use super::mechanism::Mechanism;
+use super::path::Path;
+use super::path_step::TRUST_FLOOR;
 use super::predictor::{NODES, ORDERS, Weights};
+use super::step::{RoughStep, Step, take};
 use super::step_program::MOST_CORRECTIONS;
-use super::stepper::{Lookahead, MILD, MILD_CHANGE, Stepper, TRUST_FLOOR};
+use super::stepper::Stepper;
 use super::tape::{SolveQuality, Tape};
 use super::time_batch::ProgramOf;
-use super::walk::Path;
 use super::{Motion, SolverStatistics};
 
 /// Error of the last prediction below which one correction is enough at the next step.
@@ -34,17 +39,19 @@ struct Drive {
 
 /// Solver of a batch of designs.
 pub(crate) struct DesignBatch<'m> {
-    /// Stepper of the nominal design, at the first output time.
-    nominal: Stepper<'m>,
+    /// The nominal design, at the first output time, with the determinants there.
+    nominal: Mechanism<'m>,
+    determinants: Vec<f64>,
     /// Values of the drivers at every output time, up to the first interval in which they do not move smoothly.
     course: Vec<Drive>,
     drivers: Vec<[f64; ORDERS]>,
     /// Source of programs.
     programs: ProgramOf<'m>,
     /// Tapes with one and two corrections; true if the present designs are set.
-    tapes: [Option<(Tape, bool)>; MOST_CORRECTIONS],
-    /// Index of the program that solved the last step, and the error of its prediction.
+    tapes: Tapes,
+    /// Index of the program of the present step, its solution, and the error of its prediction.
     by: usize,
+    solved: SolveQuality,
     missed: f64,
     designs: Vec<Vec<f64>>,
     weights: Weights,
@@ -53,15 +60,21 @@ pub(crate) struct DesignBatch<'m> {
     /// Times of these positions, the newest first, and how many there are.
     times: [f64; NODES],
     count: usize,
-    /// Per block: the last determinant, and its relative change.
-    determinants: Vec<Lanes>,
-    changes: Vec<Lanes>,
+    /// Trust in steps of all designs, one per lane.
+    guard: StepGuard<LANES>,
     /// Numbers of all bodies, and the coordinates of the tree, output time after output time, or of the last one; the
     /// bodies' derivatives at the last.
     states: Arc<Vec<AlignedLanes>>,
     coordinates: Arc<Vec<AlignedLanes>>,
     derivatives: Vec<AlignedLanes>,
     keeps: bool,
+}
+
+type Tapes = [Option<(Tape, bool)>; MOST_CORRECTIONS];
+
+/// The tape of the present step; true if the present designs are set.
+fn at_work(tapes: &mut Tapes, by: usize) -> &mut (Tape, bool) {
+    tapes[by].as_mut().expect("the tape that is at work")
 }
 
 /// Results at an output time.
@@ -76,34 +89,36 @@ impl<'m> DesignBatch<'m> {
     /// configuration at its first output time (the position of `nominal`), because designs could have taken different
     /// branches before. If `keeps` is true, the results of all output times are stored.
     pub fn new(mut nominal: Stepper<'m>, programs: ProgramOf<'m>, keeps: bool) -> Option<Self> {
-        if nominal.saved.drivers.iter().any(|f| f[0] != 0.0) {
+        if nominal.mechanism.saved.drivers.iter().any(|f| f[0] != 0.0) {
             return None;
         }
-        let blocks = nominal.topology.blocks.len();
         let first = Tape::new(programs(MOST_CORRECTIONS)?);
-        if !first.is_on(&nominal.branch) {
+        if !first.is_on(&nominal.mechanism.branch) {
             return None;
         }
         let channels = first.channels().len();
         let derivatives = vec![AlignedLanes::default(); first.sizes()[1]];
         let mut tapes = [const { None }; MOST_CORRECTIONS];
         tapes[MOST_CORRECTIONS - 1] = Some((first, false));
+        let determinants: Vec<f64> = nominal.guard.determinants().collect();
+        let guard = StepGuard::new(determinants.len(), 0);
         let (course, drivers) = course(&mut nominal);
         Some(Self {
-            nominal,
+            nominal: nominal.mechanism,
+            determinants,
             course,
             drivers,
             programs,
             tapes,
             by: MOST_CORRECTIONS - 1,
+            solved: SolveQuality::default(),
             missed: 0.0,
             designs: Vec::new(),
             weights: Weights::default(),
             known: vec![[[0.0; LANES]; NODES * ORDERS]; channels],
             times: [0.0; NODES],
             count: 0,
-            determinants: vec![[0.0; LANES]; blocks],
-            changes: vec![[0.0; LANES]; blocks],
+            guard,
             states: Arc::default(),
             coordinates: Arc::default(),
             derivatives,
@@ -153,7 +168,10 @@ impl<'m> DesignBatch<'m> {
         }
         let mut effort = SolverStatistics { least_pivot_ratio: f64::INFINITY, ..SolverStatistics::default() };
         for (k, &t) in model.times.iter().enumerate() {
-            let solved = if k == 0 { self.start(t)? } else { self.step(k, t)? };
+            if k == 0 {
+                self.start_at(t);
+            }
+            take(DesignStep { batch: self, k, t }).ok()?;
             if self.keeps {
                 let at = widths[1] * k..widths[1] * (k + 1);
                 let Some((tape, _)) = &self.tapes[self.by] else { return None };
@@ -169,8 +187,8 @@ impl<'m> DesignBatch<'m> {
             effort.steps += 1;
             effort.by_program += 1;
             effort.iterations += self.tape().passes();
-            effort.worst_residual = effort.worst_residual.max(solved.residuals.largest);
-            effort.note_pivots([solved.pivot_ratio].into_iter(), t);
+            effort.worst_residual = effort.worst_residual.max(self.solved.residuals.largest);
+            effort.note_pivots([self.solved.pivot_ratio].into_iter(), t);
         }
         Some(effort)
     }
@@ -182,8 +200,8 @@ impl<'m> DesignBatch<'m> {
         first..first + width
     }
 
-    /// Solves all designs at the first output time, from the position of the nominal one.
-    fn start(&mut self, t: f64) -> Option<SolveQuality> {
+    /// Starts all designs at the position of the nominal one, at the first output time.
+    fn start_at(&mut self, t: f64) {
         let saved = &self.nominal.saved;
         for n in 0..self.known.len() {
             let x = self.tape().channels()[n].saved(&saved.q, &saved.balls);
@@ -192,98 +210,97 @@ impl<'m> DesignBatch<'m> {
             self.known[n][0] = [x; LANES];
         }
         (self.times, self.count) = ([t; NODES], 1);
-        let solved = self.solve(MOST_CORRECTIONS, 0, &[0.0; LANES])?;
-        for b in 0..self.determinants.len() {
-            // det of the design over det of the nominal one, as in (28) over a step: a design this near is on the same
-            // branch.
-            let (now, before) = (self.tape().determinant(b), self.nominal.saved.determinants[b]);
-            let factors = &self.nominal.state.factors[b];
-            if !now.iter().all(|x| (MILD[0]..=MILD[1]).contains(&factors.ratio(*x, before))) {
-                return None;
-            }
-            self.determinants[b] = now;
-        }
-        self.count = 0;
-        self.save(t);
-        Some(solved)
+        self.guard.start_at(self.determinants.iter().copied());
     }
+}
 
-    /// Solves all designs at the next output time, k.
-    fn step(&mut self, k: usize, t: f64) -> Option<SolveQuality> {
-        let ahead = [self.course.get(k)?.h; LANES];
+/// The step of all designs to output time k, or from the nominal design to each of them at the first.
+struct DesignStep<'s, 'm> {
+    batch: &'s mut DesignBatch<'m>,
+    k: usize,
+    t: f64,
+}
+
+impl Step for DesignStep<'_, '_> {
+    type Rejection = RoughStep;
+
+    fn drive(&mut self) -> Result<(), RoughStep> {
+        let DesignBatch {
+            nominal, course, drivers, programs, tapes, by, missed, count, designs, guard, ..
+        } = &mut *self.batch;
+        // The laws of all designs are the same; `course` has checked them.
+        guard.fastest_driver = course.get(self.k).ok_or(RoughStep)?.fastest;
         // abs(dq_0) <= 1e-9 at the last step: by (26) one correction reaches round-off at the next, too.
-        let is_good = self.count == NODES && self.missed <= GOOD;
-        let solved = self.solve(if is_good { 1 } else { MOST_CORRECTIONS }, k, &ahead)?;
-        if !self.tape().speeds_are_smooth(self.course[k].fastest) || !self.determinants_are_even(k) {
-            return None;
+        let is_good = *count == NODES && *missed <= GOOD;
+        let corrections = if is_good { 1 } else { MOST_CORRECTIONS };
+        let made = &mut tapes[corrections - 1];
+        if made.is_none() {
+            *made = Some((Tape::new(programs(corrections).ok_or(RoughStep)?), false));
         }
-        self.save(t);
-        Some(solved)
-    }
-
-    /// Tries the tape with this number of corrections at output time k, `ahead` of the newest position.
-    fn solve(&mut self, corrections: usize, k: usize, ahead: &Lanes) -> Option<SolveQuality> {
-        self.weights.set((self.times.map(|t| t - self.times[0]), self.count), ahead);
-        let states_at = self.states_at(k);
-        let kept = &mut self.tapes[corrections - 1];
-        if kept.is_none() {
-            *kept = Some((Tape::new((self.programs)(corrections)?), false));
-        }
-        let (tape, knows) = kept.as_mut()?;
+        *by = corrections - 1;
+        let (tape, knows) = at_work(tapes, *by);
         if !std::mem::replace(knows, true) {
-            tape.set_designs(&self.designs);
+            tape.set_designs(designs);
         }
-        let nominal = &self.nominal;
-        tape.look_ahead(&self.weights.of, true, ahead);
-        for (channel, known) in self.known.iter().enumerate() {
-            tape.known_mut(channel).copy_from_slice(known);
-        }
-        let drivers = nominal.drivers.len();
-        for (to, x) in tape.laws_mut().iter_mut().zip(self.drivers[k * drivers..].as_flattened()) {
+        let first = self.k * nominal.drivers.len();
+        for (to, x) in tape.laws_mut().iter_mut().zip(drivers[first..].as_flattened()) {
             *to = [*x; LANES];
         }
-        let states = &mut Arc::get_mut(&mut self.states)?[states_at];
-        let results = [lanes_of(states), lanes_of(&mut self.derivatives)];
-        let solved = tape.solve(TRUST_FLOOR, results).ok()?;
-        (self.by, self.missed) = (corrections - 1, tape.missed());
-        Some(solved)
+        Ok(())
     }
 
-    /// True if the change of every determinant up to output time k is small and similar to that of the step before.
-    fn determinants_are_even(&mut self, k: usize) -> bool {
-        let beside = self.course[k].h / self.course[k - 1].h;
-        let mut even = true;
-        for b in 0..self.determinants.len() {
-            let now = self.tape().determinant(b);
-            for lane in 0..LANES {
-                let factors = &self.nominal.state.factors[b];
-                let ratio = factors.ratio(now[lane], self.determinants[b][lane]);
-                let change = ratio - 1.0;
-                // NaN is not even.
-                even &= (MILD[0]..=MILD[1]).contains(&ratio);
-                if k > 1 {
-                    // (28) in every lane, h_k / h_k-1 being the same for all designs
-                    even &= (change - self.changes[b][lane] * beside).abs() <= MILD_CHANGE;
-                }
-                (self.changes[b][lane], self.determinants[b][lane]) = (change, now[lane]);
-            }
+    fn predict(&mut self) -> f64 {
+        let DesignBatch { course, tapes, by, weights, known, times, count, .. } = &mut *self.batch;
+        let ahead = [course[self.k].h; LANES];
+        weights.set((times.map(|t| t - times[0]), *count), &ahead);
+        let (tape, _) = at_work(tapes, *by);
+        tape.look_ahead(&weights.of, true, &ahead);
+        for (channel, known) in known.iter().enumerate() {
+            tape.known_mut(channel).copy_from_slice(known);
         }
-        even
+        TRUST_FLOOR
     }
 
-    /// Accepts the positions of the designs at time t.
-    fn save(&mut self, t: f64) {
-        let Some((tape, _)) = &self.tapes[self.by] else { return };
-        for (channel, known) in self.known.iter_mut().enumerate() {
+    fn correct(&mut self, trust: f64) -> Result<(), RoughStep> {
+        let states_at = self.batch.states_at(self.k);
+        let DesignBatch { tapes, by, missed, solved, states, derivatives, .. } = &mut *self.batch;
+        let (tape, _) = at_work(tapes, *by);
+        let states = &mut Arc::get_mut(states).ok_or(RoughStep)?[states_at];
+        *solved = tape.solve(trust, [lanes_of(states), lanes_of(derivatives)])?;
+        *missed = tape.missed();
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), RoughStep> {
+        let DesignBatch { nominal, tapes, by, times, guard, .. } = &mut *self.batch;
+        let (tape, _) = at_work(tapes, *by);
+        RoughStep::unless(self.k == 0 || tape.speeds_are_smooth(guard))?;
+        // At the first output time a design with determinants near those of the nominal one is on the same branch.
+        let steps = Steps { from: times[0], ends: &[self.t] };
+        RoughStep::unless(
+            guard.determinants_are_even(&nominal.state.factors, steps, |b, _| tape.determinant(b)),
+        )
+    }
+
+    fn accept(&mut self) {
+        let DesignBatch { tapes, by, known, times, count, guard, .. } = &mut *self.batch;
+        guard.accept();
+        if self.k == 0 {
+            // From one design to another: no node, and no change of a determinant over time.
+            *count = 0;
+            guard.forget();
+        }
+        let (tape, _) = at_work(tapes, *by);
+        for (channel, known) in known.iter_mut().enumerate() {
             // Node n becomes node n + 1, and where the designs are now node 0 of (27).
             known.copy_within(..(NODES - 1) * ORDERS, ORDERS);
             for (order, to) in known[..ORDERS].iter_mut().enumerate() {
                 *to = *tape.channel_lanes(channel, order);
             }
         }
-        self.times.rotate_right(1);
-        self.times[0] = t;
-        self.count = usize::min(self.count + 1, NODES);
+        times.rotate_right(1);
+        times[0] = self.t;
+        *count = usize::min(*count + 1, NODES);
     }
 }
 
@@ -291,20 +308,20 @@ impl<'m> DesignBatch<'m> {
 /// position is near the start; value, speed and acceleration of each driver at every output time.
 fn course(nominal: &mut Stepper<'_>) -> (Vec<Drive>, Vec<[f64; ORDERS]>) {
     let (mut course, mut drivers) = (Vec::new(), Vec::new());
-    for (k, &t) in nominal.model.times.iter().enumerate() {
-        let h = t - nominal.time;
-        if nominal.drive(Path::Laws, t).is_err() || k > 0 && !nominal.is_clear(t, h) {
+    for (k, &t) in nominal.mechanism.model.times.iter().enumerate() {
+        let h = t - nominal.mechanism.saved.time;
+        if nominal.mechanism.drive(Path::Laws, t).is_err() || k > 0 && !laws_are_resolved(nominal, t) {
             break;
         }
-        nominal.fastest_driver = nominal.driver_speed();
-        if k > 0 {
-            nominal.note_moves();
-            nominal.ahead = Lookahead::Even;
+        let Stepper { mechanism, guard, .. } = &mut *nominal;
+        match k {
+            0 => guard.note_driver_speeds(mechanism, |d| mechanism.drivers[d][1].abs()),
+            _ => guard.accept_laws(h),
         }
-        nominal.saved.drivers.copy_from_slice(&nominal.drivers);
-        nominal.time = t;
-        course.push(Drive { h, fastest: nominal.fastest_driver });
-        drivers.extend_from_slice(&nominal.drivers);
+        mechanism.saved.drivers.copy_from_slice(&mechanism.drivers);
+        mechanism.saved.time = t;
+        course.push(Drive { h, fastest: guard.fastest_driver });
+        drivers.extend_from_slice(&mechanism.drivers);
     }
     (course, drivers)
 }

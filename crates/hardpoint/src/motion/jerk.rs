@@ -3,7 +3,7 @@
 use crate::space::Vec3;
 
 use super::kinematics::State;
-use super::stepper::Stepper;
+use super::mechanism::Mechanism;
 
 /// Third time derivatives of one body's motion, global components.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,9 +15,9 @@ pub struct BodyJerk {
 }
 
 impl BodyJerk {
-    /// Jerks of all bodies at the position of a stepper, at time t.
-    pub(crate) fn all(stepper: &mut Stepper<'_>, t: f64) -> impl Iterator<Item = Self> {
-        let Stepper { state, topology, parts, .. } = stepper;
+    /// Jerks of all bodies at the position of a mechanism, at time t.
+    pub(crate) fn all(mechanism: &mut Mechanism<'_>, t: f64) -> impl Iterator<Item = Self> {
+        let Mechanism { state, topology, parts, .. } = mechanism;
         state.jerk(topology, |d| parts.law_of(d.0).at(t).ddd());
         let state = &*state;
         (0..state.pose.len()).map(|body| Self::of(state, body))

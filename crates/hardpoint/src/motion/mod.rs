@@ -1,20 +1,30 @@
 //! Position, velocity and acceleration of every body over time.
 //!
-//! One step is: Newton's method for each block in turn, then velocity and acceleration from the same factors
-//! (`kinematics`). Closely spaced output times are steps themselves (`stepper`, `time_batch`); elsewhere the solver
-//! chooses its own steps along the path (`walk`).
+//! Every step is taken in the same order (`step`): drive, predict, correct, check, accept. The correction is Newton's
+//! method for each block in turn, then velocity and acceleration from the same factors (`kinematics`). Closely spaced
+//! output times are steps themselves (`advance`, `time_batch`, `design_batch`); elsewhere the solver chooses its own
+//! steps along the path (`walk`).
 
-mod assembly;
+pub(crate) mod advance;
+pub(crate) mod assembly;
 mod change_point;
+mod crossing;
 pub(crate) mod design_batch;
 pub(crate) mod execution;
+mod gap;
+mod guard;
 pub(crate) mod jerk;
 pub(crate) mod kinematics;
 pub(crate) mod level;
+mod lookahead;
 pub(crate) mod margin;
+pub(crate) mod mechanism;
 pub(crate) mod parts;
+mod path;
+mod path_step;
 mod predictor;
 mod singularity;
+mod step;
 pub(crate) mod step_program;
 pub(crate) mod stepper;
 mod stop;
@@ -23,8 +33,8 @@ pub(crate) mod time_batch;
 pub(crate) mod turns;
 mod walk;
 
-pub use assembly::{Assembly, AssemblyShift, Closing, Gap};
 pub use execution::{Execution, StepMethod};
+pub use gap::{Assembly, AssemblyShift, Closing, Gap};
 pub use jerk::BodyJerk;
 pub use margin::Margin;
 pub use stop::{Stop, StopKind};

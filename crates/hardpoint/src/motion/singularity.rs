@@ -20,7 +20,9 @@ use crate::topology::{BlockId, CoordinateId, Topology};
 
 use super::kinematics::State;
 use super::level::Flow;
+use super::mechanism::Mechanism;
 use super::parts::PlanGeometry;
+use super::path::Path;
 use super::turns::TurnCounter;
 
 /// Number of loads on the rows. One could miss a singular position; two have not (270 hard cases in the plane and in
@@ -29,7 +31,7 @@ const LOADS: usize = 2;
 
 /// Neighbourhood of a position: the response of the mechanism to its drivers.
 #[derive(Clone, Debug)]
-pub(super) struct Surroundings {
+pub(crate) struct Surroundings {
     /// Per direction and block: the inverse distance to the nearest singular position, per unit of the direction.
     /// 1/rho of (22), per rad or m of the driver.
     nearness: Vec<Vec<f64>>,
@@ -51,7 +53,7 @@ pub(super) struct Surroundings {
 
 /// A singular position ahead, by the series of one block's response along a direction.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SingularityAhead {
+pub(crate) struct SingularityAhead {
     /// The block that becomes singular.
     pub block: BlockId,
     /// Distance ahead, in units of the direction; negative if the position is behind.
@@ -153,7 +155,9 @@ fn part(travel: f64, per_unit: f64) -> f64 {
 }
 
 impl Workspace {
-    pub fn new(topology: &Topology, bodies: usize, drivers: usize) -> Self {
+    pub fn new(mechanism: &Mechanism<'_>) -> Self {
+        let Mechanism { topology, state, drivers, .. } = mechanism;
+        let bodies = state.pose.len();
         let (coordinates, rows) = (topology.coordinates.len(), topology.rows.len());
         // Multiples of the golden ratio are uniformly distributed and never repeat: all loads differ, and none is
         // small.
@@ -172,7 +176,7 @@ impl Workspace {
             l: std::array::from_fn(|_| vec![Wrench::zero(); rows]),
             loads: std::array::from_fn(|_| load()),
             response: Flow::new(topology, bodies, false),
-            drivers: vec![[0.0; 3]; drivers],
+            drivers: vec![[0.0; 3]; drivers.len()],
         }
     }
 
@@ -183,27 +187,25 @@ impl Workspace {
         self.l.swap_with_slice(&mut state.l[1..]);
     }
 
-    /// Examines the position of a state, with its factors, along each direction. `speed(direction, driver)` is the
-    /// speed of a driver along a direction, and `gap_rate` the rate at which the gaps of an assembly close.
-    #[expect(clippy::too_many_arguments, reason = "all are borrowed from one stepper, some of them mutably")]
+    /// Examines the position of a mechanism, with its factors, along each direction of a path.
     pub fn examine(
         &mut self,
-        topology: &Topology,
-        parts: &PlanGeometry<f64>,
-        state: &mut State<f64>,
-        gap_rate: f64,
-        (directions, speed): (usize, impl Fn(usize, usize) -> f64),
+        mechanism: &mut Mechanism<'_>,
+        path: Path,
         mut turns: Option<&mut TurnCounter<'_>>,
         found: &mut Surroundings,
     ) {
-        found.make_room(topology, directions);
-        self.swap(state);
-        let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
+        let directions = path.directions(mechanism.drivers.len());
+        found.make_room(&mechanism.topology, directions);
+        self.swap(&mut mechanism.state);
+        let gap = std::mem::replace(&mut mechanism.state.gap_left[1], path.gap_rate());
         for direction in 0..directions {
             for (d, driver) in self.drivers.iter_mut().enumerate() {
-                // f' = 1 of one driver, 0 of the others; f'' = 0
-                *driver = [0.0, speed(direction, d), 0.0];
+                // On the laws' path f' = 1 of one driver, 0 of the others: the distance does not depend on the speed of
+                // a driver. f'' = 0
+                *driver = [0.0, mechanism.speed_along(path, direction, d), 0.0];
             }
+            let Mechanism { topology, parts, state, .. } = &mut *mechanism;
             self.rates(topology, parts, state);
             // q' and q'' by (9) and (10), with f' of this direction in the place of f.
             found.slopes[direction].copy_from_slice(&state.motion.speeds[0]);
@@ -238,24 +240,30 @@ impl Workspace {
                 found.nearness[direction][b.0] = nearness;
             }
         }
-        state.gap_left[1] = gap;
-        self.swap(state);
+        mechanism.state.gap_left[1] = gap;
+        self.swap(&mut mechanism.state);
     }
 
-    /// First singular position that the motion reaches at the present speeds of the drivers: that of the block with the
-    /// strongest response.
+    /// First singular position that the motion reaches at the present speeds of the drivers, or at unit speed of one
+    /// driver `alone`: that of the block with the strongest response.
     pub fn ahead(
         &mut self,
-        topology: &Topology,
-        parts: &PlanGeometry<f64>,
-        state: &mut State<f64>,
-        gap_rate: f64,
-        drivers: &[[f64; 3]],
+        mechanism: &mut Mechanism<'_>,
+        path: Path,
+        alone: Option<usize>,
     ) -> Option<SingularityAhead> {
-        // Along the motion as it goes: f., f.. of all drivers together, so that the distance is a time.
-        self.drivers.copy_from_slice(drivers);
+        let Mechanism { topology, parts, state, drivers, .. } = mechanism;
+        match alone {
+            // Along the motion as it goes: f., f.. of all drivers together, so that the distance is a time.
+            None => self.drivers.copy_from_slice(drivers),
+            // The distance as a travel of this driver, f' = 1
+            Some(driver) => {
+                self.drivers.fill([0.0; 3]);
+                self.drivers[driver][1] = 1.0;
+            }
+        }
         self.swap(state);
-        let gap = std::mem::replace(&mut state.gap_left[1], gap_rate);
+        let gap = std::mem::replace(&mut state.gap_left[1], path.gap_rate());
         let mut nearest: Option<(f64, SingularityAhead)> = None;
         self.rates(topology, parts, state);
         for b in topology.block_ids() {

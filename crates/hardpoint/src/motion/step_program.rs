@@ -28,9 +28,9 @@ use super::BodyState;
 use super::execution::{Cache, Execution, Runnable, Staged, StepMethod};
 use super::kinematics::{CORRECTIONS, QUADRATIC, ROUND_OFF, State};
 use super::margin::Margins;
+use super::mechanism::{AcceptedPosition, Mechanism};
 use super::parts::PlanGeometry;
 use super::predictor::{Channel, NODES, ORDERS};
-use super::stepper::{AcceptedPosition, Stepper};
 
 /// Newton's first correction while recording, in units of each coordinate, for programs with one correction and with
 /// two: the last of them leaves round-off.
@@ -234,7 +234,7 @@ impl StepProgram {
     /// Records the step at the position of `one`, of the nominal design, and the results of `besides`; returns `None`
     /// if either cannot be recorded.
     pub fn record(
-        one: &Stepper<'_>,
+        one: &Mechanism<'_>,
         design_map: &DesignMap<'_>,
         purpose: Purpose,
         besides: impl FnOnce(RecordedStep<'_>) -> Option<RecordedExtras>,
@@ -393,7 +393,7 @@ fn moves(topology: &Topology, channels: &[Channel], state: &State<Number>) -> Ve
 /// Quantities that the steps are checked by, up to [`StepCheck::Last`], for blocks that are recorded so; none of the
 /// limits may be positive.
 fn judged(
-    one: &Stepper<'_>,
+    one: &Mechanism<'_>,
     state: &State<Number>,
     blocks: &[BlockProgram],
     limits: Vec<Number>,
@@ -407,7 +407,7 @@ fn judged(
         // ... the order of the pivots is stable, ...
         unfit.push(w.growth + -f64::max(MOST_GROWTH, 2.0 * block.growth));
         // ... and no other rows are better: 1 / (most least) is the pivot ratio.
-        unfit.push(w.most * w.least * one.try_others[b] + -1.0);
+        unfit.push(w.most * w.least * one.branch[b].try_others + -1.0);
         first.push(corrections[0]);
         last.push(corrections[block.last] + -block.limit);
     }

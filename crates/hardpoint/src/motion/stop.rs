@@ -1,11 +1,10 @@
 //! Reason why a motion ended before its last output time.
 
-use super::assembly::SINGULAR_DRAWING;
 use crate::joint::Quantity;
 use crate::model::{JointId, Model};
 use crate::topology::BlockId;
 
-use super::assembly::{Closing, Gap};
+use super::gap::{Gap, SINGULAR_DRAWING};
 
 /// End of a run before its last output time. The results up to there are kept.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,16 +172,5 @@ impl Stop {
             }
             StopKind::Interrupted => return None,
         })
-    }
-}
-
-impl Closing {
-    /// Kind and name, for messages.
-    pub fn name(self, model: &Model) -> String {
-        match self {
-            Self::Joint(j) => format!("joint `{}`", model.joints[j.0].name),
-            Self::Driver(d) => format!("driver `{}`", model.drivers[d.0].name),
-            Self::Coupler(c) => format!("coupler `{}`", model.couplers[c].name),
-        }
     }
 }

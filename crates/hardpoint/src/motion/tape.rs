@@ -9,10 +9,12 @@ use crate::model::{BodyId, VariableId};
 use crate::topology::{CoordinateId, RowId, SetBy, Topology};
 
 use super::execution::ProgramMemory;
+use super::guard::StepGuard;
 use super::kinematics::Residuals;
+use super::mechanism::{Branch, LOCKED};
 use super::predictor::{Channel, ORDERS};
+use super::step::RoughStep;
 use super::step_program::{CONDITIONS, Inputs, Outputs, PER_BLOCK, Purpose, StepCheck, StepProgram};
-use super::stepper::{LOCKED, smooth};
 
 /// Maximum number of runs; the kernel solves steps that have not converged then.
 const MOST_RUNS: usize = 4;
@@ -20,10 +22,6 @@ const MOST_RUNS: usize = 4;
 const CONTRACTS: f64 = 0.5;
 /// Number of groups of steps after which a program is given up if it was rejected in more than a quarter of them.
 const TRIAL: usize = 8;
-
-/// Step that the program does not fit; the kernel solves it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct ProgramMismatch;
 
 /// A program with its working memory: one design in all lanes, or one in each.
 pub(crate) struct Tape {
@@ -43,7 +41,7 @@ pub(crate) struct Tape {
 }
 
 /// Quality of a solution.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolveQuality {
     pub residuals: Residuals,
     /// The smallest pivot ratio of all blocks.
@@ -90,8 +88,8 @@ impl Tape {
     }
 
     /// True if its determinants have the signs of these branches.
-    pub fn is_on(&self, branch: &[(bool, f64)]) -> bool {
-        self.program.blocks.iter().zip(branch).all(|(block, (positive, _))| block.positive == *positive)
+    pub fn is_on(&self, branch: &[Branch]) -> bool {
+        self.program.blocks.iter().zip(branch).all(|(block, branch)| block.positive == branch.positive)
     }
 
     /// Pairs of a variable and a body that it moves, in the order of their derivatives.
@@ -169,7 +167,7 @@ impl Tape {
         &mut self,
         mut trust: f64,
         [states, derivatives]: [&mut [Lanes]; 2],
-    ) -> Result<SolveQuality, ProgramMismatch> {
+    ) -> Result<SolveQuality, RoughStep> {
         self.tried += 1;
         self.refused += 1;
         self.runs = 0;
@@ -180,7 +178,7 @@ impl Tape {
             self.runs += 1;
             // All comparisons reject NaN.
             if !all_within(self.judged(StepCheck::First), trust) {
-                return Err(ProgramMismatch);
+                return Err(RoughStep);
             }
             if self.runs == 1 {
                 self.missed = largest(self.judged(StepCheck::First));
@@ -189,7 +187,7 @@ impl Tape {
                 break;
             }
             if self.runs == MOST_RUNS {
-                return Err(ProgramMismatch);
+                return Err(RoughStep);
             }
             // As in (26): the next first correction must be at most half of this one.
             trust = CONTRACTS * largest(self.judged(StepCheck::First));
@@ -201,7 +199,7 @@ impl Tape {
             && all_within(self.judged(StepCheck::ScaledResidual), LOCKED)
             && pivot_ratio > 0.0;
         if !fits {
-            return Err(ProgramMismatch);
+            return Err(RoughStep);
         }
         self.refused -= 1;
         self.repeated += usize::from(self.runs > 1);
@@ -278,12 +276,12 @@ impl Tape {
         self.program.unknowns.iter().map(move |u| (u.coordinate, [at(u.speed), at(u.speed + 1)]))
     }
 
-    /// True if the speeds are those of the same branch as at the newest position, with so fast a driver.
+    /// True if the guard trusts the speeds in all lanes.
     #[inline(always)]
-    pub fn speeds_are_smooth(&self, fastest_driver: f64) -> bool {
+    pub fn speeds_are_smooth<const N: usize>(&self, guard: &StepGuard<N>) -> bool {
         let [apart, fastest] = [StepCheck::Apart, StepCheck::Fastest].map(|which| self.judged(which));
         // NaN in any lane is rejected.
-        all_within(apart, f64::MAX) && smooth(largest(apart), largest(fastest), fastest_driver)
+        all_within(apart, f64::MAX) && guard.speeds_are_smooth(largest(apart), largest(fastest))
     }
 
     /// Margins of the blocks, if computed.

@@ -11,23 +11,21 @@ use hardpoint_tape::{LANES, Lanes};
 use crate::blocks::{AlignedLanes, ResultBlock, lanes_of};
 
 use super::execution::{ProgramMemory, Runnable};
+use super::guard::Steps;
 use super::kinematics::QUADRATIC;
 use super::margin::Margin;
+use super::mechanism::{AcceptedPosition, Mechanism};
+use super::path_step::TRUST_FLOOR;
 use super::predictor::{NODES, ORDERS, Weights};
+use super::step::{RoughStep, Step, take};
 use super::step_program::{MOST_CORRECTIONS, StepProgram};
-use super::stepper::{
-    AcceptedPosition, EVEN, LONGEST, Lookahead, MILD, MILD_CHANGE, RESTS, Stepper, TRUST_FLOOR,
-};
+use super::stepper::Stepper;
 use super::tape::{SolveQuality, Tape, all_within, largest};
-use super::turns::TurnCounter;
-use super::walk::PART_OF_WAY;
 
 /// Maximum first correction (rad, or sizes) after a prediction by all stored positions.
 const FORECAST_TRUST: f64 = 1e-3;
 /// Minimum and maximum number of steps that are solved one by one after a failure.
 const PAUSE: [usize; 2] = [LANES, 64];
-/// Interval over which the range of a law is evaluated, in lengths of a batch.
-const CELL: f64 = 8.0;
 /// Minimum number of steps of a batch.
 const FEWEST: usize = 3;
 
@@ -105,7 +103,7 @@ impl<'p> TimeBatch<'p> {
         let (first, group) = (k % LANES, k - k % LANES);
         let last = usize::min(times.len() - group, LANES) - 1;
         let count = last + 1 - first;
-        if self.programs.is_none() || count < FEWEST || one.ahead == Lookahead::Unknown {
+        if self.programs.is_none() || count < FEWEST || !one.knows_the_path() {
             return 0;
         }
         if self.wait > 0 {
@@ -113,10 +111,10 @@ impl<'p> TimeBatch<'p> {
             return 0;
         }
         let times: Lanes = std::array::from_fn(|lane| times[group + usize::min(lane, last)]);
-        if one.forecast.known() == 0 || !self.choose_tape(one, [times[last], count as f64]) {
+        if !self.choose_tape(&one.mechanism, [times[last], count as f64]) {
             return 0;
         }
-        if self.try_to(one, &times, [first, last], room()).is_some() {
+        if self.step(one, &times, [first, last], room()).is_some_and(|step| take(step).is_ok()) {
             self.pause = PAUSE[0];
             return count;
         }
@@ -127,7 +125,7 @@ impl<'p> TimeBatch<'p> {
 
     /// Makes a tape if there is none, and replaces or drops one that does not fit; returns true if there is one. Up to
     /// `last` there are `count` steps.
-    fn choose_tape(&mut self, one: &Stepper<'_>, [last, count]: [f64; 2]) -> bool {
+    fn choose_tape(&mut self, one: &Mechanism<'_>, [last, count]: [f64; 2]) -> bool {
         let corrections = match &self.tape {
             _ if one.selections > 0 => None,
             Some(tape) if tape.is_of_no_use() => None,
@@ -147,56 +145,131 @@ impl<'p> TimeBatch<'p> {
         self.tape.is_some()
     }
 
-    /// Tries these output times, of which those from lane `first` to lane `last` are new.
+    /// The step to these output times, of which those from lane `first` to lane `last` are new.
     #[inline(always)]
-    fn try_to(
-        &mut self,
-        one: &mut Stepper<'_>,
-        times: &Lanes,
+    fn step<'s, 'm>(
+        &'s mut self,
+        one: &'s mut Stepper<'m>,
+        times: &'s Lanes,
         [first, last]: [usize; 2],
-        room: Option<[&mut [Lanes]; 2]>,
-    ) -> Option<()> {
-        let tape = self.tape.as_mut()?;
-        self.laws.at(one, times, tape.laws_mut())?;
-        if !laws_are_even(tape, one, times, [first, last]) {
-            return None;
-        }
-        one.fastest_driver = fastest_driver(tape, one);
-        // t - z_0 of (27) in every lane, z_0 the stepper's own time
-        let ahead = times.map(|t| t - one.time);
-        let are_new = self.weights.set(one.forecast.nodes(ahead[last]), &ahead);
-        tape.look_ahead(&self.weights.of, are_new, &ahead);
-        for (channel, known) in tape.known_of_times_mut().iter_mut().enumerate() {
-            known.copy_from_slice(one.forecast.known_of(channel).as_flattened());
-        }
+        room: Option<[&'s mut [Lanes]; 2]>,
+    ) -> Option<TimeStep<'s, 'm>> {
+        let Self { tape, laws, weights, own, is_own, .. } = self;
+        let tape = tape.as_mut()?;
         // Earlier results are not overwritten, even if these steps are rejected.
         let room = room.filter(|room| first == 0 && room.each_ref().map(|part| part.len()) == tape.sizes());
-        self.is_own = room.is_none();
-        let [states, derivatives] = room.unwrap_or_else(|| {
-            for (own, size) in self.own.iter_mut().zip(tape.sizes()) {
+        *is_own = room.is_none();
+        let results = room.unwrap_or_else(|| {
+            for (own, size) in own.iter_mut().zip(tape.sizes()) {
                 own.resize(size, AlignedLanes::default());
             }
-            self.own.each_mut().map(|own| lanes_of(own))
+            own.each_mut().map(|own| lanes_of(own))
         });
+        Some(TimeStep {
+            one,
+            tape,
+            laws,
+            weights,
+            results,
+            times,
+            lanes: [first, last],
+            solved: SolveQuality::default(),
+        })
+    }
+}
+
+/// The step over up to eight output times at once.
+struct TimeStep<'s, 'm> {
+    one: &'s mut Stepper<'m>,
+    tape: &'s mut Tape,
+    laws: &'s mut Laws,
+    weights: &'s mut Weights,
+    /// Numbers of all bodies, and their derivatives.
+    results: [&'s mut [Lanes]; 2],
+    times: &'s Lanes,
+    /// First and last lane of the new output times.
+    lanes: [usize; 2],
+    solved: SolveQuality,
+}
+
+impl Step for TimeStep<'_, '_> {
+    type Rejection = RoughStep;
+
+    #[inline(always)]
+    fn drive(&mut self) -> Result<(), RoughStep> {
+        self.laws.at(&self.one.mechanism, self.times, self.tape.laws_mut()).ok_or(RoughStep)?;
+        let [first, last] = self.lanes;
+        let steps = Steps { from: self.one.mechanism.saved.time, ends: &self.times[first..=last] };
+        let Stepper { mechanism, guard, lookahead, .. } = &mut *self.one;
+        let tape = &*self.tape;
+        let values = |d: usize| &tape.driver(d, 0)[first..=last];
+        let speed = |d: usize| largest(&tape.driver(d, 1).map(f64::abs));
+        RoughStep::unless(guard.laws_are_resolved((mechanism, lookahead), steps, values, speed))
+    }
+
+    #[inline(always)]
+    fn predict(&mut self) -> f64 {
+        let Stepper { mechanism, predictor, .. } = &*self.one;
+        // t - z_0 of (27) in every lane, z_0 the stepper's own time
+        let ahead = self.times.map(|t| t - mechanism.saved.time);
+        let are_new = self.weights.set(predictor.nodes(ahead[self.lanes[1]]), &ahead);
+        self.tape.look_ahead(&self.weights.of, are_new, &ahead);
+        for (channel, known) in self.tape.known_of_times_mut().iter_mut().enumerate() {
+            known.copy_from_slice(predictor.known_of(channel).as_flattened());
+        }
         // The first steps of a motion have fewer nodes. With three nodes the error of the prediction is that of (27); a
         // first correction above 1e-3 means that the motion is not smooth enough.
-        let trust = if one.forecast.known() < NODES { TRUST_FLOOR } else { FORECAST_TRUST };
-        let solved = tape.solve(trust, [&mut *states, derivatives]).ok()?;
-        let change_step = determinants_are_even(tape, one, times, [first, last]);
-        let change_step = change_step.filter(|_| tape.speeds_are_smooth(one.fastest_driver));
-        let moved = one.moves_ahead.iter().sum();
-        let turns =
-            |turns: &mut TurnCounter<'_>| turns.are_even(states, (times, one.time), [first, last], moved);
-        match change_step.filter(|_| one.turns.as_mut().is_none_or(turns)) {
-            Some(step) => {
-                one.continue_from(tape, times, [first, last], solved, step);
-                Some(())
-            }
-            None => {
-                tape.refuse();
-                None
-            }
+        if predictor.known() < NODES { TRUST_FLOOR } else { FORECAST_TRUST }
+    }
+
+    #[inline(always)]
+    fn correct(&mut self, trust: f64) -> Result<(), RoughStep> {
+        self.solved = self.tape.solve(trust, self.results.each_mut().map(|part| &mut **part))?;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn check(&mut self) -> Result<(), RoughStep> {
+        let [first, last] = self.lanes;
+        let steps = Steps { from: self.one.mechanism.saved.time, ends: &self.times[first..=last] };
+        let Stepper { mechanism, guard, turns, .. } = &mut *self.one;
+        let tape = &*self.tape;
+        let determinant = |b: usize, k: usize| [tape.determinant(b)[first + k]];
+        let is_smooth = guard.determinants_are_even(&mechanism.state.factors, steps, determinant)
+            && tape.speeds_are_smooth(guard)
+            && turns.as_mut().is_none_or(|turns| {
+                let times = (self.times, mechanism.saved.time);
+                turns.are_even(self.results[0], times, self.lanes, guard.moved())
+            });
+        if !is_smooth {
+            self.tape.refuse();
         }
+        RoughStep::unless(is_smooth)
+    }
+
+    /// Moves the stepper to the position in the last lane, after all new lanes.
+    #[inline(always)]
+    fn accept(&mut self) {
+        let ([first, last], tape) = (self.lanes, &*self.tape);
+        let Stepper { mechanism, predictor, guard, lookahead, effort, .. } = &mut *self.one;
+        // The next prediction uses the middle and the end of the batch.
+        for lane in [usize::midpoint(first, last), last] {
+            let channels = 0..tape.channels().len();
+            predictor.learn_values(self.times[lane], channels.map(|c| tape.channel(c, lane)));
+        }
+        save_lane(mechanism, tape, last);
+        mechanism.saved.time = self.times[last];
+        guard.accept();
+        lookahead.is_known = false;
+        let count = last + 1 - first;
+        mechanism.state.iterations += tape.passes() * count;
+        effort.steps += count;
+        effort.by_program += count;
+        effort.iterations = mechanism.state.iterations;
+        let SolveQuality { residuals, pivot_ratio } = self.solved;
+        mechanism.saved.residual = residuals.scaled;
+        effort.worst_residual = effort.worst_residual.max(residuals.largest);
+        effort.note_pivots([pivot_ratio].into_iter(), self.times[last]);
     }
 }
 
@@ -204,7 +277,7 @@ impl Laws {
     /// Value, speed and acceleration of every driver at these times, and the values of the laws of forces, if
     /// requested; `None` if one is not finite.
     #[inline(always)]
-    fn at(&mut self, one: &Stepper<'_>, times: &Lanes, laws: &mut [Lanes]) -> Option<()> {
+    fn at(&mut self, one: &Mechanism<'_>, times: &Lanes, laws: &mut [Lanes]) -> Option<()> {
         let mut by_program = false;
         if let Some(program) = &self.program {
             let limits = lanes_of(&mut self.limits);
@@ -232,155 +305,41 @@ impl Laws {
 /// Estimated error of a prediction eight steps beyond three positions that are four steps apart, rad or sizes: the
 /// remainder of the Hermite interpolation, `x^9 / 9!` times the ninth derivative, for a sinusoidal motion. The
 /// frequency is that of the fastest driver's rotation, or of its law. Up to `last` there are `count` steps.
-fn missed(one: &Stepper<'_>, last: f64, count: f64) -> f64 {
+fn missed(one: &Mechanism<'_>, last: f64, count: f64) -> f64 {
     let frequency = |d: usize| {
-        let speed = one.parts.fastest(d, one.time, last);
+        let speed = one.parts.fastest(d, one.saved.time, last);
         // omega = f. / unit: all bodies that a rotating driver moves follow sin(omega t). Or f itself follows
         // sin(omega t), and then f... = -omega^2 f.
-        let [.., third] = one.parts.law_of(d).at(one.time).derivatives();
+        let [.., third] = one.parts.law_of(d).at(one.saved.time).derivatives();
         let of_law = if speed > 0.0 { (third.abs() / speed).sqrt() } else { 0.0 };
         f64::max(speed / one.driver_units[d], of_law)
     };
-    let step = (0..one.drivers.len()).map(frequency).fold(0.0, f64::max) * (last - one.time) / count;
+    let step = (0..one.drivers.len()).map(frequency).fold(0.0, f64::max) * (last - one.saved.time) / count;
     // abs(q - p) <= max abs(q(9)) / 9! prod (t - z_i), the z_i thrice 0, -4 and -8 steps h, t = 8 h: (8 12 16)^3 (omega
     // h)^9 / 9!
     let far = [8.0, 12.0, 16.0].iter().map(|x: &f64| x * step).product::<f64>().powi(3);
     far / (1..=9).map(f64::from).product::<f64>()
 }
 
-/// Speed of the fastest driver (rad, or sizes, per unit of the path's parameter), at any of these times or before.
+/// Saves the position and the rates that a tape has found in one lane.
 #[inline(always)]
-fn fastest_driver(tape: &Tape, one: &Stepper<'_>) -> f64 {
-    let mut fastest = one.fastest_driver;
-    for (d, unit) in one.driver_units.iter().enumerate() {
-        fastest = fastest.max(largest(&tape.driver(d, 1).map(f64::abs)) / unit);
+fn save_lane(mechanism: &mut Mechanism<'_>, tape: &Tape, lane: usize) {
+    let Mechanism { topology, saved, branch, .. } = mechanism;
+    let AcceptedPosition { q, qd, qdd, balls, drivers, pivots, .. } = saved;
+    for (n, channel) in tape.channels().iter().enumerate() {
+        channel.save(tape.channel(n, lane)[0], q, balls);
     }
-    fastest
-}
-
-/// True if the output times resolve all laws between them and, at the first step, no singular position is known to be
-/// near. Records the travel of the drivers from one output time to the next.
-#[inline(always)]
-fn laws_are_even(tape: &Tape, one: &mut Stepper<'_>, times: &Lanes, [first, last]: [usize; 2]) -> bool {
-    let mut longest = times[first] - one.time;
-    (first + 1..=last).for_each(|k| longest = longest.max(times[k] - times[k - 1]));
-    for d in 0..one.drivers.len() {
-        let unit = one.driver_units[d];
-        let (mut before, mut moves) = (one.saved.drivers[d][0], 0.0_f64);
-        for &value in &tape.driver(d, 0)[first..=last] {
-            let moved = (value - before).abs();
-            moves = if moved > moves { moved } else { moves };
-            before = value;
-        }
-        // max over the new output times of abs(f_k - f_k-1)
-        moves /= unit;
-        let most = (EVEN * moves).clamp(RESTS, LONGEST);
-        let [from, to] = [one.time, times[last]];
-        // h max abs(f.) <= 2 max abs(f_k - f_k-1), h the longest of the new steps
-        let stretch = [from, to, from + CELL * (to - from)];
-        let travel =
-            longest / unit * one.speed_bounds[d].fastest(&one.parts, d, stretch, most * unit / longest);
-        if !(travel <= most) {
-            return false;
-        }
-        // The examined range must extend to the last of these times.
-        (one.moves_ahead[d], one.travel[d]) = (moves, travel * unit * ((to - from) / longest));
+    for (c, [speeds, accelerations]) in tape.unknowns() {
+        (qd[c.0], qdd[c.0]) = (speeds[lane], accelerations[lane]);
     }
-    one.ahead == Lookahead::Even || one.around.part_of_way(&one.travel) <= PART_OF_WAY
-}
-
-/// True if the change of every determinant from one output time to the next is small and similar to that of the step
-/// before. Records the last of these changes, and returns the length of its step.
-#[inline(always)]
-fn determinants_are_even(
-    tape: &Tape,
-    one: &mut Stepper<'_>,
-    times: &Lanes,
-    [first, last]: [usize; 2],
-) -> Option<f64> {
-    // Length of every step relative to the one before it; for the first step, relative to the last of the stepper.
-    let (mut beside, mut step) = ([1.0; LANES], one.change_step);
-    for k in first..=last {
-        let next = if k == first { times[k] - one.time } else { times[k] - times[k - 1] };
-        (beside[k], step) = (next / step, next);
+    for (d, driver) in drivers.iter_mut().enumerate() {
+        *driver = std::array::from_fn(|order| tape.driver(d, order)[lane]);
     }
-    // The first step of all has none before it.
-    let compared = if one.ahead == Lookahead::Even { first } else { first + 1 };
-    for b in 0..one.changes.len() {
-        let determinants = tape.determinant(b);
-        let (mut even, mut before) = (true, one.saved.determinants[b]);
-        let mut change = one.changes[b];
-        for k in first..=last {
-            let ratio = one.state.factors[b].ratio(determinants[k], before);
-            // r_k = det_k / det_k-1;  r_k in [0.78, 1.28],  abs((r_k - 1) - (r_k-1 - 1) h_k / h_k-1) <= 0.125     (28)
-            let changed = ratio - 1.0;
-            // NaN is not even.
-            even &= (MILD[0]..=MILD[1]).contains(&ratio);
-            even &= k < compared || (changed - change * beside[k]).abs() <= MILD_CHANGE;
-            (change, before) = (changed, determinants[k]);
-        }
-        if !even {
-            return None;
-        }
-        one.changes_ahead[b] = change;
+    for (c, d) in topology.driven_coordinates() {
+        [q[c.0], qd[c.0], qdd[c.0]] = drivers[d.0];
     }
-    Some(step)
-}
-
-impl Stepper<'_> {
-    /// Moves the stepper to the position of the program in lane `last`, after all lanes from `first` on.
-    #[inline(always)]
-    fn continue_from(
-        &mut self,
-        tape: &Tape,
-        times: &Lanes,
-        [first, last]: [usize; 2],
-        SolveQuality { residuals, pivot_ratio }: SolveQuality,
-        change_step: f64,
-    ) {
-        // The next prediction uses the middle and the end of the batch.
-        for lane in [usize::midpoint(first, last), last] {
-            let channels = 0..tape.channels().len();
-            self.forecast.learn_values(times[lane], channels.map(|c| tape.channel(c, lane)));
-        }
-        self.stand_in(tape, last);
-        let saved = &mut self.saved;
-        for (b, pivots) in saved.pivots.iter_mut().enumerate() {
-            *pivots = (tape.pivot_ratio(b, last), self.branch[b].0);
-            saved.determinants[b] = tape.determinant(b)[last];
-        }
-        saved.residual = residuals.scaled;
-        self.changes.copy_from_slice(&self.changes_ahead);
-        self.moves.copy_from_slice(&self.moves_ahead);
-        self.change_step = change_step;
-        self.ahead = Lookahead::Even;
-        self.time = times[last];
-        let effort = &mut self.effort;
-        let count = last + 1 - first;
-        self.state.iterations += tape.passes() * count;
-        effort.steps += count;
-        effort.by_program += count;
-        effort.iterations = self.state.iterations;
-        effort.worst_residual = effort.worst_residual.max(residuals.largest);
-        effort.note_pivots([pivot_ratio].into_iter(), self.time);
-    }
-
-    /// Saves the position and the rates that a tape has found in one lane.
-    #[inline(always)]
-    fn stand_in(&mut self, tape: &Tape, lane: usize) {
-        let AcceptedPosition { q, qd, qdd, balls, drivers, .. } = &mut self.saved;
-        for (n, channel) in tape.channels().iter().enumerate() {
-            channel.save(tape.channel(n, lane)[0], q, balls);
-        }
-        for (c, [speeds, accelerations]) in tape.unknowns() {
-            (qd[c.0], qdd[c.0]) = (speeds[lane], accelerations[lane]);
-        }
-        for (d, driver) in drivers.iter_mut().enumerate() {
-            *driver = std::array::from_fn(|order| tape.driver(d, order)[lane]);
-        }
-        for (c, d) in self.topology.driven_coordinates() {
-            [q[c.0], qd[c.0], qdd[c.0]] = drivers[d.0];
-        }
+    for (b, (pivots, branch)) in pivots.iter_mut().zip(branch).enumerate() {
+        *pivots = (tape.pivot_ratio(b, lane), branch.positive);
     }
 }
 

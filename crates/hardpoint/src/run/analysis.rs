@@ -9,6 +9,7 @@ use crate::law::Law;
 use crate::load::{self, RecordedLoads};
 use crate::measure::{self, MeasureResults, Slopes, StepValues};
 use crate::model::{BodyId, MeasureKind, Model, SharedModel};
+use crate::motion::advance;
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
 use crate::motion::step_program::{Programs, Purpose, RecordedExtras, RecordedStep, StepProgram};
@@ -331,7 +332,7 @@ impl<'m> Analysis<'m> {
                     let fields = recording::strictly(|| self.design_map.fields(values));
                     record_derivatives(self.model(), &fields, topology, state, |by| {
                         if let Some(loads) = &mut loads {
-                            loads.differentiate(by);
+                            loads.differentiate(&by);
                         }
                     })?
                 } else {
@@ -345,7 +346,7 @@ impl<'m> Analysis<'m> {
                 }
                 Some(RecordedExtras { measures: measures.numbers(), ..extras })
             };
-            StepProgram::record(&one, &self.design_map, purpose, besides, execution)
+            StepProgram::record(&one.mechanism, &self.design_map, purpose, besides, execution)
         })
     }
 
@@ -354,7 +355,7 @@ impl<'m> Analysis<'m> {
         let PreparedDesign { geometry, laws, .. } = self.design(&[]);
         let parts = PlanGeometry::same(self.model(), &self.topology, &geometry, &laws);
         let mut one = Stepper::new(self.model(), &self.topology, parts);
-        one.start(*self.model().times.first()?).ok()?;
+        advance::start(&mut one, *self.model().times.first()?).ok()?;
         Some(one)
     }
 }

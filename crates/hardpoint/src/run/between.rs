@@ -12,7 +12,7 @@ use std::sync::Arc;
 use crate::law::Law;
 use crate::linalg::{hermite, segment_at};
 use crate::model::{Metric, Model, Reduction};
-use crate::motion::stepper::driver_units;
+use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
 use super::metric::{unresolved_times, window_times};

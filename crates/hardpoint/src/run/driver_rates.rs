@@ -50,11 +50,11 @@ impl Analysis<'_> {
         let mut times = model.times.iter();
         found.stop = walk.each(|one| {
             let Some(&t) = times.next() else { return };
-            seconds.solve(one, t);
+            seconds.solve(&mut one.mechanism, t);
             found.times.push(t);
             for d in 0..drivers.len() {
                 for &b in &bodies {
-                    poses[b] = seconds.pose_along(&one.state, d, b);
+                    poses[b] = seconds.pose_along(&one.mechanism.state, d, b);
                 }
                 Instant::new(model, &fixed, &poses).all(|x| found.values.push(x.d.v));
             }

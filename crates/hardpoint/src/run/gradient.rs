@@ -15,7 +15,7 @@ use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, Stop};
 use crate::number::{Dual, Rates};
 use crate::sensitivity::{Adjoint, Admissibility, DefectWatch, Load, Resistance, Support, admissibility};
-use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
+use crate::space::{Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
 /// Cost of an output by the adjoint method, relative to the solution for one variable by direct differentiation: its
@@ -200,7 +200,7 @@ struct AdjointSolver<'a> {
     watch: DefectWatch,
     asked: Vec<Requested>,
     /// `None` if no load is requested.
-    loads: Option<(LoadSolver<'a>, LoadGradients)>,
+    loads: Option<LoadGradients<'a>>,
     /// Bodies that outputs are measured on.
     bodies: Vec<usize>,
     poses: Vec<Pose<Dual<Rates>>>,
@@ -214,7 +214,7 @@ struct AdjointSolver<'a> {
 enum Requested {
     /// A function of positions.
     Output(Box<RequestedOutput>),
-    /// A load, by the index of its measure.
+    /// A load, by its index among the requested loads.
     Load(usize),
 }
 
@@ -249,14 +249,17 @@ impl<'a> AdjointSolver<'a> {
         let (model, design_map) = (analysis.model(), analysis.design_map());
         let adjoint = Adjoint::new(model, analysis.topology(), fields);
         let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
-        let (of_loads, of_positions): (Vec<&Output>, Vec<&Output>) =
-            outputs.iter().partition(|o| load_of(model, o).is_some());
-        let of_positions: Vec<Output> = of_positions.into_iter().cloned().collect();
+        let of_positions: Vec<Output> =
+            outputs.iter().filter(|o| load_of(model, o).is_none()).cloned().collect();
+        let mut measures = Vec::new();
         let depends = dependences(design_map, &design.values, &bodies, &of_positions);
         let mut depends = of_positions.into_iter().zip(depends);
         let none = [Wrench::zero(); 3];
         let asked = outputs.iter().filter_map(|output| match load_of(model, output) {
-            Some(m) => Some(Requested::Load(m)),
+            Some(m) => {
+                measures.push(m);
+                Some(Requested::Load(measures.len() - 1))
+            }
             None => depends.next().map(|(output, [on, variables])| {
                 Requested::Output(Box::new(RequestedOutput {
                     derivatives: vec![[0.0; 3]; 6 * on.len() + variables.len()],
@@ -268,10 +271,9 @@ impl<'a> AdjointSolver<'a> {
             }),
         });
         let asked: Vec<Requested> = asked.collect();
-        let loads = (!of_loads.is_empty()).then(|| {
-            let solver = LoadSolver::new(design_map, analysis.topology(), &design.values, true);
-            let gradients = LoadGradients::new(&solver, analysis.topology(), &adjoint);
-            (solver, gradients)
+        let loads = (!measures.is_empty()).then(|| {
+            let solver = LoadSolver::new(design_map, analysis.topology(), &design.values, measures, true);
+            LoadGradients::new(solver, analysis.topology(), &adjoint)
         });
         let mut values: Vec<Dual<Rates>> =
             design.values.iter().map(|v| Dual::constant(Rates::constant(*v))).collect();
@@ -311,11 +313,11 @@ impl<'a> AdjointSolver<'a> {
         resisting: &mut [Resistance],
         result: &mut Gradients,
     ) {
-        self.adjoint.set_time(stepper, t);
-        if let Some((loads, _)) = &mut self.loads {
-            loads.step(stepper, t);
+        self.adjoint.set_time(&stepper.mechanism, t);
+        if let Some(loads) = &mut self.loads {
+            loads.step(stepper, &self.adjoint, t);
         }
-        let (topology, state) = (&stepper.topology, &mut stepper.state);
+        let (topology, state) = (&stepper.mechanism.topology, &mut stepper.mechanism.state);
         state.finish_rates(topology);
         self.differentiate(state);
         let first = result.times.len() * self.asked.len();
@@ -334,8 +336,8 @@ impl<'a> AdjointSolver<'a> {
         let RequestedOutput { loads, support, variables, derivatives, .. } = match &mut self.asked[m] {
             Requested::Output(output) => &mut **output,
             Requested::Load(m) => {
-                if let Some((solver, gradients)) = &mut self.loads {
-                    gradients.trace(solver, &mut self.adjoint, (topology, state), *m, &mut self.gradient);
+                if let Some(loads) = &mut self.loads {
+                    loads.gradient(&mut self.adjoint, (topology, state), *m, &mut self.gradient);
                 }
                 return;
             }
@@ -362,7 +364,7 @@ impl<'a> AdjointSolver<'a> {
         let Self { analysis, asked, poses, fixed, moved, bodies, .. } = self;
         let model = analysis.model();
         for &b in bodies.iter() {
-            poses[b] = still(with_rates(&BodyState::of(state, b)));
+            poses[b] = with_rates(&BodyState::of(state, b)).along(Twist::zero());
         }
         let of_positions = asked.iter_mut().filter_map(|a| match a {
             Requested::Output(output) => Some(output),
@@ -372,11 +374,13 @@ impl<'a> AdjointSolver<'a> {
             let RequestedOutput { output, loads, variables, derivatives, .. } = &mut **output;
             let (by_twists, by_variables) = derivatives.split_at_mut(6 * loads.len());
             for ((b, _), by) in loads.iter().zip(by_twists.chunks_exact_mut(6)) {
-                for (unit, to) in by.iter_mut().enumerate() {
-                    move_along(&mut poses[*b], unit);
+                // The unit twist is in the world, so that its rates are zero.
+                let nominal = poses[*b].nominal();
+                for (unit, to) in Twist::UNITS.into_iter().zip(by) {
+                    poses[*b] = nominal.along(unit.spread());
                     *to = Instant::new(model, fixed, poses).output(output.source).d.0;
                 }
-                stop(&mut poses[*b]);
+                poses[*b] = nominal.along(Twist::zero());
             }
             for (&v, to) in variables.iter().zip(by_variables) {
                 let fixed = moved[v].as_ref().expect("laid out for every variable of an output");
@@ -384,34 +388,4 @@ impl<'a> AdjointSolver<'a> {
             }
         }
     }
-}
-
-/// Pose with zero derivatives.
-fn still(pose: Pose<Rates>) -> Pose<Dual<Rates>> {
-    let still = |x: Vec3<Rates>| x.map(Dual::constant);
-    Pose { rot: Mat3 { cols: pose.rot.cols.map(still) }, r: still(pose.r) }
-}
-
-/// Sets the derivative of a pose to a global unit twist: a rotation about x, y or z, then a translation.
-fn move_along(pose: &mut Pose<Dual<Rates>>, unit: usize) {
-    let axis = Vec3::AXES[unit % 3].spread();
-    let twist = if unit < 3 { Twist::turn(axis, Vec3::zero()) } else { Twist::slide(axis) };
-    for c in &mut pose.rot.cols {
-        // de = w x e,    dr = v + w x r,  with their rates by those of e and r, since the unit twist is in the world
-        let rate = twist.w.cross(c.map(|x| x.v));
-        set(c, rate);
-    }
-    let velocity = twist.at(pose.r.map(|x| x.v));
-    set(&mut pose.r, velocity);
-}
-
-/// Resets the derivative of a pose to zero.
-fn stop(pose: &mut Pose<Dual<Rates>>) {
-    let nothing = Vec3::zero();
-    pose.rot.cols.iter_mut().for_each(|c| set(c, nothing));
-    set(&mut pose.r, nothing);
-}
-
-fn set(of: &mut Vec3<Dual<Rates>>, d: Vec3<Rates>) {
-    (of.x.d, of.y.d, of.z.d) = (d.x, d.y, d.z);
 }

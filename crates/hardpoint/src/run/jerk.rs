@@ -53,7 +53,7 @@ impl Analysis<'_> {
             }
             let Some(&t) = times.next() else { return };
             result.times.push(t);
-            result.states.extend(BodyJerk::all(one, t));
+            result.states.extend(BodyJerk::all(&mut one.mechanism, t));
         });
         result
     }

@@ -1,7 +1,7 @@
 //! Loads of joints and drivers over the motion of a design.
 
 use super::{Analysis, Walk};
-use crate::load::{DriverLoad, JointLoad, LoadSolver, Loads};
+use crate::load::{DriverLoad, JointLoad, LoadSolver, Loads, load_measures};
 use crate::model::{Axes, ElementId, JointId};
 
 impl Analysis<'_> {
@@ -9,7 +9,9 @@ impl Analysis<'_> {
     /// model without masses and applied forces.
     pub fn loads(&self, design: &[f64]) -> Loads {
         let (model, design) = (self.model(), self.design(design));
-        let mut solver = LoadSolver::new(self.design_map(), self.topology(), &design.values, false).judging();
+        let measures = load_measures(model);
+        let solver = LoadSolver::new(self.design_map(), self.topology(), &design.values, measures, false);
+        let mut solver = solver.checking_reactions();
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let (mut result, mut times) = (Loads::default(), model.times.iter());
         let pushed = model.points_of_application();
@@ -35,8 +37,8 @@ impl Analysis<'_> {
                 });
             }
             result.pushes.extend(pushed.iter().map(|&(element, at)| solver.push(element, at)));
-            let found = solver.found();
-            let drivers = found.drivers.iter().zip(&found.speeds);
+            let transmitted = solver.transmitted();
+            let drivers = transmitted.drivers.iter().zip(&transmitted.speeds);
             result.drivers.extend(drivers.map(|(&force, &speed)| DriverLoad { force, speed }));
         });
         result

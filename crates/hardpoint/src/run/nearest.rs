@@ -129,15 +129,16 @@ fn conditions(analysis: &Analysis<'_>, scales: &[f64]) -> Vec<Vec<f64>> {
     let mut parts: Vec<_> = fields.iter().map(|f| PlanVelocity::new(topology, f)).collect();
     if topology.redundant().next().is_some() {
         // A motion that stops early contributes fewer conditions.
-        let _ = walk.each(|stepper| {
+        let _ = walk.each(|one| {
+            let mechanism = &mut one.mechanism;
             if done % every == 0 {
-                stepper.state.finish_wrenches(&stepper.topology);
+                mechanism.state.finish_wrenches(&mechanism.topology);
                 let first = rows.len();
                 let mut numbers = Vec::new();
                 for (v, field) in parts.iter_mut().enumerate() {
-                    field.set_time(|d| stepper.parts.law_of(d.0), model.times[done]);
-                    direct.solve_position(&stepper.topology, &mut stepper.state, field);
-                    for (r, value) in direct.defects(&stepper.topology, &stepper.state, field) {
+                    field.set_time(|d| mechanism.parts.law_of(d.0), model.times[done]);
+                    direct.solve_position(&mechanism.topology, &mut mechanism.state, field);
+                    for (r, value) in direct.defects(&mechanism.topology, &mechanism.state, field) {
                         let at = numbers.iter().position(|n| *n == r).unwrap_or_else(|| {
                             numbers.push(r);
                             rows.push(vec![0.0; variables]);

@@ -6,7 +6,7 @@ use crate::design::BodyFixed;
 use crate::measure::{Instant, Output, bodies_asked_for, outputs};
 use crate::model::{BodyId, GROUND};
 use crate::motion::Stop;
-use crate::motion::stepper::Stepper;
+use crate::motion::mechanism::Mechanism;
 use crate::number::Dual;
 use crate::sensitivity::{BodyCurvature, PairDirection, Seconds};
 use crate::space::Pose;
@@ -77,14 +77,14 @@ impl Analysis<'_> {
         let mut times = model.times.iter();
         result.stop = walk.each(|one| {
             if let Some(&t) = times.next() {
-                bends.add(one, t, &mut result);
+                bends.add(&mut one.mechanism, t, &mut result);
             }
         });
         result
     }
 }
 
-/// Workspace of second derivatives, in addition to a stepper.
+/// Workspace of second derivatives, in addition to a mechanism.
 struct SecondDerivativeSolver<'a> {
     analysis: &'a Analysis<'a>,
     seconds: Seconds,
@@ -122,9 +122,9 @@ impl<'a> SecondDerivativeSolver<'a> {
     }
 
     /// Appends the second derivatives at time t.
-    fn add(&mut self, stepper: &mut Stepper<'_>, t: f64, result: &mut SecondDerivatives) {
-        self.seconds.solve(stepper, t);
-        let (model, state) = (self.analysis.model(), &stepper.state);
+    fn add(&mut self, mechanism: &mut Mechanism<'_>, t: f64, result: &mut SecondDerivatives) {
+        self.seconds.solve(mechanism, t);
+        let (model, state) = (self.analysis.model(), &mechanism.state);
         result.times.push(t);
         for p in 0..self.seconds.len() {
             for &b in &self.asked_for {

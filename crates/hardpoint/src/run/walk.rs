@@ -15,7 +15,7 @@ use crate::motion::stepper::Stepper;
 use crate::motion::tape::Tape;
 use crate::motion::time_batch::TimeBatch;
 use crate::motion::turns::TurnCounter;
-use crate::motion::{BodyState, Stop, StopKind};
+use crate::motion::{BodyState, Stop, StopKind, advance, assembly};
 use crate::sensitivity::{Admissibility, JointDefect, SensitivitySolver};
 
 use super::analysis::Analysis;
@@ -164,10 +164,10 @@ impl<'a> Walk<'a> {
     /// Solves output time k alone.
     fn step(&mut self, k: usize) -> Result<(), Box<Stop>> {
         let t = self.analysis.model().times[k];
-        let step = if k == 0 { self.one.start(t) } else { self.one.advance(t) };
+        let step = if k == 0 { advance::start(&mut self.one, t) } else { advance::advance(&mut self.one, t) };
         step.map_err(|mut stop| {
             if let (StopKind::DoesNotAssemble, Some(block)) = (stop.kind, stop.block) {
-                stop.remains = self.one.least_gaps(block);
+                stop.remains = assembly::least_gaps(&mut self.one.mechanism, block);
             }
             stop
         })
@@ -194,7 +194,7 @@ impl<'a> Walk<'a> {
     #[inline(always)]
     fn give_one<S: Sink>(&mut self, k: usize, sink: &mut S) {
         for body in (1..self.wanted.len()).filter(|b| self.wanted[*b]) {
-            sink.state(k, BodyId(body), &BodyState::of(&self.one.state, body));
+            sink.state(k, BodyId(body), &BodyState::of(&self.one.mechanism.state, body));
         }
         let (t, loads) = (self.analysis.model().times[k], &mut self.loads);
         if let Some(loads) = loads {
@@ -204,7 +204,7 @@ impl<'a> Walk<'a> {
             let found = |variable, body, found: &_| sink.sensitivity(k, variable, body, found);
             solver.step(&mut self.one, t, found, |by| {
                 if let Some(loads) = loads {
-                    loads.differentiate(by);
+                    loads.differentiate(&by);
                 }
             });
         }
@@ -222,7 +222,7 @@ impl<'a> Walk<'a> {
         }
         if let Some(solver) = &mut self.solver {
             let times = &self.analysis.model().times[k..k + count];
-            solver.note(self.batch.solved(), &self.one.topology, times, first);
+            solver.note(self.batch.solved(), &self.one.mechanism.topology, times, first);
         }
         lanes
     }

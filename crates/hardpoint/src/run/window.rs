@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use hardpoint_tape::LANES;
 
-use crate::load::{Compliances, LoadSolver};
+use crate::load::{Compliances, LoadSolver, load_measures};
 use crate::measure::{self, Slopes, StepValues};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
@@ -104,7 +104,9 @@ impl Analysis<'_> {
             false => Walk::by_programs(self, design, wanted, (measures, slopes.is_some(), loads)),
         };
         if loads {
-            walk.loads = Some(LoadSolver::new(self.design_map(), topology, &design.values, sensitive));
+            let measures = load_measures(model);
+            let solver = LoadSolver::new(self.design_map(), topology, &design.values, measures, sensitive);
+            walk.loads = Some(solver);
         }
         let rows = usize::min(rows, model.times.len());
         let mut sensitivities = std::mem::take(&mut solution.sensitivities);
@@ -131,20 +133,20 @@ impl Analysis<'_> {
                         window.slopes.begin();
                     }
                     if let Some(found) = &mut slopes {
-                        found.add(one, times[0], &mut window.slopes);
+                        found.add(&mut one.mechanism, times[0], &mut window.slopes);
                     }
                     if let Some(loads) = loads {
                         loads.enter(&mut window.slopes);
                         if let Some(compliances) = &mut compliances {
-                            compliances.add(one, times[0], loads.near(), &mut window.slopes);
+                            compliances.add(&mut one.mechanism, times[0], loads.near(), &mut window.slopes);
                         }
                     }
-                    window.motion.coordinates.set(k, 0, one.coordinates());
+                    window.motion.coordinates.set(k, 0, one.mechanism.coordinates());
                     if let Some(turns) = &one.turns {
                         window.motion.counted.extend_from_slice(&turns.values);
                     }
                     if measures {
-                        window.motion.margins.push(margins.at(&one.topology, &one.state));
+                        window.motion.margins.push(margins.at(&one.mechanism.topology, &one.mechanism.state));
                     }
                 }
                 SolvedSteps::Batch(tape, lanes, turns) => {

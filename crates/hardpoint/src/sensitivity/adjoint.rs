@@ -16,7 +16,7 @@ use crate::design::DesignVelocity;
 use crate::model::{DriverId, GROUND, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::BINOMIAL;
-use crate::motion::stepper::{LOCKED, Stepper};
+use crate::motion::mechanism::{LOCKED, Mechanism};
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, CoordinateId, LinkId, RowId, RowTerm, Topology};
 
@@ -45,6 +45,14 @@ impl<T: Real> Turning<T> {
             ends: vec![[Wrench::zero(); 2]; topology.closures.len()],
             pulls: vec![T::zero(); topology.coordinates.len()],
         }
+    }
+
+    /// Adds `k` times the loads of `other`.
+    pub fn add_times(&mut self, other: &Self, k: T) {
+        let wrenches = self.starts.iter_mut().chain(self.ends.as_flattened_mut());
+        let others = other.starts.iter().chain(other.ends.as_flattened());
+        wrenches.zip(others).for_each(|(to, from)| *to = from.times_plus(k, *to));
+        self.pulls.iter_mut().zip(&other.pulls).for_each(|(to, from)| *to = from.times_plus(k, *to));
     }
 }
 
@@ -198,9 +206,9 @@ impl Adjoint {
         Support::new(topology, &self.fields, loaded)
     }
 
-    /// Sets the contributions of laws that depend on variables, at the position of a stepper and time t.
-    pub fn set_time(&mut self, stepper: &Stepper<'_>, t: f64) {
-        let law = |d: DriverId| stepper.parts.law_of(d.0);
+    /// Sets the contributions of laws that depend on variables, at the position of a mechanism and time t.
+    pub fn set_time(&mut self, mechanism: &Mechanism<'_>, t: f64) {
+        let law = |d: DriverId| mechanism.parts.law_of(d.0);
         self.fields.iter_mut().for_each(|field| field.set_time(law, t));
     }
 
@@ -348,7 +356,7 @@ impl DefectWatch {
         }
     }
 
-    /// Records the joints that resist variables, at the position of a stepper and time t.
+    /// Records the joints that resist variables, at the position of a mechanism and time t.
     pub fn look(
         &mut self,
         adjoint: &mut Adjoint,

@@ -19,13 +19,12 @@
 //! l . (W_j - W_i)  =  L' - l . (z_j - z_i)                                                     docs/theory.md (11)
 //! ```
 
-use crate::constraint::MarkerPairRates;
 use crate::design::DesignVelocity;
 use crate::law::Law;
 use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::{Flow, carried};
-use crate::motion::stepper::LOCKED;
+use crate::motion::mechanism::LOCKED;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, LinkId, RowId, RowTerm, Topology};
 
@@ -243,53 +242,6 @@ impl<T: Real> PlanVelocity<T> {
         found.map_or(T::zero(), |n| self.kept[n].1)
     }
 
-    /// Derivatives of the unit twists of all coordinates and the wrenches of all rows by the design, for the motion of
-    /// bodies and coordinates in `flow`: x' and l' of `docs/theory.md` (45).
-    pub fn turn_axes(
-        &self,
-        topology: &Topology,
-        state: &State<T>,
-        flow: &Flow<T>,
-        (x, l): (&mut [Twist<T>], &mut [Wrench<T>]),
-    ) {
-        let none = Twist::zero();
-        x.fill(none);
-        l.fill(Wrench::zero());
-        let in_blocks = self.reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
-        for k in self.reach.driven_links.iter().copied().chain(in_blocks) {
-            let link = &topology[k];
-            // D of the parent's marker, then of the frame behind each freedom
-            let mut frame = flow.twists[0][link.parent.0];
-            for m in self.links.iter().filter(|m| m.at == k && m.end == 0) {
-                frame += state.pose[m.body].carry(m.e);
-            }
-            for step in &link.steps {
-                for c in step.coordinates() {
-                    // x' = ad(D) x
-                    x[c.0] = frame.ad(state.x[0][c.0]);
-                }
-                for c in step.coordinates().filter(|_| flow.drives || !step.is_driven) {
-                    frame = state.x[0][c.0].times_plus(flow.speeds[0][c.0], frame);
-                }
-            }
-        }
-        for &c in &self.reach.closures {
-            let closure = &topology[c];
-            let mut d = closure.bodies.map(|b| flow.twists[0][b.0]);
-            for m in self.closures.iter().filter(|m| m.at == c) {
-                d[m.end] += state.pose[m.body].carry(m.e);
-            }
-            let mut rates = MarkerPairRates { v_i: d[0], v_j: d[1], a_i: none, a_j: none };
-            if let Some(k) = closure.contact {
-                rates = state.walk(c, k, &rates);
-            }
-            for (r, row) in closure.numbered_rows() {
-                // A marker that moves in its body turns a wrench like one that is fixed in it.
-                [l[r.0], _] = row.wrench_rates(&state.ends[c.0], &rates);
-            }
-        }
-    }
-
     /// Work of loads on the frames that unit twists and wrenches rotate with, on the markers that move within their
     /// bodies.
     pub(super) fn turning_work(&self, state: &State<T>, turning: &Turning<T>) -> T {
@@ -298,30 +250,38 @@ impl<T: Real> PlanVelocity<T> {
         starts.chain(ends).fold(T::zero(), |sum, (load, body, e)| sum + load.on(state.pose[body].carry(e)))
     }
 
-    /// Work of these loads, and of loads on bodies `[n][b]` that depend on W, W' and W'', on the motion in `flow` for
-    /// this change.
-    pub fn work(
+    /// Adds the work of loads on the motion in `flow` for this change to `sums`. The loads are on bodies, `[b][n]` on
+    /// W, W. and W.., and on frames and coordinates.
+    pub fn add_work<'l>(
         &self,
         (topology, state): (&Topology, &State<T>),
         flow: &Flow<T>,
-        loads: &[[Wrench<T>; 3]],
-        turning: &Turning<T>,
-    ) -> T {
-        let mut sum = self.turning_work(state, turning);
+        loads: impl Iterator<Item = (&'l [[Wrench<T>; 3]], &'l Turning<T>)> + Clone,
+        sums: &mut [T],
+    ) {
+        for m in self.links.iter().filter(|m| m.end == 0) {
+            let z = state.pose[m.body].carry(m.e);
+            add_each(sums, &loads, |(_, turning)| turning.starts[m.at.0].on(z));
+        }
+        for m in &self.closures {
+            let z = state.pose[m.body].carry(m.e);
+            add_each(sums, &loads, |(_, turning)| turning.ends[m.at.0][m.end].on(z));
+        }
         let in_blocks = self.reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
         for k in self.reach.driven_links.iter().copied().chain(in_blocks) {
             for step in topology[k].steps.iter().filter(|step| flow.drives || !step.is_driven) {
                 for c in step.coordinates() {
-                    sum += turning.pulls[c.0] * flow.speeds[0][c.0];
+                    add_each(sums, &loads, |(_, turning)| turning.pulls[c.0] * flow.speeds[0][c.0]);
                 }
             }
         }
         for &body in &self.reach.bodies {
-            for (twists, load) in flow.twists.iter().zip(&loads[body]) {
-                sum += load.on(twists[body]);
-            }
+            let [w0, w1, w2] = flow.twists.each_ref().map(|w| w[body]);
+            add_each(sums, &loads, |(by_twists, _)| {
+                let [p0, p1, p2] = &by_twists[body];
+                p0.on(w0) + p1.on(w1) + p2.on(w2)
+            });
         }
-        sum
     }
 
     /// Redundant rows that the change may open.
@@ -525,6 +485,12 @@ impl<T: Real> DirectDifferentiation<T> {
         }
         (sum, most)
     }
+}
+
+/// Adds the work of each of these loads to its sum.
+#[inline(always)]
+fn add_each<T: Real, L>(sums: &mut [T], loads: &(impl Iterator<Item = L> + Clone), work: impl Fn(L) -> T) {
+    sums.iter_mut().zip(loads.clone()).for_each(|(sum, load)| *sum += work(load));
 }
 
 /// Driven coordinates, in the tree and across cuts, follow the change of their laws.

@@ -17,12 +17,12 @@ use hardpoint_tape::Number;
 use crate::constraint::MarkerPairRates;
 use crate::design::{DesignMap, DesignVelocity};
 use crate::law::Law;
-use crate::model::{DriverId, JointId, Model};
+use crate::model::{DriverId, JointId, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::level::turn_twists;
-use crate::motion::stepper::Stepper;
+use crate::motion::mechanism::Mechanism;
 use crate::number::{Dual, Real, record as recording};
-use crate::space::{Mat3, Pose, Twist, Vec3, Wrench};
+use crate::space::{Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, LinkId, RowId, SetBy, Topology};
 
 use super::direct::{DirectDifferentiation, MovingMarker, PlanVelocity};
@@ -185,9 +185,9 @@ impl Seconds {
         Self::of_fields(design_map.model(), topology, &fields, pairs)
     }
 
-    /// Solves all pairs at the position of a stepper and time t.
-    pub fn solve(&mut self, stepper: &mut Stepper<'_>, t: f64) {
-        let (topology, state, parts) = (&stepper.topology, &mut stepper.state, &stepper.parts);
+    /// Solves all pairs at the position of a mechanism and time t.
+    pub fn solve(&mut self, mechanism: &mut Mechanism<'_>, t: f64) {
+        let (topology, state, parts) = (&mechanism.topology, &mut mechanism.state, &mechanism.parts);
         self.firsts.iter_mut().for_each(|first| first.field.set_time(|d| parts.law_of(d.0), t));
         self.pairs.iter_mut().for_each(|pair| pair.set_time(t));
         self.solve_at(topology, state);
@@ -195,8 +195,8 @@ impl Seconds {
 
     /// Defects of the redundant rows along a single direction, at the position of the last [`solve`](Self::solve);
     /// empty if the mechanism follows it.
-    pub fn resistance(&self, stepper: &Stepper<'_>, direction: usize) -> Vec<(RowId, f64)> {
-        let (topology, state) = (&stepper.topology, &stepper.state);
+    pub fn resistance(&self, mechanism: &Mechanism<'_>, direction: usize) -> Vec<(RowId, f64)> {
+        let (topology, state) = (&mechanism.topology, &mechanism.state);
         let FirstOrder { field, direct, .. } = &self.firsts[direction];
         match direct.worst_defect(topology, state, field) {
             Some(_) => direct.defects(topology, state, field).collect(),
@@ -238,7 +238,49 @@ impl Seconds<Number> {
     }
 }
 
+/// Adds the unit directions of the first `variables` design variables; returns the pairs of each of the directions
+/// before with each of these.
+pub(crate) fn pair_with_variables(
+    model: &Model,
+    directions: &mut Vec<PairDirection>,
+    variables: usize,
+) -> Vec<[usize; 2]> {
+    let first = directions.len();
+    let variables = (0..variables).map(VariableId);
+    directions.extend(variables.clone().map(|v| PairDirection::Design(model.alone(v, 1.0))));
+    variables.flat_map(|v| (0..first).map(move |d| [d, first + v.0])).collect()
+}
+
+/// Design values with the derivative by variable `by`, if there is one, in `v.d`.
+pub(crate) fn values_along_variable<T: Real>(values: &[T], by: usize) -> Vec<Dual<Dual<T>>> {
+    let along = |k: usize| if k == by { T::one() } else { T::zero() };
+    values.iter().enumerate().map(|(k, v)| Dual::constant(Dual { v: *v, d: along(k) })).collect()
+}
+
 impl<T: Real> Seconds<T> {
+    /// Sets the poses of these bodies per direction, with their derivatives along it and by variable `by`, if there is
+    /// one; the pairs are those of [`pair_with_variables`].
+    pub fn set_poses(
+        &self,
+        state: &State<T>,
+        by: usize,
+        bodies: &[usize],
+        poses: &mut [Vec<Pose<Dual<Dual<T>>>>],
+    ) {
+        let directions = poses.len();
+        for (direction, poses) in poses.iter_mut().enumerate() {
+            let pair = by * directions + direction;
+            for &body in bodies {
+                // X + eps_q X_q + eps_b X_b + eps_q eps_b X_qb
+                poses[body] = if pair < self.pairs.len() {
+                    self.pose(state, pair, body)
+                } else {
+                    self.pose_along(state, direction, body)
+                };
+            }
+        }
+    }
+
     fn of_fields(
         model: &Model,
         topology: &Topology,
@@ -280,13 +322,14 @@ impl<T: Real> Seconds<T> {
     pub fn pose(&self, state: &State<T>, p: usize, body: usize) -> Pose<Dual<Dual<T>>> {
         let pair = &self.pairs[p];
         let [u, w] = pair.of.map(|k| self.firsts[k].w()[body]);
-        with_twists(state.pose[body], u, w, pair.w[body])
+        // X_w = W_w X,  X_u = W_u X,  X_uw = W_uw X + W_u X_w: the twist along u changes along w by W_uw        (16)
+        state.pose[body].along(w).along(u.with_derivative(pair.w[body]))
     }
 
     /// Pose of a body with its derivative along one direction in `d.v`.
     pub fn pose_along(&self, state: &State<T>, direction: usize, body: usize) -> Pose<Dual<Dual<T>>> {
         let u = self.firsts[direction].w()[body];
-        with_twists(state.pose[body], u, Twist::zero(), Twist::zero())
+        state.pose[body].along(Twist::zero()).along(u.with_derivative(Twist::zero()))
     }
 }
 
@@ -297,31 +340,9 @@ fn parts<T: Real, At>(m: &MovingMarker<Dual<T>, At>) -> [Twist<T>; 2] {
 }
 
 /// Returns the variables with a nonzero entry in a direction of the design space, with that entry.
-pub(crate) fn along(direction: &[f64]) -> Vec<(crate::model::VariableId, f64)> {
-    let all = direction.iter().enumerate().map(|(k, d)| (crate::model::VariableId(k), *d));
+pub(crate) fn along(direction: &[f64]) -> Vec<(VariableId, f64)> {
+    let all = direction.iter().enumerate().map(|(k, d)| (VariableId(k), *d));
     all.filter(|(_, d)| *d != 0.0).collect()
-}
-
-/// A pose with its derivatives: by the twists along u, along w, and the derivative along w of that along u.
-fn with_twists<T: Real>(
-    Pose { rot, r }: Pose<T>,
-    u: Twist<T>,
-    w: Twist<T>,
-    uw: Twist<T>,
-) -> Pose<Dual<Dual<T>>> {
-    // e_u = W_u,w x e,    e_w = W_w,w x e,    e_uw = W_uw,w x e + W_u,w x e_w  of an axis e; r_uw by (16)
-    let (r_u, r_w) = (u.at(r), w.at(r));
-    let column = |e: Vec3<T>| {
-        let (e_u, e_w) = (u.w.cross(e), w.w.cross(e));
-        number([e, e_u, e_w, uw.w.cross(e) + u.w.cross(e_w)])
-    };
-    Pose { rot: Mat3 { cols: rot.cols.map(column) }, r: number([r, r_u, r_w, uw.at(r) + u.w.cross(r_w)]) }
-}
-
-/// A vector with its derivatives along u, along w, and along both.
-fn number<T: Real>([v, u, w, uw]: [Vec3<T>; 4]) -> Vec3<Dual<Dual<T>>> {
-    let component = |v, u, w, uw| Dual { v: Dual { v, d: w }, d: Dual { v: u, d: uw } };
-    Vec3::new(component(v.x, u.x, w.x, uw.x), component(v.y, u.y, w.y, uw.y), component(v.z, u.z, w.z, uw.z))
 }
 
 impl<T: Real> Pair<T> {

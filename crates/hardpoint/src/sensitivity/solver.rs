@@ -76,7 +76,8 @@ impl SensitivitySolver {
         let solved = !one.at_change_point;
         // x., x.., l., l.. of all coordinates and rows once; then three right-hand sides for each variable: (11), (12),
         // (13).
-        let (topology, state, parts) = (&one.topology, &mut one.state, &one.parts);
+        let mechanism = &mut one.mechanism;
+        let (topology, state, parts) = (&mechanism.topology, &mut mechanism.state, &mechanism.parts);
         state.finish_rates(topology);
         for (v, field) in fields.iter_mut().enumerate() {
             field.set_time(|d: DriverId| parts.law_of(d.0), t);

@@ -2,7 +2,7 @@
 
 use std::ops::Mul;
 
-use crate::number::Real;
+use crate::number::{Dual, Real};
 
 use super::Vec3;
 
@@ -44,6 +44,12 @@ impl Mat3<f64> {
 }
 
 impl<T: Real> Mat3<T> {
+    /// This rotation with its derivative along the angular velocity `w` of the rotated frame: `A' = w x A`.
+    #[inline(always)]
+    pub fn along(self, w: Vec3<T>) -> Mat3<Dual<T>> {
+        Mat3 { cols: self.cols.map(|c| c.with_derivative(w.cross(c))) }
+    }
+
     /// Rotation by `angle`, rad, about a unit vector.
     pub fn about(axis: Vec3, angle: T) -> Self {
         let (s, c) = angle.sin_cos();

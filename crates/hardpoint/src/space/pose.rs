@@ -61,6 +61,12 @@ impl<T: Real> Pose<T> {
         Wrench { m: self.rot.transpose_mul(l.m - self.r.cross(l.f)), f: self.rot.transpose_mul(l.f) }
     }
 
+    /// This pose with its derivative along a twist in the outer frame: `A' = w x A`, `r' = v + w x r`.
+    #[inline(always)]
+    pub fn along(self, twist: Twist<T>) -> Pose<Dual<T>> {
+        Pose { rot: self.rot.along(twist.w), r: self.r.with_derivative(twist.at(self.r)) }
+    }
+
     /// This pose as plain numbers.
     #[inline(always)]
     pub fn value(self) -> Pose<f64> {
@@ -69,11 +75,15 @@ impl<T: Real> Pose<T> {
 }
 
 impl<T: Real> Pose<Dual<T>> {
+    /// This pose without derivative.
+    pub fn nominal(self) -> Pose<T> {
+        Pose { rot: Mat3 { cols: self.rot.cols.map(|c| c.map(|x| x.v)) }, r: self.r.map(|x| x.v) }
+    }
+
     /// Splits a dual pose into the pose and its twist `[w; v]`, in components of the outer frame, with v at the outer
     /// frame's origin.
     pub fn split(self) -> (Pose<T>, Twist<T>) {
-        let value =
-            Pose { rot: Mat3 { cols: self.rot.cols.map(|c| c.map(|x| x.v)) }, r: self.r.map(|x| x.v) };
+        let value = self.nominal();
         // The rate of every unit vector c is w x c; w is half the sum of c x c'.
         let turn = |k: usize| value.rot.cols[k].cross(self.rot.cols[k].map(|x| x.d));
         let w = (turn(0) + turn(1) + turn(2)) * T::constant(0.5);

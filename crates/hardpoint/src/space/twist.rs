@@ -5,7 +5,7 @@
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-use crate::number::Real;
+use crate::number::{Dual, Real};
 
 use super::Vec3;
 
@@ -31,6 +31,20 @@ impl Twist<f64> {
     /// No motion.
     pub const ZERO: Self = Self { w: Vec3::ZERO, v: Vec3::ZERO };
 
+    /// Unit twists: rotations about x, y and z through the world origin, followed by translations.
+    pub const UNITS: [Self; 6] = {
+        let [x, y, z] = Vec3::AXES;
+        let none = Vec3::ZERO;
+        [
+            Self { w: x, v: none },
+            Self { w: y, v: none },
+            Self { w: z, v: none },
+            Self { w: none, v: x },
+            Self { w: none, v: y },
+            Self { w: none, v: z },
+        ]
+    };
+
     /// This twist in another scalar type, as a constant.
     #[inline(always)]
     pub fn spread<T: Real>(self) -> Twist<T> {
@@ -43,6 +57,18 @@ impl<T: Real> Twist<T> {
     #[inline(always)]
     pub fn zero() -> Self {
         Self { w: Vec3::zero(), v: Vec3::zero() }
+    }
+
+    /// Twist with these components along the unit twists.
+    #[inline(always)]
+    pub fn from_components([a, b, c, x, y, z]: [T; 6]) -> Self {
+        Self { w: Vec3::new(a, b, c), v: Vec3::new(x, y, z) }
+    }
+
+    /// This twist with the derivative `d`.
+    #[inline(always)]
+    pub fn with_derivative(self, d: Self) -> Twist<Dual<T>> {
+        Twist { w: self.w.with_derivative(d.w), v: self.v.with_derivative(d.v) }
     }
 
     /// Rotation at unit rate about the line through `point` along the unit vector `axis`.
@@ -108,6 +134,24 @@ impl<T: Real> Wrench<T> {
         Self { m: Vec3::zero(), f: Vec3::zero() }
     }
 
+    /// Wrench that does this work on each of the unit twists.
+    #[inline(always)]
+    pub fn from_work([a, b, c, x, y, z]: [T; 6]) -> Self {
+        Self { m: Vec3::new(a, b, c), f: Vec3::new(x, y, z) }
+    }
+
+    /// Work on each of the unit twists.
+    #[inline(always)]
+    pub fn work(self) -> [T; 6] {
+        [self.m.x, self.m.y, self.m.z, self.f.x, self.f.y, self.f.z]
+    }
+
+    /// This wrench without derivative.
+    #[inline(always)]
+    pub fn constant(self) -> Wrench<Dual<T>> {
+        Wrench { m: self.m.map(Dual::constant), f: self.f.map(Dual::constant) }
+    }
+
     /// `self * k + addend`.
     #[inline(always)]
     pub fn times_plus(self, k: T, addend: Self) -> Self {
@@ -134,6 +178,14 @@ impl<T: Real> Wrench<T> {
         let (m, f, w, v) = (self.m, self.f, t.w, t.v);
         let moment = m.dot(w);
         f.z.times_plus(v.z, f.y.times_plus(v.y, f.x.times_plus(v.x, moment)))
+    }
+}
+
+impl<T: Real> Wrench<Dual<T>> {
+    /// Derivative of this wrench.
+    #[inline(always)]
+    pub fn derivative(self) -> Wrench<T> {
+        Wrench { m: self.m.map(|x| x.d), f: self.f.map(|x| x.d) }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
-use crate::number::Real;
+use crate::number::{Dual, Real};
 
 /// Point or direction with components along x, y and z.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -75,6 +75,13 @@ impl<T> Vec3<T> {
 }
 
 impl<T: Real> Vec3<T> {
+    /// This vector with the derivative `d`.
+    #[inline(always)]
+    pub fn with_derivative(self, d: Self) -> Vec3<Dual<T>> {
+        let [x, y, z] = [(self.x, d.x), (self.y, d.y), (self.z, d.z)].map(|(v, d)| Dual { v, d });
+        Vec3 { x, y, z }
+    }
+
     /// Zero vector.
     #[inline(always)]
     pub fn zero() -> Self {

@@ -25,16 +25,25 @@ const ROOMS: [&str; 18] = [
     "run",
 ];
 
+/// The rooms of the crate that reads model files: values of a text, one table from several texts, its sections, and
+/// files written.
+const ROOMS_OF_FILES: [&str; 4] = ["values", "compose", "read", "write"];
+
+/// Crates with rooms, by the paths of their sources, and the minimum number of files there.
+const HOUSES: [(&str, &[&str], usize); 2] =
+    [("src", &ROOMS, 40), ("../hardpoint-file/src", &ROOMS_OF_FILES, 35)];
+
 /// Own crates that each crate may depend on. Tests may use any.
 const CRATES: &[(&str, &[&str])] = &[
     ("hardpoint-tape", &[]),
     ("hardpoint-code", &["hardpoint-tape"]),
     ("hardpoint", &["hardpoint-tape", "hardpoint-code"]),
     ("hardpoint-study", &["hardpoint", "hardpoint-tape"]),
-    ("hardpoint-file", &["hardpoint"]),
-    ("hardpoint-report", &["hardpoint", "hardpoint-file", "hardpoint-study"]),
+    ("hardpoint-table", &["hardpoint"]),
+    ("hardpoint-file", &["hardpoint", "hardpoint-table"]),
+    ("hardpoint-report", &["hardpoint", "hardpoint-file", "hardpoint-study", "hardpoint-table"]),
     ("hardpoint-import", &["hardpoint", "hardpoint-file"]),
-    ("hardpoint-export", &["hardpoint", "hardpoint-file", "hardpoint-report"]),
+    ("hardpoint-export", &["hardpoint", "hardpoint-file", "hardpoint-report", "hardpoint-table"]),
     (
         "hardpoint-cli",
         &[
@@ -44,6 +53,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "hardpoint-import",
             "hardpoint-report",
             "hardpoint-study",
+            "hardpoint-table",
         ],
     ),
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
@@ -83,32 +93,35 @@ fn mentions(line: &str, room: &str) -> bool {
 }
 
 #[test]
-fn no_room_of_the_core_uses_a_later_one() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut looked_at = 0;
-    for (path, text) in sources(&src) {
-        let inside = path.strip_prefix(&src).unwrap();
-        let first = inside.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs");
-        if first == "lib" {
-            continue;
+fn no_room_uses_a_later_one() {
+    for (src, rooms, minimum) in HOUSES {
+        let src = Path::new(env!("CARGO_MANIFEST_DIR")).join(src);
+        let mut looked_at = 0;
+        for (path, text) in sources(&src) {
+            let inside = path.strip_prefix(&src).unwrap();
+            let first = inside.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs");
+            if first == "lib" {
+                continue;
+            }
+            let room = rooms.iter().position(|r| *r == first);
+            let room =
+                room.unwrap_or_else(|| panic!("{} is in no room: add it to its list", inside.display()));
+            looked_at += 1;
+            // Tests of a room may use all of the house.
+            let (code, _) = text.split_once("#[cfg(test)]\nmod ").unwrap_or((&text, ""));
+            let code = code.lines().filter(|l| !l.trim_start().starts_with("//"));
+            for (later, name) in rooms.iter().enumerate().skip(room + 1) {
+                let is_used = code.clone().any(|l| mentions(l, name));
+                assert!(
+                    !is_used,
+                    "{} is in the room `{first}` and uses `{name}`, which comes later in the walk: {}",
+                    inside.display(),
+                    rooms[..=later].join(" -> ")
+                );
+            }
         }
-        let room = ROOMS.iter().position(|r| *r == first);
-        let room = room.unwrap_or_else(|| panic!("{} is in no room: add it to ROOMS", inside.display()));
-        looked_at += 1;
-        // Tests of a room may use all of the house.
-        let (code, _) = text.split_once("#[cfg(test)]\nmod ").unwrap_or((&text, ""));
-        let code = code.lines().filter(|l| !l.trim_start().starts_with("//"));
-        for (later, name) in ROOMS.iter().enumerate().skip(room + 1) {
-            let is_used = code.clone().any(|l| mentions(l, name));
-            assert!(
-                !is_used,
-                "{} is in the room `{first}` and uses `{name}`, which comes later in the walk: {}",
-                inside.display(),
-                ROOMS[..=later].join(" -> ")
-            );
-        }
+        assert!(looked_at > minimum, "only {looked_at} files found under {}", src.display());
     }
-    assert!(looked_at > 40, "only {looked_at} files found under {}", src.display());
 }
 
 /// Maximum number of patterns for some types of measures only (`let`, `matches!`), per room of the core or crate: they
@@ -209,13 +222,12 @@ fn names_after<'t>(text: &'t str, prefix: &str) -> Vec<&'t str> {
 
 /// Number of files of each room that are part of a circle: a file uses another one, which uses it again in the end.
 /// Rooms without circles are not listed; the numbers only fall.
-const IN_CIRCLES: [(&str, usize); 10] = [
+const IN_CIRCLES: [(&str, usize); 9] = [
     ("draft", 3),
     ("expression", 2),
     ("law", 6),
-    ("load", 4),
+    ("load", 3),
     ("model", 3),
-    ("motion", 5),
     ("number", 2),
     ("run", 3),
     ("sensitivity", 3),
@@ -224,9 +236,11 @@ const IN_CIRCLES: [(&str, usize); 10] = [
 
 #[test]
 fn circles_inside_rooms_only_shrink() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = Vec::new();
-    for room in ROOMS.into_iter().filter(|room| src.join(room).is_dir()) {
+    let rooms =
+        HOUSES.into_iter().flat_map(|(src, rooms, _)| rooms.iter().map(move |room| (here.join(src), *room)));
+    for (src, room) in rooms.filter(|(src, room)| src.join(room).is_dir()) {
         // A folder inside a room counts as one file, like the module that it is.
         let module = |path: &Path| {
             let first = path.strip_prefix(src.join(room)).unwrap().iter().next().unwrap();
@@ -467,7 +481,7 @@ fn one_writer_writes_all_csv_files() {
             files.filter(|(_, text)| text.contains("csv::Writer") || text.contains("WriterBuilder::new()"));
         writing.extend(bare.map(|(path, _)| path.strip_prefix(crates).unwrap().to_str().unwrap().to_owned()));
     }
-    assert_eq!(writing, ["hardpoint-file/src/csv_table.rs"]);
+    assert_eq!(writing, ["hardpoint-table/src/csv.rs"]);
 }
 
 /// The words of `docs/glossary.md` name types that there are.

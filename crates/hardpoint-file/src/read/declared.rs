@@ -1,0 +1,216 @@
+//! Fields of measures, masses and forces, as the core declares them.
+
+use hardpoint::draft::{DirectionDraft, FieldDraft, FieldKind, MeasureField, NumberDraft, RayDraft};
+use hardpoint::law::Law;
+use hardpoint::model::{Axes, ElementUnit, OrientationAngle, ReactionPart};
+
+use crate::values::{
+    ANGLE, BODY, DIRECTION, DRIVER, EntryPlace, Field, Fields, JOINT, Key, LENGTH, LINE, NUMBER, Need,
+    OUTPUT, Reader, Shape, TWO_NUMBERS, Table, Value, table,
+};
+
+use super::data::COLUMN;
+use super::joints::COORDINATE;
+use super::law::LAW;
+use super::mesh::MESH;
+use super::points::POINT_REF;
+use super::raw::Raw;
+use super::{data, law, mesh, points};
+
+const RAY: Shape = Shape::Any(
+    "Ray",
+    "A direction that an angle is measured from or to.",
+    &[Shape::exactly(2, &POINT_REF), Shape::Table(&FIXED_RAY), DIRECTION],
+);
+const FIXED_RAY: Table = table! {
+    /// A direction that is fixed in a body.
+    "FixedRay":
+    /// The body's name.
+    must "body": BODY, "\"rocker\"";
+    /// Direction in the design configuration.
+    must "axis": LINE, "\"x\"";
+};
+const FORCE_TABLE: Shape = Shape::Any(
+    "ForceTable",
+    "A force in N over a way in the length unit.",
+    &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&FORCE_FILE)],
+);
+pub(super) const FORCE_FILE: Table = table! {
+    /// A force over deflection in a CSV file.
+    "ForceFile":
+    /// A CSV file in the model's folder or below it: deflections in the length unit, and forces in N.
+    must "file": Shape::File, "\"bump_stop.csv\"";
+    /// The file's columns of deflection and force, by name or by number from 1. Default: the first two.
+    may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
+};
+const REACTION_PART: Shape = Shape::Any(
+    "ReactionPart",
+    "What of a joint's reaction is measured.",
+    &[Shape::Words(ReactionPart::WORDS)],
+);
+const AXES: Shape = Shape::Any("Axes", "Along which axes something is given.", &[Shape::Words(Axes::WORDS)]);
+const ORIENTATION_ANGLE: Shape = Shape::Any(
+    "OrientationAngle",
+    "One of three angles of a body's orientation.",
+    &[Shape::Words(OrientationAngle::WORDS)],
+);
+
+/// The key of a field of a measure, a mass or a force.
+pub(super) fn key(field: &MeasureField) -> Key {
+    let (shape, example) = match field.kind {
+        FieldKind::Joint => (JOINT, "\"J1\""),
+        FieldKind::Coordinate => (COORDINATE, "\"angle\""),
+        FieldKind::Point => (POINT_REF, "\"P\""),
+        FieldKind::Direction => (DIRECTION, "\"z\""),
+        FieldKind::Line => (LINE, "[0, 1, 0]"),
+        FieldKind::Ray => (RAY, "[\"P\", \"Q\"]"),
+        FieldKind::Output => (OUTPUT, "\"toe\""),
+        FieldKind::Driver => (DRIVER, "\"bump\""),
+        FieldKind::Body => (BODY, "\"knuckle\""),
+        FieldKind::OrientationAngle => (ORIENTATION_ANGLE, "\"yaw\""),
+        FieldKind::Expression => (Shape::Expression, "\"left.toe + right.toe\""),
+        FieldKind::ReactionPart => (REACTION_PART, "\"radial\""),
+        FieldKind::Axes => (AXES, "\"body\""),
+        FieldKind::Force => (Shape::Name("a force"), "\"spring\""),
+        FieldKind::Number(ElementUnit::Length) => (LENGTH, "20"),
+        FieldKind::Number(ElementUnit::Angle) => (ANGLE, "5"),
+        FieldKind::Number(ElementUnit::Density) => (NUMBER, "7850"),
+        FieldKind::Number(_) => (NUMBER, "2.5"),
+        FieldKind::Law => (LAW, "\"sin(2*pi*t)\""),
+        FieldKind::Wheel => (Shape::Name("a wheel"), "\"front_left\""),
+        FieldKind::Table => (FORCE_TABLE, "[[0, 0], [20, 400], [35, 1500]]"),
+        FieldKind::Mesh => (MESH, "\"knuckle.stl\""),
+    };
+    // Where no surface is named, the body has one.
+    let is_needed = field.required && field.kind != FieldKind::Mesh;
+    let need = if is_needed { Need::Required } else { Need::Optional };
+    Key { key: field.key, shape, need, example, doc: with_unit(field) }
+}
+
+/// Meaning of a field, with the unit of its number unless it consists of lengths and angles alone.
+fn with_unit(field: &MeasureField) -> &'static str {
+    let FieldKind::Number(unit) = field.kind else { return field.summary };
+    let unit = match unit {
+        ElementUnit::Mass => "kg",
+        ElementUnit::Inertia => "kg m^2",
+        ElementUnit::Force => "N",
+        ElementUnit::Moment => "N m",
+        ElementUnit::Stiffness => "N per unit of length",
+        ElementUnit::CubicStiffness => "N per cube of it",
+        ElementUnit::Damping => "N s per unit of length",
+        ElementUnit::TorsionalStiffness => "N m per unit of angle",
+        ElementUnit::TorsionalDamping => "N m s per unit of angle",
+        // Their sentences say it, or the shape does.
+        ElementUnit::Density | ElementUnit::Plain | ElementUnit::Length | ElementUnit::Angle => {
+            return field.summary;
+        }
+    };
+    format!("{} In {unit}.", field.summary).leak()
+}
+
+/// A field of a measure, a mass or a force; `unread` where it is there and cannot be read.
+pub(super) fn own_field(
+    r: &mut Reader<'_>,
+    raw: &Raw,
+    field: &MeasureField,
+    fields: &Fields<'_>,
+    place: &mut EntryPlace,
+    unread: &mut bool,
+) -> Option<FieldDraft> {
+    let key = field.key;
+    let value = match field.kind {
+        FieldKind::Joint
+        | FieldKind::Coordinate
+        | FieldKind::Output
+        | FieldKind::Driver
+        | FieldKind::Force
+        | FieldKind::Wheel
+        | FieldKind::Body => r.name_of(fields, key).map(FieldDraft::Name),
+        FieldKind::OrientationAngle => {
+            r.word_of(fields, key).map(|k| FieldDraft::Angle(OrientationAngle::at(k)))
+        }
+        FieldKind::ReactionPart => r.word_of(fields, key).map(|k| FieldDraft::Part(ReactionPart::at(k))),
+        FieldKind::Axes => r.word_of(fields, key).map(|k| FieldDraft::Axes(Axes::at(k))),
+        FieldKind::Number(unit) => {
+            r.given(fields, key, |r, f| element_number(r, fields, f, unit)).map(FieldDraft::Number)
+        }
+        FieldKind::Law => r.given(fields, key, |r, f| factor_law(r, fields, f)).map(FieldDraft::Law),
+        FieldKind::Table => r.given(fields, key, |r, f| force_table(r, fields, f)).map(FieldDraft::Table),
+        FieldKind::Mesh => {
+            let solid = mesh::solid(r, &raw.meshes, fields, key);
+            // It has been reported why there is none.
+            *unread |= solid.is_none();
+            solid.map(FieldDraft::Solid)
+        }
+        FieldKind::Point => points::point_of(r, fields, key).map(FieldDraft::Point),
+        FieldKind::Direction => r.vector_of(fields, key).map(FieldDraft::Direction),
+        FieldKind::Line => r.line_of(fields, key, place).map(FieldDraft::Line),
+        FieldKind::Ray => r.given(fields, key, |r, f| ray(r, fields, f, place)).map(FieldDraft::Ray),
+        FieldKind::Expression => r.given(fields, key, |r, f| {
+            let subject = fields.subject(key);
+            if f.value.get_ref().as_str().is_none() {
+                r.wrong(f.value, &subject, "an expression in quotes");
+            }
+            r.expression(f.value, &subject).map(FieldDraft::Expression)
+        }),
+    };
+    *unread |= value.is_none() && fields.get(key).is_some();
+    value
+}
+
+/// A direction to measure an angle from or to: `["P", "Q"]`, a global vector, or `{ body = ..., axis = ... }`.
+fn ray(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>, place: &mut EntryPlace) -> Option<RayDraft> {
+    let subject = fields.subject(f.key);
+    if let Some(table) = f.value.get_ref().as_table() {
+        let fields = r.fields(subject.name.clone(), f.value.span(), table, FIXED_RAY.keys());
+        let body = r.name_of(&fields, "body");
+        let axis = r.line_of(&fields, "axis", place);
+        return Some(RayDraft::Fixed { body: body?, axis: axis? });
+    }
+    let is_number = |v: &Value<'_>| v.get_ref().as_integer().is_some() || v.get_ref().as_float().is_some();
+    match f.value.get_ref().as_array() {
+        Some(list) if list.len() == 2 && !list.iter().any(is_number) => {
+            let [a, b] = [0, 1].map(|k| points::point_ref(r, fields, Field { value: &list[k], ..f }));
+            Some(RayDraft::Between([a?, b?]))
+        }
+        _ => {
+            let axis = r.vector(f.value, &subject)?;
+            Some(RayDraft::Fixed { body: "ground".into(), axis: DirectionDraft::Along(axis) })
+        }
+    }
+}
+
+/// Force over deflection, given here or in a file.
+fn force_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+    let points = data::points_given(r, fields, f, &FORCE_FILE, &data::FORCE)?;
+    Some(points.into_iter().map(|[way, force]| [r.units.length.metres(way), force]).collect())
+}
+
+/// A number of a mass or force: by itself, or by an expression that the core evaluates.
+fn element_number(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    f: Field<'_>,
+    unit: ElementUnit,
+) -> Option<NumberDraft> {
+    let subject = fields.subject(f.key);
+    let per_unit = r.units.per_si_of(unit);
+    if f.value.get_ref().is_str() {
+        let expression = r.expression(f.value, &subject)?;
+        return Some(NumberDraft { value: 0.0, expression: Some(expression), per_unit });
+    }
+    let value = r.number(f.value, &subject)?;
+    Some(NumberDraft { value: r.units.to_si_of(unit, value), expression: None, per_unit })
+}
+
+/// Law that scales a force over time.
+fn factor_law(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Law> {
+    let law = law::law(r, fields, f);
+    if !r.law_formulas.is_empty() {
+        r.law_formulas.clear();
+        r.senseless(f.value.span(), "the law of a force has a parameter that an expression gives").help =
+            Some("write numbers in the law; the force that it multiplies may depend on parameters".into());
+        return None;
+    }
+    law
+}

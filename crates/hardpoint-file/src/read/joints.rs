@@ -1,0 +1,201 @@
+//! Joints and their curves.
+
+use hardpoint::draft::{CurveDraft, FormulaDraft, FormulaOf, JointDraft, LocationDraft, Section};
+use hardpoint::joint;
+use hardpoint::joint::Freedom;
+use toml::de::DeValue;
+
+use crate::values::{
+    BODY, EntryPlace, Field, Fields, LENGTH, LINE, PLACE, Reader, Shape, Table, Value, table,
+};
+
+use super::drawing;
+use super::drawing::{DRAW, Form};
+use super::raw::Raw;
+
+/// The axis of a marker that a joint's `axis` is.
+const ALONG_AXIS: usize = 2;
+pub(super) const JOINT: Table = table! {
+    /// A joint between bodies i and j.
+    "Joint":
+    /// The joint type, or one of its other names.
+    must "type": JOINT_TYPE, "\"revolute\"";
+    /// Names of bodies i and j. Coordinates are those of j relative to i.
+    must "bodies": Shape::exactly(2, &BODY), "[\"ground\", \"crank\"]";
+    /// Location: a hardpoint's name or coordinates; or two of them, one on each body, for rods, legs and open joints.
+    /// Default: the first hardpoint of the axis, if it has any.
+    may "at": Shape::Any("Places", "", &[PLACE, Shape::exactly(2, &PLACE)]), "\"A\"";
+    /// The axis, in the design configuration; required if the joint type has one.
+    may "axis": LINE, "\"z\"";
+    /// The second axis: perpendicular to the first, or the axis on body j, depending on the joint type.
+    may "axis2": LINE, "\"x\"";
+    /// For a mirror image of another joint: the global axis perpendicular to the mirror. The default of `axis2` is then
+    /// the image of that joint's default.
+    may "mirror": Shape::Words(&[("x", ""), ("y", ""), ("z", "")]), "\"y\"";
+    /// Length of a rod or leg, or distance of a point from its curve; the mechanism is assembled to it. Default: the
+    /// value in the design configuration.
+    may "length": LENGTH, "250";
+    /// Advance of a screw per turn, in the length unit; negative for a left-hand thread. Required for a `screw`.
+    may "lead": LENGTH, "5";
+    /// The curve on body i that a point of body j follows, for the joint type `point_on_curve`.
+    may "curve": Shape::Table(&CURVE), "{ points = [\"A\", \"B\", \"C\"] }";
+    /// True if loops should preferably be cut at this joint. It affects the effort, not the results.
+    or("false") "cut": Shape::Flag, "true";
+    /// Shape in drawings, for a rod, a leg, or a joint that slides along its axis. It does not affect results. Default:
+    /// a leg is a cylinder.
+    may "draw": DRAW, "\"coilover\"";
+};
+pub(super) const CURVE: Table = table! {
+    /// A smooth curve through points in the design configuration, in the plane perpendicular to the joint's axis.
+    "Curve":
+    /// Points in order: hardpoints' names or coordinates.
+    must "points": Shape::list(&PLACE), "[\"A\", \"B\", \"C\"]";
+    /// True for a closed curve, such as that of a cam; the first point is not repeated.
+    or("false") "closed": Shape::Flag, "true";
+};
+const JOINT_TYPE: Shape =
+    Shape::Any("JointType", "", &[Shape::Known("the name of a joint type", joint_types)]);
+/// A coordinate of a joint, by name.
+pub(super) const COORDINATE: Shape =
+    Shape::Any("Coordinate", "", &[Shape::Known("the name of a coordinate", coordinates)]);
+
+/// Joint types with their aliases and descriptions.
+fn joint_types() -> Vec<(&'static str, String)> {
+    let mut names = Vec::new();
+    for t in joint::ALL {
+        let coordinates: Vec<_> = t.coordinates.iter().map(|c| format!("`{}`", c.name)).collect();
+        let coordinates = match coordinates.as_slice() {
+            [] => String::new(),
+            [one] => format!(" Coordinate: {one}."),
+            several => format!(" Coordinates: {}.", several.join(", ")),
+        };
+        let mut summary = t.summary.to_owned();
+        summary[..1].make_ascii_uppercase();
+        let description = format!("{summary}.{coordinates}");
+        names.extend(t.aliases.iter().map(|a| (*a, format!("Another name of `{}`. {description}", t.name))));
+        names.insert(names.len() - t.aliases.len(), (t.name, description));
+    }
+    names
+}
+
+/// Names of all joint coordinates.
+fn coordinates() -> Vec<(&'static str, String)> {
+    let mut names: Vec<(&str, String)> = Vec::new();
+    for c in joint::ALL.iter().flat_map(|t| t.coordinates) {
+        if !names.iter().any(|n| n.0 == c.name) {
+            names.push((c.name, String::new()));
+        }
+    }
+    names
+}
+
+pub(super) fn joints(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    for entry in r.entries(model, "joints", "joint") {
+        let fields = r.entry("joint", &entry, JOINT.keys());
+        let mut place = EntryPlace::of(&fields);
+        let kind = r.name_of(&fields, "type");
+        let bodies = r.names_of::<2>(&fields, "bodies");
+        let at = r.given(&fields, "at", |r, f| joint_places(r, &fields, f, &mut place, raw));
+        let [axis, axis2] = ["axis", "axis2"].map(|key| r.line_of(&fields, key, &mut place));
+        let mirror = r.word_of(&fields, "mirror");
+        let length = r.given(&fields, "length", |r, f| rod_length_of(r, &fields, f, &entry.0, raw));
+        let lead = r.number_of(&fields, "lead");
+        let curve = r.given(&fields, "curve", |r, f| curve(r, &fields, f, &mut place));
+        let cut = r.flag_of(&fields, "cut");
+        if let Some(form) = form_of_joint(r, &fields, kind.as_deref()) {
+            raw.drawing.joints.insert(raw.draft.joints.len(), form);
+        }
+        raw.push(r, Section::Joints, place);
+        raw.joint_numbers.entry(entry.0.clone()).or_insert(raw.draft.joints.len());
+        raw.draft.joints.push(JointDraft {
+            name: entry.0,
+            kind: kind.unwrap_or_default(),
+            bodies: bodies.unwrap_or_default(),
+            at: at.unwrap_or_default(),
+            axis,
+            axis2,
+            mirror,
+            length,
+            lead,
+            curve,
+            cut: cut.unwrap_or(false),
+        });
+    }
+}
+
+/// Shape of a joint in drawings; HP0107 for a joint without a length.
+fn form_of_joint(r: &mut Reader<'_>, fields: &Fields<'_>, kind: Option<&str>) -> Option<Form> {
+    if let Some(kind) = kind.and_then(joint::named) {
+        let slides = kind.freedoms.is_some_and(|f| f.contains(&Freedom::Slide(ALONG_AXIS)));
+        if !kind.is_rod() && !slides {
+            let why = "it is for what has a length: a rod, a leg, a joint that slides along its axis";
+            r.out_of_place(fields, "draw", format!("{why}; this is a {} joint", kind.name));
+            return None;
+        }
+    }
+    drawing::form_of(r, fields)
+}
+
+/// Length of a rod: a number, or an expression that the core evaluates.
+fn rod_length_of(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    f: Field<'_>,
+    joint: &str,
+    raw: &mut Raw,
+) -> Option<f64> {
+    let subject = fields.subject(f.key);
+    if !f.value.get_ref().is_str() {
+        return r.number(f.value, &subject).map(|x| r.units.length.metres(x));
+    }
+    let expression = r.expression(f.value, &subject)?;
+    raw.draft.formulas.push(FormulaDraft { of: FormulaOf::Length(joint.to_owned()), expression });
+    Some(0.0)
+}
+
+/// One location, or a list of locations: three numbers, or three texts that are not all names of hardpoints, are
+/// the coordinates of one.
+fn joint_places(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    f: Field<'_>,
+    place: &mut EntryPlace,
+    raw: &Raw,
+) -> Option<Vec<LocationDraft>> {
+    let subject = fields.subject("at");
+    let is_number = |v: &Value<'_>| matches!(v.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
+    let is_hardpoint =
+        |v: &Value<'_>| v.get_ref().as_str().is_none_or(|name| raw.hardpoint_numbers.contains_key(name));
+    match f.value.get_ref().as_array() {
+        Some(list) if !list.iter().any(is_number) && (list.len() != 3 || list.iter().all(is_hardpoint)) => {
+            let list = r.list(f.value, &subject, "")?;
+            let places: Vec<_> = list.iter().map(|v| r.place(v, &subject)).collect();
+            places.into_iter().collect()
+        }
+        _ => {
+            let one = r.place(f.value, &subject)?;
+            place.items("at", Vec::new());
+            Some(vec![one])
+        }
+    }
+}
+
+/// Reads a curve; its points become the items of the key.
+fn curve(
+    r: &mut Reader<'_>,
+    fields: &Fields<'_>,
+    f: Field<'_>,
+    place: &mut EntryPlace,
+) -> Option<CurveDraft> {
+    let table = r.table(f.value, &fields.subject("curve"), "a table with the points of the curve")?;
+    let curve = r.fields(format!("the curve of {}", fields.what), f.value.span(), table, CURVE.keys());
+    let closed = r.flag_of(&curve, "closed");
+    let points = r.given(&curve, "points", |r, f| {
+        let subject = curve.subject("points");
+        let list = r.list(f.value, &subject, "a list of hardpoints' names or coordinates")?;
+        place.items("curve", list.iter().map(|v| v.span()).collect());
+        let points: Vec<_> = list.iter().map(|v| r.place(v, &subject)).collect();
+        points.into_iter().collect::<Option<Vec<_>>>()
+    });
+    Some(CurveDraft { points: points?, closed: closed? })
+}

@@ -1,0 +1,127 @@
+//! Metrics: numbers of a measure's curve.
+
+use hardpoint::draft::{MetricDraft, Section};
+use hardpoint::model::Reduction;
+
+use crate::values::{
+    CASE, EntryPlace, Field, Fields, NUMBER, OUTPUT, Reader, Shape, TWO_NUMBERS, Table, table,
+};
+
+use super::data;
+use super::data::COLUMN;
+use super::raw::Raw;
+
+pub(super) const METRIC: Table = table! {
+    /// One number of a curve.
+    "Metric":
+    /// The name of the measure, or `POINT.x`.
+    must "of": OUTPUT, "\"toe\"";
+    /// Reduction of the curve to one number.
+    must "take": TAKE, "\"max\"";
+    /// The abscissa: the name of a measure, or `POINT.x`. Default: time.
+    may "over": OUTPUT, "\"wheel_travel\"";
+    /// For a value or slope: the position, in the unit of the abscissa.
+    may "at": NUMBER, "0";
+    /// Window: the range of the abscissa that is used. Default: the whole curve.
+    may "window": TWO_NUMBERS, "[-20, 20]";
+    /// Points `[abscissa, value]`, or the name of a CSV file of them; for `rms` a polyline. Default: zero.
+    may "target": TARGET, "[[-50, 0.1], [50, -0.1]]";
+    /// Case of the motion. Default: all cases, with one number for each.
+    may "case": CASE, "\"bump\"";
+};
+const TARGET: Shape =
+    Shape::Any("Target", "", &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&TARGET_FILE)]);
+pub(super) const TARGET_FILE: Table = table! {
+    /// A curve in a CSV file.
+    "TargetFile":
+    /// A CSV file in the model's folder or below it: abscissas and values, in the units of the model file.
+    must "file": Shape::File, "\"target.csv\"";
+    /// The file's columns of abscissa and value, by name or by number from 1. Default: the first two.
+    may "columns": Shape::exactly(2, &COLUMN), "[1, 2]";
+};
+const TAKE: Shape = Shape::Any(
+    "Take",
+    "What a metric takes.",
+    &[Shape::Words(&[
+        ("min", "The least value."),
+        ("max", "The greatest value."),
+        ("range", "The greatest less the least value."),
+        ("mean", "The mean over time, or over the travel of the abscissa to and fro."),
+        (
+            "integral",
+            "The integral over the abscissa: of a power over time the work in J, and of a force or a moment over its way or angle.",
+        ),
+        ("rms", "The root of the mean, as for `mean`, of the squared deviation from the target."),
+        (
+            "rms_at_points",
+            "The root mean square of the deviation from the target's points, each where the abscissa first has its value.",
+        ),
+        ("value", "The value where the abscissa first is `at`."),
+        ("slope", "The change per change of the abscissa where that first is `at`."),
+    ])],
+);
+
+pub(super) fn metrics(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    for entry in r.entries(model, "metrics", "metric") {
+        let fields = r.entry("metric", &entry, METRIC.keys());
+        let place = EntryPlace::of(&fields);
+        let of = r.name_of(&fields, "of");
+        let over = r.name_of(&fields, "over");
+        let take = take(r, &fields);
+        let window = r.list_of::<2>(&fields, "window", "the lower and the upper end");
+        let case = r.name_of(&fields, "case");
+        // An incomplete metric would have another meaning.
+        if of.is_none() || take.is_none() || !r.unread.is_empty() {
+            r.unread.push("");
+        }
+        let (per_metre, per_radian) = (r.units.length.per_metre(), r.units.angle.per_radian());
+        raw.push(r, Section::Metrics, place);
+        raw.draft.metrics.push(MetricDraft {
+            name: entry.0,
+            of: of.unwrap_or_default(),
+            over,
+            take: take.unwrap_or(Reduction::Least),
+            window,
+            case,
+            per_metre,
+            per_radian,
+        });
+    }
+}
+
+/// Reduction of a metric, in the file's units.
+fn take(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Reduction> {
+    let word = Reduction::NAMES[r.word_of(fields, "take")?];
+    if word != "rms" && word != "rms_at_points" {
+        let why = "only `take = \"rms\"` and `\"rms_at_points\"` compare with a target";
+        r.out_of_place(fields, "target", why);
+    }
+    if word != "value" && word != "slope" {
+        r.out_of_place(fields, "at", "only `take = \"value\"` and `\"slope\"` are taken at one place");
+    } else {
+        r.out_of_place(fields, "window", "it is taken at one place");
+        r.need(fields, "at");
+    }
+    Some(match word {
+        "min" => Reduction::Least,
+        "max" => Reduction::Greatest,
+        "range" => Reduction::Range,
+        "mean" => Reduction::Mean,
+        "integral" => Reduction::Integral,
+        "rms" => Reduction::Rms(match fields.get("target") {
+            Some(f) => target(r, fields, f)?,
+            None => Vec::new(),
+        }),
+        "rms_at_points" => {
+            let field = r.need(fields, "target")?;
+            Reduction::RmsAtPoints(target(r, fields, field)?)
+        }
+        "value" => Reduction::Value(r.number_of(fields, "at")?),
+        _ => Reduction::Slope(r.number_of(fields, "at")?),
+    })
+}
+
+/// Target curve of an `rms`, given here or in a file.
+fn target(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
+    data::points_given(r, fields, f, &TARGET_FILE, &data::TARGET)
+}

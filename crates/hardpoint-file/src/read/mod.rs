@@ -1,0 +1,41 @@
+//! The sections of a model, each from its table to its part of the draft.
+
+mod bodies;
+mod cases;
+mod couplers;
+mod data;
+mod declared;
+mod design;
+mod drawing;
+mod drivers;
+mod elements;
+mod hardpoints;
+mod joints;
+mod law;
+mod measured;
+mod measures;
+mod mesh;
+mod metrics;
+mod model;
+mod model_file;
+mod optimize;
+mod parameters;
+mod parse;
+mod points;
+mod raw;
+mod readings;
+mod sweep;
+mod times;
+mod tolerance;
+mod wheels;
+
+pub use drawing::{Appearance, Form, Mesh, MeshFrame};
+pub use measured::MeasuredData;
+pub use mesh::triangles;
+pub use model_file::ModelFile;
+pub use parse::{ReadError, parse, parse_in, parse_with, read};
+
+pub(crate) use model::MODEL;
+#[cfg(test)]
+pub(crate) use model::tables;
+pub(crate) use parse::parsed;

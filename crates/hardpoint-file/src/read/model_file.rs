@@ -1,0 +1,193 @@
+//! A model with its text.
+
+use std::ops::Range;
+use std::path::Path;
+
+use hardpoint::draft::{Section, some_of};
+use hardpoint::model::{BodyId, CaseId, Model, SweepRange, SweepSettings, VariableId};
+
+use crate::compose::{Origins, Plane, with_origin};
+use crate::values::{Diagnostic, Diagnostics, Places, Severity, Source, Texts, closest, shown};
+use hardpoint_table::Units;
+
+use super::drawing::Appearance;
+use super::sweep;
+
+/// Number of bodies without mass that are named.
+const MOST_NAMES: usize = 8;
+
+/// A model with its text.
+#[derive(Clone, Debug)]
+pub struct ModelFile {
+    /// Checked model, in SI units.
+    pub model: Model,
+    /// Units of the file, for output.
+    pub units: Units,
+    /// Description in the file.
+    pub description: Option<String>,
+    /// Appearance in drawings.
+    pub drawing: Appearance,
+    /// Warnings and notes of the reader, in the order of the text.
+    pub remarks: Vec<Diagnostic>,
+    /// Texts of the files that the model names: tables of laws, target curves, lists of designs.
+    pub texts: Texts,
+    /// Plane of a planar model.
+    pub plane: Option<Plane>,
+    /// Mirror images with their originals, by name.
+    pub(crate) origins: Origins,
+    /// Selected case, if the file has cases.
+    pub case: Option<String>,
+    pub(crate) source: Source,
+    pub(crate) places: Places,
+}
+
+impl ModelFile {
+    /// Returns the file with a single case as its motion.
+    pub fn in_case(&self, case: CaseId) -> Self {
+        let mut model = self.model.in_case(case);
+        model.grids.clear();
+        Self { model, case: Some(self.model.cases[case.0].name.clone()), ..self.clone() }
+    }
+
+    /// Value of a variable after a change in SI, in the file's units.
+    pub fn value_of(&self, variable: VariableId, change: f64) -> f64 {
+        let quantity = self.model.variables[variable.0].quantity;
+        self.units.from_si(quantity, change + self.model.nominal_value(variable))
+    }
+
+    /// Change, in SI, that gives a variable a value in the file's units; exactly 0 for its nominal value.
+    pub fn change_to(&self, variable: VariableId, value: f64) -> f64 {
+        if value == self.value_of(variable, 0.0) {
+            return 0.0;
+        }
+        let quantity = self.model.variables[variable.0].quantity;
+        self.units.to_si(quantity, value) - self.model.nominal_value(variable)
+    }
+
+    /// Name of the file, as given.
+    pub fn file_name(&self) -> &str {
+        &self.source.file
+    }
+
+    /// Text of the file.
+    pub fn text(&self) -> &str {
+        &self.source.text[self.source.range(0)]
+    }
+
+    /// Line and column, from 1, of the name of an entry: `index` counts as in the lists of [`Model`].
+    ///
+    /// `None` for elements without an entry: ground, coordinates in place of a hardpoint's name.
+    pub fn place(&self, section: Section, index: usize) -> Option<(usize, usize)> {
+        self.span(section, index).map(|s| self.source.line_column(s.start))
+    }
+
+    fn span(&self, section: Section, index: usize) -> Option<Range<usize>> {
+        // Ground is the model's first body and is not in the file.
+        let index = if section == Section::Bodies { index.checked_sub(1)? } else { index };
+        let at = hardpoint::draft::DraftLocation { section, index, key: "", item: None };
+        self.places.find(&at)
+    }
+
+    /// Reads designs from a CSV file in any folder: its first line names design variables, each line below has their
+    /// values in the file's units (values of parameters, changes for all others). The result has changes in SI, as in
+    /// [`SweepSettings`].
+    ///
+    /// # Errors
+    /// Returns the errors of the file.
+    pub fn designs(&self, path: &Path) -> Result<(Vec<SweepRange>, Vec<Vec<f64>>), Diagnostics> {
+        let name = path.display().to_string();
+        let source = Source::new(&name, "");
+        let refused = |code, message: String, notes: Vec<String>, help: Option<String>| {
+            let d = source.diagnostic(Severity::Error, code, message, None);
+            let d = notes.into_iter().fold(d, Diagnostic::note);
+            Diagnostics::new(source.clone(), vec![help.into_iter().fold(d, Diagnostic::help)])
+        };
+        let (names, rows) = sweep::list_at(path).map_err(|e| refused(e.code, e.message, e.notes, e.help))?;
+        let mut variables = Vec::new();
+        for (column, wanted) in names.iter().enumerate() {
+            let known = self.model.variables.iter().position(|v| v.name == *wanted);
+            let Some(k) = known else {
+                let all = self.model.variables.iter().map(|v| v.name.as_str());
+                let help = closest(wanted, all).map(|c| format!("did you mean `{c}`?"));
+                let message = format!("there is no design variable named `{}`", shown(wanted));
+                let note = format!("it is the title of column {} of `{}`", column + 1, shown(&name));
+                return Err(refused("HP0247", message, vec![note], help));
+            };
+            if variables.contains(&VariableId(k)) {
+                let message =
+                    format!("`{}` is the title of two columns of `{}`", shown(wanted), shown(&name));
+                return Err(refused("HP0247", message, Vec::new(), Some("remove one of the two".into())));
+            }
+            variables.push(VariableId(k));
+        }
+        let in_si = |row: &Vec<f64>| variables.iter().zip(row).map(|(v, x)| self.change_to(*v, *x)).collect();
+        let rows: Vec<Vec<f64>> = rows.iter().map(in_si).collect();
+        Ok((SweepSettings::spanned(&variables, &rows), rows))
+    }
+
+    /// Creates a diagnostic of an entry of the model, or of the whole model, for [`render`](Self::render).
+    ///
+    /// ```
+    /// # let text = r#"
+    /// # name = "pendulum"
+    /// # units = { length = "mm", angle = "deg" }
+    /// # hardpoints = { pivot = [0, 0, 500] }
+    /// # bodies = { arm = {} }
+    /// # joints.hinge = { type = "revolute", bodies = ["ground", "arm"], at = "pivot", axis = "y" }
+    /// # time = { end = 1.0, steps = 100 }
+    /// # "#;
+    /// # let file = hardpoint_file::parse(text, "pendulum.toml").unwrap();
+    /// use hardpoint::draft::Section;
+    /// use hardpoint_file::Severity;
+    ///
+    /// let d = file
+    ///     .diagnostic(Severity::Error, "HP0411", "the mechanism does not move", Some((Section::Joints, 0)))
+    ///     .help("add a driver for `hinge`");
+    /// assert!(file.render(&d, false).contains("pendulum.toml:6:8"));
+    /// ```
+    pub fn diagnostic(
+        &self,
+        severity: Severity,
+        code: &'static str,
+        message: impl Into<String>,
+        about: Option<(Section, usize)>,
+    ) -> Diagnostic {
+        let span = about.and_then(|(section, index)| self.span(section, index));
+        with_origin(self.source.diagnostic(severity, code, message, span), &self.origins)
+    }
+
+    /// HP0253: notes on a model with loads whose bodies have no mass, or whose gravity has no effect.
+    pub(super) fn weightless(&self) -> Option<Diagnostic> {
+        let model = &self.model;
+        let heavy: Vec<BodyId> = model.elements.iter().filter_map(|e| e.kind.mass_on(model)).collect();
+        if heavy.is_empty() {
+            let falls = model.gravity.norm() > 0.0;
+            return falls.then(|| {
+                self.diagnostic(Severity::Note, "HP0253", "gravity has no effect: no body has mass", None)
+                    .help("give the bodies `[masses]`, or remove `[gravity]`")
+            });
+        }
+        let light = (1..model.bodies.len()).filter(|b| !heavy.contains(&BodyId(*b)));
+        let light: Vec<usize> = light.collect();
+        let names: Vec<String> = light.iter().map(|b| format!("`{}`", model.bodies[*b].name)).collect();
+        let message = match &names[..] {
+            [] => return None,
+            [one] => format!("body {one} has no mass"),
+            several => {
+                format!("{} bodies have no mass: {}", several.len(), some_of(several, ", ", MOST_NAMES))
+            }
+        };
+        // `Section::Bodies` counts as the model does: ground is the first.
+        let first = (Section::Bodies, light[0]);
+        let d = self.diagnostic(Severity::Note, "HP0253", message, Some(first));
+        Some(
+            d.note("a body without mass transmits forces and needs none")
+                .help("add it to `[masses]` if its weight or inertia matters"),
+        )
+    }
+
+    /// Renders a diagnostic of this file for a terminal; with `color`, with ANSI escapes.
+    pub fn render(&self, diagnostic: &Diagnostic, color: bool) -> String {
+        self.source.render(diagnostic, color)
+    }
+}

@@ -1,0 +1,148 @@
+//! Facts that several studies have: costs, values before and after, moved hardpoints, failed designs.
+
+use hardpoint::joint::Quantity;
+use hardpoint::measure::Output;
+use hardpoint::model::{Metric, Model, OutputSource};
+use hardpoint_file::Units;
+use hardpoint_study::StudyCost;
+use serde::Serialize;
+
+use crate::figures::{number, rounded};
+use crate::page::{Fact, Payload, Table};
+use crate::record::{Column, record};
+
+impl Payload {
+    /// Opens the page on the curve of a metric, over its abscissa.
+    pub(crate) fn open_on(&mut self, metric: Option<&Metric>, outputs: &[Output]) {
+        let place = |of: OutputSource| outputs.iter().position(|o| o.source == of);
+        if let Some(metric) = metric {
+            self.first = place(metric.of).or(self.first);
+            self.over = metric.over.and_then(place);
+        }
+    }
+
+    /// Puts the result of a study first: its lines and tables among the checks, and the lines that `cards` names on the
+    /// cards.
+    pub(crate) fn put_first(
+        &mut self,
+        title: &str,
+        lines: Vec<(&'static str, String)>,
+        cards: &[&str],
+        tables: impl IntoIterator<Item = Table>,
+    ) {
+        let shown = lines.iter().filter(|(what, _)| cards.contains(what));
+        let shown = shown.map(|(what, is)| Fact { label: (*what).into(), value: is.clone() });
+        self.summary.splice(0..0, shown);
+        self.checks.splice(0..0, std::iter::once(Table::of_lines(title, lines)).chain(tables));
+    }
+}
+
+/// Number of marks in a full bar of a table.
+const BAR: f64 = 40.0;
+
+/// Value of the nominal design and of the optimised one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct BeforeAfter {
+    /// Nominal value; `null` if the nominal design cannot be evaluated.
+    pub before: Option<f64>,
+    /// Optimised value; `null` if no design was found.
+    pub after: Option<f64>,
+}
+
+/// Cost of an optimisation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Evaluations {
+    /// Number of evaluated designs.
+    pub designs: usize,
+    /// Number of solved motions.
+    pub motions: usize,
+    /// Number of solved output times, each with its sensitivities.
+    pub steps: usize,
+}
+
+impl Evaluations {
+    /// Cost of a study.
+    pub(crate) fn of(cost: StudyCost) -> Self {
+        let StudyCost { designs, motions, steps } = cost;
+        Self { designs, motions, steps }
+    }
+}
+
+record! {
+    /// Hardpoint that the optimised design moves, in the length unit.
+    MovedHardpoint::of(name: &str, before: [f64; 3], after: [f64; 3]) {}
+    /// Name.
+    name: String = name.to_owned();
+    /// Nominal coordinates.
+    before: [f64; 3] = before;
+    /// Optimised coordinates.
+    after: [f64; 3] = after;
+}
+
+impl MovedHardpoint {
+    /// Hardpoints that a design moves.
+    pub(crate) fn all(model: &Model, units: Units, design: &[f64]) -> Vec<Self> {
+        let [before, after] = [&[][..], design].map(|d| model.hardpoint_places(d));
+        let named = model.hardpoints.iter().zip(before.iter().zip(&after)).filter(|(h, _)| !h.unnamed);
+        let shown = |p: &hardpoint::space::Vec3| p.to_array().map(|x| units.from_si(Quantity::Length, x));
+        let moved = named.filter(|(_, (a, b))| (**a - **b).norm() > 0.0);
+        moved.map(|(h, (a, b))| Self::of(&h.name, shown(a), shown(b))).collect()
+    }
+
+    /// Table of the moved hardpoints, if there are any; `to` names the new design.
+    pub(crate) fn table(moved: &[Self], to: &str) -> Option<Table> {
+        let place = |p: [f64; 3]| p.map(number).join(", ");
+        let columns: [Column<'_, &Self>; 3] = [
+            ("hardpoint", &|h| h.name.clone()),
+            ("nominal", &|h| place(h.before)),
+            (to, &|h| place(h.after)),
+        ];
+        Table::of("Moved hardpoints", "", &columns, moved).if_any()
+    }
+}
+
+record! {
+    /// Designs that failed for the same reason.
+    pub(crate) FailureFact::of(case: Option<String>, why: &str, first: usize, count: usize) {}
+    /// Name of the case; `null` if the model has no cases.
+    case: Option<String> = case;
+    /// Description of the first failure.
+    why: String = why.to_owned();
+    /// Number of the first failed design.
+    first: usize = first;
+    /// Number of failed designs.
+    count: usize = count;
+}
+
+impl FailureFact {
+    /// Table of the failed designs, if there are any.
+    pub(crate) fn table(failures: &[Self], note: &str) -> Option<Table> {
+        let columns: [Column<'_, &Self>; 4] = [
+            ("case", &|f| f.case.clone().unwrap_or_default()),
+            ("first failure", &|f| f.why.clone()),
+            ("designs", &|f| f.count.to_string()),
+            ("first", &|f| f.first.to_string()),
+        ];
+        Table::of("Failed designs", note, &columns, failures).if_any().map(Table::without_empty_columns)
+    }
+}
+
+/// Name of the case of a motion; `None` if the model has no cases.
+pub fn case_name(model: &Model, motion: usize) -> Option<String> {
+    model.cases.get(motion).map(|case| case.name.clone())
+}
+
+/// Name with its case, if it has one.
+pub(crate) fn titled(name: &str, case: &Option<String>) -> String {
+    case.as_ref().map_or(name.to_owned(), |case| format!("{name} ({case})"))
+}
+
+/// Bar of a table as text, with a length proportional to a fraction.
+pub(crate) fn bar(part: f64) -> String {
+    "▇".repeat((BAR * part.clamp(0.0, 1.0)).round() as usize)
+}
+
+/// Fraction as a percentage.
+pub(crate) fn percent(part: f64) -> String {
+    format!("{} %", rounded(100.0 * part, 4))
+}

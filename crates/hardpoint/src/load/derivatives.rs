@@ -1,0 +1,319 @@
+//! Derivatives of loads by the design, by the virtual motion of each load; over plain numbers, or during recording.
+//!
+//! Every load is `y = sum F . Y`, with Y the twists of the bodies when its joint opens, or its driver moves alone. So
+//! `y' = sum F' . Y + sum F . Y'` is linear in the design twists W, W., W.. and in the twists of the joint frames
+//! (`docs/theory.md` (48)). The coefficients of masses and frames are computed once per load; each variable then takes
+//! a few products per load, and one evaluation of the applied forces.
+//!
+//! | here | theory | meaning |
+//! |---|---|---|
+//! | [`Weights`] | C, w | derivatives of the load by joint wrenches, driver loads, and the wrench on ground |
+//! | [`VirtualMotion`] | Y, S_Y | virtual motion due to these weights |
+//! | `by_twists` | P | `sum F' . Y` of masses by W, W., W.. of each body |
+//! | `turning` | | `sum F . Y'` by the twists of the frames that unit twists and wrenches turn with |
+//! | `multipliers` | lambda | of the friction equations (46), which make friction independent of the design |
+
+use std::mem::take;
+
+use crate::design::Geometry;
+use crate::model::{DriverId, ElementId, MeasureKind, Model};
+use crate::motion::kinematics::State;
+use crate::number::{Dual, Real};
+use crate::sensitivity::{Differentiated, Turning};
+use crate::space::{Twist, Wrench};
+use crate::topology::Topology;
+
+use super::acting::{AppliedLoads, MovingBody};
+use super::equilibrium::{Equilibrium, LoadedPosition, TransmittedLoads};
+use super::friction::Friction;
+use super::inertia::{ChangedGeometry, InertialLoad, SpatialInertia};
+use super::measures::LoadMeasures;
+use super::virtual_motion::{TurningClosures, VirtualMotion, Weights};
+
+/// A function of the transmitted loads.
+#[derive(Clone, Copy)]
+enum LoadFunction<'a> {
+    /// A measure.
+    Measure(&'a MeasureKind),
+    /// The residual of a friction equation.
+    Friction(usize),
+}
+
+impl LoadFunction<'_> {
+    /// Derivative along the direction of these loads.
+    fn derivative<T: Real>(
+        self,
+        friction: &Friction,
+        applied: &AppliedLoads<'_, Dual<T>>,
+        transmitted: &TransmittedLoads<Dual<T>>,
+    ) -> T {
+        match self {
+            Self::Measure(kind) => LoadMeasures { applied, transmitted }.measure(kind).d,
+            Self::Friction(k) => friction.residual(k, applied, transmitted).d,
+        }
+    }
+}
+
+/// A load with its derivatives by required wrenches, by design twists, and by the twists of the joint frames.
+pub(super) struct LoadAdjoint<'a, T> {
+    function: LoadFunction<'a>,
+    weights: Weights<T>,
+    /// Per body: Y, less that of ground.
+    virtual_twists: Vec<Twist<T>>,
+    /// Per body: coefficients of W, W., W... Those of ground are not used.
+    pub by_twists: Vec<[Wrench<T>; 3]>,
+    pub turning: Turning<T>,
+    /// Multipliers of the friction equations that are part of all of the above.
+    multipliers: Vec<T>,
+}
+
+impl<'a, T: Real> LoadAdjoint<'a, T> {
+    fn new(function: LoadFunction<'a>, weights: Weights<T>, topology: &Topology, bodies: usize) -> Self {
+        Self {
+            function,
+            weights,
+            virtual_twists: vec![Twist::zero(); bodies],
+            by_twists: vec![[Wrench::zero(); 3]; bodies],
+            turning: Turning::new(topology),
+            multipliers: Vec::new(),
+        }
+    }
+
+    /// Adds `k` times a friction equation.
+    fn add_times(&mut self, equation: &Self, k: T) {
+        let twists = self.virtual_twists.iter_mut().zip(&equation.virtual_twists);
+        twists.for_each(|(to, y)| *to = y.times_plus(k, *to));
+        let wrenches = self.by_twists.as_flattened_mut().iter_mut();
+        wrenches.zip(equation.by_twists.as_flattened()).for_each(|(to, p)| *to = p.times_plus(k, *to));
+        self.turning.add_times(&equation.turning, k);
+        self.multipliers.push(k);
+    }
+}
+
+/// Derivatives of some loads at an equilibrium.
+pub(super) struct LoadDerivatives<'a, T> {
+    model: &'a Model,
+    /// Per variable.
+    pub changed: Vec<ChangedGeometry<T>>,
+    pub constant: Geometry<Dual<T>>,
+    /// The position with its derivative along the direction that was set last.
+    pub position: LoadedPosition<Dual<T>>,
+    /// Nominal motion of the bodies.
+    pub nominal: Vec<MovingBody<Dual<T>>>,
+    /// Required wrenches along the direction, and the bodies on which they may change.
+    required: Vec<Wrench<Dual<T>>>,
+    forced: Vec<usize>,
+    /// Derivatives of the friction equations along the direction, at constant reactions.
+    residuals: Vec<T>,
+    /// Transmitted loads at constant wrenches: only the speeds of drivers change.
+    pub transmitted: TransmittedLoads<Dual<T>>,
+    inertia: Vec<SpatialInertia<T>>,
+    inertial: Vec<InertialLoad<T>>,
+    closures: TurningClosures<T>,
+    virtual_motion: VirtualMotion<T>,
+    /// The loads, and the friction equations.
+    pub loads: Vec<LoadAdjoint<'a, T>>,
+    equations: Vec<LoadAdjoint<'a, T>>,
+    /// Derivatives of the loads by the last variable.
+    sums: Vec<T>,
+}
+
+impl<'a, T: Real> LoadDerivatives<'a, T> {
+    /// Derivatives of these measures by variables with these geometries; `constant` has no derivative.
+    pub fn new(
+        at: &Equilibrium<'a, T>,
+        topology: &Topology,
+        kinds: impl IntoIterator<Item = &'a MeasureKind>,
+        geometries: impl IntoIterator<Item = Geometry<Dual<T>>>,
+        constant: Geometry<Dual<T>>,
+    ) -> Self {
+        let model = at.model;
+        let bodies = model.bodies.len();
+        let adjoint = |function, weights| LoadAdjoint::new(function, weights, topology, bodies);
+        let load = |kind| adjoint(LoadFunction::Measure(kind), Weights::of_measure(kind));
+        let equation = |(k, joint)| adjoint(LoadFunction::Friction(k), Weights::of_joint(joint));
+        let loads: Vec<_> = kinds.into_iter().map(load).collect();
+        let equations: Vec<_> = at.friction.joints().enumerate().map(equation).collect();
+        let geometries = geometries.into_iter();
+        let changed: Vec<_> = geometries.map(|g| ChangedGeometry::new(model, g)).collect();
+        let inertia = vec![SpatialInertia::zero(); bodies];
+        Self {
+            model,
+            forced: forced_bodies(model, &changed),
+            changed,
+            constant,
+            position: LoadedPosition::new(model),
+            nominal: vec![MovingBody::at_rest(); bodies],
+            required: vec![Wrench::zero(); bodies],
+            residuals: vec![T::zero(); equations.len()],
+            transmitted: TransmittedLoads::new(model),
+            inertial: inertia.iter().map(|m| m.load(model, &MovingBody::at_rest())).collect(),
+            inertia,
+            closures: TurningClosures::new(topology),
+            virtual_motion: VirtualMotion::new(topology, bodies),
+            sums: vec![T::zero(); loads.len()],
+            loads,
+            equations,
+        }
+    }
+
+    /// Solves for the virtual motions of all loads at an equilibrium. `multipliers` solves for the multipliers of the
+    /// friction equations, given the derivatives of a load by the friction moments.
+    pub fn set_equilibrium(
+        &mut self,
+        at: &Equilibrium<'_, T>,
+        topology: &Topology,
+        state: &mut State<T>,
+        multipliers: impl Fn(&mut [T]),
+    ) {
+        SpatialInertia::all(&at.applied(), &mut self.inertia);
+        for (b, inertial) in self.inertial.iter_mut().enumerate() {
+            *inertial = self.inertia[b].load(self.model, &at.position.bodies[b]);
+        }
+        self.position.set_constant(&at.position);
+        self.nominal.copy_from_slice(&self.position.bodies);
+        self.transmitted.set_constant(&at.transmitted);
+        self.closures.set(topology, state, &at.transmission);
+        let (mut loads, mut equations) = (take(&mut self.loads), take(&mut self.equations));
+        for load in loads.iter_mut().chain(&mut equations) {
+            self.solve_virtual_motion(load, at, topology, state);
+        }
+        self.equations = equations;
+        if !at.friction.is_empty() {
+            self.add_friction(&mut loads, &at.friction, multipliers);
+        }
+        self.loads = loads;
+    }
+
+    /// Adds the friction equations to the loads, each times its multiplier: with them the moments need no derivative.
+    fn add_friction(
+        &mut self,
+        loads: &mut [LoadAdjoint<'a, T>],
+        friction: &Friction,
+        multipliers: impl Fn(&mut [T]),
+    ) {
+        let mut by_moments = vec![Vec::new(); loads.len()];
+        for e in friction.elements() {
+            self.position.friction[e.0].d = T::one();
+            self.require(friction, [e]);
+            for (load, y) in loads.iter().zip(&mut by_moments) {
+                y.push(self.partial(load, &self.constant, friction));
+            }
+            self.position.friction[e.0].d = T::zero();
+        }
+        for (load, mut y) in loads.iter_mut().zip(by_moments) {
+            multipliers(&mut y);
+            self.equations.iter().zip(y).for_each(|(equation, k)| load.add_times(equation, k));
+        }
+    }
+
+    /// Solves for the virtual motion of a load, and sets its coefficients of masses and frames.
+    fn solve_virtual_motion(
+        &mut self,
+        load: &mut LoadAdjoint<'_, T>,
+        at: &Equilibrium<'_, T>,
+        topology: &Topology,
+        state: &mut State<T>,
+    ) {
+        let Self { model, constant, position, transmitted, virtual_motion, .. } = self;
+        let LoadAdjoint { function, weights, virtual_twists, by_twists, turning, multipliers } = load;
+        multipliers.clear();
+        let applied = position.loads(model, constant);
+        weights.set(transmitted, |transmitted| function.derivative(&at.friction, &applied, transmitted));
+        virtual_motion.solve(&at.sites, topology, state, weights);
+        // The wrench on ground is -sum F.
+        let ground = weights.of_ground();
+        virtual_twists.iter_mut().zip(virtual_motion.twists()).for_each(|(to, y)| *to = *y - ground);
+        for (b, to) in by_twists.iter_mut().enumerate() {
+            *to = self.inertia[b].weights(model, &self.inertial[b], virtual_twists[b]);
+        }
+        let of = (&at.sites, &at.transmission);
+        virtual_motion.turn(of, (topology, state, &self.closures), weights, turning, |body, load| {
+            by_twists[body.0][0] += load;
+        });
+    }
+
+    /// Computes the required wrenches of these elements, and the friction equations, along the direction that was set,
+    /// with the constant geometry.
+    pub fn require(&mut self, friction: &Friction, elements: impl IntoIterator<Item = ElementId>) {
+        let Self { model, constant, position, required, residuals, transmitted, .. } = self;
+        let applied = position.loads(model, constant);
+        required.fill(Wrench::zero());
+        elements.into_iter().for_each(|e| applied.add(e, required));
+        set_residuals(residuals, friction, &applied, transmitted);
+    }
+
+    /// Computes the same along the direction that was set for a variable: the required wrenches of all forces, and of
+    /// the masses that depend on it. The other masses are part of the coefficients.
+    pub fn require_of(&mut self, friction: &Friction, variable: usize) {
+        let Self { model, changed, position, nominal, required, residuals, transmitted, .. } = self;
+        let ChangedGeometry { geometry, masses } = &changed[variable];
+        required.fill(Wrench::zero());
+        let applied = position.loads(model, geometry);
+        let forces = (0..model.elements.len()).filter(|e| !model.elements[*e].kind.has_mass());
+        forces.for_each(|e| applied.add(ElementId(e), required));
+        // The coefficients have the derivative of the motion.
+        let at_rest = AppliedLoads { bodies: nominal, ..applied };
+        masses.iter().for_each(|e| at_rest.add(*e, required));
+        set_residuals(residuals, friction, &applied, transmitted);
+    }
+
+    /// Derivative of a load along the direction that was set, apart from the coefficients: explicit, and through the
+    /// required wrenches and friction equations that were computed last.
+    pub fn partial(&self, load: &LoadAdjoint<'_, T>, geometry: &Geometry<Dual<T>>, friction: &Friction) -> T {
+        let applied = self.position.loads(self.model, geometry);
+        let mut sum = load.function.derivative(friction, &applied, &self.transmitted);
+        for &b in &self.forced {
+            sum += self.required[b].derivative().on(load.virtual_twists[b]);
+        }
+        load.multipliers.iter().zip(&self.residuals).fold(sum, |sum, (k, e)| e.times_plus(*k, sum))
+    }
+
+    /// Computes the derivatives of all loads by a variable whose sensitivities have been solved; calls `each` with the
+    /// number of the load and its derivative.
+    pub fn differentiate(
+        &mut self,
+        at: &Equilibrium<'_, T>,
+        by: &Differentiated<'_, T>,
+        mut each: impl FnMut(usize, T),
+    ) {
+        let Differentiated { variable, topology, state, field, flow } = by;
+        for (b, body) in at.position.bodies.iter().enumerate().skip(1) {
+            self.position.bodies[b] = body.along(flow.twists.each_ref().map(|w| w[b]));
+        }
+        for (d, speed) in self.transmitted.speeds.iter_mut().enumerate() {
+            speed.d = field.law_rate(DriverId(d), 1);
+        }
+        self.require_of(&at.friction, variable.0);
+        // y' = sum (P2 . W.. + P1 . W. + P0 . W) + turning of frames + sum F' . Y of force elements + dy/db     (48)
+        self.sums.fill(T::zero());
+        let loads = self.loads.iter().map(|load| (&load.by_twists[..], &load.turning));
+        field.add_work((topology, state), flow, loads, &mut self.sums);
+        for (n, load) in self.loads.iter().enumerate() {
+            let geometry = &self.changed[variable.0].geometry;
+            each(n, self.sums[n] + self.partial(load, geometry, &at.friction));
+        }
+    }
+}
+
+/// Derivatives of the friction equations along the direction of these loads.
+fn set_residuals<T: Real>(
+    to: &mut [T],
+    friction: &Friction,
+    applied: &AppliedLoads<'_, Dual<T>>,
+    transmitted: &TransmittedLoads<Dual<T>>,
+) {
+    to.iter_mut().enumerate().for_each(|(k, to)| *to = friction.residual(k, applied, transmitted).d);
+}
+
+/// Bodies with forces, or with masses that a variable changes.
+fn forced_bodies<T>(model: &Model, changed: &[ChangedGeometry<T>]) -> Vec<usize> {
+    let forces = model.elements.iter().filter_map(|e| e.kind.force(model));
+    let masses = changed.iter().flat_map(|c| &c.masses);
+    let masses = masses.filter_map(|e| model.elements[e.0].kind.mass_on(model));
+    let all = forces.flat_map(|force| force.acts_on.bodies(model)).chain(masses);
+    let mut bodies: Vec<usize> = all.map(|b| b.0).collect();
+    bodies.sort_unstable();
+    bodies.dedup();
+    bodies
+}

@@ -1,0 +1,250 @@
+//! The motion of one design, from one output time to the next.
+//!
+//! An output time is a step of its own where the motion is smooth between output times ([`StepGuard`]); elsewhere the
+//! solver walks along the path in steps of its own length, independent of the spacing of the output times.
+//!
+//! [`StepGuard`]: super::guard::StepGuard
+
+use crate::space::Real;
+
+use super::Stop;
+use super::assembly::assemble;
+use super::change_point::stand_within_crossing;
+use super::guard::Steps;
+use super::mechanism::Mechanism;
+use super::path::Path;
+use super::path_step::{MOST_BEND, trust};
+use super::step::{RoughStep, Step, take};
+use super::stepper::Stepper;
+use super::walk::walk;
+
+/// Solves the design configuration, then moves on to the first output time.
+///
+/// A changed design starts from the nominal design configuration and closes there first.
+pub(crate) fn start(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
+    (one.crossing, one.at_change_point) = (None, false);
+    assemble(one)?;
+    if let Some(turns) = &mut one.turns {
+        turns.begin(&one.mechanism.state);
+    }
+    // From there, where all drivers are zero, to their values at the first output time.
+    let Mechanism { line, parts, .. } = &mut one.mechanism;
+    for (d, line) in line.iter_mut().enumerate() {
+        *line = [0.0, parts.law(d, t)[0]];
+    }
+    // Where all drivers begin at 0 the design configuration is the first position.
+    if line.iter().any(|[_, to]| to.abs() != 0.0) {
+        // q(f = 0), which is drawn, to q(f(t_0)): all drivers straight there together
+        let ramp = Path::Line { at: t };
+        one.start_on(ramp, 0.0, false)?;
+        walk(one, ramp, 1.0)?;
+    }
+    one.start_on_laws(t, false)?;
+    count(one);
+    Ok(())
+}
+
+/// Moves on to the output time t.
+pub(crate) fn advance(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
+    one.at_change_point = false;
+    match stand_within_crossing(one, t) {
+        Some(stood) => stood?,
+        None if OutputStep::to(one, t).is_some_and(|step| take(step).is_ok()) => {}
+        None => walk(one, Path::Laws, t)?,
+    }
+    count(one);
+    Ok(())
+}
+
+/// Counts an output step.
+fn count(Stepper { mechanism, effort, .. }: &mut Stepper<'_>) {
+    effort.steps += 1;
+    effort.iterations = mechanism.state.iterations;
+    effort.worst_residual = effort.worst_residual.max(mechanism.residuals.largest);
+    effort.note_pivots(mechanism.state.pivots.iter().map(|p| p.0), mechanism.saved.time);
+}
+
+/// The step to the next output time, t.
+struct OutputStep<'s, 'm> {
+    one: &'s mut Stepper<'m>,
+    t: f64,
+    h: f64,
+    /// True if the next step, too, may be one of these.
+    is_even: bool,
+}
+
+impl<'s, 'm> OutputStep<'s, 'm> {
+    /// The step to t, if the path ahead is known.
+    #[inline(always)]
+    fn to(one: &'s mut Stepper<'m>, t: f64) -> Option<Self> {
+        let h = t - one.mechanism.saved.time;
+        one.knows_the_path().then_some(Self { one, t, h, is_even: false })
+    }
+}
+
+impl Step for OutputStep<'_, '_> {
+    type Rejection = RoughStep;
+
+    #[inline(always)]
+    fn drive(&mut self) -> Result<(), RoughStep> {
+        self.one.mechanism.drive(Path::Laws, self.t).map_err(|_| RoughStep)?;
+        RoughStep::unless(laws_are_resolved(self.one, self.t))
+    }
+
+    #[inline(always)]
+    fn predict(&mut self) -> f64 {
+        let Stepper { mechanism, predictor, .. } = &mut *self.one;
+        mechanism.state.contacts.copy_from_slice(&mechanism.saved.contacts);
+        predictor.set(&mut mechanism.state, mechanism.saved.time + self.h, self.h);
+        mechanism.expect_turns(self.h);
+        trust(expected_move(mechanism, self.h))
+    }
+
+    #[inline(always)]
+    fn correct(&mut self, trust: f64) -> Result<(), RoughStep> {
+        self.one.mechanism.solve_within(trust).map_err(|_| RoughStep)
+    }
+
+    #[inline(always)]
+    fn check(&mut self) -> Result<(), RoughStep> {
+        let Self { h, .. } = *self;
+        let Stepper { mechanism, guard, turns, .. } = &mut *self.one;
+        let [difference, fastest] = speeds(mechanism, h);
+        RoughStep::unless(guard.speeds_are_smooth(difference, fastest) && contacts_are_near(mechanism))?;
+        let selections = mechanism.selections;
+        mechanism.examine_position().map_err(|_| RoughStep)?;
+        let steps = Steps { from: mechanism.saved.time, ends: &[self.t] };
+        let state = &mechanism.state;
+        let is_even = guard.determinants_are_even(&state.factors, steps, |b, _| [state.determinants[b]]);
+        // Determinants of different rows cannot be compared.
+        self.is_even = is_even && mechanism.selections == selections;
+        RoughStep::unless(self.is_even || !guard.knows_a_step())?;
+        RoughStep::unless(turns.as_mut().is_none_or(|turns| turns.is_even(state, h, guard.moved())))
+    }
+
+    #[inline(always)]
+    fn accept(&mut self) {
+        if let Some(turns) = &mut self.one.turns {
+            turns.accept();
+        }
+        self.one.save(self.t);
+        if self.is_even {
+            self.one.guard.accept();
+        }
+    }
+}
+
+/// True if the output times resolve the laws up to t, where the drivers are already, and no singular position is known
+/// to be near.
+#[inline(always)]
+pub(super) fn laws_are_resolved(one: &mut Stepper<'_>, t: f64) -> bool {
+    let Stepper { mechanism, guard, lookahead, .. } = one;
+    let steps = Steps { from: mechanism.saved.time, ends: &[t] };
+    let drivers = &mechanism.drivers;
+    guard.laws_are_resolved((mechanism, lookahead), steps, |d| &drivers[d][..1], |d| drivers[d][1].abs())
+}
+
+/// Largest move (rad, or sizes) over a step h, by speed and acceleration.
+#[inline(always)]
+fn expected_move(mechanism: &Mechanism<'_>, h: f64) -> f64 {
+    let Mechanism { topology, saved, .. } = mechanism;
+    let half = 0.5 * h;
+    let mut most = 0.0;
+    for c in topology.unknown_coordinates() {
+        // q. h + q.. h^2 / 2
+        let step = (saved.qd[c.0] + saved.qdd[c.0] * half) * h;
+        most = most.larger((step * topology[c].per_unit).abs());
+    }
+    most
+}
+
+/// Largest difference between the speeds after a step h and their prediction, and the largest of both (rad, or sizes,
+/// per s).
+#[inline(always)]
+fn speeds(mechanism: &Mechanism<'_>, h: f64) -> [f64; 2] {
+    let Mechanism { topology, state, saved, .. } = mechanism;
+    let (mut fastest, mut difference) = (0.0_f64, 0.0_f64);
+    for c in topology.unknown_coordinates() {
+        let (now, per_unit) = (state.motion.speeds[0][c.0], topology[c].per_unit);
+        // abs(q. - (q._0 + q.._0 h)) against the larger of the two speeds
+        let predicted = saved.qd[c.0] + saved.qdd[c.0] * h;
+        fastest = fastest.larger(now.abs().larger(saved.qd[c.0].abs()) * per_unit);
+        difference = difference.larger((now - predicted).abs() * per_unit);
+    }
+    [difference, fastest]
+}
+
+/// Returns true if all curves are nearly straight from the former contact to the present one.
+fn contacts_are_near(Mechanism { state, saved, parts, .. }: &Mechanism<'_>) -> bool {
+    let contacts = state.contacts.iter().zip(&saved.contacts);
+    contacts.zip(&parts.curves).all(|((now, before), curve)| curve.bend(before.u, now.u) <= MOST_BEND)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Law;
+    use crate::motion::kinematics::{State, factors_of};
+    use crate::motion::parts::PlanGeometry;
+    use crate::space::Vec3;
+    use crate::topology::{Formulation, Topology};
+    use crate::{draft::*, model::*};
+
+    /// Nodes on two slides each, connected by rods to the two nodes before; a leg drives the last.
+    fn truss(n: usize) -> Model {
+        let place = |k: usize| [0.5 * k as f64, 0.8 * (k % 2) as f64, 0.0];
+        let node = |k: usize| if k == 0 { "ground".to_owned() } else { format!("node{k}") };
+        let [x, y, _] = Vec3::AXES;
+        let mut draft = Draft::new("truss").times([0.0, 0.1, 0.2]);
+        for k in 1..n {
+            let slider = format!("slider{k}");
+            draft = draft
+                .bodies([slider.as_str(), &node(k)])
+                .translational(format!("x{k}"), ["ground", &slider], place(k), x)
+                .translational(format!("y{k}"), [&slider, &node(k)], place(k), y);
+            for other in k.saturating_sub(2)..k {
+                let ends = [node(other), node(k)];
+                draft = draft.distance(format!("rod{other}_{k}"), ends, [place(other), place(k)]);
+            }
+        }
+        let leg = JointDraft::new("push", "leg", ["ground", &node(n - 1)]);
+        let draft = draft.joint(leg.at([0.5 * n as f64, -1.0, 0.3]).at(place(n - 1))).driver(
+            "motor",
+            "push",
+            Law::parse("0.1*sin(2*pi*t)").unwrap(),
+        );
+        Model::from_draft(&draft).unwrap()
+    }
+
+    /// The states of all bodies at the last output time, with blocks up to this size factored densely.
+    fn last(model: &Model, topology: &Topology, largest_dense: usize) -> (State<f64>, Vec<bool>) {
+        let (design, laws) = (model.geometry(&[]), model.laws(&[]));
+        let mut one = Stepper::new(model, topology, PlanGeometry::same(model, topology, &design, &laws));
+        let blocks = topology.blocks.iter();
+        one.mechanism.state.factors = blocks.map(|b| factors_of(topology, b, largest_dense)).collect();
+        start(&mut one, model.times[0]).unwrap();
+        model.times[1..].iter().for_each(|t| advance(&mut one, *t).unwrap());
+        let signs = one.mechanism.state.pivots.iter().map(|p| p.1).collect();
+        (one.mechanism.state, signs)
+    }
+
+    #[test]
+    fn sparse_and_dense_factors_give_the_same_motion() {
+        for n in [5, 30] {
+            let model = truss(n);
+            let topology = Topology::of(&model, Formulation::Relative).unwrap();
+            let size = model.size();
+            let (dense, dense_signs) = last(&model, &topology, usize::MAX);
+            let (sparse, sparse_signs) = last(&model, &topology, 0);
+            assert_eq!(dense_signs, sparse_signs);
+            let apart = |a: Vec3, b: Vec3| (a - b).norm();
+            for b in 0..model.bodies.len() {
+                assert!(apart(dense.pose[b].r, sparse.pose[b].r) < 1e-12 * size, "body {b} of {n}");
+                assert!(
+                    apart(dense.motion.twists[0][b].v, sparse.motion.twists[0][b].v) < 1e-11 * size,
+                    "body {b} of {n}"
+                );
+            }
+        }
+    }
+}
