@@ -30,7 +30,7 @@ export interface Content {
   logarithmic?: boolean
   /** Abscissa of the curves instead of time. */
   over?: { label: string; unit: string; curve: Curve }
-  /** True if the motion runs back and forth along one line, which is drawn once: dashes would fill each other's gaps. */
+  /** True if the motion goes back and forth along one line, drawn once: dashes would fill each other's gaps. */
   once?: boolean
   /** True if a length is as long along both axes. */
   equal?: boolean

@@ -44,7 +44,7 @@ export function svg<K extends keyof SVGElementTagNameMap>(
 const properties = new Map<string, string>()
 let scheme = ''
 
-/** A custom property of the style sheet, for drawing on a canvas; read once per colour scheme, since it costs a layout. */
+/** A custom property of the style sheet, for drawing on a canvas; read once per colour scheme: it costs a layout. */
 export function css(name: string): string {
   const root = document.documentElement
   const now = `${matchMedia(DARK).matches} ${root.classList.contains('printing')}`

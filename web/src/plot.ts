@@ -18,7 +18,7 @@ const AXIS = 66
 const ABSCISSA = 48
 /** With more powers of ten than this along an axis, every other one has a number. */
 const MOST_POWERS = 6
-/** An ordinate has a number on about so many pixels. */
+/** Distance of the numbers along an ordinate, px. */
 const TICK = 34
 
 /** A magnifying glass with a plus; arrows to the corners. */

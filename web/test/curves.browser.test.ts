@@ -54,7 +54,7 @@ describe('after a change', () => {
       String(before),
     )
     const isCurrent = async () => (await fact()).includes(String(await card()))
-    // At every moment the number is the present one, or stands under a heading.
+    // At every moment the number is the present one, or is under a heading.
     expect((await heading.isVisible()) || (await isCurrent())).toBe(true)
     await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
     expect(await card()).not.toBe(before)

@@ -106,7 +106,7 @@ describe('the sheet of a linkage', () => {
     expect(names(reportOf(measures, [turn]))[0]).toEqual(['transmission_angle', 'crank_angle'])
   })
 
-  test('is what the run asked for', () => {
+  test('is what the run requested', () => {
     const measures: Measure[] = [
       ['crank_angle', turn],
       ['lever', wave(2)],

@@ -201,7 +201,8 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const name = orderedName(quantity, order)
   const all = effects(report, subject.quantity, order)
   const own = all.find(({ variable }) => variable === selected)
-  const title = own ? derivativeName(quantity, order, selected) : `d ${name}`
+  const of = state.outdated ? ` (${state.outdated.toLowerCase()})` : ''
+  const title = (own ? derivativeName(quantity, order, selected) : `d ${name}`) + of
   const content: Content = { title, unit: derivativeUnit(quantity, order, selected), lines: [] }
   if (quantity.curves[order].length === 0) return { ...content, unit: '', message: unknown(name) }
   if (!own)
