@@ -1,7 +1,7 @@
 //! Guard of the steps from one output time to the next: laws, determinants and speeds that vary little.
 //!
-//! Where output times are close, they are steps themselves, and nothing but their results shows that none of them
-//! passes a singular position or a pulse of a law. A step is trusted if
+//! Close output times are steps themselves, and nothing but their results shows that none of them passes a singular
+//! position or a pulse of a law. A step is trusted if
 //!
 //! - the laws move no driver much farther between two output times than from one to the next;
 //! - every determinant changes little, and like in the step before (`docs/theory.md` (28));

@@ -36,7 +36,7 @@ const POLE: [f64; 2] = [1e-9, 1e3];
 /// Follows a path to where its parameter is `target`.
 pub(super) fn walk(one: &mut Stepper<'_>, path: Path, target: f64) -> Result<(), Box<Stop>> {
     while one.mechanism.saved.time < target {
-        let Err(stop) = Walk::new(one, path, target).to_target() else { break };
+        let Err(stop) = Walk::new(one, path, target).follow() else { break };
         cross(one, path, stop)?;
     }
     // Returns to an output time that was passed while crossing a change point.
@@ -67,7 +67,7 @@ impl<'s, 'm> Walk<'s, 'm> {
     }
 
     /// Follows the path.
-    fn to_target(mut self) -> Result<(), Box<Stop>> {
+    fn follow(mut self) -> Result<(), Box<Stop>> {
         self.look_around()?;
         while self.rest() > 0.0 {
             let h = self.longest_step();
