@@ -63,6 +63,11 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   const hasVariables = report.variables.length > 0
   const search = hasQuantities ? find(state) : undefined
   const keys = help()
+  const openKeys = () => {
+    keys.showModal()
+    // The focus goes to the button at the end.
+    keys.scrollTo(0, 0)
+  }
   const scene = stage(state, tools.memory?.pose)
   const curves = hasQuantities ? new Curves(state, tools.figure, tools.memory?.figures) : undefined
   const all = tableTabs(state)
@@ -85,7 +90,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   const head = bar(state, {
     find: search?.element,
     exports: () => [...(tools.exports?.() ?? []), ...exports(state, curves?.figures ?? [], scene.view)],
-    help: () => keys.showModal(),
+    help: openKeys,
   })
   if (tools.bar) slot(head, tools.bar)
   const steps = report.model ? firstSteps(state, () => tools.grips?.()) : undefined
@@ -97,14 +102,14 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
     el('div', { class: 'scene' }, scene.element, transport(state)),
     ...(curves ? [curves.element] : []),
     tables.element,
-    navigation(sections, () => keys.showModal()),
+    navigation(sections, openKeys),
     keys,
   )
   listenToKeys(state, {
     fit: scene.view && (() => scene.view?.fit()),
     look: scene.look,
     find: search?.focus,
-    help: () => keys.showModal(),
+    help: openKeys,
     grips: () => tools.grips?.(),
   })
   return {
