@@ -69,6 +69,7 @@ describe('a model of 81 bodies and 240 variables', () => {
   })
 
   test('scrolls its table with few rows at a time, one layout a frame', async () => {
+    await page.getByTestId('tab-table').click()
     const first = await page.locator('.ranking tr .plain').first().innerText()
     expect(await layouts(() => scroll('.ranking .scroll', 60))).toBeLessThanOrEqual(LAYOUTS)
     await drawn(page)
@@ -102,6 +103,7 @@ describe('a model of 81 bodies and 240 variables', () => {
   })
 
   test('lets variables be chosen, a few layouts each', async () => {
+    await page.getByTestId('tab-variables').click()
     const choose = () =>
       page.getByTestId('variables').evaluate(async (list, frames) => {
         const names = [...list.querySelectorAll<HTMLElement>('.name')]

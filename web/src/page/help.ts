@@ -66,8 +66,7 @@ export function help(): HTMLDialogElement {
     { class: 'help', 'data-testid': 'keys', 'aria-label': 'Keys and lines' },
     el(
       'p',
-      // The first element that can have the focus is at the end, where the dialog would open.
-      { class: 'lead', tabindex: -1, autofocus: true },
+      { class: 'lead' },
       'This page shows a mechanism, its motion, and how every result depends on the design. Change a variable or drag ' +
         'a point: everything is solved again. The page needs no connection.',
     ),

@@ -68,6 +68,11 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   const hasVariables = report.variables.length > 0
   const search = hasQuantities ? find(state) : undefined
   const keys = help()
+  const openKeys = () => {
+    keys.showModal()
+    // The focus goes to the button at the end.
+    keys.scrollTo(0, 0)
+  }
   const scene = stage(state, tools.memory?.pose)
   const curves = hasQuantities ? new Curves(state, tools.figure, tools.memory?.figures) : undefined
   const all = tableTabs(state, tools.limits)
@@ -90,7 +95,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   const head = bar(state, {
     find: search?.element,
     exports: () => [...(tools.exports?.() ?? []), ...exports(state, curves?.figures ?? [], scene.view)],
-    help: () => keys.showModal(),
+    help: openKeys,
   })
   if (tools.bar) slot(head, tools.bar)
   const steps = report.model ? firstSteps(state, () => tools.grips?.()) : undefined
@@ -102,7 +107,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
     el('div', { class: 'scene' }, scene.element, ...scene.docked, transport(state)),
     ...(curves ? [curves.element] : []),
     tables.element,
-    navigation(sections, () => keys.showModal()),
+    navigation(sections, openKeys),
     keys,
   )
   listenToKeys(state, {
@@ -110,7 +115,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
     look: scene.look,
     measure: scene.measure,
     find: search?.focus,
-    help: () => keys.showModal(),
+    help: openKeys,
     grips: () => tools.grips?.(),
     leave: () => tools.leave?.() ?? false,
   })
