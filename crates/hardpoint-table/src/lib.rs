@@ -1,7 +1,7 @@
 //! Results as tables of numbers: the user's units, names of columns, CSV files, NumPy arrays, and the compact curves of
 //! the report page.
 //!
-//! The loops of this crate touch every number of a run; what is written about a run as a whole is in `hardpoint-report`.
+//! The loops of this crate touch every number of a run. Facts of a run as a whole are in `hardpoint-report`.
 //!
 //! | module | contents |
 //! |---|---|

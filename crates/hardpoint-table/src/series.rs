@@ -58,8 +58,8 @@ pub fn of_origin(
     curves
 }
 
-/// Translation and rotation vector of a body per unit of a variable, six numbers per step; zeros if the mechanism cannot
-/// follow the variable.
+/// Translation and rotation vector of a body per unit of a variable, six numbers per step; zeros if the mechanism
+/// cannot follow the variable.
 pub fn of_shift(
     solution: &Solution,
     steps: &[usize],

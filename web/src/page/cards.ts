@@ -27,8 +27,8 @@ interface Card {
 }
 
 /**
- * Metrics of the design, then its measures with their range over the motion and their slope over wheel travel, each with
- * the change to the reference design and the target; a click selects the quantity.
+ * Metrics of the design, then its measures with their range over the motion and their slope over wheel travel, each
+ * with the change to the reference design and the target; a click selects the quantity.
  */
 export function cards(state: State): HTMLElement {
   const { values } = state.report

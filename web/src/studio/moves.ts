@@ -22,7 +22,7 @@ export function directionsOffered(plane: Vector3 | undefined): DragDirection[] {
   return ['free', ...(within.length === 2 ? within : AXES)]
 }
 
-/** The plane of two axes that faces the reader; `turn` rotates directions of the design configuration into the world. */
+/** The plane of two axes that faces the reader; `turn` rotates directions of the design into the world. */
 export function facingPlane(turn: Quaternion, facing: Vector3): 'xy' | 'yz' | 'zx' {
   const seen = AXES.map((_, k) => Math.abs(new Vector3().setComponent(k, 1).applyQuaternion(turn).dot(facing)))
   return (['yz', 'zx', 'xy'] as const)[seen.indexOf(Math.max(...seen))]
@@ -94,7 +94,7 @@ export interface Placing {
   bound?: string
 }
 
-/** Positions of hardpoints in the design configuration, as functions of the variables and coordinates that move them. */
+/** Positions of hardpoints in the design configuration, as functions of what moves them. */
 export class Positions {
   /** By hardpoint: the variables that move it, other than its own coordinates. */
   readonly #shared = new Map<string, SharedVariable[]>()

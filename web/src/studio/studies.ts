@@ -601,7 +601,7 @@ function table(header: string[], rows: HTMLElement[]): HTMLElement {
   )
 }
 
-/** A field for a number with a unit; its value is a sentence where it cannot be read, and undefined where it is empty. */
+/** A field for a number with a unit; its value is a sentence if it cannot be read, and undefined if it is empty. */
 function field(label: string, value: number | undefined, unit: string) {
   const text = value === undefined ? undefined : entry(value)
   const input = el('input', { type: 'text', class: 'number-field', 'aria-label': label, value: text })
