@@ -4,7 +4,7 @@ import type * as wire from './payload'
 /** From a curve of the payload to its values. */
 export type Decode = (curve: wire.Curve) => Curve
 
-/** Contents of the report's file, as `encoding.rs` of `hardpoint-report` and `tracks.rs` of `hardpoint-table` pack them. */
+/** Contents of the report's file: packed by `encoding.rs` of `hardpoint-report`, tracks by `hardpoint-table`. */
 export async function unpack(base64: string): Promise<{ payload: wire.Payload; decode: Decode }> {
   const block = await inflated(base64)
   const [json, tracks, gaps, residuals] = new Uint32Array(block.buffer, 0, COUNTS)
