@@ -97,6 +97,7 @@ describe('the sheet', () => {
     await open('front_axle')
     const labels = () => plot(0).locator('.legend .label').allInnerTexts()
     expect(await labels()).toEqual(['left.toe', 'right.toe'])
+    await plot(0).getByTestId('also').focus()
     await plot(0).getByTestId('also').selectOption({ label: 'left.camber' })
     expect(await labels()).toEqual(['left.toe', 'right.toe', 'left.camber'])
     const before = await curve(page, 'plot-0')

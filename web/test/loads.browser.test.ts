@@ -58,6 +58,7 @@ describe('forces of the press', () => {
   test('are seen from their body as loads.csv has them, and from the other one the other way', async () => {
     await page.getByTestId('load-which').selectOption({ label: 'B' })
     await page.getByTestId('play').focus()
+    await page.keyboard.press('Home')
     for (let k = 0; k < 25; k++) await page.keyboard.press('ArrowRight')
     const own = table().filter(({ joint }) => joint === 'B')[25]
     const [x, y] = ['x', 'y'].map((axis) => Number(own[`force in body.${axis} [N]`]))

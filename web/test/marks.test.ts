@@ -349,7 +349,7 @@ describe('a measured distance that is pointed at', () => {
     name,
     group: '',
     units: ['mm', 'mm/s', 'mm/s^2'],
-    curves: [],
+    curves: [[], [], []],
     wanted: [],
   }))
   const report = crank({ drivers: [], distances: distances as never, quantities: quantities as never })

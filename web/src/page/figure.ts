@@ -108,6 +108,9 @@ export class Figure {
       ...ORDERS.map((name, k) => el('option', { value: k }, name)),
     )
     const also = select('also', 'Add a curve', () => this.#add(also.value))
+    // Of a large model these are hundreds of elements for each plot: they are made when the list is about to open.
+    const offer = () => also.childElementCount > 1 || also.replaceChildren(...this.#offeredCurves())
+    for (const event of ['pointerenter', 'focus']) also.addEventListener(event, offer)
     const able = report.variables.some(({ sensitivities }) => sensitivities.size > 0)
     const shown = el(
       'button',
@@ -143,7 +146,7 @@ export class Figure {
       over.value = subject.over === undefined ? '' : String(subject.over)
       order.value = String(subject.order)
       const key = `${subject.quantity} ${this.#also}`
-      if (listed !== key) also.replaceChildren(...this.#offeredCurves())
+      if (listed !== key) also.replaceChildren(el('option', { value: '' }, '+ curve'))
       listed = key
       also.hidden = this.#delta.hidden = !values
       // The field beside it names the quantity already.

@@ -284,19 +284,20 @@ function limitControls(variable: Variable, [low, high]: [number, number], { setB
     return a < b ? setBounds(name, [a, b]) : `The lower bound of \`${name}\` is not below its upper bound.`
   }
   const label = (text: string, input: HTMLElement) => el('label', {}, el('span', { class: 'muted' }, text), input)
-  const fields = el(
-    'div',
-    { class: 'limit-fields', hidden: true },
-    label('lowest', field('lower bound', 'bound-low', ends[0], end(0))),
-    label('highest', field('upper bound', 'bound-high', ends[1], end(1))),
-    label(
-      'tolerance ±',
-      field('tolerance', 'tolerance-of', tolerance ?? undefined, (x) =>
-        x > 0 ? (setTolerance(name, x), undefined) : 'A tolerance is above zero.',
+  const fields = el('div', { class: 'limit-fields', hidden: true })
+  /** Makes the fields when they are first shown. */
+  const fill = () =>
+    fields.append(
+      label('lowest', field('lower bound', 'bound-low', ends[0], end(0))),
+      label('highest', field('upper bound', 'bound-high', ends[1], end(1))),
+      label(
+        'tolerance ±',
+        field('tolerance', 'tolerance-of', tolerance ?? undefined, (x) =>
+          x > 0 ? (setTolerance(name, x), undefined) : 'A tolerance is above zero.',
+        ),
       ),
-    ),
-    el('span', { class: 'unit' }, pretty(unit)),
-  )
+      el('span', { class: 'unit' }, pretty(unit)),
+    )
   const button = el(
     'button',
     {
@@ -307,6 +308,7 @@ function limitControls(variable: Variable, [low, high]: [number, number], { setB
       'aria-label': `bounds and tolerance of ${name}`,
       'data-testid': 'limits',
       onclick: () => {
+        if (fields.childElementCount === 0) fill()
         fields.hidden = !fields.hidden
         button.setAttribute('aria-expanded', String(!fields.hidden))
       },
