@@ -11,10 +11,7 @@ const FRAMES = 30
 const MOST_ROWS = 16 + 2 * 6 + 1
 /** Elements of the map, which is always drawn on one canvas. */
 const MAP = 40
-/**
- * Elements of the page for every variable, most of them the parts of its row: the button for its bounds and the place of
- * their fields came to 50 others.
- */
+/** Elements of the page for every variable: 50 others, the button for its bounds, and the place of their fields. */
 const EACH = 52
 /** A frame that something moves in lays out the page once; a few more may come from elsewhere. */
 const LAYOUTS = FRAMES + 6
