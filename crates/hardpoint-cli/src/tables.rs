@@ -8,8 +8,7 @@ use hardpoint::sensitivity::Admissibility;
 use hardpoint_file::{ModelFile, Units};
 use hardpoint_report::cells::Cells;
 use hardpoint_report::columns::{Column, Columns};
-use hardpoint_report::figures::bytes;
-use hardpoint_report::figures::variable_unit;
+use hardpoint_report::figures::{bytes, variable_unit};
 use hardpoint_report::npy::{Npy, Sidecar, add_motion, add_sensitivities};
 use hardpoint_report::results::{MotionCsv, SensitivityCsv, without_variables};
 

@@ -8,6 +8,7 @@ use hardpoint::model::{Dimension, Model};
 use hardpoint::run::metrics;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::Magnitude;
+use hardpoint_table::series::settled;
 use serde::Serialize;
 
 use crate::GENERATOR;
@@ -16,7 +17,6 @@ use crate::course::RoundOff;
 use crate::figures::{number, rounded, unit, with_unit};
 use crate::page::{Payload, Table};
 use crate::record::{Column, write_curves};
-use hardpoint_table::series::settled;
 
 /// Hardpoints with a smaller distance than this, m, coincide: numbers in different units agree only to round-off.
 const SAME_PLACE: f64 = 1e-12;

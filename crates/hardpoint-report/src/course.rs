@@ -3,9 +3,9 @@
 use hardpoint::model::{Dimension, Model, OutputSource, VariableId};
 use hardpoint::motion::{Margin, Motion};
 use hardpoint::sensitivity::Admissibility;
-use hardpoint::space::Vec3;
 use hardpoint::{Footprint, SampledResults, Sampling, Solution};
 use hardpoint_study::Magnitude;
+use hardpoint_table::series;
 
 use crate::shifts::Shifts;
 
@@ -174,25 +174,16 @@ impl Course {
         Some(self.shifts.as_ref()?.stride(self.steps)? / self.stride)
     }
 
-    /// First-order translation and rotation of body i by variable b at a stored output time, SI; `None` if the
-    /// mechanism cannot follow the variable.
+    /// First-order translation and rotation of body i by variable b, which the mechanism can follow, at stored output
+    /// times, SI.
     ///
     /// # Panics
-    /// If it was not stored at that time ([`shift_stride`](Self::shift_stride)).
-    pub(crate) fn shift(&self, k: usize, b: usize, i: usize) -> Option<[f64; 6]> {
+    /// If they were not stored at these times ([`shift_stride`](Self::shift_stride)).
+    pub(crate) fn shifts(&self, steps: &[usize], b: usize, i: usize) -> Vec<[f64; 6]> {
         match &self.shifts {
-            Some(shifts) => self.follows(b).then(|| shifts.at(k * self.stride, b, i)),
-            None => {
-                let of = self.kept.sensitivities.at(k, b)?.body(i);
-                let [[x, y, z], [rx, ry, rz]] = [of.dr, of.dpi].map(Vec3::to_array);
-                Some([x, y, z, rx, ry, rz])
-            }
+            Some(shifts) => steps.iter().map(|k| shifts.at(k * self.stride, b, i)).collect(),
+            None => series::shifts(&self.kept, steps, VariableId(b), i),
         }
-    }
-
-    /// True if the motion of bodies by the variables is stored by itself.
-    pub(crate) fn stores_shifts(&self) -> bool {
-        self.shifts.is_some()
     }
 
     /// True if sensitivities of bodies are stored.

@@ -24,7 +24,6 @@ use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Appearance, ModelFile, Units};
 use hardpoint_study::Comparison;
 use hardpoint_study::difference::Difference;
-
 use hardpoint_table::series::{self, Scale, settled};
 
 use crate::course::{Course, RoundOff};
@@ -560,15 +559,7 @@ impl<'a> Compose<'a> {
             round_off: self.round_off.of(b, Kind::Angle.into(), 0),
         };
         let of_body = |body: usize| -> Curve {
-            if !self.course.stores_shifts() {
-                return series::of_shift(self.solution, &self.steps, (VariableId(b), body), [place, turn])
-                    .into();
-            }
-            let at = |&k: &usize| {
-                let [x, y, z, turned @ ..] = self.course.shift(k, b, body).unwrap_or_default();
-                [x, y, z].map(|x| place.shown(x)).into_iter().chain(turned.map(|x| turn.shown(x)))
-            };
-            self.steps.iter().flat_map(at).collect()
+            series::of_shifts(&self.course.shifts(&self.steps, b, body), [place, turn]).into()
         };
         (0..self.model.bodies.len()).map(of_body).collect()
     }
@@ -623,13 +614,9 @@ impl<'a> Compose<'a> {
             if order >= orders {
                 return Default::default();
             }
-            if order == 0 && self.course.stores_shifts() {
-                let of = |axis: usize| {
-                    move |k: usize| {
-                        scales[0].shown(self.course.shift(k, b, body).map_or(f64::NAN, |s| s[axis]))
-                    }
-                };
-                return [0, 1, 2].map(|axis| self.curve(of(axis)));
+            if order == 0 {
+                let shifts = self.course.shifts(&self.steps, b, body);
+                return [0, 1, 2].map(|axis| shifts.iter().map(|s| scales[0].shown(s[axis])).collect());
             }
             series::of_origin(self.solution, &self.steps, (VariableId(b), body, order), scales[order])
                 .map(Curve::from)

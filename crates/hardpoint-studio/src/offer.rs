@@ -6,8 +6,7 @@ use hardpoint::model::{
 use hardpoint::run::metrics;
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, Units};
-use hardpoint_report::figures::variable_unit;
-use hardpoint_report::figures::{number, order_unit, with_unit};
+use hardpoint_report::figures::{number, order_unit, variable_unit, with_unit};
 use hardpoint_study::Motions;
 use hardpoint_study::optimize::{self, Overrides, Selection};
 use hardpoint_study::request::{named, variable};

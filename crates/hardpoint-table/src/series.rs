@@ -58,19 +58,22 @@ pub fn of_origin(
     curves
 }
 
-/// Translation and rotation vector of a body per unit of a variable, six numbers per step; zeros if the mechanism
-/// cannot follow the variable.
-pub fn of_shift(
-    solution: &Solution,
-    steps: &[usize],
-    (b, body): (VariableId, usize),
-    [place, turn]: [Scale; 2],
-) -> Vec<f32> {
-    let mut values = Vec::with_capacity(6 * steps.len());
-    for &k in steps {
+/// Translation and rotation vector of a body per unit of a variable, at each step, SI; zeros if the mechanism cannot
+/// follow the variable.
+pub fn shifts(solution: &Solution, steps: &[usize], b: VariableId, body: usize) -> Vec<[f64; 6]> {
+    let shift = |&k: &usize| {
         let of = solution.sensitivities.at(k, b.0).map_or(BodySensitivity::ZERO, |s| s.body(body));
-        values.extend(of.dr.to_array().map(|x| place.shown(x) as f32));
-        values.extend(of.dpi.to_array().map(|x| turn.shown(x) as f32));
-    }
-    values
+        let [[x, y, z], [rx, ry, rz]] = [of.dr, of.dpi].map(Vec3::to_array);
+        [x, y, z, rx, ry, rz]
+    };
+    steps.iter().map(shift).collect()
+}
+
+/// Shifts as one curve of six numbers per step.
+pub fn of_shifts(shifts: &[[f64; 6]], [place, turn]: [Scale; 2]) -> Vec<f32> {
+    let shown = |&[x, y, z, rx, ry, rz]: &[f64; 6]| {
+        let [place, turn] = [[x, y, z].map(|x| place.shown(x)), [rx, ry, rz].map(|x| turn.shown(x))];
+        place.into_iter().chain(turn).map(|x| x as f32)
+    };
+    shifts.iter().flat_map(shown).collect()
 }

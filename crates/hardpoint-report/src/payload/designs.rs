@@ -12,14 +12,11 @@ use hardpoint::run::metrics_beside;
 use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 use hardpoint_study::whatif::{WhatIf, unwrapped_value};
-
-use hardpoint_table::series::settled;
+use hardpoint_table::series::{ORIGIN, settled};
 
 use crate::page::{BodyTrack, Curve, Design, DesignCurves, DesignKind, Value};
 use crate::summary::StopFact;
 use crate::whatif::follows;
-
-use hardpoint_table::series::ORIGIN;
 
 use super::Compose;
 

@@ -4,7 +4,6 @@ use hardpoint::Analysis;
 use hardpoint::load::Loads;
 use hardpoint::model::Model;
 use hardpoint::space::Vec3;
-
 use hardpoint_table::series::settled;
 
 use crate::page::{BodyPlace, Curve, LoadMark};

@@ -1,7 +1,6 @@
 //! Single values that characterise a design.
 
 use hardpoint::model::{Dimension, Driver, OutputSource, VariableId};
-
 use hardpoint_table::series::settled;
 
 use crate::facts::VariableAdmissibility;
