@@ -322,16 +322,13 @@ impl CalibrationInputs<'_> {
     /// # Errors
     /// If `out` cannot be written.
     pub fn write_residuals(&self, out: impl Write) -> csv::Result<()> {
-        type Row<'a> = (&'a Reading, &'a Option<FittedReading>);
+        // The values of the drivers are those of the posture.
+        type Row<'a> = (&'a Reading, &'a Option<FittedReading>, Vec<(String, f64, String)>);
         let text = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(String::new(), |x| format!("{x:?}"));
         let shown = |r: &Row<'_>, x: Option<f64>| text(x.map(|x| self.shown(r.0.output, x)));
-        let driver = |r: &Row<'_>, d: usize| {
-            let places = &self.measured.measurements.postures[r.0.posture];
-            text(Some(self.driver_values(places)[d].1))
-        };
         let drivers = self.driver_values(&vec![0.0; self.model().drivers.len()]).into_iter();
         let titles: Vec<String> = drivers.map(|(n, _, u)| format!("{n} [{u}]")).collect();
-        let places: Vec<_> = (0..titles.len()).map(|d| move |r: &Row<'_>| driver(r, d)).collect();
+        let places: Vec<_> = (0..titles.len()).map(|d| move |r: &Row<'_>| text(Some(r.2[d].1))).collect();
         let before: [Column<'_, Row<'_>>; 2] = [
             ("line", &|r| self.measured.lines[r.0.posture].to_string()),
             ("measurement", &|r| self.output(r.0.output).name.clone()),
@@ -347,7 +344,10 @@ impl CalibrationInputs<'_> {
         ];
         let places = titles.iter().zip(&places).map(|(title, place)| (title.as_str(), place as _));
         let columns: Vec<Column<'_, Row<'_>>> = before.into_iter().chain(places).chain(after).collect();
-        write_rows(out, &columns, self.measured.measurements.readings.iter().zip(&self.found.fitted))
+        let measurements = &self.measured.measurements;
+        let places = |r: &Reading| self.driver_values(&measurements.postures[r.posture]);
+        let rows = measurements.readings.iter().zip(&self.found.fitted).map(|(r, f)| (r, f, places(r)));
+        write_rows(out, &columns, rows)
     }
 
     /// Writes the covariance of the variables over the determined directions: a row and a column for each, in products

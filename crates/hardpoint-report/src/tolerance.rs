@@ -6,8 +6,8 @@ use hardpoint::measure::Output;
 use hardpoint::model::{AllocationRule, Dimension, LimitTarget, Model, OutputSource, ToleranceSettings};
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::tolerance::{
-    Allocation, AllocationError, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledCurve, SampledMetric,
-    SpreadModel, ToleranceResult, Yield,
+    Allocation, AllocationError, CurveBands, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledCurve,
+    SampledMetric, SpreadModel, ToleranceResult, Yield,
 };
 use hardpoint_study::{EvaluationError, Motions};
 use hardpoint_table::csv::CsvWriter;
@@ -415,32 +415,40 @@ impl ToleranceInputs<'_> {
 
     /// Writes `bands.csv`: a row for each measure, motion and output time.
     pub fn write_bands(&self, out: impl Write) -> csv::Result<()> {
-        let of = |r: &(usize, usize)| (&self.found.curves[r.0], r.1);
-        let dimension = |r: &(usize, usize)| self.model().dimension(OutputSource::Measure(of(r).0.measure));
-        let shown = |r: &(usize, usize), x: f64| self.units().from_si(dimension(r), x).to_string();
-        let drawn = |r: &(usize, usize), list: fn(&SampledCurve) -> &Vec<f64>| {
+        /// A band, with its curve, their numbers, and the scale of the measure's values.
+        struct Row<'a> {
+            curve: &'a CurveBands,
+            c: usize,
+            k: usize,
+            dimension: Dimension,
+        }
+        let shown = |r: &Row<'_>, x: f64| self.units().from_si(r.dimension, x).to_string();
+        let moment = |r: &Row<'_>, k: usize| shown(r, r.curve.moments(r.k)[k]);
+        let drawn = |r: &Row<'_>, list: fn(&SampledCurve) -> &Vec<f64>| {
             let sampled = self.found.sampled.as_ref();
-            sampled.map_or(String::new(), |s| shown(r, list(&s.curves[r.0])[r.1]))
+            sampled.map_or(String::new(), |s| shown(r, list(&s.curves[r.c])[r.k]))
         };
-        let band = |r: &(usize, usize)| &of(r).0.bands[r.1];
-        let columns: [Column<'_, (usize, usize)>; 14] = [
-            ("measure", &|r| self.model().measures[of(r).0.measure].name.clone()),
-            ("case", &|r| self.case(of(r).0.motion).unwrap_or_default()),
-            ("unit", &|r| unit(self.units(), dimension(r))),
-            ("time", &|r| of(r).0.times[r.1].to_string()),
-            ("nominal", &|r| shown(r, band(r).nominal)),
-            ("rss", &|r| shown(r, band(r).sigma)),
-            ("mean", &|r| shown(r, of(r).0.moments(r.1)[0])),
-            ("sigma", &|r| shown(r, of(r).0.moments(r.1)[1])),
-            ("least", &|r| shown(r, band(r).worst[0])),
-            ("greatest", &|r| shown(r, band(r).worst[1])),
+        let columns: [Column<'_, Row<'_>>; 14] = [
+            ("measure", &|r| self.model().measures[r.curve.measure].name.clone()),
+            ("case", &|r| self.case(r.curve.motion).unwrap_or_default()),
+            ("unit", &|r| unit(self.units(), r.dimension)),
+            ("time", &|r| r.curve.times[r.k].to_string()),
+            ("nominal", &|r| shown(r, r.curve.bands[r.k].nominal)),
+            ("rss", &|r| shown(r, r.curve.bands[r.k].sigma)),
+            ("mean", &|r| moment(r, 0)),
+            ("sigma", &|r| moment(r, 1)),
+            ("least", &|r| shown(r, r.curve.bands[r.k].worst[0])),
+            ("greatest", &|r| shown(r, r.curve.bands[r.k].worst[1])),
             ("drawn_mean", &|r| drawn(r, |c| &c.mean)),
             ("drawn_sigma", &|r| drawn(r, |c| &c.sigma)),
             ("drawn_least", &|r| drawn(r, |c| &c.least)),
             ("drawn_greatest", &|r| drawn(r, |c| &c.greatest)),
         ];
-        let curves = self.found.curves.iter().enumerate();
-        write_rows(out, &columns, curves.flat_map(|(c, curve)| (0..curve.bands.len()).map(move |k| (c, k))))
+        let rows = self.found.curves.iter().enumerate().flat_map(|(c, curve)| {
+            let dimension = self.model().dimension(OutputSource::Measure(curve.measure));
+            (0..curve.bands.len()).map(move |k| Row { curve, c, k, dimension })
+        });
+        write_rows(out, &columns, rows)
     }
 
     /// Writes `samples.csv`: a row for each sampled design, with its deviations and its metrics; empty without samples.
