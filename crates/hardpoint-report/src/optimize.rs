@@ -188,7 +188,10 @@ record! {
         let binds = |(what, worth): &(ActiveConstraint, f64)| match *what {
             ActiveConstraint::Least(l, m) if l == place && m == motion => Some(("min", *worth)),
             ActiveConstraint::Most(l, m) if l == place && m == motion => Some(("max", *worth)),
-            _ => None,
+            ActiveConstraint::Least(..)
+            | ActiveConstraint::Most(..)
+            | ActiveConstraint::Lower(_)
+            | ActiveConstraint::Upper(_) => None,
         };
         let binds = binding.filter_map(binds).next();
     }
@@ -226,7 +229,10 @@ record! {
         let binds = |(what, worth): &(ActiveConstraint, f64)| match *what {
             ActiveConstraint::Lower(of) if of == k => Some(("lower", *worth)),
             ActiveConstraint::Upper(of) if of == k => Some(("upper", *worth)),
-            _ => None,
+            ActiveConstraint::Least(..)
+            | ActiveConstraint::Most(..)
+            | ActiveConstraint::Lower(_)
+            | ActiveConstraint::Upper(_) => None,
         };
         let is_relevant = |(_, worth): &(&str, f64)| worth * (bounds[1] - bounds[0]) > SLIGHT * objective;
         let binds = best.optimality.binding.iter().filter_map(binds).find(is_relevant);

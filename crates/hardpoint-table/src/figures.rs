@@ -138,14 +138,12 @@ pub fn variable_unit(model: &Model, units: Units, variable: &DesignVariable) -> 
     if variable.quantity != Quantity::Number {
         return symbol(units, variable.quantity).into();
     }
-    let mut found = variable.changes.iter().map(|change| match change {
-        Change::Law(change) => {
-            let driver = &model.drivers[change.driver.0];
-            let quantity = model.driven(driver).quantity;
-            let kind = driver.law.parameters()[change.parameter].kind;
-            parameter_unit(units, quantity, kind, change.rate.abs())
-        }
-        _ => None,
+    let mut found = variable.changes.iter().map(|change| {
+        let Change::Law(change) = change else { return None };
+        let driver = &model.drivers[change.driver.0];
+        let quantity = model.driven(driver).quantity;
+        let kind = driver.law.parameters()[change.parameter].kind;
+        parameter_unit(units, quantity, kind, change.rate.abs())
     });
     let first = found.next().flatten();
     match first {
@@ -167,7 +165,11 @@ fn parameter_unit(units: Units, driven: Quantity, kind: ParameterKind, rate: f64
             };
             in_either(units, driven, is, |u| format!("{}{per}", symbol(u, driven)))
         }
-        _ => None,
+        ParameterKind::Value
+        | ParameterKind::Number
+        | ParameterKind::Time
+        | ParameterKind::Frequency
+        | ParameterKind::Angle => None,
     }
 }
 
