@@ -10,8 +10,6 @@ use crate::values::{
 
 use super::raw::Raw;
 
-/// Maximum number of variables that are read by name.
-const MOST_VARIABLES: usize = 10_000;
 pub(crate) const OPTIMIZE: Table = table! {
     /// Goals and limits of an optimisation.
     "Optimize":
@@ -133,7 +131,7 @@ pub(super) fn optimize(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     };
     let fields = r.fields("`optimize`", f.at.0..f.at.1, table, OPTIMIZE.keys());
     let place = EntryPlace::of(&fields);
-    let variables = r.given(&fields, "variables", |r, f| variables_of(r, &fields, f));
+    let variables = r.list_of_names(&fields, "variables", "all that have bounds");
     let margin = r.number_of(&fields, "min_margin");
     let starts = r.count_of(&fields, "starts", OptimizationSettings::MOST);
     let iterations = r.count_of(&fields, "max_iterations", OptimizationSettings::MOST);
@@ -264,17 +262,4 @@ fn bounds_of_limit(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Bounds> {
         return None;
     }
     Some(if equal.is_some() { [equal; 2] } else { [min, max] })
-}
-
-/// Names of design variables.
-fn variables_of(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<String>> {
-    let (subject, expected) = (fields.subject(f.key), "a list of names of design variables");
-    let list = r.list(f.value, &subject, expected)?;
-    if list.len() > MOST_VARIABLES {
-        r.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
-            Some(format!("name at most {MOST_VARIABLES}, or leave it out for all that have bounds"));
-        return None;
-    }
-    let names: Vec<_> = list.into_iter().map(|v| r.name(v, &subject, expected)).collect();
-    names.into_iter().collect()
 }

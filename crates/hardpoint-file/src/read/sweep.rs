@@ -87,10 +87,7 @@ pub(super) fn sweep(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     let samples = r.count_of(&fields, "samples", MOST_SAMPLES);
     let seed = r.count_of(&fields, "seed", u32::MAX);
     let levels = r.count_of(&fields, "levels", MOST_LEVELS);
-    let names =
-        |of: &mut Reader<'_>, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
-    let metrics = names(r, "metrics", "a list of names of metrics");
-    let curves = names(r, "curves", "a list of names of measures");
+    let [metrics, curves] = ["metrics", "curves"].map(|key| r.list_of_names(&fields, key, "all"));
     let designs = r.given(&fields, "designs", |r, f| {
         let name = r.name(f.value, &fields.subject(f.key), "the name of a CSV file")?;
         let found = r.text_of_file(&name, &LIST).and_then(|text| list_in(text, &name));

@@ -96,10 +96,7 @@ pub(super) fn tolerance(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     let fields = r.fields("`tolerance`", f.at.0..f.at.1, table, TOLERANCE.keys());
     let place = EntryPlace::of(&fields);
     let scatter = scatter(r, &fields);
-    let names =
-        |of: &mut Reader<'_>, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
-    let metrics = names(r, "metrics", "a list of names of metrics");
-    let curves = names(r, "curves", "a list of names of measures");
+    let [metrics, curves] = ["metrics", "curves"].map(|key| r.list_of_names(&fields, key, "all"));
     let samples = r.count_of(&fields, "samples", ToleranceSettings::MOST);
     let seed = r.count_of(&fields, "seed", u32::MAX);
     let keep = r.number_of(&fields, "required_sigmas");

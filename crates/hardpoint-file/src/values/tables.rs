@@ -459,17 +459,19 @@ impl Reader<'_> {
         None
     }
 
-    /// A list of names.
-    pub fn names_in(&mut self, fields: &Fields<'_>, f: Field<'_>, expected: &str) -> Option<Vec<String>> {
-        let subject = fields.subject(f.key);
-        let list = self.list(f.value, &subject, expected)?;
-        if list.len() > MOST_NAMES {
-            self.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
-                Some(format!("name at most {MOST_NAMES}, or leave it out for all"));
-            return None;
-        }
-        let names: Vec<_> = list.into_iter().map(|v| self.name(v, &subject, expected)).collect();
-        names.into_iter().collect()
+    /// Names in a list of any length; `all` describes the default in the help on a list that is too long.
+    pub fn list_of_names(&mut self, fields: &Fields<'_>, key: &str, all: &str) -> Option<Vec<String>> {
+        let (subject, expected) = (fields.subject(key), fields.key(key).shape.noun());
+        self.given(fields, key, |r, f| {
+            let list = r.list(f.value, &subject, &expected)?;
+            if list.len() > MOST_NAMES {
+                r.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
+                    Some(format!("name at most {MOST_NAMES}, or leave it out for {all}"));
+                return None;
+            }
+            let names: Vec<_> = list.into_iter().map(|v| r.name(v, &subject, &expected)).collect();
+            names.into_iter().collect()
+        })
     }
 }
 
