@@ -294,6 +294,32 @@ impl Reader<'_> {
         entries
     }
 
+    /// Fields of the settings of a study, a table of the model; `below` is the first table in it.
+    pub fn study<'a>(
+        &mut self,
+        model: &Fields<'a>,
+        key: &'static str,
+        below: &str,
+        of: &'static Table,
+    ) -> Option<Fields<'a>> {
+        let f = model.get(key)?;
+        self.unread.clear();
+        let mut subject = model.subject(key);
+        subject.example = format!("write `[{key}]`, in single brackets, and `[{key}.{below}]` below it");
+        let table = self.table(f.value, &subject, "one table")?;
+        Some(self.fields(format!("`{key}`"), f.at.0..f.at.1, table, of.keys()))
+    }
+
+    /// Records keys of tables as unread whose values are no tables, or have too many entries.
+    pub fn lost_tables(&mut self, fields: &Fields<'_>) {
+        let is_table = |s: Shape| matches!(s, Shape::Table(_) | Shape::Kinds(_) | Shape::Entries(..));
+        for f in fields.iter().filter(|f| is_table(fields.key(f.key).shape)) {
+            if f.value.get_ref().as_table().is_none_or(|t| t.len() > MOST_ENTRIES) {
+                self.unread.push(f.key);
+            }
+        }
+    }
+
     /// Fields of a named entry, which must be a table.
     pub fn entry<'a>(
         &mut self,
