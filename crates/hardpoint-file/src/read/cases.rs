@@ -7,8 +7,8 @@ use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
 
 use crate::values::{
-    EntryPlace, Field, Fields, Kinds, MOST_ENTRIES, NUMBER, Reader, Shape, Subject, Table, Value, shown,
-    table,
+    EntryPlace, Field, Fields, Kinds, MOST_ENTRIES, NUMBER, Reader, Shape, Subject, Table, Value, all_read,
+    shown, table,
 };
 
 use super::elements::{LOAD_MODES, LOADS};
@@ -187,8 +187,7 @@ fn positions(r: &mut Reader<'_>, what: &str, subject: &Subject, value: &Value<'_
             r.too_many(f.value.span(), &subject.name, list.len());
             return None;
         }
-        let places: Vec<_> = list.iter().map(|v| r.number(v, &subject)).collect();
-        let places: Vec<f64> = places.into_iter().collect::<Option<_>>()?;
+        let places = all_read(list.iter().map(|v| r.number(v, &subject)))?;
         if let Some(k) = (1..places.len()).find(|&k| places[k] <= places[k - 1]) {
             let message = format!("the position {} of {what} comes after {}", places[k], places[k - 1]);
             r.senseless(list[k].span(), message).help = Some("list the positions in increasing order".into());

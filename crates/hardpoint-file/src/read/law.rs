@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::values::{
     ANGLE, Field, Fields, Kinds, MOST_ENTRIES, NUMBER, Reader, Severity, Shape, Subject, TWO_NUMBERS, Table,
-    Value, closest, shown, table,
+    Value, all_read, closest, shown, table,
 };
 use hardpoint_table::AngleUnit;
 
@@ -307,12 +307,10 @@ fn polynomial(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Law> {
     let f = r.need(fields, "coefficients")?;
     let subject = fields.subject(f.key);
     let list = r.list(f.value, &subject, "a list of numbers: of 1, t, t^2, ...")?;
-    let numbers = list.iter().enumerate().map(|(k, v)| {
+    let numbers = all_read(list.iter().enumerate().map(|(k, v)| {
         let name = format!("coefficient {k} of {}", fields.what);
         r.number(v, &Subject { name, example: subject.example.clone() })
-    });
-    let numbers: Vec<_> = numbers.collect();
-    let numbers: Vec<f64> = numbers.into_iter().collect::<Option<_>>()?;
+    }))?;
     made(r, fields, f.value.span(), Law::polynomial(&numbers))
 }
 
@@ -490,16 +488,11 @@ fn ends(r: &mut Reader<'_>, fields: &Fields<'_>, degree: Option<SplineDegree>) -
 fn points_of_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
     let subject = fields.subject(f.key);
     let list = r.list(f.value, &subject, "a list of pairs of time and value")?;
-    let points: Vec<_> = list
-        .iter()
-        .enumerate()
-        .map(|(k, v)| {
-            let subject =
-                Subject { name: format!("point {k} of {}", fields.what), example: subject.example.clone() };
-            r.numbers::<2>(v, &subject, "a pair of time and value, `[t, x]`")
-        })
-        .collect();
-    let points: Vec<[f64; 2]> = points.into_iter().collect::<Option<_>>()?;
+    let points = all_read(list.iter().enumerate().map(|(k, v)| {
+        let subject =
+            Subject { name: format!("point {k} of {}", fields.what), example: subject.example.clone() };
+        r.numbers::<2>(v, &subject, "a pair of time and value, `[t, x]`")
+    }))?;
     if let Some(k) = (1..points.len()).find(|&k| points[k][0] <= points[k - 1][0]) {
         let (before, after) = (points[k - 1][0], points[k][0]);
         let message = format!("the times of a table must increase, but {after} s follows {before} s");

@@ -11,7 +11,7 @@ use super::diagnostic::{closest, shown};
 use super::fields::{Field, Fields, MOST_ENTRIES, Subject, Value};
 use super::format::{Key, Need, Shape, THROUGH, Table};
 use super::places::EntryPlace;
-use super::reader::{Reader, quoted};
+use super::reader::{Reader, all_read, quoted};
 
 /// Maximum number of names in a list.
 const MOST_NAMES: usize = 10_000;
@@ -196,8 +196,7 @@ impl Reader<'_> {
         let (subject, expected) = (fields.subject(key), fields.key(key).shape.noun());
         self.given(fields, key, |r, f| match f.value.get_ref().as_array() {
             Some(list) if list.len() == N => {
-                let names: Vec<_> = list.iter().map(|v| r.name(v, &subject, &expected)).collect();
-                names.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
+                all_read(list.iter().map(|v| r.name(v, &subject, &expected)))?.try_into().ok()
             }
             _ => {
                 r.wrong(f.value, &subject, &expected);
@@ -437,19 +436,11 @@ impl Reader<'_> {
         self.given(fields, key, |r, f| {
             let subject = fields.subject(key);
             let list = r.list(f.value, &subject, "a list of tables")?;
-            let tables: Vec<_> = (1..)
-                .zip(list)
-                .map(|(k, v)| {
-                    let table = r.table(v, &subject, "a list of tables")?;
-                    Some(r.fields(
-                        format!("entry {k} of `{key}` in {}", fields.what),
-                        v.span(),
-                        table,
-                        of.keys(),
-                    ))
-                })
-                .collect();
-            tables.into_iter().collect()
+            all_read((1..).zip(list).map(|(k, v)| {
+                let table = r.table(v, &subject, "a list of tables")?;
+                let what = format!("entry {k} of `{key}` in {}", fields.what);
+                Some(r.fields(what, v.span(), table, of.keys()))
+            }))
         })
     }
 
@@ -495,8 +486,7 @@ impl Reader<'_> {
                     Some(format!("name at most {MOST_NAMES}, or leave it out for {all}"));
                 return None;
             }
-            let names: Vec<_> = list.into_iter().map(|v| r.name(v, &subject, &expected)).collect();
-            names.into_iter().collect()
+            all_read(list.into_iter().map(|v| r.name(v, &subject, &expected)))
         })
     }
 }
