@@ -101,8 +101,7 @@ pub(super) fn cases(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
             r.unread.push("time");
             times = Some(Vec::new());
         }
-        let load_mode = fields.get("loads").is_some().then(|| r.word_of(&fields, "loads")).flatten();
-        let load_mode = load_mode.map(|k| LOAD_MODES[k]);
+        let load_mode = r.word_of(&fields, "loads").map(|k| LOAD_MODES[k]);
         let laws = laws.unwrap_or_default();
         if rest == Some(OtherDrivers::AsAbove) && !r.unread.contains(&"laws") {
             laws_of_their_own(r, &fields, &laws, raw);

@@ -147,7 +147,7 @@ static TYPES: &[(Table, Read)] = &[
             /// The pieces, in order.
             must "pieces": Shape::List(&Shape::Table(&PIECE), [1, MOST_PIECES]), "[{ duration = 1, law = \"10*t\" }, { law = 0 }]";
         },
-        |r, of, fields| sequence(r, of, fields),
+        sequence,
     ),
     (
         table! {
@@ -158,7 +158,7 @@ static TYPES: &[(Table, Read)] = &[
             /// Names and values of the parameters.
             or("{}") "parameters": Shape::Entries("a parameter of the law", &NUMBER), "{ a = 25, w = 6.28 }";
         },
-        |r, of, fields| expression_with_parameters(r, of, fields),
+        expression_with_parameters,
     ),
 ];
 
@@ -444,7 +444,7 @@ fn table_law(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Law> {
             r.out_of_place(fields, "columns", "`columns` goes with `file`");
             points_of_table(r, fields, f).map(|p| (p, f))
         }
-        (None, Some(f)) => points_of_file(r, fields, f).map(|p| (p, f)),
+        (None, Some(f)) => data::points_in_file(r, fields, f, &data::TABLE).map(|p| (p, f)),
         (None, None) => {
             let message = format!("{} has no `points`", fields.what);
             r.report("HP0104", fields.at.clone(), message).help = Some(
@@ -502,10 +502,6 @@ fn points_of_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Opt
         return None;
     }
     Some(points)
-}
-
-fn points_of_file(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
-    data::points_in_file(r, fields, f, &data::TABLE)
 }
 
 /// The arguments of `sin`, `cos` and `tan` in the text of a law.

@@ -81,7 +81,7 @@ static LIMITS: &[(Table, Read)] = &[
             /// Range of its z.
             may "z": SIDE, "{ min = 0 }";
         },
-        |r, fields| boxed(r, fields),
+        boxed,
     ),
     (
         limit! {

@@ -94,7 +94,7 @@ pub(super) fn tolerance(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     let samples = r.count_of(&fields, "samples", ToleranceSettings::MOST);
     let seed = r.count_of(&fields, "seed", u32::MAX);
     let keep = r.number_of(&fields, "required_sigmas");
-    let rule = fields.get("allocate").and_then(|_| r.word_of(&fields, "allocate"));
+    let rule = r.word_of(&fields, "allocate");
     if fields.get("required_sigmas").is_some() && rule != Some(0) {
         r.out_of_place(&fields, "required_sigmas", "only `allocate = \"rss\"` uses standard deviations");
     }

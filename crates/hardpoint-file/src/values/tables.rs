@@ -458,7 +458,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a location; coordinates have no items of their own.
+    /// Location under a key.
     pub fn place_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<LocationDraft> {
         self.given(fields, key, |r, f| r.place(f.value, &fields.subject(f.key)))
     }
