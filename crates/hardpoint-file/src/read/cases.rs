@@ -7,8 +7,7 @@ use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
 
 use crate::values::{
-    EntryPlace, Field, Fields, Kinds, MOST_ENTRIES, NUMBER, Reader, Shape, Subject, Table, Value, all_read,
-    shown, table,
+    EntryPlace, Field, Fields, Kinds, NUMBER, Reader, Shape, Subject, Table, Value, all_read, shown, table,
 };
 
 use super::elements::{LOAD_MODES, LOADS};
@@ -137,11 +136,7 @@ fn sweeps(
     driven: &HashMap<String, Quantity>,
 ) -> Option<Vec<(String, Vec<f64>)>> {
     let subject = fields.subject("grid");
-    let table = r.table(f.value, &subject, "a table of two drivers' names and positions")?;
-    if table.len() > MOST_ENTRIES {
-        r.too_many(f.value.span(), &subject.name, table.len());
-        return None;
-    }
+    let table = r.table_of_names(f.value, &subject, "a table of two drivers' names and positions")?;
     let mut entries: Vec<_> = table.iter().collect();
     // In the order of the text: the first one varies along the rows.
     entries.sort_by_key(|(name, _)| name.span().start);
@@ -245,11 +240,7 @@ fn case_laws(
     formulas: &mut Vec<FormulaDraft>,
 ) -> Option<Vec<(String, Law)>> {
     let subject = fields.subject("laws");
-    let table = r.table(f.value, &subject, "a table of drivers' names and laws")?;
-    if table.len() > MOST_ENTRIES {
-        r.too_many(f.value.span(), &subject.name, table.len());
-        return None;
-    }
+    let table = r.table_of_names(f.value, &subject, "a table of drivers' names and laws")?;
     let (mut laws, mut names, mut values) = (Vec::new(), Vec::new(), Vec::new());
     let mut complete = true;
     for (name, value) in table {

@@ -8,8 +8,8 @@ use hardpoint::law::{self, Law, LawError, SplineDegree, SplineEndRates, SplineEn
 use toml::de::{DeTable, DeValue};
 
 use crate::values::{
-    ANGLE, Field, Fields, Kinds, MOST_ENTRIES, NUMBER, Reader, Severity, Shape, Subject, TWO_NUMBERS, Table,
-    Value, all_read, closest, shown, table,
+    ANGLE, Field, Fields, Kinds, NUMBER, Reader, Severity, Shape, Subject, TWO_NUMBERS, Table, Value,
+    all_read, closest, shown, table,
 };
 use hardpoint_table::AngleUnit;
 
@@ -390,11 +390,7 @@ fn expression_with_parameters(r: &mut Reader<'_>, of: &str, fields: &Fields<'_>)
     let mut parameters: Vec<(String, f64)> = Vec::new();
     if let Some(f) = fields.get("parameters") {
         let subject = fields.subject("parameters");
-        let table = r.table(f.value, &subject, "a table of names and numbers")?;
-        if table.len() > MOST_ENTRIES {
-            r.too_many(f.value.span(), &subject.name, table.len());
-            return None;
-        }
+        let table = r.table_of_names(f.value, &subject, "a table of names and numbers")?;
         for (name, value) in table {
             let subject = Subject {
                 name: format!("parameter `{}` of {}", shown(name.get_ref()), fields.what),

@@ -14,7 +14,7 @@ pub use diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 pub use files::{LARGEST_FILE, Texts};
 
 pub(crate) use diagnostic::{closest, in_order, shown};
-pub(crate) use fields::{Field, Fields, MOST_ENTRIES, Subject, Value};
+pub(crate) use fields::{Field, Fields, Subject, Value};
 pub(crate) use files::{DataError, Folder, Wanted, bytes_of, neighbours, text_from};
 pub(crate) use format::*;
 pub(crate) use places::{EntryPlace, Places};

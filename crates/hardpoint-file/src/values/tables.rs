@@ -99,6 +99,21 @@ impl Reader<'_> {
         table
     }
 
+    /// A table of names, with a limited number of entries.
+    pub fn table_of_names<'a>(
+        &mut self,
+        value: &'a Value<'a>,
+        subject: &Subject,
+        expected: &str,
+    ) -> Option<&'a DeTable<'a>> {
+        let table = self.table(value, subject, expected)?;
+        if table.len() > MOST_ENTRIES {
+            self.too_many(value.span(), &subject.name, table.len());
+            return None;
+        }
+        Some(table)
+    }
+
     pub fn list<'a>(
         &mut self,
         value: &'a Value<'a>,
