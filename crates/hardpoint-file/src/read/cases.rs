@@ -7,8 +7,7 @@ use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
 
 use crate::values::{
-    EntryPlace, Field, Fields, Kinds, MOST_ENTRIES, NUMBER, Reader, Shape, Subject, Table, Value, shown,
-    table,
+    EntryPlace, Field, Fields, Kinds, NUMBER, Reader, Shape, Subject, Table, Value, all_read, shown, table,
 };
 
 use super::elements::{LOAD_MODES, LOADS};
@@ -101,8 +100,7 @@ pub(super) fn cases(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
             r.unread.push("time");
             times = Some(Vec::new());
         }
-        let load_mode = fields.get("loads").is_some().then(|| r.word_of(&fields, "loads")).flatten();
-        let load_mode = load_mode.map(|k| LOAD_MODES[k]);
+        let load_mode = r.word_of(&fields, "loads").map(|k| LOAD_MODES[k]);
         let laws = laws.unwrap_or_default();
         if rest == Some(OtherDrivers::AsAbove) && !r.unread.contains(&"laws") {
             laws_of_their_own(r, &fields, &laws, raw);
@@ -138,11 +136,7 @@ fn sweeps(
     driven: &HashMap<String, Quantity>,
 ) -> Option<Vec<(String, Vec<f64>)>> {
     let subject = fields.subject("grid");
-    let table = r.table(f.value, &subject, "a table of two drivers' names and positions")?;
-    if table.len() > MOST_ENTRIES {
-        r.too_many(f.value.span(), &subject.name, table.len());
-        return None;
-    }
+    let table = r.table_of_names(f.value, &subject, "a table of two drivers' names and positions")?;
     let mut entries: Vec<_> = table.iter().collect();
     // In the order of the text: the first one varies along the rows.
     entries.sort_by_key(|(name, _)| name.span().start);
@@ -187,8 +181,7 @@ fn positions(r: &mut Reader<'_>, what: &str, subject: &Subject, value: &Value<'_
             r.too_many(f.value.span(), &subject.name, list.len());
             return None;
         }
-        let places: Vec<_> = list.iter().map(|v| r.number(v, &subject)).collect();
-        let places: Vec<f64> = places.into_iter().collect::<Option<_>>()?;
+        let places = all_read(list.iter().map(|v| r.number(v, &subject)))?;
         if let Some(k) = (1..places.len()).find(|&k| places[k] <= places[k - 1]) {
             let message = format!("the position {} of {what} comes after {}", places[k], places[k - 1]);
             r.senseless(list[k].span(), message).help = Some("list the positions in increasing order".into());
@@ -247,11 +240,7 @@ fn case_laws(
     formulas: &mut Vec<FormulaDraft>,
 ) -> Option<Vec<(String, Law)>> {
     let subject = fields.subject("laws");
-    let table = r.table(f.value, &subject, "a table of drivers' names and laws")?;
-    if table.len() > MOST_ENTRIES {
-        r.too_many(f.value.span(), &subject.name, table.len());
-        return None;
-    }
+    let table = r.table_of_names(f.value, &subject, "a table of drivers' names and laws")?;
     let (mut laws, mut names, mut values) = (Vec::new(), Vec::new(), Vec::new());
     let mut complete = true;
     for (name, value) in table {

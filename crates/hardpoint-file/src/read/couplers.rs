@@ -5,7 +5,8 @@ use hardpoint::joint::Quantity;
 use hardpoint::model::Transmission;
 
 use crate::values::{
-    EntryPlace, Fields, JOINT, Key, Kinds, LENGTH, NUMBER, Reader, Shape, TWO_NUMBERS, Table, keys, table,
+    EntryPlace, Fields, JOINT, Key, Kinds, LENGTH, NUMBER, Reader, Shape, TWO_NUMBERS, Table, all_read, keys,
+    table,
 };
 
 use super::joints::COORDINATE;
@@ -149,17 +150,14 @@ fn belt(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<CouplerKindDraft> {
 /// The file's sum of `coefficient x coordinate` is zero in the file's units; so it must be in SI.
 fn linear(r: &mut Reader<'_>, fields: &Fields<'_>, raw: &Raw) -> Option<CouplerKindDraft> {
     let terms = r.tables(fields, "terms", &TERM)?;
-    let terms: Vec<_> = terms
-        .iter()
-        .map(|term| {
-            let joint = r.name_of(term, "joint");
-            let coordinate = r.name_if(term, "coordinate");
-            let coefficient = r.number_of(term, "coefficient");
-            let (joint, coordinate) = (joint?, coordinate?);
-            let quantity = raw.type_of(&joint).and_then(|kind| kind.quantity_of(coordinate.as_deref()));
-            let per_si = r.units.of(quantity.unwrap_or(Quantity::Number)).1;
-            Some(TermDraft { joint, coordinate, coefficient: coefficient? * per_si })
-        })
-        .collect();
-    terms.into_iter().collect::<Option<_>>().map(CouplerKindDraft::Linear)
+    let terms = all_read(terms.iter().map(|term| {
+        let joint = r.name_of(term, "joint");
+        let coordinate = r.name_if(term, "coordinate");
+        let coefficient = r.number_of(term, "coefficient");
+        let (joint, coordinate) = (joint?, coordinate?);
+        let quantity = raw.type_of(&joint).and_then(|kind| kind.quantity_of(coordinate.as_deref()));
+        let per_si = r.units.of(quantity.unwrap_or(Quantity::Number)).1;
+        Some(TermDraft { joint, coordinate, coefficient: coefficient? * per_si })
+    }));
+    terms.map(CouplerKindDraft::Linear)
 }

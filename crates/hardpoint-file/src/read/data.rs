@@ -19,7 +19,7 @@ pub(super) const COLUMN: Shape = Shape::Any(
 );
 
 /// A column of a file.
-pub(super) enum Column {
+enum Column {
     /// Name in the first line of the file.
     Named(String),
     /// Index, from 1.
@@ -27,13 +27,13 @@ pub(super) enum Column {
 }
 
 /// Default columns.
-pub(super) const FIRST_TWO: [Column; 2] = [Column::Number(1), Column::Number(2)];
+const FIRST_TWO: [Column; 2] = [Column::Number(1), Column::Number(2)];
 
 /// Descriptions of a curve in a file, for messages.
 pub(super) struct Curve {
     wanted: Wanted<'static>,
     /// Abscissa of the curve, and its plural.
-    pub abscissa: &'static str,
+    abscissa: &'static str,
     abscissas: &'static str,
     /// Unit of the abscissa, after a number.
     unit: &'static str,
@@ -165,7 +165,7 @@ fn columns(r: &mut Reader<'_>, fields: &Fields<'_>, of: &Curve) -> Option<[Colum
 }
 
 /// Points of a file in the model's folder or below it.
-pub(super) fn points_of_text(
+fn points_of_text(
     r: &mut Reader<'_>,
     name: &str,
     columns: &[Column; 2],

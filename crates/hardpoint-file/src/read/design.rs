@@ -11,7 +11,7 @@ use hardpoint::space::Vec3;
 
 use crate::values::{
     ANGLE, AXES, BODY, DIRECTION, DRIVER, EntryPlace, Fields, HARDPOINT, JOINT, Key, Kinds, LENGTH, LINE,
-    NUMBER, Reader, Shape, TWO_NUMBERS, Table, Value, axis_named, keys, table,
+    NUMBER, Reader, Shape, TWO_NUMBERS, Table, Value, all_read, axis_named, keys, table,
 };
 
 use super::parameters;
@@ -253,16 +253,13 @@ static FIELDS: &[(Table, ReadField)] = &[
             must "through": Shape::list(&Shape::Table(&THROUGH)), "[{ at = \"A\", move = [0, 0, 1] }]";
         },
         |r, fields, _| {
-            let moves: Vec<_> = r
-                .tables(fields, "through", &THROUGH)?
-                .iter()
-                .map(|f| {
-                    let at = r.name_of(f, "at");
-                    let v = optional_vector(r, f, "move");
-                    Some((at?, v?))
-                })
-                .collect();
-            moves.into_iter().collect::<Option<_>>().map(ShapeDraft::Through)
+            let points = r.tables(fields, "through", &THROUGH)?;
+            let moves = all_read(points.iter().map(|f| {
+                let at = r.name_of(f, "at");
+                let v = optional_vector(r, f, "move");
+                Some((at?, v?))
+            }));
+            moves.map(ShapeDraft::Through)
         },
     ),
 ];
@@ -376,8 +373,7 @@ fn several(
         }
         let list = r.list(f.value, &subject, &expected)?;
         places.extend(list.iter().map(|v| v.span()));
-        let names: Vec<_> = list.iter().map(|v| r.name(v, &subject, &expected)).collect();
-        names.into_iter().collect()
+        all_read(list.iter().map(|v| r.name(v, &subject, &expected)))
     })
 }
 
@@ -416,30 +412,22 @@ fn law_parameter(r: &mut Reader<'_>, fields: &Fields<'_>, raw: &Raw) -> Option<C
 }
 
 fn velocity_fields(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Vec<ChangeDraft>> {
-    let changes: Vec<_> = r
-        .tables(fields, "fields", &FIELD)?
-        .iter()
-        .map(|f| {
-            let [joint, body] = ["joint", "body"].map(|key| r.name_of(f, key));
-            let [v, u] = ["V", "U"].map(|key| optional_vector(r, f, key));
-            Some(ChangeDraft::Field { joint: joint?, body: body?, v: v?, u: u? })
-        })
-        .collect();
-    changes.into_iter().collect()
+    let tables = r.tables(fields, "fields", &FIELD)?;
+    all_read(tables.iter().map(|f| {
+        let [joint, body] = ["joint", "body"].map(|key| r.name_of(f, key));
+        let [v, u] = ["V", "U"].map(|key| optional_vector(r, f, key));
+        Some(ChangeDraft::Field { joint: joint?, body: body?, v: v?, u: u? })
+    }))
 }
 
 fn markers(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Vec<ChangeDraft>> {
-    let changes: Vec<_> = r
-        .tables(fields, "markers", &MARKER)?
-        .iter()
-        .map(|f| {
-            let joint = r.name_of(f, "joint");
-            let end = r.word_of(f, "on").map(|k| [End::I, End::J, End::Both][k]);
-            let [position, rotation] = ["move", "turn"].map(|key| optional_vector(r, f, key));
-            Some(ChangeDraft::Marker { joint: joint?, end: end?, position: position?, rotation: rotation? })
-        })
-        .collect();
-    let mut changes: Vec<_> = changes.into_iter().collect::<Option<_>>()?;
+    let tables = r.tables(fields, "markers", &MARKER)?;
+    let mut changes = all_read(tables.iter().map(|f| {
+        let joint = r.name_of(f, "joint");
+        let end = r.word_of(f, "on").map(|k| [End::I, End::J, End::Both][k]);
+        let [position, rotation] = ["move", "turn"].map(|key| optional_vector(r, f, key));
+        Some(ChangeDraft::Marker { joint: joint?, end: end?, position: position?, rotation: rotation? })
+    }))?;
     // Per unit of a length or an angle the numbers are directions; those of a plain number have units.
     if ChangeDraft::quantity_of(&changes, |_| None, |_| None) == Quantity::Number {
         let [length, angle] = [Quantity::Length, Quantity::Angle].map(|q| r.units.to_si(q, 1.0));

@@ -6,7 +6,7 @@ use hardpoint::joint::Freedom;
 use toml::de::DeValue;
 
 use crate::values::{
-    BODY, EntryPlace, Field, Fields, LENGTH, LINE, PLACE, Reader, Shape, Table, Value, table,
+    BODY, EntryPlace, Field, Fields, LENGTH, LINE, PLACE, Reader, Shape, Table, Value, all_read, table,
 };
 
 use super::drawing;
@@ -169,8 +169,7 @@ fn joint_places(
     match f.value.get_ref().as_array() {
         Some(list) if !list.iter().any(is_number) && (list.len() != 3 || list.iter().all(is_hardpoint)) => {
             let list = r.list(f.value, &subject, "")?;
-            let places: Vec<_> = list.iter().map(|v| r.place(v, &subject)).collect();
-            places.into_iter().collect()
+            all_read(list.iter().map(|v| r.place(v, &subject)))
         }
         _ => {
             let one = r.place(f.value, &subject)?;
@@ -194,8 +193,7 @@ fn curve(
         let subject = curve.subject("points");
         let list = r.list(f.value, &subject, "a list of hardpoints' names or coordinates")?;
         place.items("curve", list.iter().map(|v| v.span()).collect());
-        let points: Vec<_> = list.iter().map(|v| r.place(v, &subject)).collect();
-        points.into_iter().collect::<Option<Vec<_>>>()
+        all_read(list.iter().map(|v| r.place(v, &subject)))
     });
     Some(CurveDraft { points: points?, closed: closed? })
 }

@@ -8,8 +8,8 @@ use hardpoint::law::{self, Law, LawError, SplineDegree, SplineEndRates, SplineEn
 use toml::de::{DeTable, DeValue};
 
 use crate::values::{
-    ANGLE, Field, Fields, Kinds, MOST_ENTRIES, NUMBER, Reader, Severity, Shape, Subject, TWO_NUMBERS, Table,
-    Value, closest, shown, table,
+    ANGLE, Field, Fields, Kinds, NUMBER, Reader, Severity, Shape, Subject, TWO_NUMBERS, Table, Value,
+    all_read, closest, shown, table,
 };
 use hardpoint_table::AngleUnit;
 
@@ -147,7 +147,7 @@ static TYPES: &[(Table, Read)] = &[
             /// The pieces, in order.
             must "pieces": Shape::List(&Shape::Table(&PIECE), [1, MOST_PIECES]), "[{ duration = 1, law = \"10*t\" }, { law = 0 }]";
         },
-        |r, of, fields| sequence(r, of, fields),
+        sequence,
     ),
     (
         table! {
@@ -158,7 +158,7 @@ static TYPES: &[(Table, Read)] = &[
             /// Names and values of the parameters.
             or("{}") "parameters": Shape::Entries("a parameter of the law", &NUMBER), "{ a = 25, w = 6.28 }";
         },
-        |r, of, fields| expression_with_parameters(r, of, fields),
+        expression_with_parameters,
     ),
 ];
 
@@ -307,12 +307,10 @@ fn polynomial(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Law> {
     let f = r.need(fields, "coefficients")?;
     let subject = fields.subject(f.key);
     let list = r.list(f.value, &subject, "a list of numbers: of 1, t, t^2, ...")?;
-    let numbers = list.iter().enumerate().map(|(k, v)| {
+    let numbers = all_read(list.iter().enumerate().map(|(k, v)| {
         let name = format!("coefficient {k} of {}", fields.what);
         r.number(v, &Subject { name, example: subject.example.clone() })
-    });
-    let numbers: Vec<_> = numbers.collect();
-    let numbers: Vec<f64> = numbers.into_iter().collect::<Option<_>>()?;
+    }))?;
     made(r, fields, f.value.span(), Law::polynomial(&numbers))
 }
 
@@ -392,11 +390,7 @@ fn expression_with_parameters(r: &mut Reader<'_>, of: &str, fields: &Fields<'_>)
     let mut parameters: Vec<(String, f64)> = Vec::new();
     if let Some(f) = fields.get("parameters") {
         let subject = fields.subject("parameters");
-        let table = r.table(f.value, &subject, "a table of names and numbers")?;
-        if table.len() > MOST_ENTRIES {
-            r.too_many(f.value.span(), &subject.name, table.len());
-            return None;
-        }
+        let table = r.table_of_names(f.value, &subject, "a table of names and numbers")?;
         for (name, value) in table {
             let subject = Subject {
                 name: format!("parameter `{}` of {}", shown(name.get_ref()), fields.what),
@@ -446,7 +440,7 @@ fn table_law(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Law> {
             r.out_of_place(fields, "columns", "`columns` goes with `file`");
             points_of_table(r, fields, f).map(|p| (p, f))
         }
-        (None, Some(f)) => points_of_file(r, fields, f).map(|p| (p, f)),
+        (None, Some(f)) => data::points_in_file(r, fields, f, &data::TABLE).map(|p| (p, f)),
         (None, None) => {
             let message = format!("{} has no `points`", fields.what);
             r.report("HP0104", fields.at.clone(), message).help = Some(
@@ -490,16 +484,11 @@ fn ends(r: &mut Reader<'_>, fields: &Fields<'_>, degree: Option<SplineDegree>) -
 fn points_of_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
     let subject = fields.subject(f.key);
     let list = r.list(f.value, &subject, "a list of pairs of time and value")?;
-    let points: Vec<_> = list
-        .iter()
-        .enumerate()
-        .map(|(k, v)| {
-            let subject =
-                Subject { name: format!("point {k} of {}", fields.what), example: subject.example.clone() };
-            r.numbers::<2>(v, &subject, "a pair of time and value, `[t, x]`")
-        })
-        .collect();
-    let points: Vec<[f64; 2]> = points.into_iter().collect::<Option<_>>()?;
+    let points = all_read(list.iter().enumerate().map(|(k, v)| {
+        let subject =
+            Subject { name: format!("point {k} of {}", fields.what), example: subject.example.clone() };
+        r.numbers::<2>(v, &subject, "a pair of time and value, `[t, x]`")
+    }))?;
     if let Some(k) = (1..points.len()).find(|&k| points[k][0] <= points[k - 1][0]) {
         let (before, after) = (points[k - 1][0], points[k][0]);
         let message = format!("the times of a table must increase, but {after} s follows {before} s");
@@ -509,10 +498,6 @@ fn points_of_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Opt
         return None;
     }
     Some(points)
-}
-
-fn points_of_file(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<[f64; 2]>> {
-    data::points_in_file(r, fields, f, &data::TABLE)
 }
 
 /// The arguments of `sin`, `cos` and `tan` in the text of a law.

@@ -5,7 +5,7 @@ use std::path::Path;
 use hardpoint::measure::outputs;
 use hardpoint::model::{Dimension, DriverId, Measurements, Reading};
 
-use crate::values::{Diagnostic, Diagnostics, Severity, Source, closest, shown};
+use crate::values::{DataError, Diagnostics, Source, closest, shown};
 
 use super::model_file::ModelFile;
 use super::readings::{Readings, readings_at};
@@ -32,25 +32,6 @@ enum Holds {
     Sigma(usize),
 }
 
-/// Reason why measurements cannot be used.
-struct Refusal {
-    code: &'static str,
-    message: String,
-    notes: Vec<String>,
-    help: Option<String>,
-}
-
-impl Refusal {
-    fn new(code: &'static str, message: String, help: impl Into<String>) -> Self {
-        Self { code, message, notes: Vec::new(), help: Some(help.into()) }
-    }
-
-    fn note(mut self, note: impl Into<String>) -> Self {
-        self.notes.push(note.into());
-        self
-    }
-}
-
 impl ModelFile {
     /// Reads measurements from a CSV file at any place: the first line names drivers, outputs (measures, and points as
     /// `P.x`) and standard deviations (`sigma toe`); each line below is a posture, in the units of the model file.
@@ -61,14 +42,8 @@ impl ModelFile {
     pub fn measured(&self, path: &Path, sigmas: &[(String, f64)]) -> Result<MeasuredData, Diagnostics> {
         let name = path.display().to_string();
         let source = Source::new(&name, "");
-        let rejected = |r: Refusal| {
-            let d = source.diagnostic(Severity::Error, r.code, r.message, None);
-            let d = r.notes.into_iter().fold(d, Diagnostic::note);
-            Diagnostics::new(source.clone(), vec![r.help.into_iter().fold(d, Diagnostic::help)])
-        };
-        let table = readings_at(path).map_err(|e| {
-            rejected(Refusal { code: e.code, message: e.message, notes: e.notes, help: e.help })
-        })?;
+        let rejected = |e: DataError| Diagnostics::new(source.clone(), vec![e.diagnostic(&source, None)]);
+        let table = readings_at(path).map_err(rejected)?;
         self.measurements(&table, &shown(&name), sigmas).map_err(rejected)
     }
 
@@ -77,7 +52,7 @@ impl ModelFile {
         table: &Readings,
         file: &str,
         sigmas: &[(String, f64)],
-    ) -> Result<MeasuredData, Refusal> {
+    ) -> Result<MeasuredData, DataError> {
         let holds = self.columns(table, file)?;
         let given = self.sigmas_given(sigmas)?;
         let drivers = &self.model.drivers;
@@ -100,12 +75,16 @@ impl ModelFile {
                     }
                     (Some(Holds::Driver(_)), None) => {
                         let help = "give the value of every driver of the first line";
-                        return Err(Refusal::new("HP0112", format!("{} is missing", here(column)), help));
+                        return Err(DataError::new("HP0112", format!("{} is missing", here(column)), help));
                     }
                     (Some(Holds::Sigma(_)), Some(x)) if !(*x > 0.0) => {
                         let help = "give a number above zero, or leave the cell empty";
-                        return Err(Refusal::new("HP0249", format!("{} cannot be {x}", here(column)), help)
-                            .note("it is the standard deviation of a reading"));
+                        return Err(DataError::new(
+                            "HP0249",
+                            format!("{} cannot be {x}", here(column)),
+                            help,
+                        )
+                        .note("it is the standard deviation of a reading"));
                     }
                     (Some(Holds::Output(m)), Some(x)) => {
                         let in_si = |x: f64| x / self.units.from_si(outputs[*m].dimension, 1.0);
@@ -125,7 +104,7 @@ impl ModelFile {
     }
 
     /// Contents of every column; `None` for columns that begin with `#`.
-    fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<Holds>>, Refusal> {
+    fn columns(&self, table: &Readings, file: &str) -> Result<Vec<Option<Holds>>, DataError> {
         let mut found: Vec<Option<Holds>> = Vec::new();
         for (column, (name, unit)) in table.names.iter().enumerate() {
             let note = format!("it is the title of column {} of `{file}`", column + 1);
@@ -135,17 +114,17 @@ impl ModelFile {
             }
             let holds = self.held(name).map_err(|help| {
                 let message = format!("`{}` is neither a driver nor an output", shown(name));
-                Refusal::new("HP0248", message, help).note(note.clone())
+                DataError::new("HP0248", message, help).note(note.clone())
             })?;
             if let Some((unit, expected)) = unit.as_deref().zip(self.unit_of(holds)).filter(|(a, b)| a != b) {
                 let message =
                     format!("`{}` is in `{}`, and the model file has {expected}", shown(name), shown(unit));
                 let help = format!("write it in {expected}, or change `units` of the model file");
-                return Err(Refusal::new("HP0248", message, help).note(note));
+                return Err(DataError::new("HP0248", message, help).note(note));
             }
             if found.contains(&Some(holds)) {
                 let message = format!("`{}` is the title of two columns of `{file}`", shown(name));
-                return Err(Refusal::new("HP0248", message, "remove one of the two"));
+                return Err(DataError::new("HP0248", message, "remove one of the two"));
             }
             found.push(Some(holds));
         }
@@ -153,7 +132,7 @@ impl ModelFile {
             let message = format!("`{file}` has no column of readings");
             let help =
                 "add a column that is headed by a measure, or by a point's component, like `wheel_centre.z`";
-            return Err(Refusal::new("HP0248", message, help));
+            return Err(DataError::new("HP0248", message, help));
         }
         for (column, holds) in found.iter().enumerate() {
             if let Some(Holds::Sigma(m)) = holds
@@ -161,7 +140,7 @@ impl ModelFile {
             {
                 let message = format!("`{}` has no column of readings", shown(&table.names[column].0));
                 let help = "add the column of its readings, or remove this one";
-                return Err(Refusal::new("HP0248", message, help)
+                return Err(DataError::new("HP0248", message, help)
                     .note(format!("it is the title of column {}", column + 1)));
             }
         }
@@ -203,7 +182,7 @@ impl ModelFile {
     }
 
     /// Standard deviation from the command line for each output, in its unit.
-    fn sigmas_given(&self, sigmas: &[(String, f64)]) -> Result<Vec<Option<f64>>, Refusal> {
+    fn sigmas_given(&self, sigmas: &[(String, f64)]) -> Result<Vec<Option<f64>>, DataError> {
         let outputs = outputs(&self.model);
         let mut given = vec![None; outputs.len()];
         for (name, sigma) in sigmas {
@@ -214,11 +193,11 @@ impl ModelFile {
                 });
                 let message =
                     format!("`--sigma` names `{}`, and nothing is measured by that name", shown(name));
-                return Err(Refusal::new("HP0249", message, help));
+                return Err(DataError::new("HP0249", message, help));
             };
             if !(*sigma > 0.0 && sigma.is_finite()) {
                 let message = format!("the standard deviation of `{name}` cannot be {sigma}");
-                return Err(Refusal::new("HP0249", message, "give a number above zero"));
+                return Err(DataError::new("HP0249", message, "give a number above zero"));
             }
             given[m] = Some(*sigma);
         }
@@ -226,14 +205,14 @@ impl ModelFile {
     }
 
     /// HP0248, HP0249: readings of what is at rest, all with standard deviations or all alike.
-    fn can_be_compared(&self, found: &MeasuredData, file: &str) -> Result<(), Refusal> {
+    fn can_be_compared(&self, found: &MeasuredData, file: &str) -> Result<(), DataError> {
         let outputs = outputs(&self.model);
         let readings = &found.measurements.readings;
         let moving = readings.iter().map(|r| &outputs[r.output]);
         if let Some(output) = moving.clone().find(|o| !self.model.is_known_at_rest(o.source)) {
             let message =
                 format!("`{}` cannot be compared: it has no value for a mechanism at rest", output.name);
-            return Err(Refusal::new("HP0248", message, "remove its column, or begin its title with `#`")
+            return Err(DataError::new("HP0248", message, "remove its column, or begin its title with `#`")
                 .note("every line is a posture with the positions of all drivers"));
         }
         let Some(without) = readings.iter().find(|r| r.sigma.is_none()) else { return Ok(()) };
@@ -242,14 +221,14 @@ impl ModelFile {
         if readings.iter().any(|r| r.sigma.is_some()) {
             let message =
                 format!("`{file}`, line {line}: `{name}` has no standard deviation, and others have one");
-            return Err(Refusal::new("HP0249", message, like));
+            return Err(DataError::new("HP0249", message, like));
         }
         if let Some(other) = moving.clone().find(|o| o.dimension != outputs[without.output].dimension) {
             let message = format!(
                 "`{name}` and `{}` cannot be weighed against each other without standard deviations",
                 other.name
             );
-            return Err(Refusal::new("HP0249", message, like).note(
+            return Err(DataError::new("HP0249", message, like).note(
                 "they have different units; only readings with a single unit may have no standard deviations",
             ));
         }

@@ -87,7 +87,7 @@ impl Triangles {
 
 /// HP0115: the file has no usable shape.
 fn unfit(message: String, help: &str) -> DataError {
-    DataError { code: "HP0115", ..DataError::unreadable(message, help) }
+    DataError::new("HP0115", message, help)
 }
 
 /// Triangles of a file in the model's folder or below it.
@@ -323,5 +323,5 @@ fn bounds_nothing(name: &str, open: OpenSurface) -> DataError {
         ),
     };
     let help = "export the body as a watertight solid, in full precision (binary STL, OBJ or glTF), or give its mass as `rigid`";
-    DataError { code: "HP0118", ..DataError::unreadable(message, help) }.note(note)
+    DataError::new("HP0118", message, help).note(note)
 }

@@ -7,7 +7,7 @@ use hardpoint::model::{ChangePointPolicy, LoadMode};
 use toml::de::DeTable;
 
 use crate::compose::{INCLUDE, MIRROR, PLANAR};
-use crate::values::{EntryPlace, Fields, LENGTH, MOST_ENTRIES, Reader, Shape, Table, Value, closest, table};
+use crate::values::{EntryPlace, Fields, LENGTH, Reader, Shape, Table, Value, closest, table};
 use hardpoint_table::{AngleUnit, LengthUnit};
 
 use super::elements::{LOAD_MODES, LOADS};
@@ -170,12 +170,7 @@ pub(crate) fn model<'a>(
     let mut raw = Raw::default();
     let fields = r.fields("the model", 0..0, table, MODEL.keys());
     let place = EntryPlace::of(&fields);
-    let is_table = |s: Shape| matches!(s, Shape::Table(_) | Shape::Kinds(_) | Shape::Entries(..));
-    for f in fields.iter().filter(|f| is_table(fields.key(f.key).shape)) {
-        if f.value.get_ref().as_table().is_none_or(|t| t.len() > MOST_ENTRIES) {
-            r.unread.push(f.key);
-        }
-    }
+    r.lost_tables(&fields);
     raw.push(r, Section::Model, place);
     let name = r.need(&fields, "name");
     raw.draft.name = name.and_then(|f| r.text(&fields, f)).unwrap_or_default();

@@ -7,7 +7,7 @@ use hardpoint::draft::{Section, some_of};
 use hardpoint::model::{BodyId, CaseId, Model, SweepRange, SweepSettings, VariableId};
 
 use crate::compose::{Origins, Plane, with_origin};
-use crate::values::{Diagnostic, Diagnostics, Places, Severity, Source, Texts, closest, shown};
+use crate::values::{DataError, Diagnostic, Diagnostics, Places, Severity, Source, Texts, closest, shown};
 use hardpoint_table::Units;
 
 use super::drawing::Appearance;
@@ -97,12 +97,8 @@ impl ModelFile {
     pub fn designs(&self, path: &Path) -> Result<(Vec<SweepRange>, Vec<Vec<f64>>), Diagnostics> {
         let name = path.display().to_string();
         let source = Source::new(&name, "");
-        let refused = |code, message: String, notes: Vec<String>, help: Option<String>| {
-            let d = source.diagnostic(Severity::Error, code, message, None);
-            let d = notes.into_iter().fold(d, Diagnostic::note);
-            Diagnostics::new(source.clone(), vec![help.into_iter().fold(d, Diagnostic::help)])
-        };
-        let (names, rows) = sweep::list_at(path).map_err(|e| refused(e.code, e.message, e.notes, e.help))?;
+        let rejected = |e: DataError| Diagnostics::new(source.clone(), vec![e.diagnostic(&source, None)]);
+        let (names, rows) = sweep::list_at(path).map_err(rejected)?;
         let mut variables = Vec::new();
         for (column, wanted) in names.iter().enumerate() {
             let known = self.model.variables.iter().position(|v| v.name == *wanted);
@@ -111,12 +107,12 @@ impl ModelFile {
                 let help = closest(wanted, all).map(|c| format!("did you mean `{c}`?"));
                 let message = format!("there is no design variable named `{}`", shown(wanted));
                 let note = format!("it is the title of column {} of `{}`", column + 1, shown(&name));
-                return Err(refused("HP0247", message, vec![note], help));
+                return Err(rejected(DataError { help, ..DataError::new("HP0247", message, "").note(note) }));
             };
             if variables.contains(&VariableId(k)) {
                 let message =
                     format!("`{}` is the title of two columns of `{}`", shown(wanted), shown(&name));
-                return Err(refused("HP0247", message, Vec::new(), Some("remove one of the two".into())));
+                return Err(rejected(DataError::new("HP0247", message, "remove one of the two")));
             }
             variables.push(VariableId(k));
         }

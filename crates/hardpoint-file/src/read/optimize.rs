@@ -4,14 +4,12 @@ use hardpoint::draft::{GoalDraft, LimitDraft, LimitTargetDraft, OptimizationSett
 use hardpoint::model::OptimizationSettings;
 
 use crate::values::{
-    EntryPlace, Field, Fields, HARDPOINT, JOINT, Key, Kinds, METRIC, MOST_ENTRIES, NUMBER, Reader, Shape,
-    TWO_NUMBERS, Table, VARIABLE, keys, table,
+    EntryPlace, Field, Fields, HARDPOINT, JOINT, Key, Kinds, METRIC, NUMBER, Reader, Shape, TWO_NUMBERS,
+    Table, VARIABLE, keys, table,
 };
 
 use super::raw::Raw;
 
-/// Maximum number of variables that are read by name.
-const MOST_VARIABLES: usize = 10_000;
 pub(crate) const OPTIMIZE: Table = table! {
     /// Goals and limits of an optimisation.
     "Optimize":
@@ -83,7 +81,7 @@ static LIMITS: &[(Table, Read)] = &[
             /// Range of its z.
             may "z": SIDE, "{ min = 0 }";
         },
-        |r, fields| boxed(r, fields),
+        boxed,
     ),
     (
         limit! {
@@ -124,27 +122,16 @@ const SIDE: Shape = Shape::Any("Side", "", &[TWO_NUMBERS, Shape::Table(&SIDE_TAB
 const SIDE_TABLE: Table = Table::new("SideTable", "One side of a box, which may be open.", BOUNDS);
 
 pub(super) fn optimize(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
-    let Some(f) = model.get("optimize") else { return };
-    r.unread.clear();
-    let mut subject = model.subject("optimize");
-    subject.example = "write `[optimize]`, in single brackets, and `[optimize.goals]` below it".into();
-    let Some(table) = r.table(f.value, &subject, "one table") else {
-        return;
-    };
-    let fields = r.fields("`optimize`", f.at.0..f.at.1, table, OPTIMIZE.keys());
+    let Some(fields) = r.study(model, "optimize", "goals", &OPTIMIZE) else { return };
     let place = EntryPlace::of(&fields);
-    let variables = r.given(&fields, "variables", |r, f| variables_of(r, &fields, f));
+    let variables = r.list_of_names(&fields, "variables", "all that have bounds");
     let margin = r.number_of(&fields, "min_margin");
     let starts = r.count_of(&fields, "starts", OptimizationSettings::MOST);
     let iterations = r.count_of(&fields, "max_iterations", OptimizationSettings::MOST);
-    r.need(&fields, "goals");
-    for key in ["goals", "limits"] {
-        let table = fields.get(key).map(|f| f.value.get_ref().as_table());
-        let is_lost = table.map_or(key == "goals", |t| t.is_none_or(|t| t.len() > MOST_ENTRIES));
-        if is_lost {
-            r.unread.push(if key == "goals" { "goals" } else { "limits" });
-        }
+    if r.need(&fields, "goals").is_none() {
+        r.unread.push("goals");
     }
+    r.lost_tables(&fields);
     raw.push(r, Section::Optimize, place);
     let goals = goals(r, &fields, raw);
     let limits = limits(r, &fields, raw);
@@ -264,17 +251,4 @@ fn bounds_of_limit(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Bounds> {
         return None;
     }
     Some(if equal.is_some() { [equal; 2] } else { [min, max] })
-}
-
-/// Names of design variables.
-fn variables_of(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Vec<String>> {
-    let (subject, expected) = (fields.subject(f.key), "a list of names of design variables");
-    let list = r.list(f.value, &subject, expected)?;
-    if list.len() > MOST_VARIABLES {
-        r.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
-            Some(format!("name at most {MOST_VARIABLES}, or leave it out for all that have bounds"));
-        return None;
-    }
-    let names: Vec<_> = list.into_iter().map(|v| r.name(v, &subject, expected)).collect();
-    names.into_iter().collect()
 }

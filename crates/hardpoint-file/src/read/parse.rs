@@ -163,9 +163,7 @@ pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<
     for IncludeError { file, at, error } in hindrances {
         let start = source.range(file).start;
         let at = at.start + start..at.end + start;
-        let d = source.diagnostic(Severity::Error, error.code, error.message, Some(at));
-        let d = error.notes.into_iter().fold(d, Diagnostic::note);
-        list.push(error.help.into_iter().fold(d, Diagnostic::help));
+        list.push(error.diagnostic(&source, Some(at)));
     }
     let mut tables = Vec::new();
     for file in 0..=parts.len() {

@@ -7,8 +7,8 @@ use hardpoint::model::{SweepMethod, SweepSettings};
 use toml::de::DeValue;
 
 use crate::values::{
-    DataError, EntryPlace, Fields, METRIC, MOST_ENTRIES, NUMBER, OUTPUT, Reader, Shape, Subject, TWO_NUMBERS,
-    Table, Wanted, shown, table,
+    DataError, EntryPlace, Fields, METRIC, NUMBER, OUTPUT, Reader, Shape, Subject, TWO_NUMBERS, Table,
+    Wanted, shown, table,
 };
 use hardpoint_table::csv::original;
 
@@ -76,21 +76,13 @@ const LIST: Wanted<'static> = Wanted {
 };
 
 pub(super) fn sweep(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
-    let Some(f) = model.get("sweep") else { return };
-    r.unread.clear();
-    let mut subject = model.subject("sweep");
-    subject.example = "write `[sweep]`, in single brackets, and `[sweep.variables]` below it".into();
-    let Some(table) = r.table(f.value, &subject, "one table") else { return };
-    let fields = r.fields("`sweep`", f.at.0..f.at.1, table, SWEEP.keys());
+    let Some(fields) = r.study(model, "sweep", "variables", &SWEEP) else { return };
     let place = EntryPlace::of(&fields);
     let method = fields.get("method").and_then(|_| r.word_of(&fields, "method"));
     let samples = r.count_of(&fields, "samples", MOST_SAMPLES);
     let seed = r.count_of(&fields, "seed", u32::MAX);
     let levels = r.count_of(&fields, "levels", MOST_LEVELS);
-    let names =
-        |of: &mut Reader<'_>, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
-    let metrics = names(r, "metrics", "a list of names of metrics");
-    let curves = names(r, "curves", "a list of names of measures");
+    let [metrics, curves] = ["metrics", "curves"].map(|key| r.list_of_names(&fields, key, "all"));
     let designs = r.given(&fields, "designs", |r, f| {
         let name = r.name(f.value, &fields.subject(f.key), "the name of a CSV file")?;
         let found = r.text_of_file(&name, &LIST).and_then(|text| list_in(text, &name));
@@ -101,10 +93,7 @@ pub(super) fn sweep(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
             r.out_of_place(&fields, key, "the designs are those of the file that `designs` names");
         }
     }
-    let entries = fields.get("variables").map(|f| f.value.get_ref().as_table());
-    if entries.is_some_and(|t| t.is_none_or(|t| t.len() > MOST_ENTRIES)) {
-        r.unread.push("variables");
-    }
+    r.lost_tables(&fields);
     raw.push(r, Section::Sweep, place);
     let ranges = sweep_ranges(r, &fields, raw);
     let units = [r.units.length.per_metre(), r.units.angle.per_radian()];

@@ -2,7 +2,9 @@
 
 use hardpoint::draft::Section;
 
-use crate::values::{EntryPlace, Field, Fields, Kinds, NUMBER, Reader, Shape, Subject, Table, table};
+use crate::values::{
+    EntryPlace, Field, Fields, Kinds, NUMBER, Reader, Shape, Subject, Table, all_read, table,
+};
 
 use super::raw::Raw;
 
@@ -60,8 +62,7 @@ pub(super) fn times(r: &mut Reader<'_>, what: &str, subject: &Subject, f: Field<
             r.senseless(f.value.span(), format!("there are more than {MOST_TIMES} output times"));
             return None;
         }
-        let times: Vec<_> = list.iter().map(|v| r.number(v, &subject)).collect();
-        let times: Vec<f64> = times.into_iter().collect::<Option<_>>()?;
+        let times = all_read(list.iter().map(|v| r.number(v, &subject)))?;
         if let Some(k) = (1..times.len()).find(|&k| times[k] <= times[k - 1]) {
             let message = format!("the output time {} s comes after {} s", times[k], times[k - 1]);
             r.senseless(list[k].span(), message).help = Some("list the times in increasing order".into());

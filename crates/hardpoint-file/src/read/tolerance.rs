@@ -8,8 +8,7 @@ use hardpoint::model::{AllocationRule, ToleranceSettings};
 use toml::de::DeValue;
 
 use crate::values::{
-    EntryPlace, Fields, METRIC, MOST_ENTRIES, NUMBER, OUTPUT, Reader, Shape, Subject, Table, VARIABLE, shown,
-    table,
+    EntryPlace, Fields, METRIC, NUMBER, OUTPUT, Reader, Shape, Subject, Table, VARIABLE, shown, table,
 };
 
 use super::raw::Raw;
@@ -88,31 +87,18 @@ pub(super) const LIMIT: Table = table! {
 };
 
 pub(super) fn tolerance(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
-    let Some(f) = model.get("tolerance") else { return };
-    r.unread.clear();
-    let mut subject = model.subject("tolerance");
-    subject.example = "write `[tolerance]`, in single brackets, and `[tolerance.variables]` below it".into();
-    let Some(table) = r.table(f.value, &subject, "one table") else { return };
-    let fields = r.fields("`tolerance`", f.at.0..f.at.1, table, TOLERANCE.keys());
+    let Some(fields) = r.study(model, "tolerance", "variables", &TOLERANCE) else { return };
     let place = EntryPlace::of(&fields);
     let scatter = scatter(r, &fields);
-    let names =
-        |of: &mut Reader<'_>, key: &str, what| of.given(&fields, key, |r, f| r.names_in(&fields, f, what));
-    let metrics = names(r, "metrics", "a list of names of metrics");
-    let curves = names(r, "curves", "a list of names of measures");
+    let [metrics, curves] = ["metrics", "curves"].map(|key| r.list_of_names(&fields, key, "all"));
     let samples = r.count_of(&fields, "samples", ToleranceSettings::MOST);
     let seed = r.count_of(&fields, "seed", u32::MAX);
     let keep = r.number_of(&fields, "required_sigmas");
-    let rule = fields.get("allocate").and_then(|_| r.word_of(&fields, "allocate"));
+    let rule = r.word_of(&fields, "allocate");
     if fields.get("required_sigmas").is_some() && rule != Some(0) {
         r.out_of_place(&fields, "required_sigmas", "only `allocate = \"rss\"` uses standard deviations");
     }
-    for key in ["variables", "correlations", "limits"] {
-        let table = fields.get(key).map(|f| f.value.get_ref().as_table());
-        if table.is_some_and(|t| t.is_none_or(|t| t.len() > MOST_ENTRIES)) {
-            r.unread.push(key);
-        }
-    }
+    r.lost_tables(&fields);
     raw.push(r, Section::Tolerance, place);
     let tolerances = tolerances(r, &fields, raw);
     let correlations = correlations(r, &fields, raw);

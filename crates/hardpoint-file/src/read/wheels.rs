@@ -11,7 +11,7 @@ use hardpoint::space::Vec3;
 
 use crate::values::{
     ANGLE, BODY, DRIVER, EntryPlace, Field, Fields, LENGTH, LINE, NUMBER, PLACE, Reader, Severity, Shape,
-    Table, table,
+    Table, all_read, table,
 };
 
 use super::measures::{AXLE_MEASURE, WHEEL_MEASURE};
@@ -230,9 +230,8 @@ fn arm_planes(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<[
         let body = r.name_of(&plane, "body");
         let at = r.need(&plane, "at")?;
         let points = r.list(at.value, &plane.subject("at"), "a list of two or three hardpoints")?;
-        let places: Vec<Option<LocationDraft>> =
-            points.iter().map(|value| r.fixed_place(value, &plane.subject("at"))).collect();
-        let (body, places) = (body?, places.into_iter().collect::<Option<Vec<_>>>()?);
+        let places = all_read(points.iter().map(|value| r.fixed_place(value, &plane.subject("at"))));
+        let (body, places) = (body?, places?);
         Some(places.into_iter().map(|at| PointRef::On { body: body.clone(), at }).collect())
     });
     Some([lower?, upper?])

@@ -10,7 +10,7 @@ use super::format::Key;
 pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 
 /// Maximum number of entries of a table or list, which bounds the run time of any text.
-pub(crate) const MOST_ENTRIES: usize = 200_000;
+pub(super) const MOST_ENTRIES: usize = 200_000;
 
 /// One `key = value` of a table.
 #[derive(Clone, Copy)]

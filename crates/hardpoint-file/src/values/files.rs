@@ -1,9 +1,10 @@
 //! Files in the folder of the model file.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Component, Path};
 
-use super::diagnostic::{closest, shown};
+use super::diagnostic::{Diagnostic, Severity, Source, closest, shown};
 
 /// Maximum size of a file in bytes.
 pub const LARGEST_FILE: u64 = 64 << 20;
@@ -35,26 +36,18 @@ pub(crate) struct DataError {
 }
 
 impl DataError {
+    pub fn new(code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self { code, message: message.into(), notes: Vec::new(), help: Some(help.into()), of_columns: false }
+    }
+
     /// HP0111: the file cannot be read.
     pub fn unreadable(message: impl Into<String>, help: &str) -> Self {
-        Self {
-            code: "HP0111",
-            message: message.into(),
-            notes: Vec::new(),
-            help: Some(help.into()),
-            of_columns: false,
-        }
+        Self::new("HP0111", message, help)
     }
 
     /// HP0112: the file has no curve.
     pub fn content(message: impl Into<String>, help: &str) -> Self {
-        Self {
-            code: "HP0112",
-            message: message.into(),
-            notes: Vec::new(),
-            help: Some(help.into()),
-            of_columns: false,
-        }
+        Self::new("HP0112", message, help)
     }
 
     pub fn of_columns(self) -> Self {
@@ -64,6 +57,13 @@ impl DataError {
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
+    }
+
+    /// Diagnostic at a range of a text, or for the file as a whole.
+    pub fn diagnostic(self, source: &Source, at: Option<Range<usize>>) -> Diagnostic {
+        let d = source.diagnostic(Severity::Error, self.code, self.message, at);
+        let d = self.notes.into_iter().fold(d, Diagnostic::note);
+        self.help.into_iter().fold(d, Diagnostic::help)
     }
 }
 

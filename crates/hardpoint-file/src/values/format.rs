@@ -180,6 +180,7 @@ impl Shape {
         match self {
             Self::Name(one) => format!("the name of {one}"),
             Self::List(Self::Name(one), [2, 2]) => format!("the names of two {}", several(one)),
+            Self::List(Self::Name(one), _) => format!("a list of names of {}", several(one)),
             Self::Known(noun, _) => noun.to_owned(),
             Self::Any(_, _, [one]) => one.noun(),
             Self::Words(_) => {

@@ -119,6 +119,12 @@ impl Reader<'_> {
     }
 }
 
+/// All values, if each could be read. Those after an invalid one are read too, so that their errors are reported.
+pub(crate) fn all_read<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    let values: Vec<Option<T>> = values.collect();
+    values.into_iter().collect()
+}
+
 pub(crate) fn quoted(words: &[&str]) -> String {
     words.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>().join(", ")
 }

@@ -11,7 +11,7 @@ use super::diagnostic::{closest, shown};
 use super::fields::{Field, Fields, MOST_ENTRIES, Subject, Value};
 use super::format::{Key, Need, Shape, THROUGH, Table};
 use super::places::EntryPlace;
-use super::reader::{Reader, quoted};
+use super::reader::{Reader, all_read, quoted};
 
 /// Maximum number of names in a list.
 const MOST_NAMES: usize = 10_000;
@@ -97,6 +97,21 @@ impl Reader<'_> {
             self.wrong(value, subject, expected);
         }
         table
+    }
+
+    /// A table of names, with a limited number of entries.
+    pub fn table_of_names<'a>(
+        &mut self,
+        value: &'a Value<'a>,
+        subject: &Subject,
+        expected: &str,
+    ) -> Option<&'a DeTable<'a>> {
+        let table = self.table(value, subject, expected)?;
+        if table.len() > MOST_ENTRIES {
+            self.too_many(value.span(), &subject.name, table.len());
+            return None;
+        }
+        Some(table)
     }
 
     pub fn list<'a>(
@@ -196,8 +211,7 @@ impl Reader<'_> {
         let (subject, expected) = (fields.subject(key), fields.key(key).shape.noun());
         self.given(fields, key, |r, f| match f.value.get_ref().as_array() {
             Some(list) if list.len() == N => {
-                let names: Vec<_> = list.iter().map(|v| r.name(v, &subject, &expected)).collect();
-                names.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
+                all_read(list.iter().map(|v| r.name(v, &subject, &expected)))?.try_into().ok()
             }
             _ => {
                 r.wrong(f.value, &subject, &expected);
@@ -292,6 +306,32 @@ impl Reader<'_> {
             }
         }
         entries
+    }
+
+    /// Fields of the settings of a study, a table of the model; `below` is the first table in it.
+    pub fn study<'a>(
+        &mut self,
+        model: &Fields<'a>,
+        key: &'static str,
+        below: &str,
+        of: &'static Table,
+    ) -> Option<Fields<'a>> {
+        let f = model.get(key)?;
+        self.unread.clear();
+        let mut subject = model.subject(key);
+        subject.example = format!("write `[{key}]`, in single brackets, and `[{key}.{below}]` below it");
+        let table = self.table(f.value, &subject, "one table")?;
+        Some(self.fields(format!("`{key}`"), f.at.0..f.at.1, table, of.keys()))
+    }
+
+    /// Records keys of tables as unread whose values are no tables, or have too many entries.
+    pub fn lost_tables(&mut self, fields: &Fields<'_>) {
+        let is_table = |s: Shape| matches!(s, Shape::Table(_) | Shape::Kinds(_) | Shape::Entries(..));
+        for f in fields.iter().filter(|f| is_table(fields.key(f.key).shape)) {
+            if f.value.get_ref().as_table().is_none_or(|t| t.len() > MOST_ENTRIES) {
+                self.unread.push(f.key);
+            }
+        }
     }
 
     /// Fields of a named entry, which must be a table.
@@ -411,19 +451,11 @@ impl Reader<'_> {
         self.given(fields, key, |r, f| {
             let subject = fields.subject(key);
             let list = r.list(f.value, &subject, "a list of tables")?;
-            let tables: Vec<_> = (1..)
-                .zip(list)
-                .map(|(k, v)| {
-                    let table = r.table(v, &subject, "a list of tables")?;
-                    Some(r.fields(
-                        format!("entry {k} of `{key}` in {}", fields.what),
-                        v.span(),
-                        table,
-                        of.keys(),
-                    ))
-                })
-                .collect();
-            tables.into_iter().collect()
+            all_read((1..).zip(list).map(|(k, v)| {
+                let table = r.table(v, &subject, "a list of tables")?;
+                let what = format!("entry {k} of `{key}` in {}", fields.what);
+                Some(r.fields(what, v.span(), table, of.keys()))
+            }))
         })
     }
 
@@ -441,7 +473,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a location; coordinates have no items of their own.
+    /// Location under a key.
     pub fn place_of(&mut self, fields: &Fields<'_>, key: &str) -> Option<LocationDraft> {
         self.given(fields, key, |r, f| r.place(f.value, &fields.subject(f.key)))
     }
@@ -459,17 +491,18 @@ impl Reader<'_> {
         None
     }
 
-    /// A list of names.
-    pub fn names_in(&mut self, fields: &Fields<'_>, f: Field<'_>, expected: &str) -> Option<Vec<String>> {
-        let subject = fields.subject(f.key);
-        let list = self.list(f.value, &subject, expected)?;
-        if list.len() > MOST_NAMES {
-            self.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
-                Some(format!("name at most {MOST_NAMES}, or leave it out for all"));
-            return None;
-        }
-        let names: Vec<_> = list.into_iter().map(|v| self.name(v, &subject, expected)).collect();
-        names.into_iter().collect()
+    /// Names in a list of any length; `all` describes the default in the help on a list that is too long.
+    pub fn list_of_names(&mut self, fields: &Fields<'_>, key: &str, all: &str) -> Option<Vec<String>> {
+        let (subject, expected) = (fields.subject(key), fields.key(key).shape.noun());
+        self.given(fields, key, |r, f| {
+            let list = r.list(f.value, &subject, &expected)?;
+            if list.len() > MOST_NAMES {
+                r.senseless(f.value.span(), format!("{} has {} entries", subject.name, list.len())).help =
+                    Some(format!("name at most {MOST_NAMES}, or leave it out for {all}"));
+                return None;
+            }
+            all_read(list.into_iter().map(|v| r.name(v, &subject, &expected)))
+        })
     }
 }
 
