@@ -4,7 +4,7 @@ import { abscissaOf, type Content } from '../content'
 import type { Curve } from '../curve'
 import { extent, linearAxis } from '../export/axis'
 
-/** About so many rows are shown at first. */
+/** Approximate number of rows at first. */
 const ROWS = 6
 
 /** Values of all curves of a plot at chosen abscissas. */
