@@ -15,6 +15,11 @@ export function number(value: number, digits = DIGITS): string {
   return text.replaceAll('-', '−')
 }
 
+/** A change with its sign. */
+export function signed(by: number, digits = DIGITS): string {
+  return `${by > 0 ? '+' : ''}${number(by, digits)}`
+}
+
 /** A number with its unit; the pure number `1` shows none. */
 export function figure(value: number, unit: string): string {
   const shown = pretty(unit)

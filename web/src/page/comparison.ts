@@ -1,10 +1,10 @@
 import type { Curve } from '../curve'
 import { el } from '../dom'
 import { extent } from '../export/axis'
-import { number, pretty } from '../format'
-import { noise, rounded } from '../rounding'
+import { pretty, signed } from '../format'
+import { noise } from '../rounding'
 import type { State } from '../state'
-import { isStatic } from './cards'
+import { isStatic, valueText } from './cards'
 import { whileSeen } from './tabs'
 
 /** A design of the comparison. */
@@ -41,7 +41,7 @@ export function comparison(state: State): HTMLElement {
           isRange ? (extent([curve(quantity!)]) ?? [null, null]) : [value(index)],
         )
         const join = (words: string[]) => [...new Set(words)].join(' … ')
-        const cells = found.map((numbers) => join(numbers.map(text)))
+        const cells = found.map((numbers) => join(numbers.map(valueText)))
         const [before, now] = found
         const changed = (value: number | null, k: number) =>
           value === null || before[k] === null ? '–' : changeText(value - before[k], value)
@@ -85,10 +85,6 @@ function columnsOf(state: State): Column[] {
   return [reference, ...(isCompared ? [present] : []), ...others, ...last]
 }
 
-function text(value: number | null): string {
-  return value === null ? '–' : number(rounded(value), 4)
-}
-
 function changeText(by: number, size: number): string {
-  return Math.abs(by) <= noise(size) ? '0' : `${by > 0 ? '+' : ''}${number(by, 3)}`
+  return Math.abs(by) <= noise(size) ? '0' : signed(by, 3)
 }

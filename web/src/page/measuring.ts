@@ -1,5 +1,6 @@
 import './measuring.css'
 import { Vector3 } from 'three'
+import { fromRadians } from '../amount'
 import { el, svg } from '../dom'
 import { figure, number } from '../format'
 import { rounded } from '../rounding'
@@ -161,6 +162,6 @@ export class Measuring {
     const words: (Node | string)[] = [el('b', {}, figure(by.length(), length)), ` (${parts.join(', ')})`]
     if (!c) return words
     const turn = a.clone().sub(b).angleTo(c.clone().sub(b))
-    return [...words, ', angle ', el('b', {}, figure(angle === 'deg' ? (turn * 180) / Math.PI : turn, angle))]
+    return [...words, ', angle ', el('b', {}, figure(fromRadians(turn, angle), angle))]
   }
 }

@@ -1,6 +1,6 @@
 import { el, prose } from '../dom'
 import { effects, type Effect } from '../effect'
-import { figure, number, pretty, roundBelow } from '../format'
+import { figure, pretty, roundBelow, signed } from '../format'
 import { derivativeUnit, orderedName, type Variable } from '../report'
 import type { State } from '../state'
 import { badge } from '../variables'
@@ -198,12 +198,7 @@ function row(state: State, variable: Variable, limits: VariableLimits | undefine
     rank: (found, symbol) => {
       bar.style.setProperty('--share', String(found?.share ?? 0))
       bar.classList.toggle('negative', (found?.extreme ?? 0) < 0)
-      const sign = (found?.extreme ?? 0) > 0 ? '+' : ''
-      size.textContent = !found
-        ? 'not known'
-        : found.share === 0
-          ? '≈ 0'
-          : `${sign}${number(found.extreme, 3)} ${symbol}`
+      size.textContent = !found ? 'not known' : found.share === 0 ? '≈ 0' : `${signed(found.extreme, 3)} ${symbol}`
     },
     focus: () => button.focus(),
   }

@@ -547,7 +547,7 @@ export class Grips {
   }
 }
 
-/** A change with its sign. */
-export function signed(by: number): string {
+/** A change of a coordinate with its sign. */
+function signed(by: number): string {
   return `${by < 0 ? '−' : '+'}${entry(Math.abs(by), 6)}`
 }
