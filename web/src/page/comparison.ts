@@ -3,6 +3,7 @@ import { el } from '../dom'
 import { extent } from '../export/axis'
 import { pretty, signed } from '../format'
 import { noise } from '../rounding'
+import { curveOf } from '../report'
 import type { State } from '../state'
 import { isStatic, valueText } from './cards'
 import { whileSeen } from './tabs'
@@ -72,7 +73,7 @@ function columnsOf(state: State): Column[] {
   const of = (k: number): Column => ({
     name: designs[k].name,
     value: (index) => designs[k].values[index] ?? null,
-    curve: (quantity) => designs[k].quantities[quantity]?.[0] ?? new Float32Array(),
+    curve: (quantity) => curveOf(designs[k], quantity, 0),
   })
   const present: Column = {
     name: 'current',
@@ -80,9 +81,8 @@ function columnsOf(state: State): Column[] {
     curve: (quantity) => state.curve(quantity, 0),
   }
   const reference = choice.compared !== undefined && former ? of(choice.compared) : original
-  const others = (choice.overlays ?? []).filter((k) => designs[k] && k !== choice.compared).map(of)
   const last = reference === original || !state.changed ? [] : [original]
-  return [reference, ...(isCompared ? [present] : []), ...others, ...last]
+  return [reference, ...(isCompared ? [present] : []), ...state.overlays.map(of), ...last]
 }
 
 function changeText(by: number, size: number): string {
