@@ -1,5 +1,5 @@
 import './measuring.css'
-import { Vector3 } from 'three'
+import type { Vector3 } from 'three'
 import { fromRadians } from '../amount'
 import { el, svg } from '../dom'
 import { figure, number } from '../format'
@@ -129,16 +129,13 @@ export class Measuring {
   }
 
   #place({ body, point }: Spot): Vector3 {
-    const { mechanism } = this.view
-    return mechanism.worldAt(body, new Vector3(...mechanism.report.bodies[body].skeleton[point]), this.state.step)
+    return this.view.mechanism.skeletonAt(body, point, this.state.step)
   }
 
   #show(): void {
     if (!this.on) return
     for (const spot of this.#spots) {
-      const { x, y, seen } = this.view.project(this.#place(spot))
-      spot.button.hidden = !seen || !Number.isFinite(x + y)
-      spot.button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
+      this.view.put(spot.button, this.#place(spot))
       spot.button.setAttribute('aria-pressed', String(this.#chosen.includes(spot)))
     }
     this.#selects.forEach((select, k) => (select.value = this.#chosen[k]?.name ?? ''))
