@@ -3,7 +3,7 @@ import { effects, type Effect } from '../effect'
 import { figure, pretty, roundBelow, signed } from '../format'
 import { derivativeUnit, orderedName, type Variable } from '../report'
 import type { State } from '../state'
-import { badge } from '../variables'
+import { badge, limited } from '../variables'
 import { NumberField } from './number_field'
 import { reach } from './reach'
 
@@ -235,7 +235,7 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
     step: step || 1,
     plus: 'sign',
     apply: (by) => {
-      const kept = limited(by, variable)
+      const kept = limited(by, variable.bounds)
       state.change(index, kept)
       field.show(kept)
       return kept === by ? undefined : `The bound of \`${name}\` is ${figure(kept, unit)}.`
@@ -316,8 +316,4 @@ function limitControls(variable: Variable, [low, high]: [number, number], { setB
     button.setAttribute('aria-expanded', String(!fields.hidden))
   }
   return { fields, button, sync }
-}
-
-function limited(by: number, { bounds }: Variable): number {
-  return Math.min(Math.max(by, bounds?.[0] ?? -Infinity), bounds?.[1] ?? Infinity)
 }

@@ -23,6 +23,7 @@ import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
 import { Mover } from './mover'
+import { changesOf, settingsOf } from './moves'
 import { PointsPane } from './points'
 import { connect } from './server'
 import { separateMotions } from './motions'
@@ -519,7 +520,7 @@ export class Studio {
 
   #read(found: WireDesign | null, { decode }: Answer<unknown>, settings: VariableSetting[]): Design | undefined {
     if (!found) return undefined
-    const by = new Map(settings.map(({ name, by }) => [name, by]))
+    const by = changesOf(settings)
     return { ...design(found, decode), change: this.state.report.variables.map(({ name }) => by.get(name) ?? 0) }
   }
 
@@ -766,9 +767,9 @@ function studyPane(
 
 /** Changes made after others. */
 function added(first: readonly VariableSetting[], then: readonly VariableSetting[]): VariableSetting[] {
-  const sum = new Map(first.map(({ name, by }) => [name, by]))
+  const sum = changesOf(first)
   for (const { name, by } of then) sum.set(name, (sum.get(name) ?? 0) + by)
-  return [...sum].map(([name, by]) => ({ name, by }))
+  return settingsOf(sum)
 }
 
 /** A part of the way from some changes to others. */
@@ -777,8 +778,8 @@ export function between(
   to: readonly VariableSetting[],
   part: number,
 ): VariableSetting[] {
-  const before = new Map(from.map(({ name, by }) => [name, by]))
-  const after = new Map(to.map(({ name, by }) => [name, by]))
+  const before = changesOf(from)
+  const after = changesOf(to)
   const names = [...new Set([...before.keys(), ...after.keys()])]
   return names
     .map((name) => ({ name, by: (before.get(name) ?? 0) + part * ((after.get(name) ?? 0) - (before.get(name) ?? 0)) }))
