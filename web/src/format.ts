@@ -46,6 +46,11 @@ export function titled(name: string, unit: string): string {
   return shown ? `${name} [${shown}]` : name
 }
 
+/** Message of an error, whatever was thrown. */
+export function messageOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error)
+}
+
 /** The nearest of 1, 2 and 5 times a power of ten below a positive number. */
 export function roundBelow(value: number): number {
   const power = 10 ** Math.floor(Math.log10(value))

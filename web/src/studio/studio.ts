@@ -8,6 +8,7 @@ import { type Answer, RequestError } from '../engine/answer'
 import { Solver } from '../engine/solver'
 import { pageFile, storedDesign } from '../export/page_file'
 import { save } from '../export/save'
+import { messageOf } from '../format'
 import { page, type PageMemory, type PageParts, slot } from '../page'
 import type { Item } from '../page/menu'
 import type { VariableLimits } from '../page/variables'
@@ -799,8 +800,4 @@ function hasSameNames(a: Report, b: Report): boolean {
   const same = (a: readonly { name: string }[], b: readonly { name: string }[]) =>
     a.length === b.length && a.every(({ name }, k) => name === b[k].name)
   return same(a.quantities, b.quantities) && same(a.variables, b.variables)
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error)
 }
