@@ -84,8 +84,8 @@ export class Studio {
   #next?: string
   /** Counts the requests, so that an outdated answer is ignored. */
   #version = 0
-  /** Index of each compared design among those of the page. */
-  readonly #solved = new Map<Snapshot, number>()
+  /** The page's design of each snapshot that was compared with. */
+  readonly #solved = new Map<Snapshot, Design>()
   /** Choices by case, for when it is shown again; and those that the next page is to make. */
   readonly #choices = new Map<string | null, Choices>()
   #recalled?: Choices
@@ -649,21 +649,20 @@ export class Studio {
         const found = await this.#solveSnapshot(snapshot)
         if (state !== this.state) return
         if (!found) continue
-        state.addComparison({ ...found, name: snapshot.name })
-        this.#solved.set(snapshot, state.designs.length - 1)
+        const compared = { ...found, name: snapshot.name }
+        state.addComparison(compared)
+        this.#solved.set(snapshot, compared)
       }
     } catch (error) {
       this.#showStatus(messageOf(error))
     }
-    const shown = this.history.compared.flatMap((snapshot) => this.#solved.get(snapshot) ?? [])
+    const solved = this.history.compared.flatMap((snapshot) => this.#solved.get(snapshot) ?? [])
+    const shown = solved.map((design) => state.designs.indexOf(design))
     state.choose({ compared: shown.at(-1), overlays: shown.slice(0, -1) })
   }
 
   async #solveSnapshot({ step: { text, settings } }: Snapshot): Promise<Design | undefined> {
-    if (text === this.model.text) {
-      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: [...settings], from: null })
-      return this.#read(answer.json.design, answer, [...settings])
-    }
+    if (text === this.model.text) return this.#solveAlone([...settings])
     await this.#sensing.ask<OpenReply>({ ask: 'open', model: { ...this.model, text } })
     const { json } = await this.#sensing.ask<Text>({ ask: 'text', change: [...settings] })
     const answer = await this.#drags.ask<DesignReply>({ ask: 'beside', model: { ...this.model, text: json.text } })
@@ -682,36 +681,29 @@ export class Studio {
     while (this.#previewed) {
       const { change } = this.#previewed
       const { state } = this
-      const found = change && (await this.#designOf(added(state.settings, change)))
+      // A design of a search may not move at all: there is nothing to draw then.
+      const found = change && (await this.#solveAlone(added(state.settings, change)).catch(() => undefined))
       if (this.state === state) this.#showPreview(found)
       if (this.#previewed.change === change) this.#previewed = undefined
     }
   }
 
-  async #designOf(settings: VariableSetting[]): Promise<Design | undefined> {
-    try {
-      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: settings, from: null })
-      return this.#read(answer.json.design, answer, settings)
-    } catch {
-      // A design of a search may not move at all: there is nothing to draw then.
-      return undefined
-    }
+  /** A design of the model's own text, solved without a path to it. */
+  async #solveAlone(settings: VariableSetting[]): Promise<Design | undefined> {
+    const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: settings, from: null })
+    return this.#read(answer.json.design, answer, settings)
   }
 
   /** Draws a design dashed, as the one that the present one is compared with; undefined ends that. */
   #showPreview(design: Design | undefined): void {
     const { state } = this
     const { comparisons, choice } = state
-    const first = state.report.designs.length
     const at = comparisons.findIndex(({ name }) => name === PREVIEW)
-    if (at >= 0) {
-      comparisons.splice(at, 1)
-      for (const [snapshot, k] of this.#solved) if (k > first + at) this.#solved.set(snapshot, k - 1)
-    }
+    if (at >= 0) comparisons.splice(at, 1)
     if (design) {
       if (at < 0) this.#compared = choice.compared
       comparisons.push({ ...design, name: PREVIEW })
-      state.choose({ compared: first + comparisons.length - 1 })
+      state.choose({ compared: state.designs.length - 1 })
     } else if (at >= 0) {
       if (this.history.compared.length > 0) void this.#compare()
       else state.choose({ compared: this.#compared })
