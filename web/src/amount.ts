@@ -55,6 +55,11 @@ function conversion(written: string, unit: string): number | string {
     : `The unit here is ${unit}; leave out \`${written}\`.`
 }
 
+/** An angle in a unit of the report. */
+export function fromRadians(radians: number, unit: string): number {
+  return unit === 'deg' ? (radians * 180) / Math.PI : radians
+}
+
 /** A number for a field: at most this many digits, and no exponent while it is readable without. */
 export function entry(value: number, digits = 7): string {
   return String(Number(value.toPrecision(digits)))

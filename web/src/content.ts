@@ -1,4 +1,4 @@
-import type { Curve } from './curve'
+import { type Curve, firstIndex } from './curve'
 import { type Part, seenRange } from './zoom'
 
 /** A curve of a plot. */
@@ -44,6 +44,11 @@ export interface Content {
   message?: string
 }
 
+/** Lines of a plot that are not hidden. */
+export function drawnLines({ lines }: Content): Line[] {
+  return lines.filter(({ hidden }) => !hidden)
+}
+
 /** The abscissa of a line. */
 export function abscissaOf(line: Line, { over }: Content, times: Curve): Curve {
   return line.over ?? over?.curve ?? times
@@ -54,23 +59,15 @@ export function drawnSteps(line: Line, content: Content, times: Curve): [first: 
   const xs = abscissaOf(line, content, times)
   const all: [number, number] = [0, xs.length - 1]
   if (!content.once || line.free) return all
-  const [low, high] = [indexOf(xs, (a, b) => a < b), indexOf(xs, (a, b) => a > b)]
+  const [low, high] = [firstIndex(xs, (a, b) => a < b), firstIndex(xs, (a, b) => a > b)]
   const [first, last] = low < high ? [low, high] : [high, low]
   const sign = low < high ? 1 : -1
   for (let k = first; k < last; k++) if (!(sign * (xs[k + 1] - xs[k]) >= 0)) return all
   return [first, last]
 }
 
-function indexOf(curve: Curve, before: (a: number, b: number) => boolean): number {
-  let best = 0
-  for (let k = 1; k < curve.length; k++) if (before(curve[k], curve[best])) best = k
-  return best
-}
-
 /** Least and largest drawn value within the visible part of the abscissa; of all where none is visible. */
-export function drawnRange({ lines, over, part, logarithmic }: Content, times: Curve): [number, number] | undefined {
-  const pairs = lines
-    .filter(({ hidden }) => !hidden)
-    .map((line) => [line.marks ?? line.curve, line.over ?? over?.curve ?? times] as const)
-  return seenRange(pairs, part, logarithmic)
+export function drawnRange(content: Content, times: Curve): [number, number] | undefined {
+  const pairs = drawnLines(content).map((line) => [line.marks ?? line.curve, abscissaOf(line, content, times)] as const)
+  return seenRange(pairs, content.part, content.logarithmic)
 }

@@ -15,6 +15,13 @@ export function peak(curve: Curve): number {
   return Math.abs(extreme(curve))
 }
 
+/** Index of the value that comes first in an order, the first one of equals. */
+export function firstIndex(curve: Curve, before: (a: number, b: number) => boolean): number {
+  let best = 0
+  for (let k = 1; k < curve.length; k++) if (before(curve[k], curve[best])) best = k
+  return best
+}
+
 /** Values of every `stride`-th step in their places, gaps between; nothing for a curve without values. */
 export function spread(curve: Curve, stride: number, steps: number): Curve {
   if (curve.length === 0) return curve

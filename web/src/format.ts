@@ -15,6 +15,11 @@ export function number(value: number, digits = DIGITS): string {
   return text.replaceAll('-', '−')
 }
 
+/** A change with its sign. */
+export function signed(by: number, digits = DIGITS): string {
+  return `${by > 0 ? '+' : ''}${number(by, digits)}`
+}
+
 /** A number with its unit; the pure number `1` shows none. */
 export function figure(value: number, unit: string): string {
   const shown = pretty(unit)
@@ -39,6 +44,11 @@ export function per(unit: string, by: string): string {
 export function titled(name: string, unit: string): string {
   const shown = pretty(unit)
   return shown ? `${name} [${shown}]` : name
+}
+
+/** Message of an error, whatever was thrown. */
+export function messageOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error)
 }
 
 /** The nearest of 1, 2 and 5 times a power of ten below a positive number. */

@@ -2,7 +2,7 @@ import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
 import { css, el, keepFocus, prose, setText, svg } from './dom'
 import { number, pretty, titled } from './format'
-import { abscissaOf, type Content, drawnRange, drawnSteps, type Line } from './content'
+import { abscissaOf, type Content, drawnLines, drawnRange, drawnSteps, type Line } from './content'
 import { decades, nearestStep, padded, positive, stepAt, valueAt, type Curve, withGaps } from './curve'
 import { extent, FEWEST_TICKS, ticks } from './export/axis'
 import type { State } from './state'
@@ -195,7 +195,7 @@ export class Plot {
     const axes = `${titled(content.title, content.unit)} over ${content.over?.label ?? 'time'}`
     this.area.setAttribute('aria-label', `${axes}: plus and minus zoom, 0 resets the zoom, Enter maximises`)
     this.#list(content.lines)
-    const lines = content.lines.filter(({ hidden }) => !hidden)
+    const lines = drawnLines(content)
     const { unit, over, logarithmic } = content
     const shapes = lines.map(({ marks }) => marks !== undefined)
     const key = JSON.stringify([unit, over?.label, over?.unit, logarithmic, shapes, css('--muted'), css('--rule')])
@@ -341,7 +341,7 @@ export class Plot {
 
   /** Line number `k` of those drawn. */
   #lineAt(k: number): Line | undefined {
-    return this.content.lines.filter(({ hidden }) => !hidden)[k]
+    return drawnLines(this.content)[k]
   }
 
   /** Ranges of both axes, found once for what is drawn. */
@@ -523,11 +523,11 @@ export class Plot {
 
   /** The whole abscissa. */
   #all(): Part {
-    const { over, lines } = this.content
+    const { content } = this
     const { times } = this.state.report
-    if (!over) return extent([times]) ?? [0, 0]
-    const drawn = lines.filter(({ hidden }) => !hidden).map((line) => abscissaOf(line, this.content, times))
-    return padded(...(extent([over.curve, ...drawn]) ?? [0, 0]))
+    if (!content.over) return extent([times]) ?? [0, 0]
+    const drawn = drawnLines(content).map((line) => abscissaOf(line, content, times))
+    return padded(...(extent([content.over.curve, ...drawn]) ?? [0, 0]))
   }
 
   #see(part: Part | undefined): void {

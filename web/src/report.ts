@@ -79,6 +79,11 @@ export interface Design extends Omit<wire.Design, 'poses' | 'loads' | 'quantitie
   margin?: Curve
 }
 
+/** A quantity of a design; no values where the design does not have it. */
+export function curveOf({ quantities }: Design, quantity: number, order: Order): Curve {
+  return quantities[quantity]?.[order] ?? new Float32Array()
+}
+
 /** Measures over two drivers; tables row by row, a row for each place of the second. */
 export interface GridMap extends Omit<wire.GridMap, 'quantities'> {
   quantities: {

@@ -1,4 +1,4 @@
-import type { Curve } from './curve'
+import { type Curve, firstIndex } from './curve'
 import { extent } from './export/axis'
 import { groups, type Quantity, type Report } from './report'
 import { noise } from './rounding'
@@ -170,20 +170,16 @@ function moves(curve: Curve): boolean {
   return high - low > Math.max(STILL * size, noise(size))
 }
 
-function rangeOf(curve: Curve): number {
+/** Largest less smallest value, 0 for a curve without any value. */
+export function rangeOf(curve: Curve): number {
   const [low, high] = extent([curve]) ?? [0, 0]
   return high - low
 }
 
 /** True if one curve is the other, times a factor and plus a constant. */
 function proportional(a: Curve, b: Curve): boolean {
-  const [low, high] = [argument(b, (x, y) => x < y), argument(b, (x, y) => x > y)]
+  const [low, high] = [firstIndex(b, (x, y) => x < y), firstIndex(b, (x, y) => x > y)]
   const factor = (a[high] - a[low]) / (b[high] - b[low])
   const tolerance = STILL * Math.max(rangeOf(a), Number.MIN_VALUE)
   return a.every((value, k) => !(Math.abs(value - a[low] - factor * (b[k] - b[low])) > tolerance))
-}
-
-/** Index of the value that comes first in an order. */
-function argument(curve: Curve, before: (a: number, b: number) => boolean): number {
-  return curve.reduce((best, value, k) => (before(value, curve[best]) ? k : best), 0)
 }

@@ -1,7 +1,7 @@
 import { valueAt, stepAt, type Curve } from './curve'
 import { effects } from './effect'
 import type { VariableSetting } from './engine/protocol'
-import type { Design, Order, Report } from './report'
+import { curveOf, type Design, type Order, type Report } from './report'
 import type { Part } from './scene/drawable'
 import { abscissaNamed, type Sheet, sheetOf } from './sheet'
 
@@ -220,6 +220,12 @@ export class State {
     return this.choice.compared === undefined ? undefined : this.designs[this.choice.compared]
   }
 
+  /** Further designs in the plots: indices into the designs, without the reference. */
+  get overlays(): number[] {
+    const { designs, choice } = this
+    return (choice.overlays ?? []).filter((k) => designs[k] && k !== choice.compared)
+  }
+
   /** True if the present design differs from the one that it is compared with. */
   get isCompared(): boolean {
     return this.former ? this.former !== this.present : this.present !== undefined || this.changed
@@ -239,7 +245,7 @@ export class State {
   curve(quantity: number, order: Order): Curve {
     const loaded = this.report.quantities[quantity].curves[order]
     const { present } = this
-    if (present) return present.quantities[quantity]?.[order] ?? new Float32Array()
+    if (present) return curveOf(present, quantity, order)
     if (!this.changed) return loaded
     const curve = loaded.slice()
     for (const { index, sensitivities } of this.report.variables) {

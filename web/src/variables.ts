@@ -13,3 +13,8 @@ export function badge(variable: Variable): HTMLElement | undefined {
   const text = BADGES[variable.admissibility]
   return text ? el('span', { class: `badge ${variable.admissibility}`, title: variable.note }, text) : undefined
 }
+
+/** A change within the bounds of its variable. */
+export function limited(by: number, bounds: readonly [number | null, number | null] | null | undefined): number {
+  return Math.min(Math.max(by, bounds?.[0] ?? -Infinity), bounds?.[1] ?? Infinity)
+}

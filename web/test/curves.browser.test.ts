@@ -1,27 +1,18 @@
-import type { Browser, Page } from 'playwright-core'
-import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
-import { launch, NO_3D, visit, type Visit } from './browser'
+import type { Page } from 'playwright-core'
+import { describe, expect, inject, test } from 'vitest'
+import { NO_3D } from './browser'
+import { pages, ready } from './pages'
 import { curve, drawn, slide } from './person'
 
 const { models } = inject('samples')
 
 /** The curves need no view, and are drawn sooner without one. */
-let browser: Browser
-let visited: Visit
 let page: Page
-beforeAll(async () => {
-  browser = await launch(NO_3D)
-})
-afterAll(() => browser?.close())
-afterEach(async () => {
-  expect(visited.complaints).toEqual([])
-  await page.context().close()
-})
+const visit = pages(NO_3D)
 
 const open = async (name: string, viewport = { width: 1440, height: 900 }) => {
-  visited = await visit(browser, models[name], { viewport })
-  page = visited.page
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+  page = await visit(models[name], { viewport })
+  await ready(page)
 }
 const settled = async () => {
   await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'no')

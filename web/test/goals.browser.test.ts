@@ -1,34 +1,18 @@
 import { readFileSync } from 'node:fs'
-import type { Browser, Page } from 'playwright-core'
-import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
-import { launch, visit, type Visit } from './browser'
-import { frames } from './person'
+import type { Page } from 'playwright-core'
+import { describe, expect, inject, test } from 'vitest'
+import { pages, ready, settled } from './pages'
 
 const { models } = inject('samples')
 
 /** Time in which a study has ended after it was cancelled, ms, as the page measures it. */
 const SOON = 300
 
-let browser: Browser
-let visited: Visit
 let page: Page
-beforeAll(async () => {
-  browser = await launch()
-})
-afterAll(() => browser?.close())
-afterEach(async () => {
-  expect(visited.complaints).toEqual([])
-  await page.context().close()
-})
-const ready = () => page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
-const settled = async () => {
-  await frames(page, 3)
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
-}
+const visit = pages()
 const open = async (name: string) => {
-  visited = await visit(browser, models[name])
-  page = visited.page
-  await ready()
+  page = await visit(models[name])
+  await ready(page)
 }
 /** The text of the model, as the page exports it. */
 const model = async () => {
@@ -50,7 +34,7 @@ describe('a goal', () => {
     await page.getByTestId('goal-over').selectOption('wheel_travel')
     await page.getByTestId('goal-add').click()
     await page.getByTestId('goal-toe_range').waitFor()
-    await ready()
+    await ready(page)
     // The text has the metric alone, and the form the goal: no variable has bounds yet.
     expect(await page.getByTestId('goal-toe_range').getByRole('checkbox').isChecked()).toBe(true)
     expect(await page.getByTestId('optimise-why').innerText()).toBe('Choose at least one variable.')
@@ -62,7 +46,7 @@ describe('a goal', () => {
     await page.getByTestId('goal-max').fill('10')
     await page.getByTestId('goal-add').click()
     await expect.poll(() => page.getByTestId('optimise').locator('.limits').innerText()).toMatch(/camber_range.*10 deg/)
-    await ready()
+    await ready(page)
     expect(await page.getByLabel('highest of tie_rod_outer_z').inputValue()).toBe('10')
     expect(await page.getByTestId('goal-toe_range').getByRole('checkbox').isChecked()).toBe(true)
     await page.getByTestId('optimise-starts').fill('40')
@@ -76,7 +60,7 @@ describe('a goal', () => {
     })
     expect(took).toBeLessThan(SOON)
     await page.getByTestId('optimise-take').click()
-    await settled()
+    await settled(page)
     expect(await page.getByTestId('plot-0').innerText()).not.toContain('best so far')
     expect(await page.getByTestId('plot-0').innerText()).toContain('original')
   })
@@ -89,7 +73,7 @@ describe('a variable', () => {
     await row.locator('.name').click()
     await row.getByTestId('change-value').fill('3')
     await row.getByTestId('change-value').press('Enter')
-    await settled()
+    await settled(page)
     await row.getByTestId('limits').click()
     await row.getByTestId('bound-low').fill('-20')
     await row.getByTestId('bound-low').press('Enter')
@@ -99,15 +83,15 @@ describe('a variable', () => {
     await page.waitForFunction(
       () => document.querySelector('[data-testid=variable-B_x] [type=range]')!.getAttribute('max') === '20',
     )
-    await ready()
-    await settled()
+    await ready(page)
+    await settled(page)
     expect(await row.getByTestId('change-value').inputValue()).toBe('3')
     await row.locator('.name').click()
     await row.getByTestId('limits').click()
     await row.getByTestId('tolerance-of').fill('0,2')
     await row.getByTestId('tolerance-of').press('Enter')
-    await settled()
-    await ready()
+    await settled(page)
+    await ready(page)
     const text = await model()
     // They count from the changed design, which the text has.
     expect(text).toContain('B_x = { move = "B", along = "x", bounds = [-23, 17], tolerance = 0.2 }')

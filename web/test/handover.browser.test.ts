@@ -5,7 +5,8 @@ import { pathToFileURL } from 'node:url'
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
 import { launch, visit } from './browser'
-import { frames, slide } from './person'
+import { ready, settled } from './pages'
+import { slide } from './person'
 
 const { models } = inject('samples')
 
@@ -19,11 +20,6 @@ afterAll(async () => {
   await browser?.close()
   rmSync(folder, { recursive: true })
 })
-const ready = (page: Page) => page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
-const settled = async (page: Page) => {
-  await frames(page, 3)
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
-}
 const exported = async (page: Page, entry: string) => {
   await page.getByTestId('export').click()
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId(entry).click()])

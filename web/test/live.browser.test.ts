@@ -5,6 +5,7 @@ import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, beforeEach, describe, expect, inject, test } from 'vitest'
 import { animation } from './animation'
 import { launch, visit, type Visit } from './browser'
+import { ready, settled } from './pages'
 import { frames, slide } from './person'
 
 const { models, answers } = inject('samples')
@@ -20,16 +21,10 @@ beforeAll(async () => {
 })
 afterAll(() => browser?.close())
 
-const ready = () => page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
-/** Waits until text and sensitivities have followed the design. */
-const settled = async () => {
-  await frames(page, 3)
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
-}
 const open = async (name: string) => {
   visited = await visit(browser, models[name])
   page = visited.page
-  await ready()
+  await ready(page)
 }
 const card = async (name: string) =>
   Number((await page.getByTestId(`card-${name}`).getByTestId('card-value').innerText()).replace('−', '-'))
@@ -71,7 +66,7 @@ describe('a hardpoint of the strut in the hand', () => {
     await page.mouse.down()
     await page.mouse.move(box.x + 9, box.y - 2, { steps: 5 })
     await page.mouse.up()
-    await settled()
+    await settled(page)
     // The mechanism that is drawn follows the hand, to the roundness of its coordinates.
     const after = (await grip('tie_rod_outer').boundingBox())!
     expect(Math.hypot(after.x - box.x, after.y - (box.y - 11))).toBeLessThan(2)
@@ -105,19 +100,19 @@ describe('a hardpoint of the strut in the hand', () => {
     const z = await coordinate('z')
     await page.getByTestId('grip-z').fill(`${(z + 2) / 10} cm`)
     await page.getByTestId('grip-z').press('Enter')
-    await settled()
+    await settled(page)
     expect(await coordinate('z')).toBeCloseTo(z + 2, 4)
     expect(await page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue()).toBe('2')
     const wanted = native('macpherson.toml', [{ name: 'tie_rod_outer_z', by: 2 }])
     expect(await card('toe')).toBeCloseTo(Number(wanted[0].toPrecision(4)), 6)
     await page.getByTestId('undo').click()
-    await settled()
+    await settled(page)
     expect(await coordinate('z')).toBeCloseTo(z, 6)
     await page.keyboard.press('Control+y')
-    await settled()
+    await settled(page)
     expect(await coordinate('z')).toBeCloseTo(z + 2, 4)
     await page.getByTestId('grip-reset').click()
-    await settled()
+    await settled(page)
     expect(await coordinate('z')).toBeCloseTo(z, 6)
   })
 
@@ -129,7 +124,7 @@ describe('a hardpoint of the strut in the hand', () => {
     expect(await page.getByTestId('way-y').getAttribute('aria-pressed')).toBe('true')
     await page.keyboard.press('ArrowRight')
     await page.keyboard.press('ArrowRight')
-    await settled()
+    await settled(page)
     expect(await coordinate('y')).not.toBe(before)
     expect(await page.getByTestId('undo').isDisabled()).toBe(false)
   })
@@ -142,7 +137,7 @@ describe('a hardpoint of the strut in the hand', () => {
     await page.getByTestId('grip-x').fill(String(before + 10_000))
     await page.getByTestId('grip-x').press('Enter')
     await page.waitForFunction(() => document.querySelector('[data-testid=refusal]')!.textContent !== '')
-    await settled()
+    await settled(page)
     expect(await coordinate('x')).toBeLessThan(before + 9_999)
     expect(await page.getByTestId('refusal').innerText()).toMatch(/cannot move beyond t = [\d.]+ s|cannot be assembled/)
   })
@@ -153,7 +148,7 @@ describe('the model in the page', () => {
 
   test('follows a slider: solved, not predicted', async () => {
     await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
-    await settled()
+    await settled(page)
     expect(await page.getByTestId('plot-0').innerText()).toContain('current')
     const by = Number(await page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue())
     expect(await card('toe')).toBeCloseTo(
@@ -183,14 +178,14 @@ describe('the model in the page', () => {
     await page.keyboard.press('Escape')
     await page.keyboard.type('another')
     await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('another'))
-    await ready()
+    await ready(page)
     await page.getByTestId('reset-design').click()
     await page.waitForFunction(() => document.querySelector('[data-testid=title]')!.textContent!.includes('BMW'))
   })
 
   test('is exported with its comments and the changes', async () => {
     await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
-    await settled()
+    await settled(page)
     const original = readFileSync(join(MODELS, 'macpherson.toml'), 'utf8')
     const found = await toml()
     const comments = (text: string) => [...text.matchAll(/#.*/g)].map(([line]) => line)
@@ -199,14 +194,14 @@ describe('the model in the page', () => {
 
   test('is compared with a design that was kept', async () => {
     await slide(page, '[data-testid=variable-tie_rod_outer_z] [data-testid=change]', 5)
-    await settled()
+    await settled(page)
     await page.getByTestId('designs').click()
     await page.getByTestId('snapshot-name').fill('higher')
     await page.getByTestId('snapshot-keep').click()
     await page.getByTestId('snapshot-compare').click()
     await page.getByTestId('designs').click()
     await page.getByTestId('reset-design').click()
-    await settled()
+    await settled(page)
     expect(await page.getByTestId('plot-0').innerText()).toContain('higher')
   })
 
@@ -234,7 +229,7 @@ describe('studies in the page', () => {
       (before) => document.querySelector('[data-testid=values]')!.textContent !== before,
       before,
     )
-    await ready()
+    await ready(page)
     expect(await page.getByTestId('undo').isDisabled()).toBe(false)
     // What was gained is seen: the original stays, dashed.
     await expect.poll(() => page.getByTestId('plot-0').innerText()).toContain('original')
@@ -277,14 +272,14 @@ async function openText(file: string): Promise<void> {
     (title) => document.querySelector('[data-testid=title]')!.textContent!.includes(title),
     title,
   )
-  await ready()
+  await ready(page)
   await page.getByTestId('drawer-close').click()
 }
 
 test.skipIf(!IMAGES)('a hardpoint in the hand is the picture of the studio', async () => {
   visited = await visit(browser, models.macpherson, { viewport: { width: 1280, height: 800 } })
   page = visited.page
-  await ready()
+  await ready(page)
   await page.getByTestId('grips').click()
   await frames(page, 3)
   await page.getByTestId('quantity').first().selectOption({ label: 'toe' })

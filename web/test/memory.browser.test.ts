@@ -1,6 +1,7 @@
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
 import { launch, NO_3D, visit, type Visit } from './browser'
+import { ready } from './pages'
 import { slide } from './person'
 
 const { models } = inject('samples')
@@ -19,7 +20,6 @@ afterEach(async () => {
   await page.context().close()
 })
 
-const ready = (page: Page) => page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
 const settled = async (page: Page) => {
   await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'no')
   await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')

@@ -1,31 +1,17 @@
-import type { Browser, Page } from 'playwright-core'
-import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
-import { launch, visit, type Visit } from './browser'
-import { drawn, frames } from './person'
+import type { Page } from 'playwright-core'
+import { describe, expect, inject, test } from 'vitest'
+import { pages, ready, settled } from './pages'
+import { drawn } from './person'
 
 const { models } = inject('samples')
 
-let browser: Browser
-let visited: Visit
 let page: Page
-beforeAll(async () => {
-  browser = await launch()
-})
-afterAll(() => browser?.close())
-afterEach(async () => {
-  expect(visited.complaints).toEqual([])
-  await page.context().close()
-})
+const visit = pages()
 
 const open = async (name: string, options = {}) => {
-  visited = await visit(browser, models[name], options)
-  page = visited.page
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+  page = await visit(models[name], options)
+  await ready(page)
   await page.getByTestId('grips').click()
-}
-const settled = async () => {
-  await frames(page, 3)
-  await page.waitForFunction(() => document.getElementById('page')!.dataset.settled === 'yes')
 }
 const grip = (name: string) => page.getByTestId(`grip-${name}`)
 const field = (axis: string) => page.getByTestId(`grip-${axis}`)
@@ -54,7 +40,7 @@ describe('a hardpoint', () => {
     await drag('arrow-z', 0, -20, async () => {
       label = await page.getByTestId('drag-label').innerText()
     })
-    await settled()
+    await settled(page)
     const coarse = await coordinates()
     expect(coarse.slice(0, 2)).toEqual([x, y])
     expect(coarse[2] - z).toBeGreaterThan(10)
@@ -64,7 +50,7 @@ describe('a hardpoint', () => {
     await page.keyboard.down('Shift')
     await drag('arrow-z', 0, -20)
     await page.keyboard.up('Shift')
-    await settled()
+    await settled(page)
     const fine = (await coordinates())[2] - coarse[2]
     expect(fine / (coarse[2] - z)).toBeGreaterThan(0.07)
     expect(fine / (coarse[2] - z)).toBeLessThan(0.13)
@@ -74,12 +60,12 @@ describe('a hardpoint', () => {
     await open('macpherson')
     const before = await (await grip('strut_top').click(), coordinates())
     await drag('grip-strut_top', 12, 8)
-    await settled()
+    await settled(page)
     const after = await coordinates()
     expect(after.filter((x, k) => x === before[k])).toHaveLength(1)
     await page.getByTestId('way-y').click()
     await page.reload()
-    await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+    await ready(page)
     expect(await page.getByTestId('way-y').getAttribute('aria-pressed')).toBe('true')
   })
 
@@ -97,7 +83,7 @@ describe('a hardpoint', () => {
       await type('z', text)
       await expect.poll(async () => (await coordinates())[2], { message: text }).toBe(wanted)
     }
-    await settled()
+    await settled(page)
     for (const [text, why] of [
       ['abc', 'abc is not a number with a unit.'],
       ['1e400', '1e400 is not finite.'],
@@ -114,7 +100,7 @@ describe('a hardpoint', () => {
     const change = page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value')
     await change.fill('2,5')
     await change.press('Enter')
-    await settled()
+    await settled(page)
     expect(await change.inputValue()).toBe('2.5')
     await change.fill('+=1/2 in')
     await change.press('Enter')
@@ -149,7 +135,7 @@ describe('a hardpoint', () => {
     const [x] = await coordinates()
     await type('x', `${x + 10_000}`)
     await page.waitForFunction(() => !document.querySelector('[data-testid=refusal]')!.classList.contains('hint'))
-    await settled()
+    await settled(page)
     expect(await field('x').inputValue()).toMatch(/^-?\d+(\.\d{1,2})?$/)
     expect(await page.getByTestId('refusal').innerText()).toMatch(/cannot move beyond t = [\d.]+ s|cannot be assembled/)
   })
@@ -159,7 +145,7 @@ describe('a hardpoint', () => {
     await grip('left_tie_rod_outer').click()
     const [, , z] = await coordinates()
     await type('z', '+8.22')
-    await settled()
+    await settled(page)
     expect(await page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value').inputValue()).toBe('8.22')
     await grip('right_tie_rod_outer').click()
     expect((await coordinates())[2]).toBeCloseTo(z + 8.22, 6)
@@ -191,19 +177,19 @@ describe('the table of hardpoints', () => {
     const cell = (name: string, k: number) => page.getByTestId(`point-${name}`).locator('input').nth(k)
     await cell('strut_top', 1).fill('+1')
     await cell('strut_top', 1).press('Enter')
-    await settled()
+    await settled(page)
     expect(await page.getByTestId('point-strut_top').locator('.change').innerText()).toBe('1')
     await cell('strut_top', 0).evaluate((input) => {
       const data = new DataTransfer()
       data.setData('text/plain', 'tie_rod_outer\t-201\t575,5\t2\nnobody\t1\t2\t3\n')
       input.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, bubbles: true, cancelable: true }))
     })
-    await settled()
+    await settled(page)
     expect(await page.getByTestId('points-news').innerText()).toBe('1 hardpoint set. There is no hardpoint nobody.')
     const values = await Promise.all([0, 1, 2].map((k) => cell('tie_rod_outer', k).inputValue()))
     expect(values).toEqual(['-201', '575.5', '2'])
     await page.getByTestId('undo').click()
-    await settled()
+    await settled(page)
     expect(await cell('tie_rod_outer', 0).inputValue()).toBe('-200')
     expect(await page.getByTestId('point-strut_top').locator('.change').innerText()).toBe('1')
   })

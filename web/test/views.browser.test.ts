@@ -1,24 +1,14 @@
-import type { Browser, Page } from 'playwright-core'
-import { afterAll, afterEach, beforeAll, describe, expect, inject, test } from 'vitest'
-import { launch, visit, type Visit } from './browser'
+import type { Page } from 'playwright-core'
+import { describe, expect, inject, test } from 'vitest'
+import { pages } from './pages'
 import { drawn, frames, scrub } from './person'
 
 const { models } = inject('samples')
 
-let browser: Browser
-let visited: Visit
 let page: Page
-beforeAll(async () => {
-  browser = await launch()
-})
-afterAll(() => browser?.close())
-afterEach(async () => {
-  expect(visited.complaints).toEqual([])
-  await page.context().close()
-})
+const visit = pages()
 const open = async (name: string) => {
-  visited = await visit(browser, models[name])
-  page = visited.page
+  page = await visit(models[name])
   await drawn(page)
 }
 /** Begins measuring, and waits for the view to have its new size. */

@@ -50,7 +50,8 @@ function same(a: readonly string[], b: readonly string[]): boolean {
   return a.length === b.length && a.every((part, k) => part === b[k])
 }
 
-function endOfLine(text: string, at: number): number {
+/** End of the line at a place, before its line break. */
+export function endOfLine(text: string, at: number): number {
   const next = text.indexOf('\n', at)
   if (next < 0) return text.length
   return text[next - 1] === '\r' ? next - 1 : next

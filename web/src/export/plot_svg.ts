@@ -1,6 +1,6 @@
 import { type Curve, decades, padded } from '../curve'
 import { pretty, titled } from '../format'
-import { abscissaOf, type Content, drawnRange, drawnSteps, type Line } from '../content'
+import { abscissaOf, type Content, drawnLines, drawnRange, drawnSteps, type Line } from '../content'
 import { type Axis, extent, linearAxis, logarithmicAxis } from './axis'
 import { escaped, round, svgFile, tag } from './markup'
 
@@ -27,7 +27,7 @@ const RADIUS = 3
 
 /** A plot as vectors with text: the same content as on the page, at a size that suits a document. */
 export function plotSvg(shown: Content, times: Curve, timeUnit: string, paper: Paper): Blob {
-  const content = { ...shown, lines: shown.lines.filter(({ hidden }) => !hidden) }
+  const content = { ...shown, lines: drawnLines(shown) }
   const { lines } = content
   const all = lines.length > 0 ? lines.map((line) => abscissaOf(line, content, times)) : [content.over?.curve ?? times]
   const label = content.over ? titled(content.over.label, content.over.unit) : titled('time', timeUnit)

@@ -1,7 +1,7 @@
 import { slope, slopeAlone, stepAt } from '../curve'
 import { el, setText } from '../dom'
 import { extent } from '../export/axis'
-import { number, per, pretty } from '../format'
+import { number, per, pretty, signed } from '../format'
 import { aboutQuantity } from '../glossary'
 import type { Value } from '../payload'
 import type { Report } from '../report'
@@ -69,6 +69,11 @@ export function isStatic({ what, quantity }: Value): boolean {
   return quantity !== null && STATIC.includes(what)
 }
 
+/** A metric or a value of a measure; a dash where it is not known. */
+export function valueText(value: number | null): string {
+  return value === null ? '–' : number(rounded(value), DIGITS)
+}
+
 function card(state: State, value: Value, index: number): Card {
   const unit = pretty(value.unit)
   const figure = el('span', { class: 'figure-now', 'data-testid': 'card-value' })
@@ -97,7 +102,7 @@ function card(state: State, value: Value, index: number): Card {
   const show = () => {
     const now = state.value(index)
     const before = state.former ? (state.former.values[index] ?? null) : value.value
-    setText(figure, now === null ? '–' : number(rounded(now), DIGITS))
+    setText(figure, valueText(now))
     const by = now === null || before === null ? null : now - before
     const known = state.isCompared && by !== null && (!isStatic(value) || Math.abs(by) > noise(now!))
     change.hidden = !known
@@ -126,7 +131,7 @@ function motionText(state: State, { quantity, time, unit }: Value): string {
   const size = Math.max(...range.map(Math.abs))
   const end = (value: number, former: number | undefined) => {
     const by = former === undefined ? 0 : value - former
-    const changed = Math.abs(by) > noise(size) ? ` (${by > 0 ? '+' : ''}${number(by, 2)})` : ''
+    const changed = Math.abs(by) > noise(size) ? ` (${signed(by, 2)})` : ''
     return `${number(rounded(value, size), 3)}${changed}`
   }
   const ends = range[1] - range[0] > noise(size) ? `${end(range[0], before?.[0])} … ${end(range[1], before?.[1])}` : ''
@@ -169,7 +174,7 @@ function showChange(change: HTMLElement, now: number, by: number, target: Target
   if (Math.abs(by) <= noise(now)) return setText(change, '±0')
   const closer = target ? miss(now - by, target) - miss(now, target) : 0
   const verdict = closer > 0 ? 'better' : closer < 0 ? 'worse' : ''
-  setText(change, `${by > 0 ? '+' : ''}${number(by, 3)}${verdict ? ` ${verdict}` : ''}`)
+  setText(change, `${signed(by, 3)}${verdict ? ` ${verdict}` : ''}`)
   if (verdict) change.classList.add(verdict)
 }
 

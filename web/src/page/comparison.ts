@@ -1,10 +1,11 @@
 import type { Curve } from '../curve'
 import { el } from '../dom'
 import { extent } from '../export/axis'
-import { number, pretty } from '../format'
-import { noise, rounded } from '../rounding'
+import { pretty, signed } from '../format'
+import { noise } from '../rounding'
+import { curveOf } from '../report'
 import type { State } from '../state'
-import { isStatic } from './cards'
+import { isStatic, valueText } from './cards'
 import { whileSeen } from './tabs'
 
 /** A design of the comparison. */
@@ -41,7 +42,7 @@ export function comparison(state: State): HTMLElement {
           isRange ? (extent([curve(quantity!)]) ?? [null, null]) : [value(index)],
         )
         const join = (words: string[]) => [...new Set(words)].join(' … ')
-        const cells = found.map((numbers) => join(numbers.map(text)))
+        const cells = found.map((numbers) => join(numbers.map(valueText)))
         const [before, now] = found
         const changed = (value: number | null, k: number) =>
           value === null || before[k] === null ? '–' : changeText(value - before[k], value)
@@ -72,7 +73,7 @@ function columnsOf(state: State): Column[] {
   const of = (k: number): Column => ({
     name: designs[k].name,
     value: (index) => designs[k].values[index] ?? null,
-    curve: (quantity) => designs[k].quantities[quantity]?.[0] ?? new Float32Array(),
+    curve: (quantity) => curveOf(designs[k], quantity, 0),
   })
   const present: Column = {
     name: 'current',
@@ -80,15 +81,10 @@ function columnsOf(state: State): Column[] {
     curve: (quantity) => state.curve(quantity, 0),
   }
   const reference = choice.compared !== undefined && former ? of(choice.compared) : original
-  const others = (choice.overlays ?? []).filter((k) => designs[k] && k !== choice.compared).map(of)
   const last = reference === original || !state.changed ? [] : [original]
-  return [reference, ...(isCompared ? [present] : []), ...others, ...last]
-}
-
-function text(value: number | null): string {
-  return value === null ? '–' : number(rounded(value), 4)
+  return [reference, ...(isCompared ? [present] : []), ...state.overlays.map(of), ...last]
 }
 
 function changeText(by: number, size: number): string {
-  return Math.abs(by) <= noise(size) ? '0' : `${by > 0 ? '+' : ''}${number(by, 3)}`
+  return Math.abs(by) <= noise(size) ? '0' : signed(by, 3)
 }

@@ -12,11 +12,11 @@ import {
 } from '../curve'
 import { css, hue } from '../dom'
 import { effects } from '../effect'
-import { extent } from '../export/axis'
 import { figure, number } from '../format'
 import type { Content, Line } from '../content'
 import { aboutQuantity } from '../glossary'
 import {
+  curveOf,
   derivativeName,
   derivativeUnit,
   type Design,
@@ -26,7 +26,7 @@ import {
   type Quantity,
   type Report,
 } from '../report'
-import { hasOneFreedom, onSideOf } from '../sheet'
+import { hasOneFreedom, onSideOf, rangeOf } from '../sheet'
 import type { State } from '../state'
 import type { Measured } from './measured'
 
@@ -82,15 +82,17 @@ export function valueContent(state: State, subject: Subject): Content {
   const quantities = [index, ...also.filter((k) => k !== index)].map((k) => report.quantities[k])
   const several = quantities.length > 1
   const [reference, ...others] = comparedDesigns(state)
-  const drawn = [presentDesign(state), ...(difference ? [] : [reference]), ...others].filter((design) => design)
+  const drawn = [presentDesign(state), ...(difference ? [] : [reference]), ...others].filter(
+    (design) => design !== undefined,
+  )
+  const base = reference ?? drawn[0]
   const scale = largest(state, index, order)
   for (const [k, one] of quantities.entries()) {
     const abscissa = (design: Drawn) =>
       over === undefined ? undefined : design.curve(onSideOf(report, over, one.index), 0)
-    for (const design of drawn as Drawn[]) {
+    for (const design of drawn) {
       const all = quiet(design.curve(one.index, order), scale)
       const x = abscissa(design)
-      const base = reference ?? presentDesign(state)
       const curve = difference
         ? changeFrom([all, x], [quiet(base.curve(one.index, order), scale), abscissa(base)])
         : all
@@ -129,19 +131,17 @@ function presentDesign(state: State): Drawn {
 
 /** The reference design, if the present one differs from it, then the other designs in the plots. */
 function comparedDesigns(state: State): (Drawn | undefined)[] {
-  const { former, choice, report, designs } = state
-  const curveOf = (design: Design) => (quantity: number, order: Order) =>
-    design.quantities[quantity]?.[order] ?? new Float32Array()
+  const { former, report, designs } = state
+  const of = (design: Design) => (quantity: number, order: Order) => curveOf(design, quantity, order)
   const original = (quantity: number, order: Order) => report.quantities[quantity].curves[order]
   const reference: Drawn | undefined = state.isCompared
-    ? { name: former?.name ?? 'original', curve: former ? curveOf(former) : original, dash: DASHED, width: 1.8 }
+    ? { name: former?.name ?? 'original', curve: former ? of(former) : original, dash: DASHED, width: 1.8 }
     : undefined
-  const overlays = (choice.overlays ?? []).filter((k) => designs[k] && k !== choice.compared)
   return [
     reference,
-    ...overlays.map((index, k): Drawn => {
+    ...state.overlays.map((index, k): Drawn => {
       const design = designs[index]
-      return { name: design.name, curve: curveOf(design), dash: DASH_DOTTED, width: 1.6, color: hue(k + 1) }
+      return { name: design.name, curve: of(design), dash: DASH_DOTTED, width: 1.6, color: hue(k + 1) }
     }),
   ]
 }
@@ -308,10 +308,7 @@ function atAbscissa({ sensitivityReport: report }: State, { quantity, order, ove
 
 /** Among several moving drivers, the one that moves the quantity most. */
 export function moverOf({ drivers }: Report, quantity: number): Driver | undefined {
-  const reach = ({ alone, travel }: Driver) => {
-    const [minimum, maximum] = extent([travel]) ?? [0, 0]
-    return alone[quantity]?.length ? peak(alone[quantity]) * (maximum - minimum) : 0
-  }
+  const reach = ({ alone, travel }: Driver) => (alone[quantity]?.length ? peak(alone[quantity]) * rangeOf(travel) : 0)
   const [first] = [...drivers].sort((a, b) => reach(b) - reach(a))
   return first && reach(first) > 0 ? first : undefined
 }

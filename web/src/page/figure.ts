@@ -1,4 +1,5 @@
 import { el, onSchemeChange } from '../dom'
+import { messageOf } from '../format'
 import { Plot } from '../plot'
 import { groups, ORDERS, type Order, type Report } from '../report'
 import type { State } from '../state'
@@ -150,7 +151,7 @@ export class Figure {
       listed = key
       also.hidden = this.#delta.hidden = !values
       // The field beside it names the quantity already.
-      this.plot.element.classList.toggle('untitled', !this.#follows || options.leads ? values : false)
+      this.plot.element.classList.toggle('untitled', values && (!this.#follows || options.leads))
       shown.setAttribute('aria-pressed', String(!values))
       this.#delta.setAttribute('aria-pressed', String(this.#difference))
       this.#values.setAttribute('aria-pressed', String(!this.#table.element.hidden))
@@ -301,7 +302,7 @@ export class Figure {
       this.#measured.push(...measuredOf(await file.text(), file.name, subject))
       this.#failure.textContent = ''
     } catch (error) {
-      this.#failure.textContent = error instanceof Error ? error.message : String(error)
+      this.#failure.textContent = messageOf(error)
     }
     this.show()
   }

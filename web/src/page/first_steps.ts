@@ -1,22 +1,19 @@
 import { el } from '../dom'
+import { prefer, preference } from '../preferences'
 import type { State } from '../state'
 
-/** Key of the browser's storage: the hint was closed, in some report. */
-const KEY = 'hardpoint first steps'
+/** Key in the browser's store: the hint was closed, in some report. */
+const KEY = 'first-steps'
 
 let closed = false
 
 /** Three steps for a first visit, each ticked when it is done; closed for good by the reader, or when all are done. */
 export function firstSteps(state: State, grips: () => void): HTMLElement | undefined {
-  if (closed || isStored()) return undefined
+  if (closed || preference(KEY)) return undefined
   const close = () => {
     closed = true
     element.remove()
-    try {
-      localStorage.setItem(KEY, 'closed')
-    } catch {
-      // Without storage the hint comes back with the next visit.
-    }
+    prefer(KEY, 'closed')
   }
   const step = (name: string, title: string, onclick: () => void) =>
     el('button', { type: 'button', title, 'data-testid': `step-${name}`, onclick }, title)
@@ -48,12 +45,4 @@ export function firstSteps(state: State, grips: () => void): HTMLElement | undef
     el('button', { type: 'button', class: 'icon', 'aria-label': 'close first steps', onclick: close }, '×'),
   )
   return element
-}
-
-function isStored(): boolean {
-  try {
-    return localStorage.getItem(KEY) !== null
-  } catch {
-    return false
-  }
 }

@@ -14,15 +14,15 @@ const PAGE: Pairs = [
 ]
 
 const VIEW: Pairs = [
-  ['drag', 'orbit; with the right button or Ctrl: pan; wheel or pinch: zoom'],
+  ['drag', 'on a body: move the mechanism along its motion; elsewhere, or with Alt: orbit'],
+  ['right drag', 'pan; also by dragging with Ctrl'],
+  ['wheel', 'zoom; also by pinching'],
   ['click', 'select a body, joint or force; on the background: clear the selection'],
   ['1 … 5', 'standard views, in the order of their buttons'],
   ['F', 'fit the mechanism to the view'],
   ['L', 'show names of hardpoints'],
   ['N', 'show forces as arrows, if the model has masses or forces'],
-  ['1 … 5', 'standard views, in the order of their buttons'],
   ['D', 'measure distances and angles'],
-  ['drag', 'a body moves the mechanism along its motion; elsewhere, or with Alt, the view turns'],
 ]
 
 const PLOTS: Pairs = [

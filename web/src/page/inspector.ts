@@ -1,5 +1,6 @@
 import './measuring.css'
 import { Vector3 } from 'three'
+import { fromRadians } from '../amount'
 import { valueAt } from '../curve'
 import { el } from '../dom'
 import { figure, number, pretty } from '../format'
@@ -180,7 +181,7 @@ export class Inspector {
     const by = now.clone().multiply(start.clone().invert())
     const turn = 2 * Math.acos(Math.min(1, Math.abs(by.w)))
     const { angle } = this.state.report.units
-    return figure(rounded(angle === 'deg' ? (turn * 180) / Math.PI : turn), angle)
+    return figure(rounded(fromRadians(turn, angle)), angle)
   }
 
   #link(part: Part, after = ''): HTMLElement {

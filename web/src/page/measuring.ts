@@ -1,5 +1,6 @@
 import './measuring.css'
-import { Vector3 } from 'three'
+import type { Vector3 } from 'three'
+import { fromRadians } from '../amount'
 import { el, svg } from '../dom'
 import { figure, number } from '../format'
 import { rounded } from '../rounding'
@@ -128,16 +129,13 @@ export class Measuring {
   }
 
   #place({ body, point }: Spot): Vector3 {
-    const { mechanism } = this.view
-    return mechanism.worldAt(body, new Vector3(...mechanism.report.bodies[body].skeleton[point]), this.state.step)
+    return this.view.mechanism.skeletonAt(body, point, this.state.step)
   }
 
   #show(): void {
     if (!this.on) return
     for (const spot of this.#spots) {
-      const { x, y, seen } = this.view.project(this.#place(spot))
-      spot.button.hidden = !seen || !Number.isFinite(x + y)
-      spot.button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
+      this.view.put(spot.button, this.#place(spot))
       spot.button.setAttribute('aria-pressed', String(this.#chosen.includes(spot)))
     }
     this.#selects.forEach((select, k) => (select.value = this.#chosen[k]?.name ?? ''))
@@ -161,6 +159,6 @@ export class Measuring {
     const words: (Node | string)[] = [el('b', {}, figure(by.length(), length)), ` (${parts.join(', ')})`]
     if (!c) return words
     const turn = a.clone().sub(b).angleTo(c.clone().sub(b))
-    return [...words, ', angle ', el('b', {}, figure(angle === 'deg' ? (turn * 180) / Math.PI : turn, angle))]
+    return [...words, ', angle ', el('b', {}, figure(fromRadians(turn, angle), angle))]
   }
 }

@@ -1,4 +1,5 @@
 import { el } from '../dom'
+import { messageOf } from '../format'
 
 /** An entry of a menu. */
 export interface Item {
@@ -54,7 +55,7 @@ export function menu(title: string, testId: string, items: () => Item[]): HTMLEl
     try {
       await run()
     } catch (error) {
-      failure.textContent = `${name}: ${error instanceof Error ? error.message : String(error)}`
+      failure.textContent = `${name}: ${messageOf(error)}`
       failure.hidden = false
     }
   }

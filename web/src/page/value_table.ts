@@ -1,10 +1,10 @@
 import { el, setText } from '../dom'
 import { number, titled } from '../format'
-import { abscissaOf, type Content } from '../content'
+import { abscissaOf, type Content, drawnLines } from '../content'
 import type { Curve } from '../curve'
 import { extent, linearAxis } from '../export/axis'
 
-/** About so many rows are shown at first. */
+/** Approximate number of rows at first. */
 const ROWS = 6
 
 /** Values of all curves of a plot at chosen abscissas. */
@@ -41,7 +41,7 @@ export class ValueTable {
   show(content: Content, times: Curve, time: string): void {
     this.#shown = { content, times, time }
     if (this.element.hidden) return
-    const lines = content.lines.filter(({ hidden }) => !hidden)
+    const lines = drawnLines(content)
     const name = content.over ? titled(content.over.label, content.over.unit) : titled('time', time)
     const at = this.#chosen ?? this.#round(content.over?.curve ?? times)
     setText(this.#name, `Values at ${name}`)

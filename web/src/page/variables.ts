@@ -1,9 +1,9 @@
 import { el, prose } from '../dom'
 import { effects, type Effect } from '../effect'
-import { figure, number, pretty, roundBelow } from '../format'
+import { figure, pretty, roundBelow, signed } from '../format'
 import { derivativeUnit, orderedName, type Variable } from '../report'
 import type { State } from '../state'
-import { badge } from '../variables'
+import { badge, limited } from '../variables'
 import { NumberField } from './number_field'
 import { reach } from './reach'
 
@@ -198,12 +198,7 @@ function row(state: State, variable: Variable, limits: VariableLimits | undefine
     rank: (found, symbol) => {
       bar.style.setProperty('--share', String(found?.share ?? 0))
       bar.classList.toggle('negative', (found?.extreme ?? 0) < 0)
-      const sign = (found?.extreme ?? 0) > 0 ? '+' : ''
-      size.textContent = !found
-        ? 'not known'
-        : found.share === 0
-          ? '≈ 0'
-          : `${sign}${number(found.extreme, 3)} ${symbol}`
+      size.textContent = !found ? 'not known' : found.share === 0 ? '≈ 0' : `${signed(found.extreme, 3)} ${symbol}`
     },
     focus: () => button.focus(),
   }
@@ -240,7 +235,7 @@ function rowControls(state: State, variable: Variable, [low, high]: [number, num
     step: step || 1,
     plus: 'sign',
     apply: (by) => {
-      const kept = limited(by, variable)
+      const kept = limited(by, variable.bounds)
       state.change(index, kept)
       field.show(kept)
       return kept === by ? undefined : `The bound of \`${name}\` is ${figure(kept, unit)}.`
@@ -321,8 +316,4 @@ function limitControls(variable: Variable, [low, high]: [number, number], { setB
     button.setAttribute('aria-expanded', String(!fields.hidden))
   }
   return { fields, button, sync }
-}
-
-function limited(by: number, { bounds }: Variable): number {
-  return Math.min(Math.max(by, bounds?.[0] ?? -Infinity), bounds?.[1] ?? Infinity)
 }

@@ -212,6 +212,11 @@ export class Mechanism {
     return placed(this.poseAt(body, step), point)
   }
 
+  /** A point of a body's skeleton in the world; NaN where the motion was not solved. */
+  skeletonAt(body: number, point: number, step: number): Vector3 {
+    return this.worldAt(body, new Vector3(...this.report.bodies[body].skeleton[point]), step)
+  }
+
   /** A direction of a body in the world; NaN where the motion was not solved. */
   alongAt(body: number, direction: Vector3, step: number): Vector3 {
     return turned(this.poseAt(body, step), direction)

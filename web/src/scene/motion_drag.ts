@@ -3,11 +3,10 @@ import type { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import type { State } from '../state'
 import type { Part } from './drawable'
 import type { Mechanism } from './mechanism'
+import { STILL } from './pointer'
 
 /** A point that moves less than this on the screen, px, is not dragged: the view is turned instead. */
 const MOVES = 12
-/** Distance of the pointer from where it was pressed before which it is a click, px. */
-const STILL = 4
 /** Part of the motion to either side that is searched for a nearer position. */
 const AHEAD = 0.02
 /** First and last positions nearer than this, px, are one: the motion is a cycle. */

@@ -6,7 +6,7 @@ import type { Part } from './drawable'
 /** Distance from a line at which the pointer finds it, px. */
 const REACH = 6
 /** Distance between press and release up to which it is a click and not a drag, px. */
-const STILL = 4
+export const STILL = 4
 
 /** Part under the pointer: names it next to the pointer, and selects it with a click. */
 export class Pointer {

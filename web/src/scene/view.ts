@@ -193,6 +193,13 @@ export class View {
     }
   }
 
+  /** Puts an element where a point of the world is seen, and hides it where it is not. */
+  put(element: HTMLElement, place: Vector3): void {
+    const { x, y, seen } = this.project(place)
+    element.hidden = !seen || !Number.isFinite(x + y)
+    element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
+  }
+
   /** The line of sight through a point of the screen, px from the corner of the view. */
   sight(x: number, y: number): Ray {
     const { width, height } = this.#extent

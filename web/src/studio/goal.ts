@@ -1,5 +1,6 @@
 import { type Entry, namesIn, outline, text as string } from '../editor/toml'
 import { setKey } from '../editor/toml_edit'
+import { free } from './target'
 
 /** Reductions of a curve to one number that a goal can have, with their names for readers. */
 export const TAKES = {
@@ -85,11 +86,7 @@ function table(pairs: string[]): string {
 
 /** Name of the metric that a goal of a quantity makes. */
 export function metricName(text: string, { of, take }: Exclude<Judged, { metric: string }>): string {
-  const taken = namesIn(outline(text), 'metrics')
-  const wanted = `${of.replaceAll(/\W+/g, '_')}_${take}`
-  let name = wanted
-  for (let k = 2; taken.includes(name); k++) name = `${wanted}_${k}`
-  return name
+  return free(`${of.replaceAll(/\W+/g, '_')}_${take}`, namesIn(outline(text), 'metrics'))
 }
 
 function withMetric(text: string, judged: Exclude<Judged, { metric: string }>): [text: string, name: string] {

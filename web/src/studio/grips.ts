@@ -6,7 +6,6 @@ import type { MovableHardpoint, OpenReply } from '../engine/protocol'
 import { pretty } from '../format'
 import { NumberField } from '../page/number_field'
 import { prefer, preference } from '../preferences'
-import { poseAt } from '../scene/poses'
 import type { View } from '../scene/view'
 import type { State } from '../state'
 import { AxisArrows } from './axis_arrows'
@@ -187,23 +186,18 @@ export class Grips {
   }
 
   #world({ body, point }: Grip): Vector3 {
-    const { mechanism } = this.view
-    return mechanism.frame(this.state.step).at(body, new Vector3(...mechanism.report.bodies[body].skeleton[point]))
+    return this.view.mechanism.skeletonAt(body, point, this.state.step)
   }
 
   #turn({ body }: Grip): Quaternion {
-    const pose = poseAt(this.view.mechanism.report.bodies[body].poses, this.state.step)
+    const pose = this.view.mechanism.poseAt(body, this.state.step)
     return pose ? turnOf(this.opened.frames[body] ?? [1, 0, 0, 0], pose.turn) : new Quaternion()
   }
 
   /** Puts the buttons where their hardpoints are in the picture. */
   #follow(): void {
     if (!this.on) return
-    for (const shown of this.#shown) {
-      const { x, y, seen } = this.view.project(this.#world(shown))
-      shown.button.hidden = !seen || !Number.isFinite(x + y)
-      shown.button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
-    }
+    for (const shown of this.#shown) this.view.put(shown.button, this.#world(shown))
     this.#guide.replaceChildren()
     const chosen = this.#chosen && !this.#chosen.button.hidden ? this.#chosen : undefined
     this.#arrows.element.style.display = chosen ? '' : 'none'
@@ -547,7 +541,7 @@ export class Grips {
   }
 }
 
-/** A change with its sign. */
-export function signed(by: number): string {
+/** A change of a coordinate with its sign. */
+function signed(by: number): string {
   return `${by < 0 ? '−' : '+'}${entry(Math.abs(by), 6)}`
 }

@@ -1,5 +1,6 @@
 import { Quaternion, type Ray, Vector3 } from 'three'
 import type { MovableHardpoint, VariableSetting } from '../engine/protocol'
+import { limited } from '../variables'
 
 /**
  * Direction in which a hardpoint is moved: in the plane of two axes that faces the reader, along an axis of the model,
@@ -111,9 +112,7 @@ export class Positions {
 
   /** Position of a hardpoint in the design with these changes. */
   of(grip: MovableHardpoint, settings: readonly VariableSetting[]): Vector3 {
-    const by = changesOf(settings)
-    const [x, y, z] = grip.coordinates.map(({ variable, sign }) => sign * (by.get(variable) ?? 0))
-    return new Vector3(...grip.place).add(new Vector3(x, y, z)).add(this.#carried(grip, by))
+    return this.#at(grip, changesOf(settings))
   }
 
   /**
@@ -130,7 +129,7 @@ export class Positions {
     const changed = new Map<string, number>()
     let bound: string | undefined
     const set = (name: string, wanted: number, bounds: SharedVariable['bounds'] | undefined) => {
-      const value = Math.min(Math.max(wanted, bounds?.[0] ?? -Infinity), bounds?.[1] ?? Infinity)
+      const value = limited(wanted, bounds)
       const isLimited = Math.abs(value - wanted) > 1e-9 * (1 + Math.abs(wanted))
       if (isLimited) bound = name
       changed.set(name, value)
@@ -157,14 +156,12 @@ export class Positions {
     }
     put(grip, target)
     if (partner) put(partner.grip, mirrored(target, partner.axis))
-    return { settings: [...changed].map(([name, by]) => ({ name, by })), bound }
+    return { settings: settingsOf(changed), bound }
   }
 
   #at(grip: MovableHardpoint, by: ReadonlyMap<string, number>): Vector3 {
-    return this.of(
-      grip,
-      [...by].map(([name, by]) => ({ name, by })),
-    )
+    const [x, y, z] = grip.coordinates.map(({ variable, sign }) => sign * (by.get(variable) ?? 0))
+    return new Vector3(...grip.place).add(new Vector3(x, y, z)).add(this.#carried(grip, by))
   }
 
   /** Displacement by variables other than its own coordinates. */
@@ -185,8 +182,14 @@ export class Positions {
   }
 }
 
-function changesOf(settings: readonly VariableSetting[]): Map<string, number> {
+/** Changes by name. */
+export function changesOf(settings: readonly VariableSetting[]): Map<string, number> {
   return new Map(settings.map(({ name, by }) => [name, by]))
+}
+
+/** Settings of changes by name. */
+export function settingsOf(changes: ReadonlyMap<string, number>): VariableSetting[] {
+  return [...changes].map(([name, by]) => ({ name, by }))
 }
 
 /** Without the last digits, which are rounding; nothing of a difference that is rounding. */

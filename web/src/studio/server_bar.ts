@@ -1,5 +1,6 @@
 import './server.css'
 import { el, prose } from '../dom'
+import { messageOf } from '../format'
 import { menu, type Item } from '../page/menu'
 import { NoAnswerError, type Entry, type SaveOutcome, type Server, type Study, type StudyKind } from './server'
 
@@ -211,7 +212,7 @@ class Desk {
                 ? saved.why
                 : 'The text is not a valid model.'
       } catch (error) {
-        failure.textContent = String(error instanceof Error ? error.message : error)
+        failure.textContent = messageOf(error)
       }
     }
     const form = el(

@@ -12,7 +12,7 @@ import type {
   ToleranceRequest,
 } from '../engine/engine'
 import type { VariableSetting } from '../engine/protocol'
-import { figure, pretty } from '../format'
+import { figure, messageOf, pretty } from '../format'
 import { factTable } from '../page/checks'
 import { hasGoals, metricName } from './goal'
 import { GoalForm, type GoalHost, type Proposal } from './goal_form'
@@ -161,11 +161,7 @@ function pane<Offer, Request>(
     if (focused) element.querySelector<HTMLElement>('.acts button:not(:disabled)')?.focus()
   }
   const refused = (error: unknown) =>
-    el(
-      'p',
-      { class: 'refused', role: 'alert', 'data-testid': `${testId}-refused` },
-      ...prose(error instanceof Error ? error.message : String(error)),
-    )
+    el('p', { class: 'refused', role: 'alert', 'data-testid': `${testId}-refused` }, ...prose(messageOf(error)))
 
   const showForm = (made: Form<Request>, refusal?: HTMLElement) => {
     shown = 'form'

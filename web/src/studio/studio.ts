@@ -8,6 +8,7 @@ import { type Answer, RequestError } from '../engine/answer'
 import { Solver } from '../engine/solver'
 import { pageFile, storedDesign } from '../export/page_file'
 import { save } from '../export/save'
+import { messageOf } from '../format'
 import { page, type PageMemory, type PageParts, slot } from '../page'
 import type { Item } from '../page/menu'
 import type { VariableLimits } from '../page/variables'
@@ -23,6 +24,7 @@ import { Grips } from './grips'
 import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
 import { Mover } from './mover'
+import { changesOf, settingsOf } from './moves'
 import { PointsPane } from './points'
 import { connect } from './server'
 import { separateMotions } from './motions'
@@ -82,8 +84,8 @@ export class Studio {
   #next?: string
   /** Counts the requests, so that an outdated answer is ignored. */
   #version = 0
-  /** Index of each compared design among those of the page. */
-  readonly #solved = new Map<Snapshot, number>()
+  /** The page's design of each snapshot that was compared with. */
+  readonly #solved = new Map<Snapshot, Design>()
   /** Choices by case, for when it is shown again; and those that the next page is to make. */
   readonly #choices = new Map<string | null, Choices>()
   #recalled?: Choices
@@ -519,7 +521,7 @@ export class Studio {
 
   #read(found: WireDesign | null, { decode }: Answer<unknown>, settings: VariableSetting[]): Design | undefined {
     if (!found) return undefined
-    const by = new Map(settings.map(({ name, by }) => [name, by]))
+    const by = changesOf(settings)
     return { ...design(found, decode), change: this.state.report.variables.map(({ name }) => by.get(name) ?? 0) }
   }
 
@@ -647,21 +649,20 @@ export class Studio {
         const found = await this.#solveSnapshot(snapshot)
         if (state !== this.state) return
         if (!found) continue
-        state.addComparison({ ...found, name: snapshot.name })
-        this.#solved.set(snapshot, state.designs.length - 1)
+        const compared = { ...found, name: snapshot.name }
+        state.addComparison(compared)
+        this.#solved.set(snapshot, compared)
       }
     } catch (error) {
       this.#showStatus(messageOf(error))
     }
-    const shown = this.history.compared.flatMap((snapshot) => this.#solved.get(snapshot) ?? [])
+    const solved = this.history.compared.flatMap((snapshot) => this.#solved.get(snapshot) ?? [])
+    const shown = solved.map((design) => state.designs.indexOf(design))
     state.choose({ compared: shown.at(-1), overlays: shown.slice(0, -1) })
   }
 
   async #solveSnapshot({ step: { text, settings } }: Snapshot): Promise<Design | undefined> {
-    if (text === this.model.text) {
-      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: [...settings], from: null })
-      return this.#read(answer.json.design, answer, [...settings])
-    }
+    if (text === this.model.text) return this.#solveAlone([...settings])
     await this.#sensing.ask<OpenReply>({ ask: 'open', model: { ...this.model, text } })
     const { json } = await this.#sensing.ask<Text>({ ask: 'text', change: [...settings] })
     const answer = await this.#drags.ask<DesignReply>({ ask: 'beside', model: { ...this.model, text: json.text } })
@@ -680,36 +681,29 @@ export class Studio {
     while (this.#previewed) {
       const { change } = this.#previewed
       const { state } = this
-      const found = change && (await this.#designOf(added(state.settings, change)))
+      // A design of a search may not move at all: there is nothing to draw then.
+      const found = change && (await this.#solveAlone(added(state.settings, change)).catch(() => undefined))
       if (this.state === state) this.#showPreview(found)
       if (this.#previewed.change === change) this.#previewed = undefined
     }
   }
 
-  async #designOf(settings: VariableSetting[]): Promise<Design | undefined> {
-    try {
-      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: settings, from: null })
-      return this.#read(answer.json.design, answer, settings)
-    } catch {
-      // A design of a search may not move at all: there is nothing to draw then.
-      return undefined
-    }
+  /** A design of the model's own text, solved without a path to it. */
+  async #solveAlone(settings: VariableSetting[]): Promise<Design | undefined> {
+    const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: settings, from: null })
+    return this.#read(answer.json.design, answer, settings)
   }
 
   /** Draws a design dashed, as the one that the present one is compared with; undefined ends that. */
   #showPreview(design: Design | undefined): void {
     const { state } = this
     const { comparisons, choice } = state
-    const first = state.report.designs.length
     const at = comparisons.findIndex(({ name }) => name === PREVIEW)
-    if (at >= 0) {
-      comparisons.splice(at, 1)
-      for (const [snapshot, k] of this.#solved) if (k > first + at) this.#solved.set(snapshot, k - 1)
-    }
+    if (at >= 0) comparisons.splice(at, 1)
     if (design) {
       if (at < 0) this.#compared = choice.compared
       comparisons.push({ ...design, name: PREVIEW })
-      state.choose({ compared: first + comparisons.length - 1 })
+      state.choose({ compared: state.designs.length - 1 })
     } else if (at >= 0) {
       if (this.history.compared.length > 0) void this.#compare()
       else state.choose({ compared: this.#compared })
@@ -766,9 +760,9 @@ function studyPane(
 
 /** Changes made after others. */
 function added(first: readonly VariableSetting[], then: readonly VariableSetting[]): VariableSetting[] {
-  const sum = new Map(first.map(({ name, by }) => [name, by]))
+  const sum = changesOf(first)
   for (const { name, by } of then) sum.set(name, (sum.get(name) ?? 0) + by)
-  return [...sum].map(([name, by]) => ({ name, by }))
+  return settingsOf(sum)
 }
 
 /** A part of the way from some changes to others. */
@@ -777,8 +771,8 @@ export function between(
   to: readonly VariableSetting[],
   part: number,
 ): VariableSetting[] {
-  const before = new Map(from.map(({ name, by }) => [name, by]))
-  const after = new Map(to.map(({ name, by }) => [name, by]))
+  const before = changesOf(from)
+  const after = changesOf(to)
   const names = [...new Set([...before.keys(), ...after.keys()])]
   return names
     .map((name) => ({ name, by: (before.get(name) ?? 0) + part * ((after.get(name) ?? 0) - (before.get(name) ?? 0)) }))
@@ -798,8 +792,4 @@ function hasSameNames(a: Report, b: Report): boolean {
   const same = (a: readonly { name: string }[], b: readonly { name: string }[]) =>
     a.length === b.length && a.every(({ name }, k) => name === b[k].name)
   return same(a.quantities, b.quantities) && same(a.variables, b.variables)
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error)
 }

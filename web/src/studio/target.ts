@@ -1,4 +1,5 @@
 import { type Entry, namesIn, outline, quoted, text as string } from '../editor/toml'
+import { endOfLine } from '../editor/toml_edit'
 
 /** A curve that a measure is to follow. */
 export interface TargetCurve {
@@ -80,19 +81,16 @@ function place(
  * what comes next.
  */
 function endOfLines(text: string, at: number): number {
-  const end = (from: number) => {
-    const next = text.indexOf('\n', from)
-    return next < 0 ? text.length : text[next - 1] === '\r' ? next - 1 : next
-  }
-  const line = end(at)
+  const line = endOfLine(text, at)
   const comments = /(?:\r?\n[ \t]*#[^\n]*)*/y
   comments.lastIndex = line
   comments.exec(text)
-  const last = end(comments.lastIndex - (text[comments.lastIndex - 1] === '\r' ? 1 : 0))
+  const last = endOfLine(text, comments.lastIndex - (text[comments.lastIndex - 1] === '\r' ? 1 : 0))
   return /^$|^\r?\n[ \t]*(?:\r?\n|$)/.test(text.slice(last)) ? last : line
 }
 
-function free(name: string, taken: string[]): string {
+/** The name, with a number if it is taken. */
+export function free(name: string, taken: string[]): string {
   if (!taken.includes(name)) return name
   for (let k = 2; ; k++) if (!taken.includes(`${name}_${k}`)) return `${name}_${k}`
 }
