@@ -18,7 +18,7 @@ pub(crate) use fields::{Field, Fields, Subject, Value};
 pub(crate) use files::{DataError, Folder, Wanted, bytes_of, neighbours, text_from};
 pub(crate) use format::*;
 pub(crate) use places::{EntryPlace, Places};
-pub(crate) use reader::{Reader, all_read};
+pub(crate) use reader::{Reader, all_read, quoted};
 pub(crate) use scalars::axis_named;
 pub(crate) use tables::above_tables;
 pub(crate) use walk::{Leaf, in_expression, list_of, table_of, walk};

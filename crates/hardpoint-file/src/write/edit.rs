@@ -8,7 +8,7 @@ use toml_edit::{DocumentMut, Item, Value};
 
 use crate::compose::Plane;
 use crate::read::{ModelFile, parsed};
-use crate::values::{Diagnostic, Diagnostics, Folder, Severity};
+use crate::values::{Diagnostic, Diagnostics, Folder, Severity, quoted};
 use hardpoint_table::Units;
 
 /// Tolerance of written numbers in units of round-off, which covers the sums, products and roots between a number of
@@ -243,7 +243,7 @@ impl Edit<'_> {
                 names.push(name);
             }
         }
-        names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
+        quoted(&names)
     }
 
     fn refuse(&mut self, variables: &str, why: String, help: &str) {
