@@ -144,7 +144,8 @@ fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
         travel.range() > 0.0
     };
     let several = model.drivers.iter().filter(|d| moves(d)).count() > 1;
-    if !several || model.variables.is_empty() {
+    // An equilibrium has no rates of its own.
+    if !several && model.equilibrium.is_none() || model.variables.is_empty() {
         return None;
     }
     let model = Model { times: times.clone(), ..model.clone() };

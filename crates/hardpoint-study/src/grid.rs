@@ -245,7 +245,8 @@ fn row_model(model: &Model, grid: &Grid, travels: [f64; 2], places: impl Iterato
     times.extend(places.map(|place| time_of(place, travels[0])));
     // A grid position is static, so loads are those of the mechanism at rest.
     let load_mode = Some(LoadMode::Static);
-    let case = Case { name: grid.name.clone(), laws, formulas, times, load_mode };
+    let force_laws = Vec::new();
+    let case = Case { name: grid.name.clone(), laws, force_laws, formulas, times, load_mode };
     // A map has no metrics.
     Model { cases: vec![case], metrics: Vec::new(), ..model.clone() }.in_case(CaseId(0))
 }

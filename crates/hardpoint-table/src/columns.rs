@@ -63,13 +63,25 @@ impl Columns<'_> {
                 columns
                     .extend((0..3).map(|place| Column::new(format!("{body}.{}", name(place)), unit.clone())));
             }
-            columns.extend(self.components(body, LETTERS[1], Length, 1));
-            columns.extend(self.components(body, "omega_", Angle, 1));
-            columns.extend(self.components(body, LETTERS[2], Length, 2));
-            columns.extend(self.components(body, "alpha_", Angle, 2));
+            columns.extend(self.rates(body));
         }
         columns.extend(self.of_outputs());
         columns
+    }
+
+    /// Velocity and acceleration of a body, of a mechanism that is not at rest.
+    fn rates(&self, body: &str) -> Vec<Column> {
+        if self.is_at_rest() {
+            return Vec::new();
+        }
+        let rates =
+            [(LETTERS[1], Length, 1), ("omega_", Angle, 1), (LETTERS[2], Length, 2), ("alpha_", Angle, 2)];
+        rates.into_iter().flat_map(|(prefix, of, order)| self.components(body, prefix, of, order)).collect()
+    }
+
+    /// True if the model is in equilibrium at every output time: nothing has a rate.
+    fn is_at_rest(&self) -> bool {
+        self.model.equilibrium.is_some()
     }
 
     /// Columns of the sensitivities by one variable, without time, variable and its unit. Units are those of the
@@ -79,10 +91,7 @@ impl Columns<'_> {
         for body in self.bodies() {
             columns.extend(self.components(body, LETTERS[0], Length, 0));
             columns.extend(self.components(body, "pi_", Angle, 0));
-            columns.extend(self.components(body, LETTERS[1], Length, 1));
-            columns.extend(self.components(body, "omega_", Angle, 1));
-            columns.extend(self.components(body, LETTERS[2], Length, 2));
-            columns.extend(self.components(body, "alpha_", Angle, 2));
+            columns.extend(self.rates(body));
         }
         columns.extend(self.of_outputs());
         columns.into_iter().map(|c| Column { name: format!("d {}", c.name), ..c }).collect()
@@ -107,10 +116,12 @@ impl Columns<'_> {
                 if let Some(angles) = self.angles {
                     row.extend(angles.of(s.rotation).map(|x| units.from_si(Angle, x)));
                 }
-                push(row, |x| units.from_si(Length, x), s.v);
-                push(row, |x| units.from_si(Angle, x), s.omega);
-                push(row, |x| units.from_si(Length, x), s.a);
-                push(row, |x| units.from_si(Angle, x), s.alpha);
+                if !self.is_at_rest() {
+                    push(row, |x| units.from_si(Length, x), s.v);
+                    push(row, |x| units.from_si(Angle, x), s.omega);
+                    push(row, |x| units.from_si(Length, x), s.a);
+                    push(row, |x| units.from_si(Angle, x), s.alpha);
+                }
             }
         }
         for (m, output) in solution.measured.outputs.iter().enumerate() {
@@ -133,7 +144,11 @@ impl Columns<'_> {
                     (Length, d.da),
                     (Angle, d.dalpha),
                 ];
-                parts.into_iter().for_each(|(of, v)| push(row, |x| units.derivative_from_si(of, by, x), v));
+                let known = if self.is_at_rest() { 2 } else { parts.len() };
+                parts
+                    .into_iter()
+                    .take(known)
+                    .for_each(|(of, v)| push(row, |x| units.derivative_from_si(of, by, x), v));
             }
         }
         for (m, output) in solution.measured.outputs.iter().enumerate() {

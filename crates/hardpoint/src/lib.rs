@@ -209,6 +209,7 @@ pub mod constraint;
 pub mod design;
 pub mod draft;
 mod element;
+mod equilibrium;
 pub mod expression;
 pub mod joint;
 pub mod law;

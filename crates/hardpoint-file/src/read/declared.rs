@@ -2,7 +2,7 @@
 
 use hardpoint::draft::{DirectionDraft, FieldDraft, FieldKind, MeasureField, NumberDraft, RayDraft};
 use hardpoint::law::Law;
-use hardpoint::model::{Axes, ElementUnit, OrientationAngle, ReactionPart};
+use hardpoint::model::{Axes, ElementUnit, OrientationAngle, ReactionPart, WheelPoint};
 
 use crate::values::{
     ANGLE, BODY, DIRECTION, DRIVER, EntryPlace, Field, Fields, JOINT, Key, LENGTH, LINE, NUMBER, Need,
@@ -49,6 +49,8 @@ const REACTION_PART: Shape = Shape::Any(
     &[Shape::Words(ReactionPart::WORDS)],
 );
 const AXES: Shape = Shape::Any("Axes", "Along which axes something is given.", &[Shape::Words(Axes::WORDS)]);
+const WHEEL_POINT: Shape =
+    Shape::Any("WheelPoint", "Point of a wheel at which a force acts.", &[Shape::Words(WheelPoint::WORDS)]);
 const ORIENTATION_ANGLE: Shape = Shape::Any(
     "OrientationAngle",
     "One of three angles of a body's orientation.",
@@ -71,6 +73,7 @@ pub(super) fn key(field: &MeasureField) -> Key {
         FieldKind::Expression => (Shape::Expression, "\"left.toe + right.toe\""),
         FieldKind::ReactionPart => (REACTION_PART, "\"radial\""),
         FieldKind::Axes => (AXES, "\"body\""),
+        FieldKind::WheelPoint => (WHEEL_POINT, "\"centre\""),
         FieldKind::Force => (Shape::Name("a force"), "\"spring\""),
         FieldKind::Number(ElementUnit::Length) => (LENGTH, "20"),
         FieldKind::Number(ElementUnit::Angle) => (ANGLE, "5"),
@@ -131,6 +134,7 @@ pub(super) fn own_field(
         }
         FieldKind::ReactionPart => r.word_of(fields, key).map(|k| FieldDraft::Part(ReactionPart::at(k))),
         FieldKind::Axes => r.word_of(fields, key).map(|k| FieldDraft::Axes(Axes::at(k))),
+        FieldKind::WheelPoint => r.word_of(fields, key).map(|k| FieldDraft::WheelPoint(WheelPoint::at(k))),
         FieldKind::Number(unit) => {
             r.given(fields, key, |r, f| element_number(r, fields, f, unit)).map(FieldDraft::Number)
         }

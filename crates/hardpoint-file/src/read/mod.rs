@@ -9,6 +9,7 @@ mod design;
 mod drawing;
 mod drivers;
 mod elements;
+mod equilibrium;
 mod hardpoints;
 mod joints;
 mod law;

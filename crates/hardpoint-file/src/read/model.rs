@@ -13,8 +13,8 @@ use hardpoint_table::{AngleUnit, LengthUnit};
 use super::elements::{LOAD_MODES, LOADS};
 use super::raw::Raw;
 use super::{
-    bodies, cases, couplers, design, drivers, elements, hardpoints, joints, measures, metrics, optimize,
-    parameters, points, sweep, times, tolerance, wheels,
+    bodies, cases, couplers, design, drivers, elements, equilibrium, hardpoints, joints, measures, metrics,
+    optimize, parameters, points, sweep, times, tolerance, wheels,
 };
 
 /// The file as a whole.
@@ -59,6 +59,8 @@ pub(crate) const MODEL: Table = table! {
     may "masses": Shape::Entries("a mass", &Shape::Kinds(&elements::MASS)), "{}";
     /// Applied forces: springs, dampers, friction, given forces; bushings and elastic joints.
     may "forces": Shape::Entries("a force", &Shape::Kinds(&elements::FORCE)), "{}";
+    /// Static equilibrium at every output time: elastic joints open under load, and released drivers give way.
+    may "equilibrium": Shape::Table(&equilibrium::EQUILIBRIUM), "{ released = [\"bump\"] }";
     /// Numbers to compute from the motion, with their sensitivities.
     may "measures": Shape::Entries("a measure", &measures::MEASURE), "{}";
     /// Numbers of a measure's curve over the motion, with their sensitivities.
@@ -115,7 +117,7 @@ const UNIT_WORDS: [(&str, &str); 12] = [
 ];
 /// Tables of `docs/file-format.md`, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 39] {
+pub(crate) fn tables() -> [(&'static str, Shape); 40] {
     use super::{declared, law, mesh};
     use crate::compose::INCLUDE_TABLE;
 
@@ -143,6 +145,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 39] {
         ("gravity", Shape::Table(&elements::GRAVITY)),
         ("masses", Shape::Kinds(&elements::MASS)),
         ("forces", Shape::Kinds(&elements::FORCE)),
+        ("equilibrium", Shape::Table(&equilibrium::EQUILIBRIUM)),
         ("measures", Shape::Kinds(&measures::OWN_MEASURE)),
         ("metrics", Shape::Table(&metrics::METRIC)),
         ("time", Shape::Kinds(&times::TIME)),
@@ -193,6 +196,7 @@ pub(crate) fn model<'a>(
     raw.draft.load_mode = r.word_of(&fields, "loads").map_or(LoadMode::default(), |k| LOAD_MODES[k]);
     elements::masses(r, &fields, &mut raw);
     elements::forces(r, &fields, &mut raw);
+    equilibrium::equilibrium(r, &fields, &mut raw);
     metrics::metrics(r, &fields, &mut raw);
     times::time(r, &fields, &mut raw);
     let word = r.word_of(&fields, "at_change_points");

@@ -68,7 +68,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 28] = [
+const SECTIONS: [Section; 29] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -83,6 +83,7 @@ const SECTIONS: [Section; 28] = [
     Section::Axles,
     Section::Masses,
     Section::Forces,
+    Section::Equilibrium,
     Section::Measures,
     Section::Metrics,
     Section::Time,

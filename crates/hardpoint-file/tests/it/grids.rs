@@ -33,6 +33,7 @@ fn alone(model: &Model, map: &GridMap, [i, j]: [usize; 2]) -> Solution {
         laws,
         formulas: Vec::new(),
         times: vec![0.0, 0.5, 1.0],
+        force_laws: Vec::new(),
         load_mode: None,
     };
     let model = Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0));

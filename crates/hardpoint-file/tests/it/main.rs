@@ -8,6 +8,7 @@ mod docs;
 mod domain;
 mod edit;
 mod elements;
+mod equilibrium;
 mod gallery;
 mod gallery_models;
 mod grids;

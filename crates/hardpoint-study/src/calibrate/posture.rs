@@ -53,6 +53,7 @@ pub(super) fn posture_model(model: &Model, places: &[f64]) -> Model {
     let case = Case {
         name: "posture".into(),
         laws,
+        force_laws: Vec::new(),
         formulas,
         times: vec![begin, end],
         load_mode: Some(LoadMode::Static),

@@ -448,6 +448,7 @@ mod tests {
             formulas: Vec::new(),
             name: name.into(),
             laws: vec![Some(Law::parse(law).unwrap())],
+            force_laws: Vec::new(),
             times: model.times.clone(),
             load_mode: None,
         };

@@ -335,7 +335,8 @@ impl Draft {
         force: [impl Into<NumberDraft>; 3],
     ) -> Self {
         let (wheel, [outboard, forward, up]) = (wheel.into(), force.map(|f| Some(f.into())));
-        self.element(name, ElementKindDraft::WheelForce { wheel, outboard, forward, up, law: None })
+        let (at, about_up, law) = (None, None, None);
+        self.element(name, ElementKindDraft::WheelForce { wheel, at, outboard, forward, up, about_up, law })
     }
 
     /// Adds a bushing between locations on two bodies, with its stiffnesses along the global axes, N/m.
@@ -356,6 +357,18 @@ impl Draft {
             about_x: None,
             about_y: None,
             about_z: None,
+            cubic_x: None,
+            cubic_y: None,
+            cubic_z: None,
+            curve_x: None,
+            curve_y: None,
+            curve_z: None,
+            preload_x: None,
+            preload_y: None,
+            preload_z: None,
+            preload_about_x: None,
+            preload_about_y: None,
+            preload_about_z: None,
             damping: None,
         };
         self.element(name, kind)
@@ -370,8 +383,28 @@ impl Draft {
     ) -> Self {
         let [x, y, z] = stiffness.map(|k| Some(k.into()));
         let [about_x, about_y, about_z] = [None, None, None];
-        let joint = joint.into();
-        self.element(name, ElementKindDraft::ElasticJoint { joint, x, y, z, about_x, about_y, about_z })
+        let kind = ElementKindDraft::ElasticJoint {
+            joint: joint.into(),
+            x,
+            y,
+            z,
+            about_x,
+            about_y,
+            about_z,
+            cubic_x: None,
+            cubic_y: None,
+            cubic_z: None,
+            curve_x: None,
+            curve_y: None,
+            curve_z: None,
+            preload_x: None,
+            preload_y: None,
+            preload_z: None,
+            preload_about_x: None,
+            preload_about_y: None,
+            preload_about_z: None,
+        };
+        self.element(name, kind)
     }
 
     /// Adds output times, s.

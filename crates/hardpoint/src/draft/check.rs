@@ -4,6 +4,7 @@ mod cases;
 mod design;
 mod driven;
 mod elements;
+mod equilibrium;
 mod formulas;
 mod grids;
 mod joints;
@@ -67,13 +68,14 @@ impl Model {
         c.add_couplers();
         c.add_points();
         c.add_drivers();
-        c.add_cases();
-        c.add_grids();
         c.check_vehicle();
         c.add_wheels();
         c.add_axles();
         c.add_elements();
+        c.add_cases();
+        c.add_grids();
         c.add_measures();
+        c.add_equilibrium();
         c.add_metrics();
         c.add_variables();
         c.add_varying_formulas();
@@ -205,6 +207,7 @@ impl<'a> Checker<'a> {
             numbers: Vec::new(),
             gravity: draft.gravity,
             load_mode: draft.load_mode,
+            equilibrium: None,
             measures: Vec::new(),
             metrics: Vec::new(),
             idle: Vec::new(),

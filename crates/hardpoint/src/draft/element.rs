@@ -6,7 +6,7 @@ use crate::law::Law;
 use crate::model::{
     Angle, Axes, BodyId, CubicStiffness, Damping, Density, ElementKind, Force, Inertia, JointId, Length,
     Mass, Moment, Plain, PointId, Solid, SpringTable, Stiffness, TorsionalDamping, TorsionalStiffness,
-    WheelId, element, elements, if_mass,
+    WheelId, WheelPoint, element, elements, if_mass,
 };
 use crate::space::Vec3;
 

@@ -61,6 +61,8 @@ pub enum Section {
     Masses,
     /// [`super::Draft::forces`].
     Forces,
+    /// [`super::Draft::equilibrium`].
+    Equilibrium,
     /// [`super::Draft::measures`].
     Measures,
     /// [`super::Draft::metrics`].
@@ -121,6 +123,7 @@ impl fmt::Display for Section {
             Self::Axles => "axles",
             Self::Masses => "masses",
             Self::Forces => "forces",
+            Self::Equilibrium => "equilibrium",
             Self::Measures => "measures",
             Self::Metrics => "metrics",
             Self::Time => "time",

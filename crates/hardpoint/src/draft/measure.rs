@@ -68,6 +68,8 @@ pub enum FieldKind {
     ReactionPart,
     /// One of [`Axes::WORDS`].
     Axes,
+    /// One of [`WheelPoint::WORDS`](crate::model::WheelPoint::WORDS).
+    WheelPoint,
     /// The name of a force.
     Force,
     /// The name of a wheel.
@@ -103,6 +105,8 @@ pub enum FieldDraft {
     Part(ReactionPart),
     /// Axes in which a vector is given.
     Axes(Axes),
+    /// Point of a wheel at which a force acts.
+    WheelPoint(crate::model::WheelPoint),
     /// A number.
     Number(NumberDraft),
     /// A number over time.

@@ -68,6 +68,8 @@ pub struct Draft {
     pub gravity: Vec3,
     /// Loads with or without inertia.
     pub load_mode: LoadMode,
+    /// Equilibrium of elastic joints and released drivers, if they open under load.
+    pub equilibrium: Option<EquilibriumDraft>,
     /// Measures.
     pub measures: Vec<MeasureDraft>,
     /// Metrics.
@@ -88,6 +90,13 @@ pub struct Draft {
     pub sweeping: Option<SweepSettingsDraft>,
     /// Entries that could not be read.
     pub unread: UnreadEntries,
+}
+
+/// Equilibrium as written.
+#[derive(Clone, Debug, Default)]
+pub struct EquilibriumDraft {
+    /// Names of the drivers that are released.
+    pub released: Vec<String>,
 }
 
 /// Entries of a draft that could not be read from its text. The check ignores the placeholders in the draft, with all

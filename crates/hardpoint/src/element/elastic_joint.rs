@@ -2,15 +2,15 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{ActsOn, Compliance, ElasticJoint, ForceProperties, Properties};
+use crate::model::element::{ActsOn, Compliance, ElasticJoint, Elasticity, ForceProperties, Properties};
 use crate::model::{Dimension, ElementId, Model, NumberId};
 use crate::space::{Real, Wrench};
 
 impl ElasticJoint {
     /// Stiffnesses along and about the joint's axes.
     fn stiffnesses(&self) -> [[Option<NumberId>; 3]; 2] {
-        let Self { joint: _, x, y, z, about_x, about_y, about_z } = self;
-        [[x, y, z].map(|n| n.map(|n| n.0)), [about_x, about_y, about_z].map(|n| n.map(|n| n.0))]
+        let [x, y, z, a, b, c] = self.elasticities().map(|of| of.stiffness);
+        [[x, y, z], [a, b, c]]
     }
 }
 
@@ -20,10 +20,10 @@ impl ForceProperties for ElasticJoint {
         Properties {
             acts_on: ActsOn::Joint(self.joint),
             dimension: Dimension::FORCE,
-            given: [None; 3],
+            given: [self.preload_x, self.preload_y, self.preload_z].map(|n| n.map(|n| n.0)),
             table: None,
             law: None,
-            is_arithmetic: true,
+            is_arithmetic: self.elasticities().iter().all(|of| of.curve.is_none()),
             compliance: Compliance::Joint(self.joint, self.stiffnesses()),
             friction: None,
         }
@@ -33,7 +33,7 @@ impl ForceProperties for ElasticJoint {
 impl CheckElement for ElasticJoint {
     fn check(&self, c: &mut ElementCheck<'_, '_>) {
         let given: Vec<NumberId> = self.stiffnesses().into_iter().flatten().flatten().collect();
-        if given.is_empty() {
+        if !self.elasticities().iter().any(Elasticity::gives) {
             let message = format!("`{}` is rigid in all directions", c.name);
             c.fault("HP0251", "type", message)
                 .help("give it a stiffness along or about one of its axes, or remove it");
@@ -51,10 +51,13 @@ impl CheckElement for ElasticJoint {
 }
 
 impl ForceFormula for ElasticJoint {
-    fn apply<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId, _: &mut [Wrench<T>]) {}
+    fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId, out: &mut [Wrench<T>]) {
+        let Some(opening) = at.opening(self.joint) else { return };
+        at.apply_between(self.joint, opening.wrench(at, &self.elasticities()), T::one(), out);
+    }
 
-    fn size<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId) -> T {
-        T::zero()
+    fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId) -> T {
+        at.opening(self.joint).map_or(T::zero(), |opening| opening.wrench(at, &self.elasticities()).f.norm())
     }
 
     fn deflections<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId, _: impl FnMut(T, T)) {}

@@ -110,7 +110,7 @@ impl ForceFormula for Spring {
         let (p, q) = (at.point(from), at.point(to));
         let d = q - p;
         // s = p + k (L - L_o) + k_3 (L - L_o)^3 + f T(L - L_o) + c L.
-        let mut tension = self.pull(at, d.norm())[0] + at.or_zero(self.preload.map(|n| n.0));
+        let mut tension = self.pull(at, d.norm())[0] + at.preload(self.preload.map(|n| n.0));
         if let Some(damping) = self.damping {
             let velocity = at.bodies[at.body(to)].velocity(q) - at.bodies[at.body(from)].velocity(p);
             tension += at.number(damping.0) * (d.dot(velocity) / at.apart(d));

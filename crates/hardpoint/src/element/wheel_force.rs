@@ -3,16 +3,27 @@
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Compliance, ForceProperties, Properties, WheelForce};
-use crate::model::{Dimension, ElementId, GROUND, Model};
+use crate::model::{Dimension, ElementId, GROUND, Model, WheelPoint};
 use crate::space::{Real, Vec3, Wrench};
 
 impl WheelForce {
-    /// Point at which the road acts on the wheel, and the force.
-    fn road<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> (Vec3<T>, Vec3<T>) {
+    /// True if it is a moment alone.
+    fn is_moment(&self) -> bool {
+        [self.outboard, self.forward, self.up].iter().all(|n| n.is_none())
+    }
+
+    /// Point of the wheel at which it acts, the force, and the moment about z.
+    fn road<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> (Vec3<T>, Vec3<T>, Vec3<T>) {
         let now = at.wheel(self.wheel);
         let [o, f, z] = [self.outboard, self.forward, self.up].map(|n| at.or_zero(n.map(|n| n.0)));
-        let push = now.outboard() * o + now.forward() * f + Vec3::AXES[2].spread() * z;
-        (now.contact(), push * at.laws[e.0])
+        let up: Vec3<T> = Vec3::AXES[2].spread();
+        let push = now.outboard() * o + now.forward() * f + up * z;
+        let turn = up * at.or_zero(self.about_up.map(|n| n.0));
+        let point = match self.at.unwrap_or_default() {
+            WheelPoint::Contact => now.contact(),
+            WheelPoint::Centre => now.centre,
+        };
+        (point, push * at.laws[e.0], turn * at.laws[e.0])
     }
 }
 
@@ -21,8 +32,11 @@ impl ForceProperties for WheelForce {
     fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
             acts_on: ActsOn::Wheel(self.wheel),
-            dimension: Dimension::FORCE,
-            given: [self.outboard, self.forward, self.up].map(|n| n.map(|n| n.0)),
+            dimension: if self.is_moment() { Dimension::MOMENT } else { Dimension::FORCE },
+            given: match self.about_up {
+                Some(moment) if self.is_moment() => [Some(moment.0), None, None],
+                _ => [self.outboard, self.forward, self.up].map(|n| n.map(|n| n.0)),
+            },
             table: None,
             law: self.law.as_ref(),
             is_arithmetic: true,
@@ -34,10 +48,10 @@ impl ForceProperties for WheelForce {
 
 impl CheckElement for WheelForce {
     fn check(&self, c: &mut ElementCheck<'_, '_>) {
-        if [self.outboard, self.forward, self.up].iter().all(|n| n.is_none()) {
+        if self.is_moment() && self.about_up.is_none() {
             let message = format!("`{}` has no force", c.name);
             c.fault("HP0251", "type", message)
-                .help("give its force `up`, `outboard` or `forward`, or remove it");
+                .help("give its force `up`, `outboard` or `forward`, or its moment `about_up`, or remove it");
         }
         if c.model().wheels[self.wheel.0].body == GROUND {
             let message = format!("`{}` acts on a wheel of ground, which does not move", c.name);
@@ -48,13 +62,16 @@ impl CheckElement for WheelForce {
 
 impl ForceFormula for WheelForce {
     fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, out: &mut [Wrench<T>]) {
-        let (contact, push) = self.road(at, e);
-        out[at.model.wheels[self.wheel.0].body.0] -= Wrench::force(push, contact);
+        let (point, push, turn) = self.road(at, e);
+        let on_wheel = &mut out[at.model.wheels[self.wheel.0].body.0];
+        *on_wheel -= Wrench::force(push, point);
+        *on_wheel -= Wrench::moment(turn);
     }
 
     fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> T {
         // A zero force has no derivative.
-        self.road(at, e).1.norm()
+        let (_, push, turn) = self.road(at, e);
+        if self.is_moment() { turn.norm() } else { push.norm() }
     }
 
     fn deflections<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId, _: impl FnMut(T, T)) {}

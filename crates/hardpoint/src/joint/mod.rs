@@ -32,6 +32,7 @@ mod cylindrical;
 mod distance;
 mod dot1;
 mod dot2;
+mod elastic;
 mod fixed;
 mod heading;
 mod inline;
@@ -52,6 +53,7 @@ mod universal;
 
 use crate::constraint::Row;
 pub(crate) use course::COURSE;
+pub(crate) use elastic::{DIRECTIONS, elastic, free_directions};
 
 /// Exports and lists the types.
 macro_rules! joints {

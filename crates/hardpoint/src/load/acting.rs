@@ -14,6 +14,8 @@ use crate::model::{
 use crate::number::Dual;
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
+use super::opening::Opening;
+
 /// Pose, velocity and acceleration of a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MovingBody<T> {
@@ -66,6 +68,8 @@ pub(crate) struct AppliedLoads<'a, T> {
     pub near: &'a [T],
     /// Per element: the moment or force of friction on its coordinate; for a ball joint, per unit of its rotation.
     pub friction: &'a [T],
+    /// Part of weights and preloads that acts; 1 but on the way to an equilibrium.
+    pub share: f64,
 }
 
 /// Mass properties at the current pose.
@@ -163,6 +167,16 @@ impl<T: Real> AppliedLoads<'_, T> {
         self.geometry.numbers[n.0]
     }
 
+    /// The part of a weight or preload that acts.
+    pub fn part(&self, whole: T) -> T {
+        if self.share == 1.0 { whole } else { whole * T::constant(self.share) }
+    }
+
+    /// An optional preload; zero by default.
+    pub fn preload(&self, n: Option<NumberId>) -> T {
+        n.map_or_else(T::zero, |n| self.part(self.number(n)))
+    }
+
     /// An optional number; zero by default.
     pub fn or_zero(&self, n: Option<NumberId>) -> T {
         n.map_or_else(T::zero, |n| self.number(n))
@@ -210,7 +224,7 @@ impl<T: Real> AppliedLoads<'_, T> {
                     out[body.0] += Wrench::moment(spin);
                 }
                 // f = -m g0 at c
-                LoadMode::Static => out[body.0] += Wrench::force(-weight * mass, centre),
+                LoadMode::Static => out[body.0] += Wrench::force(-weight * self.part(mass), centre),
             }
             return;
         }
@@ -233,6 +247,14 @@ impl<T: Real> AppliedLoads<'_, T> {
         let axes = Mat3::IDENTITY.spread();
         let ends = MarkerPair { i: i.compose(m_i), j: j_pose.compose(m_j), axes };
         (ends, j.kind.coordinates[coordinate].row)
+    }
+
+    /// Opening of an elastic joint; `None` in a model without equilibrium, where elastic joints are rigid.
+    pub fn opening(&self, joint: JointId) -> Option<Opening<T>> {
+        self.model.equilibrium.as_ref()?;
+        let [m_i, m_j] = self.geometry.markers[joint.0];
+        let [i, j] = self.model.joints[joint.0].bodies.map(|b| self.bodies[b.0].pose);
+        Some(Opening::between(&i.compose(m_i), &j.compose(m_j)))
     }
 
     /// Unit wrench on body j that does work on a coordinate.

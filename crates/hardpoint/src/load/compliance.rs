@@ -92,7 +92,7 @@ impl<'a> Compliances<'a> {
         Some(Self {
             model,
             asked,
-            seconds: Seconds::new(design_map, topology, values, &directions, &pairs),
+            seconds: Seconds::new(design_map, topology, values, (&directions, &[]), &pairs),
             changed: (0..variables).chain([usize::MAX]).map(changed).collect(),
             poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; ways.len()],
             position: LoadedPosition::new(model),
@@ -149,7 +149,8 @@ impl<'a> Compliances<'a> {
     fn compliance(&self, m: usize, by: usize, deflections: &[Vec<(Dual, Dual)>]) -> Dual {
         let unknown = Dual::constant(f64::NAN);
         let (model, ChangedDesign { fixed, geometry }) = (self.model, &self.changed[by]);
-        let MeasureKind::Compliance { of, at, wheel, along, .. } = &model.measures[m].kind else {
+        let MeasureKind::Compliance { of, at, wheel, along: Some(along), .. } = &model.measures[m].kind
+        else {
             return unknown;
         };
         let released = released_by(model, m);

@@ -107,6 +107,8 @@ pub(super) struct LoadedPosition<T> {
     pub near: Vec<T>,
     /// Per element: the moment of friction.
     pub friction: Vec<T>,
+    /// Part of weights and preloads that acts; 1 but on the way to an equilibrium.
+    pub share: f64,
 }
 
 impl<T: Real> LoadedPosition<T> {
@@ -117,12 +119,13 @@ impl<T: Real> LoadedPosition<T> {
             laws: vec![T::one(); elements],
             near: vec![T::zero(); elements],
             friction: vec![T::zero(); elements],
+            share: 1.0,
         }
     }
 
     pub fn loads<'s>(&'s self, model: &'s Model, geometry: &'s Geometry<T>) -> AppliedLoads<'s, T> {
-        let Self { bodies, laws, near, friction } = self;
-        AppliedLoads { model, geometry, bodies, laws, near, friction }
+        let Self { bodies, laws, near, friction, share } = self;
+        AppliedLoads { model, geometry, bodies, laws, near, friction, share: *share }
     }
 }
 
@@ -133,6 +136,7 @@ impl<T: Real> LoadedPosition<Dual<T>> {
         set_constants(&mut self.laws, &of.laws);
         set_constants(&mut self.near, &of.near);
         set_constants(&mut self.friction, &of.friction);
+        self.share = of.share;
     }
 }
 

@@ -41,7 +41,9 @@ impl<T: Real> SpatialInertia<T> {
     pub fn all(acting: &AppliedLoads<'_, T>, out: &mut [Self]) {
         out.fill(Self::zero());
         for element in &acting.model.elements {
-            if let Some(solid) = acting.solid(&element.kind) {
+            if let Some(mut solid) = acting.solid(&element.kind) {
+                // Part of a weight is the weight of a part; statics have no other use of masses.
+                solid.mass = acting.part(solid.mass);
                 out[solid.body.0].add(&solid);
             }
         }
@@ -125,6 +127,7 @@ impl<T: Real> ChangedGeometry<T> {
             laws: none,
             near: none,
             friction: none,
+            share: 1.0,
         };
         let moves = |e: &ElementId| {
             let solid = acting.solid(&model.elements[e.0].kind);

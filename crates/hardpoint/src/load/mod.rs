@@ -19,6 +19,8 @@
 //! | `virtual_motion` | Y | virtual motion of a load |
 //! | `friction` | M = -c N(T) | Coulomb friction in joints |
 //! | `measures` | | evaluation of load measures |
+//! | `opening` | e, l_a | displacement of two markers along six coordinates |
+//! | `opening_loads` | r, K | forces that hold the openings of a mechanism |
 //!
 //! `acting`, `equilibrium`, `derivatives`, `virtual_motion` and `measures` are generic over the number type.
 
@@ -30,6 +32,8 @@ mod friction;
 mod gradient;
 mod inertia;
 mod measures;
+mod opening;
+mod opening_loads;
 mod program;
 mod results;
 mod solver;
@@ -39,6 +43,8 @@ mod virtual_motion;
 pub(crate) use acting::{AppliedLoads, ForceFormula, MassFormula, Solid, Spread};
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
+pub(crate) use opening::Opening;
+pub(crate) use opening_loads::{GivenLoads, OpeningLoads};
 pub(crate) use program::{RecordedLoads, hindrance};
 pub use results::{DriverLoad, JointLoad, Loads};
 pub(crate) use solver::{LoadSolver, load_measures};

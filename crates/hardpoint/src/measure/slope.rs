@@ -63,16 +63,26 @@ impl Ways {
 
 impl<'a> Slopes<'a> {
     /// Slopes of the design with these values, with derivatives by the variables if requested; `None` if the model has
-    /// no such measures.
+    /// no such measures. These openings follow the drivers, if there are any.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,
         values: &[f64],
         sensitivities: bool,
+        openings: &[DriverId],
     ) -> Option<Self> {
         let ways = Ways::of(design_map.model(), sensitivities)?;
-        let seconds = Seconds::new(design_map, topology, values, &ways.directions, &ways.pairs);
+        let seconds = Seconds::new(design_map, topology, values, (&ways.directions, openings), &ways.pairs);
         Some(Self::along(design_map, values, ways, seconds))
+    }
+
+    /// Sets the rates of the openings while each of these drivers moves alone.
+    pub fn set_openings(&mut self, rates: &[(DriverId, Vec<f64>)]) {
+        for (k, driver) in self.drivers.iter().enumerate() {
+            if let Some((_, rates)) = rates.iter().find(|(d, _)| d == driver) {
+                self.seconds.set_openings(k, rates);
+            }
+        }
     }
 
     /// Writes the results at time t, the one that was begun last.

@@ -2,7 +2,7 @@
 
 use crate::law::Law;
 
-use super::{CaseId, Change, DriverId, Formula, LimitTarget, Model, Target};
+use super::{CaseId, Change, DriverId, ElementId, Formula, LimitTarget, Model, Target};
 
 /// A motion of the mechanism under laws and at times of its own: a car in bump with the rack held, or steered at one
 /// ride height.
@@ -12,6 +12,8 @@ pub struct Case {
     pub name: String,
     /// Per driver, the law that it follows in this case; where there is none, that of the driver itself.
     pub laws: Vec<Option<Law>>,
+    /// Laws of forces in this case, in the order of the elements; all others keep their own.
+    pub force_laws: Vec<(ElementId, Law)>,
     /// Formulas that express numbers of these laws by the design variables.
     pub formulas: Vec<Formula>,
     /// Output times, s, increasing.
@@ -60,7 +62,7 @@ impl Model {
     /// # Panics
     /// If there is no such case.
     pub fn in_case(&self, case: CaseId) -> Self {
-        let Case { name, laws, formulas, times, load_mode } = &self.cases[case.0];
+        let Case { name, laws, force_laws, formulas, times, load_mode } = &self.cases[case.0];
         let mut model = Self {
             times: times.clone(),
             load_mode: load_mode.unwrap_or(self.load_mode),
@@ -74,6 +76,11 @@ impl Model {
         for (driver, law) in model.drivers.iter_mut().zip(laws) {
             if let Some(law) = law {
                 driver.law = law.clone();
+            }
+        }
+        for (force, law) in force_laws {
+            if let Some(of) = model.elements[force.0].kind.law_mut() {
+                *of = Some(law.clone());
             }
         }
         model.formulas.retain(|f| !matches!(f.of, Target::Law(d, _) if laws[d.0].is_some()));

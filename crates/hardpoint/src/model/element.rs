@@ -61,6 +61,26 @@ impl Axes {
     }
 }
 
+/// Point of a wheel at which a force acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WheelPoint {
+    /// The contact point.
+    #[default]
+    Contact,
+    /// The wheel centre.
+    Centre,
+}
+
+impl WheelPoint {
+    /// As model files write them, and what they are.
+    pub const WORDS: &[(&str, &str)] = &[("contact", "The contact point."), ("centre", "The wheel centre.")];
+
+    /// That of a place in [`WORDS`](Self::WORDS).
+    pub fn at(word: usize) -> Self {
+        [Self::Contact, Self::Centre][word]
+    }
+}
+
 /// Declares the kinds of numbers that elements have.
 macro_rules! numbers {
     ($($(#[doc = $doc:literal])* $name:ident)*) => {
@@ -286,17 +306,22 @@ macro_rules! elements {
             law: Option<Law> => Option<Law>,
         }
 
-        /// A given force of the road on a wheel, at its contact point, along the wheel's own directions.
+        /// A given force and moment of the road on a wheel, along the wheel's own directions.
         WheelForce "wheel_force" forces {
             /// The wheel's name.
             wheel: String => WheelId,
+            /// Where it acts: at the contact, as outboard brakes need, or at the wheel centre, as half shafts and
+            /// inboard brakes do. Default: the contact.
+            at: Option<WheelPoint> => Option<WheelPoint>,
             /// Along the ground, away from the vehicle: the horizontal part of the spin axis.
             outboard: Option<NumberDraft> => Option<Force>,
             /// Along the ground in the wheel's plane.
             forward: Option<NumberDraft> => Option<Force>,
             /// Along z: the wheel load.
             up: Option<NumberDraft> => Option<Force>,
-            /// Factor of all three components over time.
+            /// Moment about z: the aligning torque.
+            about_up: Option<NumberDraft> => Option<Moment>,
+            /// Factor of all components over time.
             law: Option<Law> => Option<Law>,
         }
 
@@ -315,7 +340,8 @@ macro_rules! elements {
         }
 
         /// A bushing: springs and dampers between two bodies at a place, along the global axes in the design
-        /// configuration, which turn with the first.
+        /// configuration, which turn with the first. Angles are counted about x, then y, then z; those about x and y
+        /// stay below 90 deg.
         Bushing "bushing" forces {
             /// Place on the first body.
             from: PointRef => PointId,
@@ -333,12 +359,37 @@ macro_rules! elements {
             about_y: Option<NumberDraft> => Option<TorsionalStiffness>,
             /// About z.
             about_z: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// Cubic stiffness along x: a further force of this times the cube of the displacement.
+            cubic_x: Option<NumberDraft> => Option<CubicStiffness>,
+            /// Along y.
+            cubic_y: Option<NumberDraft> => Option<CubicStiffness>,
+            /// Along z.
+            cubic_z: Option<NumberDraft> => Option<CubicStiffness>,
+            /// A further force against the displacement along x, as a curve: `[displacement, force]`, the force in N.
+            curve_x: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Along y.
+            curve_y: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Along z.
+            curve_z: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Preload: the force that pushes the second body along x in the design configuration.
+            preload_x: Option<NumberDraft> => Option<Force>,
+            /// Along y.
+            preload_y: Option<NumberDraft> => Option<Force>,
+            /// Along z.
+            preload_z: Option<NumberDraft> => Option<Force>,
+            /// The moment that turns the second body about x in the design configuration.
+            preload_about_x: Option<NumberDraft> => Option<Moment>,
+            /// About y.
+            preload_about_y: Option<NumberDraft> => Option<Moment>,
+            /// About z.
+            preload_about_z: Option<NumberDraft> => Option<Moment>,
             /// Damping, the same along all axes.
             damping: Option<NumberDraft> => Option<Damping>,
         }
 
-        /// A joint that gives along its own axes, z along its axis. It changes neither motion nor forces: measures of
-        /// `compliance` say what it deflects to.
+        /// A joint that gives along its own axes, z along its axis; they turn with its first body. With
+        /// `[equilibrium]` it opens under load; without, it is rigid, and measures of `compliance` say what it deflects
+        /// to.
         ElasticJoint "elastic_joint" forces {
             /// The joint.
             joint: String => JointId,
@@ -354,6 +405,30 @@ macro_rules! elements {
             about_y: Option<NumberDraft> => Option<TorsionalStiffness>,
             /// About z.
             about_z: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// Cubic stiffness along x: a further force of this times the cube of the displacement.
+            cubic_x: Option<NumberDraft> => Option<CubicStiffness>,
+            /// Along y.
+            cubic_y: Option<NumberDraft> => Option<CubicStiffness>,
+            /// Along z.
+            cubic_z: Option<NumberDraft> => Option<CubicStiffness>,
+            /// A further force against the displacement along x, as a curve: `[displacement, force]`, the force in N.
+            curve_x: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Along y.
+            curve_y: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Along z.
+            curve_z: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Preload: the force that pushes the second body along x in the design configuration.
+            preload_x: Option<NumberDraft> => Option<Force>,
+            /// Along y.
+            preload_y: Option<NumberDraft> => Option<Force>,
+            /// Along z.
+            preload_z: Option<NumberDraft> => Option<Force>,
+            /// The moment that turns the second body about x in the design configuration.
+            preload_about_x: Option<NumberDraft> => Option<Moment>,
+            /// About y.
+            preload_about_y: Option<NumberDraft> => Option<Moment>,
+            /// About z.
+            preload_about_z: Option<NumberDraft> => Option<Moment>,
         }
         }
     };
@@ -406,6 +481,78 @@ pub struct Properties<'a> {
     pub compliance: Compliance,
     /// Coulomb friction.
     pub friction: Option<JointFriction>,
+}
+
+/// Elastic law of one direction: `s(e) = k e + k_3 e^3 + C(e) - f_0`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Elasticity<'a> {
+    /// Stiffness k.
+    pub stiffness: Option<NumberId>,
+    /// Cubic stiffness k_3.
+    pub cubic: Option<NumberId>,
+    /// Curve C of a force over the displacement.
+    pub curve: Option<&'a SpringTable>,
+    /// Preload f_0, which pushes the second body along the direction.
+    pub preload: Option<NumberId>,
+}
+
+impl Elasticity<'_> {
+    /// True if the direction gives.
+    pub fn gives(&self) -> bool {
+        self.stiffness.is_some() || self.curve.is_some()
+    }
+
+    /// True if there is any force along it.
+    pub fn acts(&self) -> bool {
+        self.gives() || self.cubic.is_some() || self.preload.is_some()
+    }
+}
+
+/// Elastic laws along x, y and z and about them, of an element with fields of these names.
+macro_rules! elasticities {
+    ($of:expr, $wrap:expr) => {{
+        let (of, wrap) = ($of, $wrap);
+        let law = |stiffness: Option<NumberId>, preload: Option<NumberId>| Elasticity {
+            stiffness,
+            preload,
+            ..Elasticity::default()
+        };
+        let [x, y, z] = [wrap(of.x), wrap(of.y), wrap(of.z)];
+        [
+            Elasticity {
+                cubic: of.cubic_x.map(|n| n.0),
+                curve: of.curve_x.as_ref(),
+                ..law(x, of.preload_x.map(|n| n.0))
+            },
+            Elasticity {
+                cubic: of.cubic_y.map(|n| n.0),
+                curve: of.curve_y.as_ref(),
+                ..law(y, of.preload_y.map(|n| n.0))
+            },
+            Elasticity {
+                cubic: of.cubic_z.map(|n| n.0),
+                curve: of.curve_z.as_ref(),
+                ..law(z, of.preload_z.map(|n| n.0))
+            },
+            law(of.about_x.map(|n| n.0), of.preload_about_x.map(|n| n.0)),
+            law(of.about_y.map(|n| n.0), of.preload_about_y.map(|n| n.0)),
+            law(of.about_z.map(|n| n.0), of.preload_about_z.map(|n| n.0)),
+        ]
+    }};
+}
+
+impl Bushing {
+    /// Elastic laws along x, y and z and about them.
+    pub fn elasticities(&self) -> [Elasticity<'_>; 6] {
+        elasticities!(self, |n: Stiffness| Some(n.0))
+    }
+}
+
+impl ElasticJoint {
+    /// Elastic laws along x, y and z and about them.
+    pub fn elasticities(&self) -> [Elasticity<'_>; 6] {
+        elasticities!(self, |n: Option<Stiffness>| n.map(|n| n.0))
+    }
 }
 
 /// Part of a model that a force acts on.
@@ -565,6 +712,26 @@ impl ElementKind {
         if dimension == Dimension::MOMENT { force / model.size() } else { force }
     }
 
+    /// Place of the law of a given force or moment; `None` for elements that have none.
+    pub(crate) fn law_mut(&mut self) -> Option<&mut Option<Law>> {
+        match self {
+            Self::PointForce(force) => Some(&mut force.law),
+            Self::WheelForce(force) => Some(&mut force.law),
+            Self::BodyMoment(moment) => Some(&mut moment.law),
+            Self::Rigid(_)
+            | Self::Bar(_)
+            | Self::Block(_)
+            | Self::Mesh(_)
+            | Self::Spring(_)
+            | Self::JointSpring(_)
+            | Self::TorsionSpring(_)
+            | Self::Friction(_)
+            | Self::SlideFriction(_)
+            | Self::Bushing(_)
+            | Self::ElasticJoint(_) => None,
+        }
+    }
+
     /// The law that a given force or moment is multiplied by.
     #[inline]
     pub(crate) fn law(&self, model: &Model) -> Option<&Law> {
@@ -604,6 +771,11 @@ impl Model {
     /// The mass of all bodies in the design configuration, kg.
     pub fn mass(&self) -> f64 {
         self.elements.iter().map(|e| e.kind.mass(self)).sum()
+    }
+
+    /// Dimension of the magnitude of a force.
+    pub(crate) fn force_dimension(&self, e: ElementId) -> Dimension {
+        self.elements[e.0].kind.force(self).map_or(Dimension::FORCE, |force| force.dimension)
     }
 
     /// True if anything of it has mass, or pushes: without, there are no loads.

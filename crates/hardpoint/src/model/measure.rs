@@ -269,17 +269,25 @@ macro_rules! measures {
         at: Option<PointRef> => Option<PointId>,
         /// Or the wheel that the road pushes, at its contact point.
         wheel: Option<String> => Option<WheelId>,
-        /// Direction, of any length.
-        along: Vec3 => Vec3,
+        /// Or the force that changes in proportion: of type `force`, `wheel_force` or `moment`, with `[equilibrium]`.
+        force: Option<String> => Option<ElementId>,
+        /// Direction of the force on the point or wheel, of any length.
+        along: Option<Vec3> => Option<Vec3>,
         /// A driver that is released: it holds nothing, springs do. Default: all drivers hold.
         released: Option<String> => Option<DriverId>,
     } |m, w|
-        m.dimension(*of).over(Dimension::FORCE),
+        m.dimension(*of).over(force.map_or(Dimension::FORCE, |e| m.force_dimension(e))),
         moving(1),
         {
             let of_wheel = |wheel: WheelId| format!("the contact of wheel `{}`", w.model.wheels[wheel.0].name);
             let place = at.map(|p| w.point(p)).or_else(|| wheel.map(of_wheel)).unwrap_or_default();
-            format!("{} per force on {place} along {}", w.output(*of), (w.direction)(*along))
+            match (force, along) {
+                (Some(e), _) => format!("{} per force `{}`", w.output(*of), w.model.elements[e.0].name),
+                (None, Some(along)) => {
+                    format!("{} per force on {place} along {}", w.output(*of), (w.direction)(*along))
+                }
+                (None, None) => format!("{} per force on {place}", w.output(*of)),
+            }
         };
     } };
 }
@@ -326,6 +334,14 @@ macro_rules! in_models {
 
             /// Time derivatives that are known of an output: the motion ends at accelerations.
             pub fn known(&self, output: OutputSource) -> KnownOrders {
+                let known = self.known_along_motion(output);
+                // An equilibrium is at rest: nothing has a rate.
+                let orders = if self.equilibrium.is_some() { known.orders.min(1) } else { known.orders };
+                KnownOrders { orders, ..known }
+            }
+
+            /// The same for a motion.
+            fn known_along_motion(&self, output: OutputSource) -> KnownOrders {
                 let OutputSource::Measure(k) = output else { return POSITIONS };
                 match &self.measures[k].kind {
                     $(#[allow(unused_variables, reason = "how much is known follows from some of its fields")]
@@ -459,6 +475,7 @@ impl OnBodies for Option<BodyId> {
 
 impl OnBodies for usize {}
 impl OnBodies for ElementId {}
+impl OnBodies for Option<ElementId> {}
 impl OnBodies for ReactionPart {}
 impl OnBodies for Option<Axes> {}
 impl OnBodies for OrientationAngle {}

@@ -28,7 +28,7 @@ pub use curve::{Curve, CurvePoint};
 pub use element::{
     Angle, Axes, CubicStiffness, Damping, Density, ENDS_MEET, Element, ElementId, ElementKind, ElementNumber,
     ElementUnit, Force, Inertia, Length, Mass, Moment, NumberId, Plain, Stiffness, TorsionalDamping,
-    TorsionalStiffness,
+    TorsionalStiffness, WheelPoint,
 };
 pub(crate) use element::{each_number, elements, if_mass};
 pub use formula::{Formula, NamedNumber, Source, Target};
@@ -132,6 +132,8 @@ pub struct Model {
     pub gravity: Vec3,
     /// Loads with or without inertia.
     pub load_mode: LoadMode,
+    /// Equilibrium of elastic joints and released drivers, if they open under load.
+    pub equilibrium: Option<Equilibrium>,
     /// Measures, in the order of the file.
     pub measures: Vec<Measure>,
     /// Metrics, in the order of the file.
@@ -255,6 +257,13 @@ pub struct IdleRotation {
     pub joint: JointId,
     /// The line's direction in the design configuration.
     pub axis: Vec3,
+}
+
+/// Static equilibrium at every output time: elastic joints open, and some drivers give way, until no force remains.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Equilibrium {
+    /// Drivers that are not held: the forces on the mechanism determine their values.
+    pub released: Vec<DriverId>,
 }
 
 /// A point fixed in a body.

@@ -11,7 +11,7 @@ use super::Stop;
 use super::assembly::assemble;
 use super::change_point::stand_within_crossing;
 use super::guard::Steps;
-use super::mechanism::Mechanism;
+use super::mechanism::{Mechanism, StepRejection};
 use super::path::Path;
 use super::path_step::{MOST_BEND, trust};
 use super::step::{RoughStep, Step, take};
@@ -54,6 +54,50 @@ pub(crate) fn advance(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
     }
     count(one);
     Ok(())
+}
+
+/// Moves all drivers straight to these values from the accepted position, to a position at rest that is not accepted
+/// yet.
+pub(crate) fn move_at_rest(one: &mut Stepper<'_>, t: f64, values: &[f64]) -> Result<(), Box<Stop>> {
+    let Mechanism { line, saved, .. } = &mut one.mechanism;
+    for (line, (from, to)) in line.iter_mut().zip(saved.drivers.iter().zip(values)) {
+        *line = [from[0], *to];
+    }
+    one.mechanism.restore();
+    let path = Path::Line { at: t };
+    if hold(one, values, trust(one.mechanism.unit_of(path))).is_err() {
+        one.start_on(path, 0.0, false)?;
+        walk(one, path, 1.0)?;
+        hold(one, values, f64::INFINITY).map_err(|r| one.stop(path, 1.0, r, true))?;
+    }
+    Ok(())
+}
+
+/// Moves all drivers to these values, which are near the position of the state, to a position at rest.
+pub(crate) fn shift_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), StepRejection> {
+    hold(one, values, f64::INFINITY)
+}
+
+/// Accepts a position at rest.
+pub(crate) fn accept_at_rest(one: &mut Stepper<'_>, t: f64) {
+    one.save(t);
+    one.renew_turns();
+}
+
+/// Counts an output step of a mechanism at rest.
+pub(crate) fn count_at_rest(one: &mut Stepper<'_>) {
+    count(one);
+}
+
+/// Solves the position from that of the state with all drivers at rest at these values.
+fn hold(one: &mut Stepper<'_>, values: &[f64], trust: f64) -> Result<(), StepRejection> {
+    let mechanism = &mut one.mechanism;
+    for (driver, value) in mechanism.drivers.iter_mut().zip(values) {
+        *driver = [*value, 0.0, 0.0];
+    }
+    mechanism.state.gap_left = [0.0; 2];
+    mechanism.solve_within(trust)?;
+    mechanism.examine_position()
 }
 
 /// Counts an output step.

@@ -37,7 +37,7 @@ pub use execution::{Execution, StepMethod};
 pub use gap::{Assembly, AssemblyShift, Closing, Gap};
 pub use jerk::BodyJerk;
 pub use margin::Margin;
-pub use stop::{Stop, StopKind};
+pub use stop::{GivingDirection, Stop, StopKind};
 
 use kinematics::State;
 
@@ -208,6 +208,8 @@ pub struct SolverStatistics {
     pub by_program: usize,
     /// Newton iterations.
     pub iterations: usize,
+    /// Iterations on the openings of elastic joints.
+    pub equilibrium_iterations: usize,
     /// Largest residual of any constraint row at an output step, redundant rows included; m or rad.
     pub worst_residual: f64,
     /// Smallest ratio of smallest to largest pivot: 0 at a singular position.

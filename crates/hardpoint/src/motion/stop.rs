@@ -59,6 +59,54 @@ pub enum StopKind {
     },
     /// The caller asked to stop (HP0405).
     Interrupted,
+    /// No force resists a direction that gives (HP0421).
+    NothingHolds {
+        /// The direction.
+        direction: GivingDirection,
+    },
+    /// Beyond a part of the loads at the first output time there is no equilibrium near by (HP0422).
+    LimitLoad {
+        /// The part, 0 to 1.
+        part: f64,
+    },
+    /// Along the motion there is no further equilibrium near by (HP0423).
+    NoEquilibrium,
+    /// The equilibrium becomes unstable (HP0424).
+    Unstable {
+        /// The direction in which the mechanism gives way.
+        direction: GivingDirection,
+    },
+}
+
+/// Direction in which a mechanism gives under load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GivingDirection {
+    /// A coordinate of a joint, by its name.
+    Joint(JointId, &'static str),
+    /// A coordinate of a body that springs alone hold, relative to ground.
+    Body(crate::model::BodyId, &'static str),
+    /// A released driver.
+    Driver(crate::model::DriverId),
+}
+
+impl GivingDirection {
+    /// In words, with the user's names.
+    fn words(self, model: &Model) -> String {
+        let along = |axis: &str| match axis.strip_prefix("about_") {
+            Some(axis) => format!("about {axis}"),
+            None => format!("along {axis}"),
+        };
+        match self {
+            Self::Joint(joint, axis @ ("x" | "y" | "z" | "about_x" | "about_y" | "about_z")) => {
+                format!("joint `{}` {}", model.joints[joint.0].name, along(axis))
+            }
+            Self::Joint(joint, coordinate) => {
+                format!("the {coordinate} of joint `{}`", model.joints[joint.0].name)
+            }
+            Self::Body(body, axis) => format!("body `{}` {}", model.bodies[body.0].name, along(axis)),
+            Self::Driver(driver) => format!("driver `{}`", model.drivers[driver.0].name),
+        }
+    }
 }
 
 impl Stop {
@@ -72,6 +120,10 @@ impl Stop {
             StopKind::Interrupted => "HP0405",
             StopKind::DoesNotAssemble => "HP0406",
             StopKind::TooFar { .. } => "HP0408",
+            StopKind::NothingHolds { .. } => "HP0421",
+            StopKind::LimitLoad { .. } => "HP0422",
+            StopKind::NoEquilibrium => "HP0423",
+            StopKind::Unstable { .. } => "HP0424",
         }
     }
 
@@ -113,6 +165,17 @@ impl Stop {
                 )
             }
             StopKind::Interrupted => format!("interrupted at t = {t:.6} s"),
+            StopKind::NothingHolds { direction } => format!("nothing holds {}", direction.words(model)),
+            StopKind::LimitLoad { part } => format!(
+                "beyond {part:.6} of the loads at t = {t:.6} s there is no equilibrium near by: the mechanism snaps through"
+            ),
+            StopKind::NoEquilibrium => {
+                format!("beyond t = {t:.6} s there is no equilibrium near by: the mechanism snaps through")
+            }
+            StopKind::Unstable { direction } => format!(
+                "the equilibrium becomes unstable at t = {t:.6} s: {} gives way",
+                direction.words(model)
+            ),
         }
     }
 
@@ -131,7 +194,14 @@ impl Stop {
                 format!("driver `{}` moves too far to be followed", model.drivers[driver.0].name)
             }
             StopKind::Interrupted => "interrupted".into(),
-            StopKind::DoesNotAssemble | StopKind::Locked { .. } => self.headline(model),
+            StopKind::NoEquilibrium => "there is no further equilibrium near by".into(),
+            StopKind::Unstable { direction } => {
+                format!("the equilibrium becomes unstable: {} gives way", direction.words(model))
+            }
+            StopKind::NothingHolds { .. }
+            | StopKind::LimitLoad { .. }
+            | StopKind::DoesNotAssemble
+            | StopKind::Locked { .. } => self.headline(model),
         }
     }
 
@@ -171,6 +241,15 @@ impl Stop {
                  request more output times, or make the law slower"
             }
             StopKind::Interrupted => return None,
+            StopKind::NothingHolds { .. } => {
+                "give the direction a stiffness, hold it with a driver that is not released, or make it rigid"
+            }
+            StopKind::LimitLoad { .. } | StopKind::NoEquilibrium => {
+                "reduce the loads, make the springs and elastic joints stiffer, or begin with the loads at zero and                  increase them over time to see how it gets there"
+            }
+            StopKind::Unstable { .. } => {
+                "the forces push the mechanism away from its position: reduce them, or stiffen that direction"
+            }
         })
     }
 }

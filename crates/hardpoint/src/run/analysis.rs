@@ -5,10 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use crate::design::DesignMap;
+use crate::equilibrium::{Released, release};
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
 use crate::measure::{self, MeasureResults, Slopes, StepValues};
-use crate::model::{BodyId, MeasureKind, Model, SharedModel};
+use crate::model::{BodyId, DriverId, MeasureKind, Model, SharedModel};
 use crate::motion::advance;
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
@@ -23,6 +24,18 @@ use super::request::Run;
 use super::sink::Sink;
 use super::solution::{Solution, StreamSummary};
 use super::walk::{PreparedDesign, Scope, Walk};
+
+/// Reason why steps at equilibrium are solved by the kernel.
+const AT_EQUILIBRIUM: &str = "its elastic joints are in equilibrium";
+
+/// A model with equilibrium, whose elastic joints are open in the model that is solved.
+#[derive(Debug)]
+struct OpenModel {
+    user: Model,
+    openings: Vec<DriverId>,
+    /// Per opening: the force that it needs as a driver.
+    kinds: Vec<MeasureKind>,
+}
 
 /// A model with its solution plan, ready to be run any number of times.
 ///
@@ -46,8 +59,10 @@ use super::walk::{PreparedDesign, Scope, Walk};
 #[derive(Clone, Debug)]
 pub struct Analysis<'m> {
     topology: Topology,
-    /// Geometry of the model as a function of the design; owns the model.
+    /// Geometry of the solved model as a function of the design; owns the model.
     design_map: DesignMap<'m>,
+    /// The user's model and the openings of the solved one, if its elastic joints are open.
+    equilibrium: Option<Arc<OpenModel>>,
     /// Per variable, the joints that it opens in the nominal design; computed on first use.
     opens: Arc<OnceLock<Vec<Vec<JointDefect>>>>,
     /// Output times, and the times between them that metrics need; computed on first use.
@@ -77,11 +92,19 @@ impl<'m> Analysis<'m> {
     /// See [`Analysis::new`].
     pub fn with(model: impl Into<SharedModel<'m>>, formulation: Formulation) -> Result<Self, TopologyError> {
         let model = model.into();
-        let topology = Topology::of(&model, formulation)?;
+        let (topology, design_map, equilibrium) = if model.equilibrium.is_some() {
+            let (Released { model: open, openings }, topology) = release(&model, formulation)?;
+            let kinds = openings.iter().map(|d| MeasureKind::DriverForce { driver: *d }).collect();
+            let equilibrium = OpenModel { user: Model::clone(&model), openings, kinds };
+            (topology, DesignMap::of(Arc::new(open)), Some(Arc::new(equilibrium)))
+        } else {
+            (Topology::of(&model, formulation)?, DesignMap::of(model), None)
+        };
         let programs = Arc::new(Programs::new(Execution::default()));
         Ok(Self {
             topology,
-            design_map: DesignMap::of(model),
+            design_map,
+            equilibrium,
             opens: Arc::default(),
             between: Arc::default(),
             programs,
@@ -109,7 +132,17 @@ impl<'m> Analysis<'m> {
 
     /// The model.
     pub fn model(&self) -> &Model {
+        self.equilibrium.as_ref().map_or(self.design_map.model(), |open| &open.user)
+    }
+
+    /// The model that is solved: with equilibrium, its elastic joints are open, and the openings are further drivers.
+    pub(super) fn solved_model(&self) -> &Model {
         self.design_map.model()
+    }
+
+    /// The openings of the solved model and their forces as measures, if its elastic joints are open.
+    pub(super) fn openings(&self) -> Option<(&[DriverId], &[MeasureKind])> {
+        self.equilibrium.as_ref().map(|open| (&open.openings[..], &open.kinds[..]))
     }
 
     /// The plan.
@@ -149,7 +182,7 @@ impl<'m> Analysis<'m> {
         let mut design = self.design(&[]);
         let along = along(&self.model().whole(change));
         let field = self.design_map.field_along(&along, &design.values);
-        design.opens = vec![admissibility_at_design(self.model(), &field)];
+        design.opens = vec![admissibility_at_design(self.solved_model(), &field)];
         design.fields = vec![field];
         let mut walk = Walk::new(self, &design, vec![false; self.model().bodies.len()]);
         walk.each(|_| ());
@@ -184,19 +217,25 @@ impl<'m> Analysis<'m> {
 
     /// Analysis of the same model at other output times, with the same first one. It shares the plan and the programs.
     pub(super) fn at_times(&self, times: Vec<f64>) -> Analysis<'static> {
-        self.with_model(Model { times, ..self.model().clone() })
+        self.with_model(|model| Model { times: times.clone(), ..model.clone() })
     }
 
     /// Returns the same analysis at other output times, of a model without metrics.
     pub fn without_metrics(&self, times: Vec<f64>) -> Analysis<'static> {
-        self.with_model(Model { times, metrics: Vec::new(), ..self.model().clone() })
+        self.with_model(|model| Model { times: times.clone(), metrics: Vec::new(), ..model.clone() })
     }
 
     /// Analysis of a model that differs only in its output times and metrics.
-    fn with_model(&self, model: Model) -> Analysis<'static> {
+    fn with_model(&self, changed: impl Fn(&Model) -> Model) -> Analysis<'static> {
+        let equilibrium = self.equilibrium.as_ref().map(|open| {
+            let OpenModel { user, openings, kinds } = &**open;
+            let (openings, kinds) = (openings.clone(), kinds.clone());
+            Arc::new(OpenModel { user: changed(user), openings, kinds })
+        });
         Analysis {
             topology: self.topology.clone(),
-            design_map: DesignMap::of(Arc::new(model)),
+            design_map: DesignMap::of(Arc::new(changed(self.solved_model()))),
+            equilibrium,
             opens: self.opens.clone(),
             between: Arc::default(),
             programs: self.programs.clone(),
@@ -215,12 +254,22 @@ impl<'m> Analysis<'m> {
     pub(crate) fn opens(&self) -> &[Vec<JointDefect>] {
         self.opens.get_or_init(|| {
             let nominal = self.design_map.fields(&self.model().whole(&[]));
-            nominal.iter().map(|field| admissibility_at_design(self.model(), field)).collect()
+            let own = self.model().joints.len();
+            let opened = |field| {
+                let mut opened = admissibility_at_design(self.solved_model(), field);
+                // What places a floating body is no joint of the user.
+                opened.retain(|defect| defect.joint.0 < own);
+                opened
+            };
+            nominal.iter().map(opened).collect()
         })
     }
 
     /// Method that solves the smooth steps of the nominal motion, with or without measures.
     pub(super) fn solved_by(&self, measures: bool) -> StepMethod {
+        if self.equilibrium.is_some() {
+            return StepMethod::Kernel(AT_EQUILIBRIUM.into());
+        }
         let of_measures = || if measures { self.needs_kernel() } else { None };
         match StepProgram::hindrance(&self.topology, measures).or_else(of_measures) {
             Some(why) => StepMethod::Kernel(why.into()),
@@ -241,6 +290,9 @@ impl<'m> Analysis<'m> {
     /// Reason why measures need the kernel instead of programs, if they do.
     pub(super) fn needs_kernel(&self) -> Option<&'static str> {
         *self.kernel.get_or_init(|| {
+            if self.equilibrium.is_some() {
+                return Some(AT_EQUILIBRIUM);
+            }
             let model = self.model();
             if model.measures.iter().any(|m| matches!(m.kind, MeasureKind::Compliance { .. })) {
                 return Some("there are measures of compliance");
@@ -258,7 +310,7 @@ impl<'m> Analysis<'m> {
 
     /// True if a program saves time for the steps of this number of designs.
     pub(super) fn programs_pay(&self, designs: usize) -> bool {
-        self.programs.pay(designs * self.model().times.len())
+        self.equilibrium.is_none() && self.programs.pay(designs * self.model().times.len())
     }
 
     /// Per body: true if any sink requests its results.
@@ -305,7 +357,12 @@ impl<'m> Analysis<'m> {
             return;
         }
         let PreparedDesign { values, laws, scope: Scope { of_many, .. }, .. } = design;
-        let at = measure::MeasuredDesign { model: self.model(), design_map: &self.design_map, values, laws };
+        let at = measure::MeasuredDesign {
+            model: self.solved_model(),
+            design_map: &self.design_map,
+            values,
+            laws,
+        };
         let program = self.programs_pay(*of_many).then(|| {
             let asked = measure::ProgramKey::of(self.model(), values, sensitivities);
             let execution = self.programs.execution();
@@ -318,7 +375,7 @@ impl<'m> Analysis<'m> {
 
     /// The step of this plan as a program, recorded where the nominal motion begins.
     pub(super) fn program(&self, purpose: Purpose) -> Option<Arc<StepProgram>> {
-        if StepProgram::hindrance(&self.topology, purpose.margins).is_some() {
+        if self.equilibrium.is_some() || StepProgram::hindrance(&self.topology, purpose.margins).is_some() {
             return None;
         }
         self.programs.step(purpose, |execution| {
@@ -353,8 +410,8 @@ impl<'m> Analysis<'m> {
     /// The nominal design where its motion begins.
     pub(super) fn started(&self) -> Option<Stepper<'_>> {
         let PreparedDesign { geometry, laws, .. } = self.design(&[]);
-        let parts = PlanGeometry::same(self.model(), &self.topology, &geometry, &laws);
-        let mut one = Stepper::new(self.model(), &self.topology, parts);
+        let parts = PlanGeometry::same(self.solved_model(), &self.topology, &geometry, &laws);
+        let mut one = Stepper::new(self.solved_model(), &self.topology, parts);
         advance::start(&mut one, *self.model().times.first()?).ok()?;
         Some(one)
     }

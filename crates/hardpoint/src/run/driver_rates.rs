@@ -1,5 +1,9 @@
 //! Rates of all outputs by each driver alone, while the others are at rest.
 
+use std::ops::ControlFlow;
+
+use super::sink::NullSink;
+use super::walk::SolvedSteps;
 use super::{Analysis, Walk};
 use crate::measure::{Instant, Output, bodies_asked_for, outputs};
 use crate::model::{DriverId, GROUND};
@@ -39,7 +43,9 @@ impl Analysis<'_> {
         let model = self.model();
         let design = self.design(&[]);
         let ways: Vec<PairDirection> = drivers.iter().map(|d| PairDirection::Driver(*d)).collect();
-        let mut seconds = Seconds::new(self.design_map(), self.topology(), &design.values, &ways, &[]);
+        let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
+        let mut seconds =
+            Seconds::new(self.design_map(), self.topology(), &design.values, (&ways, openings), &[]);
         let values: Vec<_> = design.values.iter().map(|v| Dual::constant(Dual::constant(*v))).collect();
         let fixed = self.design_map().fixed(&values);
         let bodies: Vec<usize> = bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect();
@@ -48,8 +54,16 @@ impl Analysis<'_> {
             DriverRates { drivers: drivers.to_vec(), outputs: outputs(model), ..DriverRates::default() };
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let mut times = model.times.iter();
-        found.stop = walk.each(|one| {
-            let Some(&t) = times.next() else { return };
+        let go_on = &mut |_| ControlFlow::Continue(());
+        found.stop = walk.all(&mut NullSink, go_on, |_, solved, _, _| {
+            let (Some(&t), SolvedSteps::One(one, _, equilibrium)) = (times.next(), solved) else { return };
+            if let Some(equilibrium) = equilibrium {
+                for (driver, rates) in equilibrium.driver_rates(one, t) {
+                    if let Some(k) = drivers.iter().position(|d| *d == driver) {
+                        seconds.set_openings(k, &rates);
+                    }
+                }
+            }
             seconds.solve(&mut one.mechanism, t);
             found.times.push(t);
             for d in 0..drivers.len() {

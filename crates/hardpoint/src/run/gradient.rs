@@ -91,7 +91,8 @@ impl Analysis<'_> {
             o.known.by_position && !matches!(o.source, OutputSource::Measure(k) if formula(k))
         };
         let is_load = |o: &Output| load_of(self.model(), o).is_some();
-        if !asked.iter().all(|o| is_plain(o) || is_load(o)) {
+        // The openings of an equilibrium follow every variable by direct differentiation.
+        if self.openings().is_some() || !asked.iter().all(|o| is_plain(o) || is_load(o)) {
             return self.gradients_of_run(design, outputs_asked, asked);
         }
         match self.method(asked.len(), asked.iter().filter(|o| is_load(o)).count(), method) {

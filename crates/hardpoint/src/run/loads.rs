@@ -39,6 +39,7 @@ impl Analysis<'_> {
             result.pushes.extend(pushed.iter().map(|&(element, at)| solver.push(element, at)));
             let transmitted = solver.transmitted();
             let drivers = transmitted.drivers.iter().zip(&transmitted.speeds);
+            let drivers = drivers.take(model.drivers.len());
             result.drivers.extend(drivers.map(|(&force, &speed)| DriverLoad { force, speed }));
         });
         result

@@ -1,15 +1,15 @@
 //! Second design derivatives over a motion: Hessians, Hessian-vector products, and the curvature of curves along a
 //! change.
 
-use super::{Analysis, PreparedDesign, Walk};
+use super::{Analysis, PreparedDesign, Run, Solution, Walk};
 use crate::design::BodyFixed;
 use crate::measure::{Instant, Output, bodies_asked_for, outputs};
-use crate::model::{BodyId, GROUND};
+use crate::model::{BodyId, GROUND, VariableId};
 use crate::motion::Stop;
 use crate::motion::mechanism::Mechanism;
 use crate::number::Dual;
 use crate::sensitivity::{BodyCurvature, PairDirection, Seconds};
-use crate::space::Pose;
+use crate::space::{Pose, Vec3};
 
 /// Second derivatives of all bodies' positions and of the values of all outputs, for pairs of directions.
 #[derive(Clone, Debug, Default)]
@@ -60,11 +60,17 @@ impl Analysis<'_> {
     /// Results for directions that the mechanism cannot follow are meaningless: check
     /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility) first.
     ///
+    /// Second derivatives of an equilibrium are differences of its exact first derivatives, with six digits or more;
+    /// those of bodies are not known.
+    ///
     /// # Panics
     /// If a pair contains an index that is out of range.
     pub fn second(&self, design: &[f64], directions: &[Vec<f64>], pairs: &[[usize; 2]]) -> SecondDerivatives {
-        let design = self.design(design);
         let directions: Vec<Vec<f64>> = directions.iter().map(|d| self.model().whole(d)).collect();
+        if self.openings().is_some() {
+            return self.second_of_equilibrium(design, &directions, pairs);
+        }
+        let design = self.design(design);
         let model = self.model();
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let mut result = SecondDerivatives {
@@ -82,7 +88,66 @@ impl Analysis<'_> {
         });
         result
     }
+
+    /// Second derivatives of an equilibrium.
+    fn second_of_equilibrium(
+        &self,
+        design: &[f64],
+        directions: &[Vec<f64>],
+        pairs: &[[usize; 2]],
+    ) -> SecondDerivatives {
+        let (model, values) = (self.model(), self.model().whole(design));
+        let outputs = outputs(model);
+        // Per output time and output, the first derivative along a direction in a run.
+        let along = |run: &Solution, u: &[f64]| -> Vec<f64> {
+            let of = |k: usize, m: usize| {
+                let parts = u.iter().enumerate().filter(|(_, rate)| **rate != 0.0);
+                parts.map(|(v, rate)| rate * run.measured.derivative(k, VariableId(v), m, 0)).sum()
+            };
+            (0..run.motion.len())
+                .flat_map(|k| (0..outputs.len()).map(move |m| (k, m)))
+                .map(|(k, m)| of(k, m))
+                .collect()
+        };
+        let here = self.solve(Run::new().at(&values));
+        let mut found: Vec<[Vec<f64>; 2]> = Vec::new();
+        let mut steps = here.motion.len();
+        for &[u, w] in pairs {
+            let natural = |(v, rate): (usize, &f64)| rate.abs() / model.natural_step(VariableId(v));
+            let size = directions[w].iter().enumerate().map(natural).fold(0.0, f64::max);
+            let step = if size > 0.0 { DIFFERENCE / size } else { 1.0 };
+            let [ahead, behind] = [step, -step].map(|h| {
+                let moved: Vec<f64> =
+                    values.iter().zip(&directions[w]).map(|(x, rate)| x + h * rate).collect();
+                let run = self.solve(Run::new().at(&moved));
+                steps = steps.min(run.motion.len());
+                along(&run, &directions[u])
+            });
+            let bend = ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * step)).collect();
+            found.push([bend, along(&here, &directions[w])]);
+        }
+        let nan = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
+        let unknown = BodyCurvature { d2r: nan, ddpi: nan };
+        let numbers = |which: usize| -> Vec<f64> {
+            let count = outputs.len();
+            let of = |k: usize| found.iter().flat_map(move |pair| &pair[which][k * count..][..count]);
+            (0..steps).flat_map(of).copied().collect()
+        };
+        SecondDerivatives {
+            times: here.motion.times[..steps].to_vec(),
+            pairs: pairs.to_vec(),
+            values: numbers(0),
+            firsts: numbers(1),
+            bodies: model.bodies.len(),
+            curvatures: vec![unknown; steps * pairs.len() * model.bodies.len()],
+            stop: here.stop,
+            outputs: outputs.clone(),
+        }
+    }
 }
+
+/// Step of the differences, in natural steps of the variables: their error is its square and the round-off over it.
+const DIFFERENCE: f64 = 1e-3;
 
 /// Workspace of second derivatives, in addition to a mechanism.
 struct SecondDerivativeSolver<'a> {
@@ -114,7 +179,7 @@ impl<'a> SecondDerivativeSolver<'a> {
         };
         Self {
             analysis,
-            seconds: Seconds::new(design_map, analysis.topology(), &design.values, &ways, pairs),
+            seconds: Seconds::new(design_map, analysis.topology(), &design.values, (&ways, &[]), pairs),
             fixed: pairs.iter().map(fixed).collect(),
             asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
             poses: vec![Pose::IDENTITY.spread(); model.bodies.len()],

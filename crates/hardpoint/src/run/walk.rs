@@ -5,6 +5,7 @@ use std::ops::{ControlFlow, Range};
 use hardpoint_tape::LANES;
 
 use crate::design::{DesignVelocity, Geometry};
+use crate::equilibrium::EquilibriumSolver;
 use crate::law::Law;
 use crate::load::LoadSolver;
 use crate::measure::PathAngles;
@@ -58,6 +59,8 @@ pub(crate) struct Walk<'a> {
     pub solver: Option<SensitivitySolver>,
     /// `None` if no loads are requested.
     pub loads: Option<LoadSolver<'a>>,
+    /// `None` if all joints are rigid.
+    pub equilibrium: Option<EquilibriumSolver<'a>>,
     /// Per body: true if its results are requested.
     wanted: Vec<bool>,
     /// Output times solved.
@@ -66,15 +69,37 @@ pub(crate) struct Walk<'a> {
 
 /// Steps that were just solved: one output time, or several in these lanes of a program.
 pub(crate) enum SolvedSteps<'w, 'a> {
-    One(&'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>),
+    One(&'w mut Stepper<'a>, Option<&'w LoadSolver<'a>>, Option<&'w mut EquilibriumSolver<'a>>),
     Batch(&'w Tape, Range<usize>, Option<&'w TurnCounter<'a>>),
 }
 
 impl<'a> Walk<'a> {
     /// Solver that goes step by step.
     pub fn new(analysis: &'a Analysis<'a>, design: &'a PreparedDesign, wanted: Vec<bool>) -> Self {
-        let (model, topology) = (analysis.model(), analysis.topology());
+        let (model, topology) = (analysis.solved_model(), analysis.topology());
         let PreparedDesign { geometry, laws, fields, .. } = design;
+        let openings = analysis.openings();
+        let equilibrium = openings.map(|openings| {
+            let own_drivers = analysis.model().drivers.len();
+            EquilibriumSolver::new(
+                analysis.design_map(),
+                topology,
+                &design.values,
+                openings,
+                fields,
+                own_drivers,
+            )
+        });
+        // The openings follow the design as far as the equilibrium asks for it.
+        let followed = openings.map(|(openings, _)| {
+            let shifts = || openings.iter().map(|d| (*d, 1.0));
+            let with_openings = |field: &DesignVelocity| DesignVelocity {
+                shifts: field.shifts.iter().copied().chain(shifts()).collect(),
+                ..field.clone()
+            };
+            fields.iter().map(with_openings).collect::<Vec<_>>()
+        });
+        let fields = followed.as_ref().unwrap_or(fields);
         let mut one = Stepper::new(model, topology, PlanGeometry::same(model, topology, geometry, laws));
         let angles = PathAngles::of(analysis.design_map(), topology, &design.values, design.scope.measures);
         one.turns = angles.map(|angles| TurnCounter::new(Box::new(angles)));
@@ -85,6 +110,7 @@ impl<'a> Walk<'a> {
             solver: (!fields.is_empty())
                 .then(|| SensitivitySolver::new(model, topology, fields, wanted.clone())),
             loads: None,
+            equilibrium,
             wanted,
             done: 0,
         }
@@ -117,7 +143,7 @@ impl<'a> Walk<'a> {
     /// stored.
     pub fn each(&mut self, mut then: impl FnMut(&mut Stepper<'a>)) -> Option<Stop> {
         self.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
-            if let SolvedSteps::One(one, _) = solved {
+            if let SolvedSteps::One(one, ..) = solved {
                 then(one);
             }
         })
@@ -149,7 +175,7 @@ impl<'a> Walk<'a> {
                 }
                 (count, stop) = self.report(1, progress);
                 self.give_one(k, sink);
-                SolvedSteps::One(&mut self.one, self.loads.as_ref())
+                SolvedSteps::One(&mut self.one, self.loads.as_ref(), self.equilibrium.as_mut())
             } else {
                 (count, stop) = self.report(at_once, progress);
                 let lanes = self.give_batch(k, count, sink);
@@ -164,7 +190,14 @@ impl<'a> Walk<'a> {
     /// Solves output time k alone.
     fn step(&mut self, k: usize) -> Result<(), Box<Stop>> {
         let t = self.analysis.model().times[k];
-        let step = if k == 0 { advance::start(&mut self.one, t) } else { advance::advance(&mut self.one, t) };
+        let step = match &mut self.equilibrium {
+            Some(equilibrium) => {
+                let begun = if k == 0 { advance::start(&mut self.one, t) } else { Ok(()) };
+                begun.and_then(|()| equilibrium.step(&mut self.one, t))
+            }
+            None if k == 0 => advance::start(&mut self.one, t),
+            None => advance::advance(&mut self.one, t),
+        };
         step.map_err(|mut stop| {
             if let (StopKind::DoesNotAssemble, Some(block)) = (stop.kind, stop.block) {
                 stop.remains = assembly::least_gaps(&mut self.one.mechanism, block);
@@ -199,6 +232,12 @@ impl<'a> Walk<'a> {
         let (t, loads) = (self.analysis.model().times[k], &mut self.loads);
         if let Some(loads) = loads {
             loads.step(&mut self.one, t);
+        }
+        if let Some(equilibrium) = &mut self.equilibrium {
+            equilibrium.prepare(&mut self.one, t);
+            if let Some(solver) = &mut self.solver {
+                equilibrium.differentiate(&mut self.one, t, |v, rates| solver.set_openings(v, rates));
+            }
         }
         if let Some(solver) = &mut self.solver {
             let found = |variable, body, found: &_| sink.sensitivity(k, variable, body, found);

@@ -93,11 +93,15 @@ impl Analysis<'_> {
         let sensitive = !design.fields.is_empty();
         solution.between = None;
         let variables = if sensitive { model.variables.len() } else { 0 };
-        let slopes = || Slopes::new(self.design_map(), topology, &design.values, sensitive);
+        // The second derivatives of an equilibrium are not known.
+        let of_motion = self.openings().is_none();
+        let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
+        let slopes =
+            || Slopes::new(self.design_map(), topology, &design.values, sensitive && of_motion, openings);
         let mut slopes = measures.then(slopes).flatten();
         let wanted = vec![true; model.bodies.len()];
         let giving = || Compliances::new(self.design_map(), topology, &design.values, sensitive);
-        let mut compliances = measures.then(giving).flatten();
+        let mut compliances = (measures && of_motion).then(giving).flatten();
         let loads = measures && (self.asks_for_loads() || compliances.is_some());
         let mut walk = match measures && self.needs_kernel().is_some() {
             true => Walk::new(self, design, wanted),
@@ -128,9 +132,15 @@ impl Analysis<'_> {
             let k = window.done - window.first;
             window.done += count;
             match solved {
-                SolvedSteps::One(one, loads) => {
-                    if slopes.is_some() || loads.is_some() {
+                SolvedSteps::One(one, loads, mut equilibrium) => {
+                    if slopes.is_some() || loads.is_some() || equilibrium.is_some() {
                         window.slopes.begin();
+                    }
+                    if let (Some(found), Some(equilibrium)) = (&mut slopes, &mut equilibrium) {
+                        found.set_openings(&equilibrium.driver_rates(one, times[0]));
+                    }
+                    if let (Some(equilibrium), true) = (equilibrium, measures) {
+                        equilibrium.add_compliances(one, &mut window.slopes);
                     }
                     if let Some(found) = &mut slopes {
                         found.add(&mut one.mechanism, times[0], &mut window.slopes);
@@ -175,7 +185,7 @@ impl Analysis<'_> {
         window.motion.solved_by = Some(self.solved_by(measures));
         window.motion.assembly = walk.one.assembly.take();
         window.motion.beyond =
-            if measures && stop.is_none() && walk.done > 0 { walk.one.beyond() } else { None };
+            if measures && of_motion && stop.is_none() && walk.done > 0 { walk.one.beyond() } else { None };
         window.sensitivities.admissibility = walk.admissibility(&design.opens);
         window.close(self, design, solution);
         solution.stop = stop;

@@ -227,6 +227,12 @@ impl<T: Real> PlanVelocity<T> {
         }
     }
 
+    /// Sets the rates of the drivers that shift last.
+    pub fn set_last_shifts(&mut self, rates: &[T]) {
+        let first = self.shifts.len() - rates.len();
+        self.shifts[first..].iter_mut().zip(rates).for_each(|(shift, rate)| shift.1 = *rate);
+    }
+
     /// Sets the contributions if no law changes: shifts of drivers alone.
     pub fn set_shifts(&mut self) {
         for (driver, rates) in &mut self.law_rates {

@@ -160,15 +160,20 @@ pub(crate) struct Seconds<T = f64> {
 }
 
 impl Seconds {
-    /// Second derivatives for these pairs of directions, at the design with these values.
+    /// Second derivatives for these pairs of directions, at the design with these values. These openings follow the
+    /// directions, if there are any.
     pub fn new(
         design_map: &DesignMap<'_>,
         topology: &Topology,
         values: &[f64],
-        directions: &[PairDirection],
+        (directions, openings): (&[PairDirection], &[DriverId]),
         pairs: &[[usize; 2]],
     ) -> Self {
-        let field = |d: &PairDirection| d.field(design_map, values).with_laws_in_order();
+        let field = |d: &PairDirection| {
+            let mut field = d.field(design_map, values).with_laws_in_order();
+            field.shifts.extend(openings.iter().map(|d| (*d, 1.0)));
+            field
+        };
         let fields: Vec<DesignVelocity> = directions.iter().map(field).collect();
         let pair = |&[u, w]: &[usize; 2]| {
             // b + eps w with eps^2 = 0: e_u + eps de_u/dw, L_u + eps L_uw, and the same of the laws' parameters
@@ -183,6 +188,11 @@ impl Seconds {
         };
         let pairs = pairs.iter().map(pair).collect();
         Self::of_fields(design_map.model(), topology, &fields, pairs)
+    }
+
+    /// Sets the rates of the openings along a direction.
+    pub fn set_openings(&mut self, direction: usize, rates: &[f64]) {
+        self.firsts[direction].field.set_last_shifts(rates);
     }
 
     /// Solves all pairs at the position of a mechanism and time t.

@@ -62,6 +62,11 @@ impl SensitivitySolver {
         fields.flat_map(|(v, field)| field.reach.bodies.iter().map(move |b| (VariableId(v), BodyId(*b))))
     }
 
+    /// Sets the rates of the openings of a mechanism by a variable, whose field shifts the openings last.
+    pub fn set_openings(&mut self, variable: usize, rates: &[f64]) {
+        self.fields[variable].set_last_shifts(rates);
+    }
+
     /// Solves at the position of a stepper and output time t, with velocity and acceleration. Calls `found` with the
     /// sensitivities of requested bodies, and `each` with the solution of each variable.
     pub fn step(

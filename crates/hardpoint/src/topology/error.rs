@@ -61,6 +61,14 @@ pub enum TopologyError {
         /// Names of the bodies in their loops.
         bodies: Vec<String>,
     },
+    /// A joint of which only some directions give closes a loop of elastic joints (HP0306).
+    #[error("joint `{joint_name}` closes a loop of elastic joints, and gives in some of its directions only")]
+    ElasticLoop {
+        /// The joint.
+        joint: JointId,
+        /// Its name.
+        joint_name: String,
+    },
 }
 
 /// `1 driver`, `2 drivers`.
@@ -86,6 +94,7 @@ impl TopologyError {
             Self::OverDriven { .. } => "HP0302",
             Self::Immovable { .. } => "HP0303",
             Self::Singular { .. } => "HP0304",
+            Self::ElasticLoop { .. } => "HP0306",
         }
     }
 
@@ -114,6 +123,7 @@ impl TopologyError {
             Self::Immovable { joint_names, .. } => {
                 vec![format!("constraints that fail with any motion: {}", dozen(joint_names))]
             }
+            Self::ElasticLoop { .. } => Vec::new(),
         }
     }
 
@@ -140,6 +150,9 @@ impl TopologyError {
                  a revolute joint, a cylindrical joint instead of a translational one)"
                     .into()
             }
+            Self::ElasticLoop { joint_name, .. } => {
+                format!("give `{joint_name}` stiffnesses in all its directions, or make another joint of the loop rigid")
+            }
         }
     }
 
@@ -150,6 +163,7 @@ impl TopologyError {
             | Self::Singular { joints, .. }
             | Self::OverDriven { joints, .. }
             | Self::Immovable { joints, .. } => joints,
+            Self::ElasticLoop { joint, .. } => std::slice::from_ref(joint),
         }
     }
 }

@@ -10,12 +10,14 @@ mod error;
 mod ids;
 mod matching;
 mod mobility;
+mod openings;
 mod redundancy;
 mod size;
 mod tree;
 
 pub use error::TopologyError;
 pub use ids::{BlockId, ClosureId, CoordinateId, Ids, LinkId, RowId};
+pub(crate) use openings::{OpenTree, dependence, open_tree};
 pub use redundancy::Redundancy;
 
 use std::ops::Range;

@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use crate::draft::{CaseDraft, OtherDrivers, Section};
+use crate::draft::{CaseDraft, DraftLocation, OtherDrivers, Section};
 use crate::law::Law;
-use crate::model::{Case, CaseId, DriverId};
+use crate::model::{Case, CaseId, DriverId, ElementId};
 
 use super::{Checker, Here, LISTED_NAMES};
 
@@ -30,13 +30,20 @@ impl Checker<'_> {
             self.model.cases.push(Case {
                 name,
                 laws: Vec::new(),
+                force_laws: Vec::new(),
                 formulas,
                 times: times_of_case,
                 load_mode: c.load_mode,
             });
             for (k, (driver, law)) in c.laws.iter().enumerate() {
+                let forces = draft.forces.iter().map(|f| f.name.as_str());
                 let names = draft.drivers.iter().map(|d| d.name.as_str());
                 let at = here.item("law", k);
+                if self.number_of("driver", driver).is_none() && forces.clone().any(|f| f == driver) {
+                    self.add_force_law(case, driver, law, times, here.item("laws", k));
+                    continue;
+                }
+                let names = names.chain(forces);
                 if self.find("driver", driver, here.item("laws", k), names).is_none() {
                     continue;
                 }
@@ -64,20 +71,52 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0235: a case with several output times in which no driver moves.
+    /// Law of a force in a case. HP0262: a force that no law multiplies.
+    fn add_force_law(&mut self, case: CaseId, name: &str, law: &Law, times: &[f64], at: DraftLocation) {
+        let found = self.model.elements.iter().position(|e| e.name == name);
+        // A faulty force has been reported.
+        let Some(e) = found else { return };
+        let case_name = self.model.cases[case.0].name.clone();
+        if self.model.elements[e].kind.law_mut().is_none() {
+            let message = format!("`{name}` has no law that case `{case_name}` could replace");
+            self.fault("HP0262", at, message)
+                .help("name a driver, or a force of type `force`, `wheel_force` or `moment`");
+            return;
+        }
+        if let Some(t) = times.iter().find(|t| !law.at(**t).value().is_finite()) {
+            let message =
+                format!("the law of `{name}` in case `{case_name}` has no finite value at t = {t} s");
+            self.fault("HP0214", at, message).help("change the law, or the output times");
+            return;
+        }
+        self.model.cases[case.0].force_laws.push((ElementId(e), law.clone()));
+    }
+
+    /// HP0235: a case with several output times in which nothing moves: no driver, and no force of an equilibrium.
     fn check_motion(&mut self, c: &CaseDraft, laws: &[Option<Law>], times: &[f64], here: Here) {
         let draft = self.draft;
-        let faulty = self.model.drivers.len() < draft.drivers.len()
-            || self.is_table_unread("driver")
-            || self.unread(here, "laws")
-            || c.laws.iter().any(|(name, _)| self.number_of("driver", name).is_none())
-            || (0..draft.drivers.len())
-                .any(|index| self.unread(Here { section: Section::Drivers, index }, "law"));
         let [first, .., _] = times else { return };
         let is_constant = |law: &Law| {
             let start = law.at(*first).value();
             times.iter().all(|t| law.at(*t).value() == start)
         };
+        let faulty = self.model.drivers.len() < draft.drivers.len()
+            || self.is_table_unread("driver")
+            || self.unread(here, "laws")
+            || c.laws.iter().any(|(name, _)| self.number_of("driver", name).is_none())
+            || self.draft.equilibrium.is_some()
+                && (self
+                    .model
+                    .elements
+                    .iter()
+                    .any(|e| e.kind.law(&self.model).is_some_and(|law| !is_constant(law)))
+                    || self
+                        .model
+                        .cases
+                        .iter()
+                        .any(|case| case.force_laws.iter().any(|(_, law)| !is_constant(law))))
+            || (0..draft.drivers.len())
+                .any(|index| self.unread(Here { section: Section::Drivers, index }, "law"));
         let laws = laws.iter().zip(&self.model.drivers);
         if faulty || !laws.map(|(law, driver)| law.as_ref().unwrap_or(&driver.law)).all(is_constant) {
             return;

@@ -6,7 +6,7 @@ use crate::joint::Quantity;
 use crate::law::Law;
 use crate::model::element::JointFriction;
 use crate::model::{
-    Angle, Axes, BodyId, CubicStiffness, Damping, Density, Element, ElementKind, ElementUnit, Force, GROUND,
+    Angle, BodyId, CubicStiffness, Damping, Density, Element, ElementKind, ElementUnit, Force, GROUND,
     Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId, SpringTable, Stiffness,
     TorsionalDamping, TorsionalStiffness, each_number, elements,
 };
@@ -223,24 +223,6 @@ macro_rules! number_field {
     };
 }
 each_number!(number_field);
-
-impl Field for Option<Axes> {
-    type Draft = Self;
-    const KIND: FieldKind = FieldKind::Axes;
-    const REQUIRED: bool = false;
-
-    fn draft(written: Option<FieldDraft>) -> Option<Self> {
-        match written {
-            None => Some(None),
-            Some(FieldDraft::Axes(axes)) => Some(Some(axes)),
-            Some(_) => None,
-        }
-    }
-
-    fn resolve(axes: &Self, _: &'static str, _: &mut MeasureCheck<'_, '_>) -> Option<Self> {
-        Some(*axes)
-    }
-}
 
 impl Field for Option<Law> {
     type Draft = Self;

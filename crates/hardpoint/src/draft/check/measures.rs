@@ -8,9 +8,9 @@ use crate::draft::{
 use crate::expression::Expression;
 use crate::model::element::Compliance;
 use crate::model::{
-    AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, Element, ElementId, JointId,
-    KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle, OutputSource, PointId, Ray,
-    ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure,
+    Axes, AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, Element, ElementId,
+    JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle, OutputSource, PointId,
+    Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure, WheelPoint,
 };
 use crate::space::Vec3;
 
@@ -73,17 +73,45 @@ impl Checker<'_> {
             self.fault("HP0250", here.key("type"), message)
                 .help("add compliant joints as `[forces]` of `type = \"elastic_joint\"`");
         }
-        if let MeasureKind::Compliance { at, wheel, .. } = kind
-            && at.is_some() == wheel.is_some()
-        {
-            let (message, help) = match at {
-                Some(_) => ("has both `at` and `wheel`", "leave `at` or `wheel` out"),
-                None => (
-                    "has no point of application",
-                    "give the point as `at`, or the `wheel` that the road acts on",
-                ),
-            };
-            self.fault("HP0251", here.key("at"), format!("`{}` {message}", m.name)).help(help);
+        if let MeasureKind::Compliance { at, wheel, force, along, released, .. } = kind {
+            let given =
+                usize::from(at.is_some()) + usize::from(wheel.is_some()) + usize::from(force.is_some());
+            if given != 1 {
+                let (message, help) = if given > 1 {
+                    ("has more than one of `at`, `wheel` and `force`", "leave one in")
+                } else {
+                    (
+                        "has no point of application",
+                        "give the point as `at`, the `wheel` that the road acts on, or the `force` that changes",
+                    )
+                };
+                self.fault("HP0251", here.key("at"), format!("`{}` {message}", m.name)).help(help);
+            } else if force.is_none() && along.is_none() {
+                self.fault("HP0251", here.key("along"), format!("`{}` has no direction", m.name))
+                    .help("give the direction of the force, like `along = \"y\"`");
+            }
+            let is_given = |e: &ElementId| self.model.elements[e.0].kind.clone().law_mut().is_some();
+            if let Some(e) = force
+                && !is_given(e)
+            {
+                let message = format!(
+                    "`{}` of measure `{}` is not a given force",
+                    self.model.elements[e.0].name, m.name
+                );
+                self.fault("HP0251", here.key("force"), message)
+                    .help("name a force of type `force`, `wheel_force` or `moment`");
+            }
+            let at_equilibrium = self.draft.equilibrium.is_some();
+            if force.is_some() && !at_equilibrium {
+                let message = format!("measure `{}` needs the equilibrium under its force", m.name);
+                self.fault("HP0261", here.key("force"), message)
+                    .help("add `[equilibrium]`, or give `at` or `wheel` with `along` instead of `force`");
+            }
+            if released.is_some() && at_equilibrium {
+                let message = format!("measure `{}` releases a driver by itself", m.name);
+                self.fault("HP0261", here.key("released"), message)
+                    .help("write `released` in `[equilibrium]` instead");
+            }
         }
         if let MeasureKind::Reaction { joint, on: Some(on), .. } = kind {
             let joint = &self.model.joints[joint.0];
@@ -496,6 +524,12 @@ field!(Option<BodyId>, Body, Name: Option<String>, may |name, key, c| match name
 });
 field!(ReactionPart, ReactionPart, Part: ReactionPart, |part, _key, _c| Some(*part));
 field!(ElementId, Force, Name: String, |name, key, c| c.check.force(name, c.here.key(key)));
+field!(Option<ElementId>, Force, Name: Option<String>, may |name, key, c| match name {
+    Some(name) => ElementId::resolve(name, key, c).map(Some),
+    None => Some(None),
+});
+field!(Option<Axes>, Axes, Axes: Option<Axes>, may |axes, _key, _c| Some(*axes));
+field!(Option<WheelPoint>, WheelPoint, WheelPoint: Option<WheelPoint>, may |point, _key, _c| Some(*point));
 field!(OrientationAngle, OrientationAngle, Angle: OrientationAngle, |angle, _key, _c| Some(*angle));
 field!(DriverId, Driver, Name: Option<String>, may |name, _key, c| {
     c.check.driver_or_only(name.as_deref(), c.owner, c.here)

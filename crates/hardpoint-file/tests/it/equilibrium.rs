@@ -1,0 +1,542 @@
+//! Equilibria of mechanisms with elastic joints: published data of a double wishbone on four bushings and of a lever in
+//! closed form, limits, identities, and what must not matter.
+
+use hardpoint::motion::StopKind;
+use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Run, Solution};
+use hardpoint_file::{ModelFile, parse};
+use serde_json::Value;
+
+use crate::diagnostics::snapshot;
+
+/// The data have 13 digits.
+const VALUES: f64 = 1e-10;
+const FORCES: f64 = 1e-9;
+/// Sensitivities and compliances, relative to the largest of their row.
+const DERIVATIVES: f64 = 1e-8;
+
+fn file(text: &str) -> ModelFile {
+    parse(text, "equilibrium.toml").unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+fn solved(text: &str) -> Solution {
+    let solution = Analysis::new(&file(text).model).unwrap().run();
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    solution
+}
+
+fn value(solution: &Solution, k: usize, name: &str) -> f64 {
+    let m = solution.measured.index(name).unwrap_or_else(|| panic!("{name}"));
+    solution.measured.value(k, m)[0]
+}
+
+fn near(found: f64, expected: f64, tolerance: f64, what: &str) {
+    assert!((found - expected).abs() <= tolerance, "{what}: {found} instead of {expected}");
+}
+
+/// Loads and position of the double wishbone.
+#[derive(Clone, Copy)]
+struct State {
+    bump: f64,
+    /// Outboard and forward, N.
+    road: [f64; 2],
+    align: f64,
+    rack: f64,
+}
+
+/// How the double wishbone is written.
+#[derive(Clone)]
+struct Written {
+    /// Factor of all stiffnesses but those about the axes.
+    scale: f64,
+    /// With cubic stiffnesses and preload.
+    complete: bool,
+    /// Bodies of the upper front bushing, exchanged with its axes.
+    cut: &'static str,
+    forces: bool,
+    equilibrium: &'static str,
+    times: &'static str,
+    bump_law: Option<&'static str>,
+}
+
+const AS_PUBLISHED: Written = Written {
+    scale: 1.0,
+    complete: true,
+    cut: "",
+    forces: true,
+    equilibrium: "[equilibrium]",
+    times: "[time]\nat = [0]",
+    bump_law: None,
+};
+
+/// The double wishbone of the data, in m and rad.
+fn wishbone(at: State, how: &Written) -> String {
+    let State { bump, road: [side, forward], align, rack } = at;
+    let s = how.scale;
+    let bushing = |name: &str, joint: &str, k: [f64; 5], about: &str, more: &str| {
+        let [x, y, z, a, b] = k.map(|k| k * s);
+        format!(
+            "{name} = {{ type = \"elastic_joint\", joint = \"{joint}\", x = {x:?}, y = {y:?}, z = {z:?}, about_x = {a:?}, \
+             about_y = {b:?}, about_z = {about}{more} }}\n"
+        )
+    };
+    let (cubic, preload) = if how.complete {
+        (", cubic_x = 4e11, cubic_y = 4e11, cubic_z = 2e9", ", preload_z = \"preload\"")
+    } else {
+        ("", "")
+    };
+    let k_front = 9.0e6 * s;
+    let k_upper = 5.0e6 * s;
+    let front = bushing("lca_front_bush", "lca_front", [0.0, 8.0e6, 1.2e6, 3500.0, 3000.0], "80.0", "");
+    let front = front.replace("x = 0.0, y", "x = \"k_front\", y");
+    let rear = bushing("lca_rear_bush", "lca_rear", [4.0e6, 3.0e6, 3.0e5, 2000.0, 2000.0], "\"k_rear_about\"", cubic);
+    let upper_front = bushing("uca_front_bush", "uca_front", [5.0e6, 5.0e6, 4.0e5, 1500.0, 1500.0], "40.0", "");
+    let upper_rear = bushing("uca_rear_bush", "uca_rear", [5.0e6, 0.0, 4.0e5, 1500.0, 1500.0], "40.0", preload);
+    let upper_rear = upper_rear.replace("y = 0.0, z", "y = \"k_upper\", z");
+    let loads = if how.forces {
+        "spring = { type = \"spring\", from = { body = \"ground\", at = \"spring_top\" }, to = { body = \"lca\", at = \
+         \"spring_foot\" }, stiffness = \"k_spring\", preload = -5200.0 }\n\
+         side = { type = \"wheel_force\", wheel = \"left\", outboard = \"side\" }\n\
+         brake = { type = \"wheel_force\", wheel = \"left\", forward = \"forward\" }\n\
+         align = { type = \"wheel_force\", wheel = \"left\", about_up = \"align\" }\n"
+    } else {
+        ""
+    };
+    let law = how.bump_law.map_or(format!("{bump:?}"), |law| format!("\"{law}\""));
+    let cut = |name: &str| if how.cut == name { ", cut = true" } else { "" };
+    let per_force = if how.forces && !how.equilibrium.is_empty() {
+        let of = |name: &str, of: &str, force: &str| {
+            format!("{name} = {{ type = \"compliance\", of = \"{of}\", force = \"{force}\" }}\n")
+        };
+        ["toe", "camber", "contact_x", "contact_y"]
+            .iter()
+            .flat_map(|m| {
+                [("side", 0), ("brake", 1), ("align", 2)]
+                    .map(|(force, _)| of(&format!("{m}_per_{force}"), &format!("left.{m}"), force))
+            })
+            .collect::<String>()
+    } else {
+        String::new()
+    };
+    let slopes: String = ["toe", "camber", "contact_x", "contact_y"]
+        .iter()
+        .flat_map(|m| {
+            [("bump", "centre.z"), ("steer", "rack")].map(|(driver, over)| {
+                format!(
+                    "{m}_over_{driver} = {{ type = \"slope\", of = \"left.{m}\", over = \"{over}\", driver = \"{driver}\" }}\n"
+                )
+            })
+        })
+        .collect();
+    let slopes = if how.equilibrium.is_empty() { String::new() } else { slopes };
+    let force = if how.forces { "bump_force = { type = \"driver_force\", driver = \"bump\" }" } else { "" };
+    format!(
+        r#"
+name = "double wishbone"
+units = {{ length = "m", angle = "rad" }}
+
+[parameters]
+side = {side:?}
+forward = {forward:?}
+align = {align:?}
+k_front = {k_front:?}
+k_rear_about = 60.0
+k_upper = {k_upper:?}
+preload = 150.0
+k_spring = 45000.0
+
+[hardpoints]
+lca_front = [0.106, 0.24, 0.2654]
+lca_rear = [-0.116, 0.24, 0.2256]
+lower_ball = [0.0125, 0.5622, 0.14]
+uca_front = [0.184, 0.24, 0.4063]
+uca_rear = [-0.1674, 0.24, 0.335]
+upper_ball = [-0.0283, 0.5381, 0.28]
+tie_inner = [-0.075, 0.2302, 0.3089]
+tie_outer = [-0.058, 0.5268, 0.2118]
+wheel_centre = [0.0, 0.65, 0.2]
+spring_top = [0.01, 0.33, 0.53]
+spring_foot = [0.01, 0.45, 0.18]
+
+[bodies]
+lca = {{}}
+uca = {{}}
+knuckle = {{}}
+rack = {{}}
+
+[joints]
+lca_front = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_front", axis = [0.98430677050583, 0.0, 0.1764658084060003]{cut_front} }}
+lca_rear = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_rear", axis = [0.98430677050583, 0.0, 0.1764658084060003] }}
+uca_front = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_front", axis = [0.9800298014418598, 0.0, 0.19885066830621678]{cut_upper} }}
+uca_rear = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_rear", axis = [0.9800298014418598, 0.0, 0.19885066830621678] }}
+lower_ball = {{ type = "spherical", bodies = ["lca", "knuckle"], at = "lower_ball"{cut_ball} }}
+upper_ball = {{ type = "spherical", bodies = ["uca", "knuckle"], at = "upper_ball" }}
+tie_rod = {{ type = "distance", bodies = ["rack", "knuckle"], at = ["tie_inner", "tie_outer"] }}
+rack = {{ type = "translational", bodies = ["ground", "rack"], at = "tie_inner", axis = "y" }}
+
+[drivers]
+bump = {{ point = "centre", along = "z", law = {law} }}
+steer = {{ joint = "rack", law = {rack:?} }}
+
+[points]
+centre = {{ body = "knuckle", at = "wheel_centre" }}
+
+[wheels.left]
+body = "knuckle"
+centre = "wheel_centre"
+spin_axis = [0.0026, 1.0, 0.0218]
+radius = 0.2794
+side = "left"
+measures = ["toe", "camber", "contact_x", "contact_y", "contact_z"]
+
+[forces]
+{front}{rear}{upper_front}{upper_rear}{loads}
+{equilibrium}
+
+[design]
+lower_ball_y = {{ move = "lower_ball", along = "y" }}
+upper_ball_z = {{ move = "upper_ball", along = "z" }}
+tie_inner_z = {{ move = "tie_inner", along = "z" }}
+lca_rear_z = {{ move = "lca_rear", along = "z" }}
+spring_foot_y = {{ move = "spring_foot", along = "y" }}
+
+[measures]
+rack = {{ type = "coordinate", joint = "rack" }}
+{force}
+{per_force}{slopes}
+{times}
+"#,
+        cut_front = cut("lca_front"),
+        cut_upper = cut("uca_front"),
+        cut_ball = cut("lower_ball"),
+        equilibrium = how.equilibrium,
+        times = how.times,
+    )
+}
+
+fn data() -> Value {
+    serde_json::from_str(include_str!("double_wishbone_on_bushings.json")).unwrap()
+}
+
+fn number(of: &Value) -> f64 {
+    of.as_f64().unwrap_or_else(|| panic!("{of} is no number"))
+}
+
+fn state_of(case: &Value) -> State {
+    State {
+        bump: number(&case["bump"]),
+        road: [0, 1].map(|k| number(&case["F"][k])),
+        align: number(&case["Mz"]),
+        rack: case["rack"].as_f64().unwrap_or(0.0),
+    }
+}
+
+/// Compares values with those of a case.
+fn compare_values(solution: &Solution, k: usize, values: &Value, tolerance: f64) {
+    for (name, expected) in values.as_object().unwrap() {
+        let Some(expected) = expected.as_f64().filter(|_| name != "scale") else { continue };
+        let name = match name.strip_prefix("centre_") {
+            Some(axis) => format!("centre.{axis}"),
+            None => format!("left.{name}"),
+        };
+        near(value(solution, k, &name), expected, tolerance, &name);
+    }
+}
+
+#[test]
+fn positions_forces_and_sensitivities_are_those_published() {
+    let of_variable = [
+        ("lower_ball_y", "hp.lower_ball.1"),
+        ("upper_ball_z", "hp.upper_ball.2"),
+        ("tie_inner_z", "hp.tie_inner.2"),
+        ("lca_rear_z", "hp.lca_rear.2"),
+        ("spring_foot_y", "hp.spring_foot.1"),
+        ("k_front", "lca_front_bush.k.0"),
+        ("k_rear_about", "lca_rear_bush.k.5"),
+        ("k_upper", "uca_rear_bush.k.1"),
+        ("preload", "uca_rear_bush.preload.2"),
+        ("k_spring", "spring.k"),
+    ];
+    let data = data();
+    for (name, case) in data["cases"].as_object().unwrap() {
+        let text = wishbone(state_of(case), &AS_PUBLISHED);
+        let model = file(&text).model;
+        let solution = Analysis::new(&model).unwrap().run();
+        assert!(solution.stop.is_none(), "{name}: {:?}", solution.stop);
+        compare_values(&solution, 0, &case["values"], VALUES);
+        let force = number(&case["reaction_of_driver"]);
+        near(value(&solution, 0, "bump_force"), force, FORCES * force.abs(), name);
+        assert!(solution.motion.effort.equilibrium_iterations <= 8, "{name}");
+        for (variable, published) in of_variable {
+            let of = &case["sensitivities"][published];
+            let v = model.variable(variable).unwrap_or_else(|| panic!("{variable}"));
+            let largest = of.as_object().unwrap().values().map(|x| number(x).abs()).fold(0.0, f64::max);
+            for (measure, expected) in of.as_object().unwrap() {
+                let m = solution.measured.index(&format!("left.{measure}")).unwrap();
+                let found = solution.measured.d(0, v, m)[0];
+                let what = format!("{name}: d {measure} / d {variable}");
+                near(found, number(expected), DERIVATIVES * largest, &what);
+            }
+        }
+        for (driver, published) in [("bump", "bump.value"), ("steer", "rack")] {
+            for (measure, expected) in case["sensitivities"][published].as_object().unwrap() {
+                let expected = number(expected);
+                let found = value(&solution, 0, &format!("{measure}_over_{driver}"));
+                near(found, expected, DERIVATIVES * (1.0 + expected.abs()), &format!("{name}: {measure} over {driver}"));
+            }
+        }
+        for (force, variable, published) in
+            [("side", "side", "road.F.0"), ("brake", "forward", "road.F.1"), ("align", "align", "road.Mz")]
+        {
+            let of = &case["compliances"][published];
+            let v = model.variable(variable).unwrap();
+            let largest = of.as_object().unwrap().values().map(|x| number(x).abs()).fold(0.0, f64::max);
+            for (measure, expected) in of.as_object().unwrap() {
+                let m = solution.measured.index(&format!("left.{measure}")).unwrap();
+                let what = format!("{name}: {measure} per {force}");
+                near(solution.measured.d(0, v, m)[0], number(expected), DERIVATIVES * largest, &what);
+                let state = state_of(case);
+                let size = [state.road[0], state.road[1], state.align][["side", "brake", "align"]
+                    .iter()
+                    .position(|f| *f == force)
+                    .unwrap()];
+                // A force of zero has no direction.
+                if size != 0.0 {
+                    let found = value(&solution, 0, &format!("{measure}_per_{force}"));
+                    near(found, number(expected) * size.signum(), DERIVATIVES * largest, &what);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn stiff_joints_are_rigid_to_first_order() {
+    let data = data();
+    let series = &data["stiffness_series"];
+    let at = state_of(series);
+    let soft = Written { complete: false, ..AS_PUBLISHED };
+    for row in series["values"].as_array().unwrap() {
+        let scale = number(&row["scale"]);
+        let solution = solved(&wishbone(at, &Written { scale, ..soft.clone() }));
+        compare_values(&solution, 0, row, VALUES);
+    }
+}
+
+#[test]
+fn the_motion_along_travel_takes_few_iterations_and_does_not_depend_on_output_times() {
+    let at = State { bump: 0.0, road: [1500.0, -900.0], align: 30.0, rack: 0.0 };
+    let travel = |times: &'static str| {
+        let how = Written { times, bump_law: Some("0.06*sin(2*pi*t)"), ..AS_PUBLISHED };
+        solved(&wishbone(at, &how))
+    };
+    let coarse = travel("[time]\nend = 1.0\nsteps = 20");
+    let fine = travel("[time]\nend = 1.0\nsteps = 100");
+    for k in 0..=20 {
+        for name in ["left.toe", "left.camber", "left.contact_y", "bump_force"] {
+            let (a, b) = (value(&coarse, k, name), value(&fine, 5 * k, name));
+            near(a, b, 1e-11 * (1.0 + a.abs()), name);
+        }
+    }
+    let per_step = fine.motion.effort.equilibrium_iterations as f64 / 101.0;
+    assert!(per_step <= 4.0, "{per_step} iterations per step");
+}
+
+#[test]
+fn the_answer_does_not_depend_on_the_cut_joints() {
+    let at = State { bump: 0.02, road: [1500.0, -900.0], align: 30.0, rack: 0.004 };
+    let first = solved(&wishbone(at, &AS_PUBLISHED));
+    for cut in ["lca_front", "uca_front", "lower_ball"] {
+        let other = solved(&wishbone(at, &Written { cut, ..AS_PUBLISHED }));
+        for (m, output) in first.measured.outputs.iter().enumerate() {
+            let (a, b) = (first.measured.value(0, m)[0], other.measured.value(0, m)[0]);
+            near(b, a, 1e-10 * (1.0 + a.abs()), &format!("{} with {cut} cut", output.name));
+            for v in 0..first.measured.variables {
+                let v = hardpoint::model::VariableId(v);
+                let (a, b) = (first.measured.d(0, v, m)[0], other.measured.d(0, v, m)[0]);
+                if a.is_finite() {
+                    near(b, a, 1e-8 * (1.0 + a.abs()), &format!("d {} with {cut} cut", output.name));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn both_formulations_agree() {
+    let at = State { bump: -0.05, road: [2000.0, -2500.0], align: -40.0, rack: 0.0 };
+    let model = file(&wishbone(at, &AS_PUBLISHED)).model;
+    let [a, b] = [Formulation::Relative, Formulation::Absolute].map(|formulation| {
+        let solution = Analysis::with(&model, formulation).unwrap().run();
+        assert!(solution.stop.is_none(), "{formulation:?}: {:?}", solution.stop);
+        solution
+    });
+    for (m, output) in a.measured.outputs.iter().enumerate() {
+        let [x, y] = [&a, &b].map(|s| s.measured.value(0, m)[0]);
+        near(y, x, 1e-9 * (1.0 + x.abs()), &output.name);
+    }
+}
+
+#[test]
+fn sensitivities_are_those_of_solved_designs() {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    let model = file(&wishbone(at, &AS_PUBLISHED)).model;
+    let analysis = Analysis::new(&model).unwrap();
+    let here = analysis.run();
+    for v in 0..model.variables.len() {
+        let step = 1e-4 * model.natural_step(hardpoint::model::VariableId(v));
+        let at = |h: f64| {
+            let mut design = vec![0.0; model.variables.len()];
+            design[v] = h;
+            analysis.solve(Run::new().at(&design).without_sensitivities())
+        };
+        let [a, b] = [at(step), at(-step)];
+        for (m, output) in here.measured.outputs.iter().enumerate().filter(|(_, o)| !o.name.contains("_over_") && !o.name.contains("_per_")) {
+            let difference = (a.measured.value(0, m)[0] - b.measured.value(0, m)[0]) / (2.0 * step);
+            let exact = here.measured.d(0, hardpoint::model::VariableId(v), m)[0];
+            let what = format!("d {} / d {}", output.name, model.variables[v].name);
+            // Round-off of the values over the step.
+            near(exact, difference, 1e-6 * difference.abs() + 1e-12 * here.measured.value(0, m)[0].abs() / step, &what);
+        }
+    }
+}
+
+#[test]
+fn without_loads_compliances_are_those_of_the_rigid_mechanism() {
+    let at = State { bump: 0.02, road: [0.0; 2], align: 0.0, rack: 0.0 };
+    let measure = "\nsoft = { type = \"compliance\", of = \"left.toe\", wheel = \"left\", along = \"y\" }\n";
+    let free = Written { forces: false, complete: false, ..AS_PUBLISHED };
+    // One arm on one joint, so that the rigid mechanism is determined.
+    let single = |equilibrium: &'static str| {
+        let text = wishbone(at, &Written { equilibrium, ..free.clone() });
+        let kept = |line: &&str| {
+            !["lca_rear =", "uca_rear =", "lca_rear_bush", "uca_rear_bush"].iter().any(|x| {
+                line.starts_with(x) && (line.contains("revolute") || line.contains("elastic_joint"))
+            })
+        };
+        // Without torsion about the hinges, no force remains in the position of the rigid mechanism.
+        let text: Vec<String> =
+            text.lines().filter(kept).map(|l| l.replace(", about_z = 80.0", "").replace(", about_z = 40.0", "")).collect();
+        text.join("\n").replace("[measures]", &format!("[measures]{measure}"))
+    };
+    let [rigid, open] = ["", "[equilibrium]"].map(|e| value(&solved(&single(e)), 0, "soft"));
+    near(open, rigid, 1e-12 * rigid.abs(), "compliance");
+}
+
+/// A lever on one bushing: `k t = F L cos t, z = -F / k_z`.
+fn lever(force: f64) -> String {
+    format!(
+        r#"
+name = "lever"
+units = {{ length = "m", angle = "rad" }}
+[parameters]
+down = {force}
+k_turn = 700
+[hardpoints]
+o = [0, 0, 0]
+tip = [0.4, 0, 0]
+[bodies]
+arm = {{}}
+[joints]
+bush = {{ type = "fixed", bodies = ["ground", "arm"], at = "o" }}
+[points]
+tip = {{ body = "arm", at = "tip" }}
+[forces]
+elastic = {{ type = "elastic_joint", joint = "bush", x = 2e6, y = 3e6, z = 1e6, about_x = 900, about_y = "k_turn", about_z = 250 }}
+load = {{ type = "force", at = "tip", force = "down", along = "-z" }}
+[equilibrium]
+[design]
+length = {{ move = "tip", along = "x" }}
+[measures]
+soft = {{ type = "compliance", of = "tip.z", force = "load" }}
+[time]
+at = [0]
+"#
+    )
+}
+
+#[test]
+fn a_lever_has_its_closed_form() {
+    for (force, turn, tip, by_stiffness, by_load, by_length, soft) in [
+        (800.0, 0.4178178551059, [0.3655906232177, -0.1631067965777], -0.0005034887659133, 0.0004405526701741, 0.8811053403482, 0.0001620619252492),
+        (3000.0, 0.9696209092603, [0.2262448788274, -0.3328685417016], -0.0005738741010643, 0.000133903956915, 1.004279676863, 3.129508450675e-05),
+    ] {
+        let model = file(&lever(force)).model;
+        let solution = Analysis::new(&model).unwrap().run();
+        assert!(solution.stop.is_none(), "{:?}", solution.stop);
+        let [x, z] = ["tip.x", "tip.z"].map(|name| value(&solution, 0, name));
+        near(x, tip[0], VALUES, "x");
+        near(z, tip[1], VALUES, "z");
+        near((-(z + force / 1e6)).atan2(x), turn, VALUES, "turn");
+        near(value(&solution, 0, "soft"), -soft, 1e-8 * soft, "compliance");
+        // x = L cos t
+        let m = solution.measured.index("tip.x").unwrap();
+        let d = |name: &str| solution.measured.d(0, model.variable(name).unwrap(), m)[0];
+        near(d("k_turn"), -0.4 * turn.sin() * by_stiffness, 1e-9, "by stiffness");
+        near(d("down"), -0.4 * turn.sin() * by_load, 1e-9, "by load");
+        near(d("length"), turn.cos() - 0.4 * turn.sin() * by_length, 1e-9, "by length");
+    }
+}
+
+/// Two bars of length 1 at this slope between guides, whose ends give along them: the truss of von Mises.
+fn truss(force: f64) -> String {
+    format!(
+        r#"
+name = "truss"
+units = {{ length = "m", angle = "rad" }}
+[bodies]
+block = {{}}
+[joints]
+guide = {{ type = "translational", bodies = ["ground", "block"], at = [0, 0, 0.3], axis = "z" }}
+[drivers]
+sink = {{ joint = "guide", law = 0 }}
+[points]
+top = {{ body = "block", at = [0, 0, 0.3] }}
+[forces]
+bar = {{ type = "spring", from = {{ body = "ground", at = [1, 0, 0] }}, to = {{ body = "block", at = [0, 0, 0.3] }}, stiffness = 1e5 }}
+load = {{ type = "force", at = "top", force = {force}, along = "-z" }}
+[equilibrium]
+released = ["sink"]
+[time]
+at = [0]
+"#
+    )
+}
+
+#[test]
+fn a_truss_snaps_through_at_its_limit_load() {
+    // F(z) = k (L - L_o) z / L has its greatest value where (L / L_o)^3 = 1 / L_o^2 with a base of 1.
+    let drawn = 1.09_f64.sqrt();
+    let long = drawn.cbrt();
+    let limit = 1e5 * (drawn - long) * (long * long - 1.0).sqrt() / long;
+    let half = solved(&truss(0.5 * limit));
+    let z = value(&half, 0, "top.z");
+    let l = (1.0 + z * z).sqrt();
+    near(1e5 * (drawn - l) * z / l, 0.5 * limit, 1e-8, "force");
+    let model = file(&truss(1.2 * limit)).model;
+    let stop = Analysis::new(&model).unwrap().run().stop.unwrap();
+    let StopKind::LimitLoad { part } = stop.kind else { panic!("{stop:?}") };
+    near(part, 1.0 / 1.2, 1e-6, "limit load");
+}
+
+#[test]
+fn what_nothing_holds_is_named() {
+    let loose = lever(0.0).replace(", about_z = 250", "").replace("\"fixed\"", "\"revolute\", axis = \"z\"");
+    let model = file(&loose).model;
+    let stop = Analysis::new(&model).unwrap().run().stop.unwrap();
+    assert!(matches!(stop.kind, StopKind::NothingHolds { .. }), "{stop:?}");
+    assert_eq!(stop.headline(&model), "nothing holds the angle of joint `bush`");
+}
+
+#[test]
+fn faults_are_reported() {
+    let texts = [
+        lever(800.0).replace("[equilibrium]", "[equilibrium]\nreleased = [\"bump\"]"),
+        lever(800.0).replace("[measures]", "[measures]\nspeed = { type = \"velocity\", point = \"tip\" }"),
+        lever(800.0).replace("[equilibrium]", ""),
+        lever(800.0).replace("force = \"load\"", "force = \"elastic\""),
+    ];
+    let found: Vec<String> =
+        texts.iter().map(|text| parse(text, "lever.toml").err().map_or("none".into(), |e| e.to_string())).collect();
+    snapshot("equilibrium_faults", &found.join("\n\n"));
+}

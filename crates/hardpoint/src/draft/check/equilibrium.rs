@@ -1,0 +1,77 @@
+//! Checks of the equilibrium: its drivers, and what it cannot have.
+
+use crate::draft::Section;
+use crate::model::{DriverId, Equilibrium, MeasureKind};
+
+use super::{Checker, Here};
+
+impl Checker<'_> {
+    pub(super) fn add_equilibrium(&mut self) {
+        let draft = self.draft;
+        let Some(written) = &draft.equilibrium else { return };
+        let here = Here { section: Section::Equilibrium, index: 0 };
+        let mut released = Vec::new();
+        for (k, name) in written.released.iter().enumerate() {
+            let names = draft.drivers.iter().map(|d| d.name.as_str());
+            if self.find("driver", name, here.item("released", k), names).is_none() {
+                continue;
+            }
+            let Some(d) = self.model.drivers.iter().position(|d| d.name == *name) else { continue };
+            if released.contains(&DriverId(d)) {
+                let message = format!("driver `{name}` is released twice");
+                self.fault("HP0260", here.item("released", k), message).help("name it once");
+            }
+            released.push(DriverId(d));
+        }
+        for index in 0..draft.forces.len() {
+            let found = self.model.elements.iter().find(|e| e.name == draft.forces[index].name);
+            if found.is_some_and(|e| e.kind.has_friction(&self.model)) {
+                let message =
+                    format!("`{}` is friction, which is not determined at rest", draft.forces[index].name);
+                let at = Here { section: Section::Forces, index }.key("type");
+                self.fault("HP0261", at, message)
+                    .note("an equilibrium has no motion that friction could oppose")
+                    .help("remove it, or remove `equilibrium`");
+            }
+        }
+        for index in 0..draft.measures.len() {
+            let found = self.model.measures.iter().find(|m| m.name == draft.measures[index].name);
+            let is_rate = found.is_some_and(|m| match m.kind {
+                MeasureKind::Velocity { .. }
+                | MeasureKind::AngularVelocity { .. }
+                | MeasureKind::Acceleration { .. }
+                | MeasureKind::Curvature { .. }
+                | MeasureKind::Rate { .. }
+                | MeasureKind::DriverPower { .. }
+                | MeasureKind::KineticEnergy { .. } => true,
+                MeasureKind::Slope { .. }
+                | MeasureKind::Coordinate { .. }
+                | MeasureKind::Distance { .. }
+                | MeasureKind::Coordinates { .. }
+                | MeasureKind::Angle { .. }
+                | MeasureKind::Orientation { .. }
+                | MeasureKind::TransmissionAngle { .. }
+                | MeasureKind::Combination { .. }
+                | MeasureKind::Camber { .. }
+                | MeasureKind::Toe { .. }
+                | MeasureKind::DriverForce { .. }
+                | MeasureKind::Reaction { .. }
+                | MeasureKind::SpringForce { .. }
+                | MeasureKind::ShakingForce { .. }
+                | MeasureKind::ShakingMoment { .. }
+                | MeasureKind::Compliance { .. }
+                | MeasureKind::Wheel { .. }
+                | MeasureKind::Axle { .. } => false,
+            });
+            if is_rate {
+                let message = format!(
+                    "measure `{}` is a rate, and an equilibrium is at rest",
+                    draft.measures[index].name
+                );
+                let at = Here { section: Section::Measures, index }.key("type");
+                self.fault("HP0261", at, message).help("remove it, or remove `equilibrium`");
+            }
+        }
+        self.model.equilibrium = Some(Equilibrium { released });
+    }
+}

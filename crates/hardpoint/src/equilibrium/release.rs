@@ -1,0 +1,143 @@
+//! The mechanism with its elastic joints open.
+
+use crate::joint::{self, DIRECTIONS, elastic, free_directions};
+use crate::law::Law;
+use crate::model::element::ElementKind;
+use crate::model::{BodyId, Driver, DriverId, GROUND, HardpointId, Joint, JointId, LoadMode, Model};
+use crate::space::Mat3;
+use crate::topology::{Formulation, OpenTree, Topology, TopologyError, dependence, open_tree};
+
+/// A mechanism whose elastic joints are open: drivers prescribe the openings.
+#[derive(Clone, Debug)]
+pub(crate) struct Released {
+    /// The model. Its drivers are those of the user, then the openings; its last joints may be ones without a name that
+    /// place bodies held by springs alone.
+    pub model: Model,
+    /// Drivers whose forces are zero in equilibrium: the user's that are released, then the openings.
+    pub openings: Vec<DriverId>,
+}
+
+/// Opens the elastic joints of a model with equilibrium, and plans its solution.
+///
+/// In absolute coordinates every joint is cut, and the coordinates of every body are openings as far as the constraints
+/// do not determine them.
+///
+/// # Errors
+/// See [`Topology::of`].
+pub(crate) fn release(
+    model: &Model,
+    formulation: Formulation,
+) -> Result<(Released, Topology), TopologyError> {
+    let mut open = Model { load_mode: LoadMode::Static, ..model.clone() };
+    let own = DriverId(model.drivers.len());
+    let mut elastic_joints = Vec::new();
+    for joint in (0..model.joints.len()).map(JointId) {
+        let directions = elastic_directions(model, joint);
+        let kind = model.joints[joint.0].kind;
+        if directions.contains(&true)
+            && let Some(elastic) = elastic(kind, directions)
+        {
+            open.joints[joint.0].kind = elastic.kind;
+            elastic_joints.push((joint, kind.coordinates.len(), elastic.can_be_cut));
+        }
+    }
+    if formulation == Formulation::Absolute {
+        open.joints.iter_mut().for_each(|joint| joint.cut = true);
+        (1..model.bodies.len()).for_each(|b| float(&mut open, BodyId(b)));
+    }
+    let floats = |open: &mut Model, joints: &[(JointId, usize, bool)]| {
+        open.drivers.truncate(own.0);
+        for &(joint, rigid, _) in joints {
+            drive_openings(open, joint, rigid);
+        }
+        for joint in (model.joints.len()..open.joints.len()).map(JointId) {
+            drive_openings(open, joint, 0);
+        }
+    };
+    floats(&mut open, &elastic_joints);
+    // Bodies that springs alone hold are placed by openings from ground.
+    let OpenTree { floating, .. } = open_tree(&open);
+    for body in floating {
+        float(&mut open, body);
+    }
+    floats(&mut open, &elastic_joints);
+    // A joint that closes a loop of elastic joints leaves its directions to its force.
+    let OpenTree { cut, .. } = open_tree(&open);
+    for (joint, _, can_be_cut) in &elastic_joints {
+        if cut[joint.0] && !can_be_cut {
+            // Its rows do not belong to single directions.
+            let name = &model.joints[joint.0].name;
+            return Err(TopologyError::ElasticLoop { joint: *joint, joint_name: name.clone() });
+        }
+    }
+    elastic_joints.retain(|(joint, ..)| !cut[joint.0]);
+    floats(&mut open, &elastic_joints);
+    let depends = dependence(&open, own);
+    for (joint, freedom) in depends.free {
+        let coordinates = open.joints[joint.0].kind.coordinates;
+        if let Some(coordinate) = coordinates.iter().position(|c| c.freedom == Some(freedom)) {
+            let name = open.joints[joint.0].name.clone();
+            open.drivers.push(Driver { name, joint, coordinate, law: Law::constant(0.0) });
+        }
+    }
+    let mut numbered: Vec<(usize, Driver)> =
+        std::mem::take(&mut open.drivers).into_iter().enumerate().collect();
+    numbered.retain(|(d, _)| !depends.determined.contains(&DriverId(*d)));
+    open.drivers = numbered.into_iter().map(|(_, driver)| driver).collect();
+    let topology = Topology::of_openings(&open, formulation)?;
+    let released = model.equilibrium.iter().flat_map(|e| e.released.iter().copied());
+    let openings = released.chain((own.0..open.drivers.len()).map(DriverId)).collect();
+    Ok((Released { model: open, openings }, topology))
+}
+
+/// Directions in which a joint gives and is not free.
+fn elastic_directions(model: &Model, joint: JointId) -> [bool; DIRECTIONS] {
+    let free = free_directions(model.joints[joint.0].kind);
+    let mut gives = [false; DIRECTIONS];
+    for element in &model.elements {
+        if let ElementKind::ElasticJoint(elastic) = &element.kind
+            && elastic.joint == joint
+        {
+            for (k, of) in elastic.elasticities().iter().enumerate() {
+                gives[k] |= of.gives() && !free[k];
+            }
+        }
+    }
+    gives
+}
+
+/// Adds a driver per opening of a joint, whose rigid type has this number of coordinates.
+fn drive_openings(open: &mut Model, joint: JointId, rigid: usize) {
+    let Joint { kind, name, .. } = &open.joints[joint.0];
+    let openings = kind.coordinates.iter().enumerate().skip(rigid).map(|(coordinate, of)| Driver {
+        name: format!("{name}.{}", of.name),
+        joint,
+        coordinate,
+        law: Law::constant(0.0),
+    });
+    let openings: Vec<Driver> = openings.collect();
+    open.drivers.extend(openings);
+}
+
+/// Adds a joint without a name that places a body relative to ground by six openings.
+fn float(open: &mut Model, body: BodyId) {
+    let on_body = |joint: &&Joint| joint.bodies.contains(&body);
+    let of_joint =
+        open.joints.iter().find(on_body).map(|joint| joint.at[usize::from(joint.bodies[1] == body)]);
+    let of_point = || open.points.iter().find(|p| p.body == body).map(|p| p.at);
+    let at = of_joint.or_else(of_point).unwrap_or(HardpointId(0));
+    let all = elastic(&joint::FIXED, [true; DIRECTIONS]).map_or(&joint::FIXED, |of| of.kind);
+    open.joints.push(Joint {
+        name: open.bodies[body.0].name.clone(),
+        kind: all,
+        bodies: [GROUND, body],
+        at: [at; 2],
+        axis: None,
+        axis2: None,
+        frames: [Mat3::IDENTITY; 2],
+        length: None,
+        curve: None,
+        cut: false,
+        unnamed: true,
+    });
+}

@@ -1,0 +1,394 @@
+//! Equilibria of a mechanism at its output times, by Newton's method on the openings.
+
+use crate::design::{BodyFixed, DesignMap, DesignVelocity};
+use crate::linalg::Elimination;
+use crate::load::{GivenLoads, OpeningLoads};
+use crate::measure::{Instant, StepValues};
+use crate::model::{DriverId, MeasureKind, Model};
+use crate::motion::stepper::Stepper;
+use crate::motion::{GivingDirection, Stop, StopKind, advance};
+use crate::number::Dual;
+use crate::space::{Pose, Twist};
+use crate::topology::Topology;
+
+/// Correction of the openings, rad or sizes, whose square is round-off: after it they are solved.
+const QUADRATIC: f64 = 1e-9;
+/// Maximum number of iterations of an attempt; from a good prediction two to four are enough, and eight from the rigid
+/// position under full load. What takes longer may have found another equilibrium.
+const MOST_ITERATIONS: usize = 12;
+/// Each correction is below this fraction of the one before, from the second on.
+const CONTRACTION: f64 = 0.5;
+/// Largest first correction of an attempt, rad or sizes: a longer one may lead to another equilibrium.
+const LONGEST: f64 = 0.5;
+/// Shortest part of the way from one equilibrium to the next: if it is rejected, there is none near by.
+const SHORTEST: f64 = 1e-9;
+/// A pivot of the scaled stiffness below this holds nothing.
+const HOLDS_NOTHING: f64 = 1e-12;
+
+/// Reason why an equilibrium was not found.
+#[derive(Clone, Copy, Debug)]
+enum Rejection {
+    /// The mechanism does not reach the position, or Newton's method does not converge.
+    NoConvergence,
+    /// The determinant of the stiffness has changed its sign: the equilibrium is not the one that continues the last.
+    OtherBranch,
+    /// No force resists a motion of this opening.
+    NothingHolds(usize),
+}
+
+/// Accepted equilibrium.
+struct Accepted {
+    /// Time; `None` before the first.
+    time: Option<f64>,
+    /// Values of all drivers.
+    drivers: Vec<f64>,
+    loads: GivenLoads,
+    /// Sign of the determinant of the stiffness; `None` before the first.
+    positive: Option<bool>,
+}
+
+/// Solver of the equilibria of one design.
+pub(crate) struct EquilibriumSolver<'a> {
+    model: &'a Model,
+    openings: &'a [DriverId],
+    loads: OpeningLoads<'a>,
+    variables: usize,
+    /// Drivers that are held.
+    held: Vec<DriverId>,
+    /// Per opening: twists of the bodies while it moves alone.
+    unit_twists: Vec<Vec<Twist>>,
+    /// Body-fixed data of measures.
+    fixed: BodyFixed<Dual>,
+    last: Accepted,
+    /// Times and openings of the last equilibria at output times, for predictions.
+    path: Vec<(f64, Vec<f64>)>,
+    /// Per opening: the force that it needs as a driver.
+    forces: Vec<f64>,
+    /// Derivatives of the forces by the openings, and its factors.
+    stiffness: Vec<f64>,
+    tangent: Elimination<f64>,
+    /// Per opening: its unit, in which the stiffness is near one.
+    units: Vec<f64>,
+    correction: Vec<f64>,
+    /// True if the stiffness that was factored last is regular.
+    is_regular: bool,
+    /// Iterations so far.
+    pub iterations: usize,
+}
+
+impl<'a> EquilibriumSolver<'a> {
+    /// Solver of the design with these values; `fields` are the design velocities of the variables, if sensitivities
+    /// are requested. The first drivers are the user's.
+    pub fn new(
+        design_map: &'a DesignMap<'a>,
+        topology: &Topology,
+        values: &[f64],
+        (openings, kinds): (&'a [DriverId], &'a [MeasureKind]),
+        fields: &[DesignVelocity],
+        own_drivers: usize,
+    ) -> Self {
+        let model = design_map.model();
+        let n = openings.len();
+        let held: Vec<DriverId> = (0..own_drivers).map(DriverId).filter(|d| !openings.contains(d)).collect();
+        let constant: Vec<Dual> = values.iter().map(|x| Dual::constant(*x)).collect();
+        Self {
+            model,
+            openings,
+            loads: OpeningLoads::new(design_map, topology, values, (openings, kinds), fields, &held),
+            variables: fields.len(),
+            held,
+            unit_twists: vec![vec![Twist::ZERO; model.bodies.len()]; n],
+            fixed: design_map.fixed(&constant),
+            last: Accepted {
+                time: None,
+                drivers: vec![0.0; model.drivers.len()],
+                loads: GivenLoads::none(model),
+                positive: None,
+            },
+            path: Vec::new(),
+            forces: vec![0.0; n],
+            stiffness: vec![0.0; n * n],
+            tangent: Elimination::new(n),
+            units: vec![1.0; n],
+            correction: vec![0.0; n],
+            is_regular: false,
+            iterations: 0,
+        }
+    }
+
+    /// Moves the mechanism to its equilibrium at time t, at rest. Before the first it is in its position at that time
+    /// with all openings closed.
+    pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
+        if self.last.time.is_none() {
+            self.last.drivers = one.mechanism.drivers.iter().map(|f| f[0]).collect();
+        }
+        let from = self.last.drivers.clone();
+        let mut to: Vec<f64> = (0..from.len()).map(|d| one.mechanism.parts.law(d, t)[0]).collect();
+        let predicted = self.predicted(t);
+        for (k, d) in self.openings.iter().enumerate() {
+            to[d.0] = predicted.as_ref().map_or(from[d.0], |p| p[k]);
+        }
+        let (start, end) = (self.last.loads.clone(), GivenLoads::at(self.model, t));
+        let (mut done, mut part) = (0.0, 1.0);
+        while done < 1.0 {
+            let next = f64::min(done + part, 1.0);
+            // The part of the rest that this attempt goes.
+            let way = (next - done) / (1.0 - done);
+            let now = self.last.drivers.clone();
+            let between = |d: usize| if next == 1.0 { to[d] } else { now[d] + (to[d] - now[d]) * way };
+            let target: Vec<f64> = (0..to.len()).map(between).collect();
+            let loads = start.towards(&end, next);
+            match self.attempt(one, t, target, &loads) {
+                Ok(drivers) => {
+                    advance::accept_at_rest(one, t);
+                    self.last.drivers = drivers;
+                    self.last.loads = loads;
+                    (done, part) = (next, 2.0 * part);
+                }
+                Err(rejection) => {
+                    part *= 0.5;
+                    if part < SHORTEST || matches!(rejection, Rejection::NothingHolds(_)) {
+                        return Err(self.stop(one, t, done, rejection));
+                    }
+                }
+            }
+        }
+        self.last.time = Some(t);
+        if self.path.len() == PREDICTED_FROM {
+            self.path.remove(0);
+        }
+        one.effort.equilibrium_iterations = self.iterations;
+        advance::count_at_rest(one);
+        self.path.push((t, self.openings.iter().map(|d| self.last.drivers[d.0]).collect()));
+        Ok(())
+    }
+
+    /// Openings at time t by the polynomial through the last equilibria.
+    fn predicted(&self, t: f64) -> Option<Vec<f64>> {
+        let (_, last) = self.path.last()?;
+        let mut sum = vec![0.0; last.len()];
+        for (i, (t_i, openings)) in self.path.iter().enumerate() {
+            let others = self.path.iter().enumerate().filter(|(j, _)| *j != i);
+            let weight: f64 = others.map(|(_, (t_j, _))| (t - t_j) / (t_i - t_j)).product();
+            sum.iter_mut().zip(openings).for_each(|(sum, p)| *sum += weight * p);
+        }
+        Some(sum)
+    }
+
+    /// Solves the equilibrium with the held drivers at these values, under these loads; the openings are predicted.
+    fn attempt(
+        &mut self,
+        one: &mut Stepper<'_>,
+        t: f64,
+        mut drivers: Vec<f64>,
+        given: &GivenLoads,
+    ) -> Result<Vec<f64>, Rejection> {
+        advance::move_at_rest(one, t, &drivers).map_err(|_| Rejection::NoConvergence)?;
+        let mut before = f64::INFINITY;
+        for pass in 0..MOST_ITERATIONS {
+            self.iterations += 1;
+            self.loads.forces(one, given, &mut self.forces);
+            self.set_tangent(one, t);
+            let positive = self.factor()?;
+            // K dp = -r, in units of the openings
+            let scaled = self.correction.iter_mut().zip(&self.forces).zip(&self.units);
+            scaled.for_each(|((dp, r), unit)| *dp = -r * unit);
+            self.tangent.solve(&mut self.correction);
+            let mut size = 0.0_f64;
+            for ((dp, unit), d) in self.correction.iter_mut().zip(&self.units).zip(self.openings) {
+                *dp *= unit;
+                let scaled = (*dp / one.mechanism.driver_units[d.0]).abs();
+                // NaN is larger than anything.
+                size = if scaled <= size { size } else { scaled };
+            }
+            let limit = match pass {
+                0 => LONGEST,
+                1 => before,
+                _ => CONTRACTION * before,
+            };
+            if !(size <= limit) {
+                return Err(Rejection::NoConvergence);
+            }
+            for (dp, d) in self.correction.iter().zip(self.openings) {
+                drivers[d.0] += dp;
+            }
+            advance::shift_at_rest(one, &drivers).map_err(|_| Rejection::NoConvergence)?;
+            if size <= QUADRATIC {
+                // Only an equilibrium has a stability.
+                if self.last.positive.is_some_and(|last| last != positive) {
+                    return Err(Rejection::OtherBranch);
+                }
+                self.last.positive = Some(positive);
+                return Ok(drivers);
+            }
+            before = size;
+        }
+        Err(Rejection::NoConvergence)
+    }
+
+    /// Sets the stiffness at the position of the stepper.
+    fn set_tangent(&mut self, one: &mut Stepper<'_>, t: f64) {
+        let n = self.openings.len();
+        self.loads.prepare(one);
+        let mut column = vec![0.0; n];
+        for b in 0..n {
+            let twists = &mut self.unit_twists[b];
+            self.loads.derivatives(one, b, t, &mut column, &mut |moved| twists.copy_from_slice(moved));
+            (0..n).for_each(|a| self.stiffness[a * n + b] = column[a]);
+        }
+    }
+
+    /// Factors the stiffness in units of the openings. Returns the sign of its determinant.
+    fn factor(&mut self) -> Result<bool, Rejection> {
+        let n = self.openings.len();
+        for a in 0..n {
+            let diagonal = self.stiffness[a * n + a].abs();
+            self.units[a] = if diagonal > 0.0 { 1.0 / diagonal.sqrt() } else { 1.0 };
+        }
+        for a in 0..n {
+            for (b, to) in self.tangent.row_mut(a).iter_mut().enumerate() {
+                *to = self.stiffness[a * n + b] * self.units[a] * self.units[b];
+            }
+        }
+        let factored = self.tangent.factor();
+        if n > 0 && !(factored.pivot_ratio > HOLDS_NOTHING) {
+            return Err(Rejection::NothingHolds(self.least_held()));
+        }
+        Ok(factored.positive)
+    }
+
+    /// The opening that the least force resists: the largest component of the direction without stiffness.
+    fn least_held(&mut self) -> usize {
+        let n = self.openings.len();
+        // Inverse iteration from a vector that is not symmetric.
+        let mut direction: Vec<f64> = (0..n).map(|k| 1.0 + 0.1 * k as f64).collect();
+        for a in 0..n {
+            for (b, to) in self.tangent.row_mut(a).iter_mut().enumerate() {
+                let shift = if a == b { HOLDS_NOTHING } else { 0.0 };
+                *to = self.stiffness[a * n + b] * self.units[a] * self.units[b] + shift;
+            }
+        }
+        self.tangent.factor();
+        for _ in 0..3 {
+            self.tangent.solve(&mut direction);
+            let size = direction.iter().map(|x| x.abs()).fold(0.0, f64::max);
+            direction.iter_mut().for_each(|x| *x /= size);
+        }
+        (0..n).fold(0, |best, k| if direction[k].abs() > direction[best].abs() { k } else { best })
+    }
+
+    /// Prepares the derivatives at the equilibrium that was found last.
+    pub fn prepare(&mut self, one: &mut Stepper<'_>, t: f64) {
+        let given = self.last.loads.clone();
+        self.loads.forces(one, &given, &mut self.forces);
+        self.set_tangent(one, t);
+        self.is_regular = self.factor().is_ok();
+    }
+
+    /// Derivatives of the openings by the variables, `p_b = -K^-1 r_b` with r_b those of their forces while all openings
+    /// stand (E8); `each` receives the variable and the derivatives.
+    pub fn differentiate(&mut self, one: &mut Stepper<'_>, t: f64, mut each: impl FnMut(usize, &[f64])) {
+        for v in 0..self.variables {
+            let rates = self.openings_along(one, self.openings.len() + v, t);
+            each(v, &rates);
+        }
+    }
+
+    /// Derivatives of the openings by each driver that is held.
+    pub fn driver_rates(&mut self, one: &mut Stepper<'_>, t: f64) -> Vec<(DriverId, Vec<f64>)> {
+        let first = self.openings.len() + self.variables;
+        let held = self.held.clone();
+        held.into_iter().enumerate().map(|(k, d)| (d, self.openings_along(one, first + k, t))).collect()
+    }
+
+    /// Derivatives of the openings along a direction of the loads.
+    fn openings_along(&mut self, one: &mut Stepper<'_>, direction: usize, t: f64) -> Vec<f64> {
+        let mut rates = vec![0.0; self.openings.len()];
+        self.loads.derivatives(one, direction, t, &mut rates, &mut |_| ());
+        rates.iter_mut().for_each(|r| *r = -*r);
+        self.respond(&mut rates);
+        rates
+    }
+
+    /// Solves `K p = f` in place: the openings that these forces on them cause; NaN if the stiffness is singular.
+    fn respond(&mut self, forces: &mut [f64]) {
+        forces.iter_mut().zip(&self.units).for_each(|(f, unit)| *f *= unit);
+        self.tangent.solve(forces);
+        let known = if self.is_regular { 1.0 } else { f64::NAN };
+        forces.iter_mut().zip(&self.units).for_each(|(p, unit)| *p *= unit * known);
+    }
+
+    /// Writes the compliances at the equilibrium: derivatives of outputs by forces, with all loads there.
+    pub fn add_compliances(&mut self, one: &Stepper<'_>, out: &mut StepValues) {
+        let model = self.model;
+        for (m, measure) in model.measures.iter().enumerate() {
+            let MeasureKind::Compliance { of, .. } = measure.kind else { continue };
+            let force = self.loads.unit_force(&measure.kind);
+            // K v = W_a . f
+            let work = |w: &Vec<Twist>| force.iter().map(|(body, f)| f.on(w[*body])).sum();
+            let mut response: Vec<f64> = self.unit_twists.iter().map(work).collect();
+            self.respond(&mut response);
+            let poses: Vec<Pose<Dual>> = (0..model.bodies.len())
+                .map(|b| {
+                    let openings = self.unit_twists.iter().zip(&response);
+                    let w = openings.fold(Twist::ZERO, |sum, (w, v)| w[b].times_plus(*v, sum));
+                    let pose = if b == 0 { Pose::IDENTITY } else { one.mechanism.state.pose[b] };
+                    pose.along(w)
+                })
+                .collect();
+            out.set(m, Instant::new(model, &self.fixed, &poses).output(of).d);
+        }
+    }
+
+    /// Reason why the way to the equilibrium at time t ends after a part of it.
+    fn stop(&mut self, one: &mut Stepper<'_>, t: f64, done: f64, rejection: Rejection) -> Box<Stop> {
+        let kind = match (rejection, self.last.time) {
+            (Rejection::NothingHolds(k), _) => {
+                StopKind::NothingHolds { direction: self.direction(self.openings[k]) }
+            }
+            (Rejection::NoConvergence, None) => StopKind::LimitLoad { part: done },
+            (Rejection::NoConvergence, Some(_)) => StopKind::NoEquilibrium,
+            (Rejection::OtherBranch, _) => {
+                // The direction in which the stiffness vanishes.
+                let given = self.last.loads.clone();
+                let values = self.last.drivers.clone();
+                if advance::move_at_rest(one, t, &values).is_ok() {
+                    self.loads.forces(one, &given, &mut self.forces);
+                    self.set_tangent(one, t);
+                    let _ = self.factor();
+                }
+                let k = self.least_held();
+                StopKind::Unstable { direction: self.direction(self.openings[k]) }
+            }
+        };
+        let failed_time = self.last.time.map_or(t, |from| from + (t - from) * done);
+        Box::new(Stop {
+            kind,
+            last_time: self.last.time,
+            failed_time,
+            drivers: self.last.drivers.clone(),
+            block: None,
+            pivot_ratio: 1.0,
+            joints: Vec::new(),
+            remains: Vec::new(),
+            closed: None,
+        })
+    }
+
+    /// What an opening is to the user.
+    fn direction(&self, opening: DriverId) -> GivingDirection {
+        let driver = &self.model.drivers[opening.0];
+        let joint = &self.model.joints[driver.joint.0];
+        let along = joint.kind.coordinates[driver.coordinate].name;
+        if joint.unnamed && joint.bodies[0] == crate::model::GROUND && joint.kind.name == "fixed" {
+            GivingDirection::Body(joint.bodies[1], along)
+        } else if joint.unnamed {
+            GivingDirection::Driver(opening)
+        } else {
+            GivingDirection::Joint(driver.joint, along)
+        }
+    }
+}
+
+/// Number of equilibria that a prediction uses.
+const PREDICTED_FROM: usize = 3;

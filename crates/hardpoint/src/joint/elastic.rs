@@ -1,0 +1,151 @@
+//! Types of joints that give along and about some of their axes.
+//!
+//! The chain of such a joint is `S(x, y, z) Rx(alpha) Ry(beta) Rz(gamma)` from marker i to marker j, with the directions
+//! that give and those that are free; a rigid direction has no freedom. Its force is a load (`element/elastic_joint.rs`).
+
+use std::sync::{Mutex, PoisonError};
+
+use crate::constraint::Row;
+
+use super::{CoordinateType, Freedom, JointType, Quantity};
+
+/// A direction of a joint: along x, y, z, then about x, y, z of its marker i.
+pub(crate) const DIRECTIONS: usize = 6;
+
+/// Names of the coordinates of the directions.
+const NAMES: [&str; DIRECTIONS] = ["x", "y", "z", "about_x", "about_y", "about_z"];
+
+/// A joint type with elastic directions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ElasticType {
+    /// The type; its coordinates are those of the rigid type, then one per elastic direction.
+    pub kind: &'static JointType,
+    /// True if its rows are those of its rigid directions, so that it may be cut. The rows of types such as universal
+    /// joints do not belong to single directions.
+    pub can_be_cut: bool,
+}
+
+/// Directions in which the bodies of a joint move freely.
+pub(crate) fn free_directions(kind: &JointType) -> [bool; DIRECTIONS] {
+    let mut free = [false; DIRECTIONS];
+    for freedom in kind.freedoms.into_iter().flatten() {
+        match freedom {
+            Freedom::Slide(k) => free[*k] = true,
+            Freedom::Turn(k) => free[3 + k] = true,
+            Freedom::Ball => free[3..].fill(true),
+        }
+    }
+    free
+}
+
+/// Returns a joint type that gives in these directions, which are not free; `None` for a type without freedoms of its
+/// own, such as a rod.
+pub(crate) fn elastic(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<ElasticType> {
+    // Types are compared by their place, so each is made once; there are at most 64 per rigid type.
+    static MADE: Mutex<Vec<(&'static str, [bool; DIRECTIONS], ElasticType)>> = Mutex::new(Vec::new());
+    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = made.iter().find(|(name, of, _)| *name == rigid.name && *of == directions);
+    if let Some((.., known)) = known {
+        return Some(*known);
+    }
+    let new = make(rigid, directions)?;
+    made.push((rigid.name, directions, new));
+    Some(new)
+}
+
+fn make(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<ElasticType> {
+    let own = rigid.freedoms?;
+    let opened = (0..DIRECTIONS).filter(|d| directions[*d]).map(freedom_of);
+    // With simple freedoms all slides come first, then all turns, so that they are the coordinates of the force.
+    let is_simple = own.iter().all(|f| matches!(f, Freedom::Slide(_) | Freedom::Turn(2) | Freedom::Ball));
+    let mut freedoms: Vec<Freedom> = opened.chain(own.iter().copied()).collect();
+    if is_simple {
+        freedoms.sort_by_key(|f| match f {
+            Freedom::Slide(k) => *k,
+            Freedom::Turn(k) => 3 + k,
+            Freedom::Ball => DIRECTIONS,
+        });
+    }
+    let place = |freedom: Freedom| freedoms.iter().rposition(|f| *f == freedom);
+    let coordinates = rigid.coordinates.iter().map(|c| CoordinateType {
+        name: c.name,
+        quantity: c.quantity,
+        freedom: c.freedom.and_then(|k| place(own[k])),
+        row: c.row,
+    });
+    let openings = (0..DIRECTIONS).filter(|d| directions[*d]).map(|d| CoordinateType {
+        name: NAMES[d],
+        quantity: if d < 3 { Quantity::Length } else { Quantity::Angle },
+        freedom: freedoms.iter().position(|f| *f == freedom_of(d)),
+        // Only tree joints are driven in these directions.
+        row: if d < 3 { Row::Dot2(d) } else { Row::Angle },
+    });
+    let coordinates = coordinates.chain(openings).collect::<Vec<_>>().leak();
+    let free = free_directions(rigid);
+    let rows = (0..DIRECTIONS).filter(|d| !directions[*d] && !free[*d]).map(rigid_row).collect::<Vec<_>>();
+    let can_be_cut = rows.is_empty() || is_simple;
+    let kind = JointType {
+        coordinates,
+        freedoms: Some(freedoms.leak()),
+        rows: if can_be_cut { rows.leak() } else { rigid.rows },
+        relaxations: &[],
+        ..*rigid
+    };
+    Some(ElasticType { kind: Box::leak(Box::new(kind)), can_be_cut })
+}
+
+/// Freedom of a direction.
+const fn freedom_of(direction: usize) -> Freedom {
+    if direction < 3 { Freedom::Slide(direction) } else { Freedom::Turn(direction - 3) }
+}
+
+/// Constraint of a rigid direction: its coordinate is zero whatever the others are.
+const fn rigid_row(direction: usize) -> Row {
+    match direction {
+        // alpha = atan2(-y_i . z_j, z_i . z_j), beta = asin(x_i . z_j), gamma = atan2(-x_i . y_j, x_i . x_j)
+        3 => Row::Dot1(1, 2),
+        4 => Row::Dot1(0, 2),
+        5 => Row::Dot1(0, 1),
+        along => Row::Dot2(along),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ALL, CYLINDRICAL, DISTANCE, FIXED, REVOLUTE, SPHERICAL, TRANSLATIONAL};
+    use super::*;
+
+    #[test]
+    fn freedoms_and_rows_of_elastic_types_add_up_to_six() {
+        for rigid in ALL {
+            let free = free_directions(rigid);
+            for mask in 0..1 << DIRECTIONS {
+                let directions: [bool; DIRECTIONS] = std::array::from_fn(|d| mask >> d & 1 == 1 && !free[d]);
+                let Some(ElasticType { kind, can_be_cut }) = elastic(rigid, directions) else {
+                    assert!(rigid.freedoms.is_none(), "{}", rigid.name);
+                    continue;
+                };
+                let freedoms = kind.freedom_count().unwrap();
+                let opened = directions.iter().filter(|d| **d).count();
+                assert_eq!(freedoms, rigid.freedom_count().unwrap() + opened, "{}", rigid.name);
+                if can_be_cut && rigid.tree_rows.is_empty() {
+                    assert_eq!(freedoms + kind.rows.len(), 6, "{} {directions:?}", rigid.name);
+                }
+                for c in kind.coordinates {
+                    assert!(c.freedom.is_none_or(|f| f < freedoms), "{}", rigid.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_type_is_made_once() {
+        for rigid in [&REVOLUTE, &FIXED, &SPHERICAL, &TRANSLATIONAL, &CYLINDRICAL] {
+            let free = free_directions(rigid);
+            let all = free.map(|free| !free);
+            let [a, b] = [(); 2].map(|()| elastic(rigid, all).unwrap().kind);
+            assert!(std::ptr::eq(a, b) && a.rows.is_empty());
+        }
+        assert!(elastic(&DISTANCE, [true; DIRECTIONS]).is_none());
+    }
+}

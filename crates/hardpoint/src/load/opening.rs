@@ -1,0 +1,67 @@
+//! Displacement of one marker relative to another along six coordinates, and the unit wrench of each.
+//!
+//! The coordinates are those of the chain `S(x, y, z) Rx(alpha) Ry(beta) Rz(gamma)` from marker i to marker j: the
+//! displacement along the axes of marker i, then Cardan angles. A force that works on them has a potential if its
+//! stiffnesses are symmetric. Turns of any size are possible about z alone; alpha and beta stay below 90 deg.
+
+use crate::model::element::Elasticity;
+use crate::space::{Pose, Real, Wrench};
+
+use super::acting::AppliedLoads;
+
+/// Coordinates of marker j relative to marker i: x, y, z, m; alpha, beta, gamma, rad.
+pub(crate) struct Opening<T> {
+    pub coordinates: [T; 6],
+    /// Per coordinate: the unit wrench on body j that does work on it, about the world origin.
+    pub wrenches: [Wrench<T>; 6],
+}
+
+impl<T: Real> Opening<T> {
+    /// Opening between two markers, global.
+    pub fn between(i: &Pose<T>, j: &Pose<T>) -> Self {
+        let [x_i, y_i, z_i] = i.rot.cols;
+        let [x_j, y_j, z_j] = j.rot.cols;
+        let d = i.rot.transpose_mul(j.r - i.r);
+        // M = A_i^T A_j = Rx(alpha) Ry(beta) Rz(gamma)
+        let [m11, m12, m13] = [x_i.dot(x_j), x_i.dot(y_j), x_i.dot(z_j)];
+        let [m23, m33] = [y_i.dot(z_j), z_i.dot(z_j)];
+        // cos(beta) sin(alpha) = -M23, cos(beta) cos(alpha) = M33
+        let cosine = (m23 * m23 + m33 * m33).sqrt();
+        let per = T::one() / cosine;
+        let alpha = (-m23).atan2(m33);
+        let beta = m13.atan2(cosine);
+        let gamma = (-m12).atan2(m11);
+        // l_alpha = a2 x a3 / D, l_beta = a3 x a1 / D, l_gamma = a1 x a2 / D, of the axes a1 = x_i,
+        // a2 = y_i cos(alpha) + z_i sin(alpha), a3 = z_j, with D = a1 . (a2 x a3) = cos(beta)
+        let a2 = y_i * (m33 * per) - z_i * (m23 * per);
+        let turns = [a2.cross(z_j), z_j.cross(x_i), x_i.cross(a2)].map(|l| Wrench::moment(l * per));
+        let slides = [x_i, y_i, z_i].map(|axis| Wrench::force(axis, j.r));
+        let ([x, y, z], [a, b, c]) = (slides, turns);
+        Self { coordinates: [d.x, d.y, d.z, alpha, beta, gamma], wrenches: [x, y, z, a, b, c] }
+    }
+
+    /// Force or moment of each coordinate on body j: `-(k e + k_3 e^3 + C(e) - f_0)`, and the stiffness against it.
+    pub fn force(&self, at: &AppliedLoads<'_, T>, k: usize, of: &Elasticity<'_>) -> [T; 2] {
+        let e = self.coordinates[k];
+        let stiffness = at.or_zero(of.stiffness);
+        let (mut push, mut slope) = (stiffness * e, stiffness);
+        if let Some(cubic) = of.cubic {
+            let square = at.number(cubic) * e * e;
+            (push, slope) = (push + square * e, slope + square * T::constant(3.0));
+        }
+        if let Some(curve) = of.curve {
+            let [force, by_way] = curve.at(e);
+            (push, slope) = (push + force, slope + by_way);
+        }
+        [at.preload(of.preload) - push, slope]
+    }
+
+    /// Wrench on body j of these laws; its opposite acts on body i.
+    pub fn wrench(&self, at: &AppliedLoads<'_, T>, laws: &[Elasticity<'_>; 6]) -> Wrench<T> {
+        let mut sum = Wrench::zero();
+        for (k, of) in laws.iter().enumerate().filter(|(_, of)| of.acts()) {
+            sum = self.wrenches[k].times_plus(self.force(at, k, of)[0], sum);
+        }
+        sum
+    }
+}

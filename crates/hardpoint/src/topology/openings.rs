@@ -1,0 +1,109 @@
+//! Independent coordinates of a mechanism with elastic joints: which of its openings the constraints determine, and
+//! which free motions they leave.
+
+use std::collections::BTreeMap;
+
+use crate::model::{BodyId, DriverId, JointId, Model};
+
+use super::blocks::{RANK_TOLERANCE, design_jacobian};
+use super::tree::choose_tree;
+use super::{CoordinateId, Formulation, JointRole, SetBy, Topology, size};
+
+/// Tree of a mechanism whose elastic joints are open.
+pub(crate) struct OpenTree {
+    /// Per joint: true if it is cut.
+    pub cut: Vec<bool>,
+    /// Bodies that no joint places.
+    pub floating: Vec<BodyId>,
+}
+
+/// Coordinates that are not as the drivers of a model have them.
+#[derive(Debug, Default)]
+pub(crate) struct Dependence {
+    /// Openings that the constraints determine from the others.
+    pub determined: Vec<DriverId>,
+    /// Freedoms of joints that neither constraints nor drivers determine.
+    pub free: Vec<(JointId, usize)>,
+}
+
+/// Returns the tree of a mechanism in relative coordinates.
+pub(crate) fn open_tree(model: &Model) -> OpenTree {
+    let topology = choose_tree(model, Formulation::Relative);
+    OpenTree {
+        cut: topology.roles.iter().map(|role| matches!(role, JointRole::Cut(_))).collect(),
+        floating: topology.links.iter().filter(|l| l.joint.is_none()).map(|l| l.child).collect(),
+    }
+}
+
+/// Finds the openings among the drivers, those from `first` on, that the constraints determine in the design
+/// configuration, and the free motions that remain.
+///
+/// The rows are eliminated over the unknown coordinates first, then over the openings, always by the largest pivot.
+pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
+    let mut topology = choose_tree(model, Formulation::Relative);
+    size::measure(model, &mut topology);
+    let mut rows: Vec<BTreeMap<CoordinateId, f64>> = Vec::new();
+    for row in design_jacobian(model, &topology) {
+        let mut entries = BTreeMap::new();
+        for (c, x) in row {
+            *entries.entry(c).or_insert(0.0) += x;
+        }
+        rows.push(entries);
+    }
+    let is_opening = |c: CoordinateId| match topology[c].set_by {
+        SetBy::Driver(d) => d >= first,
+        SetBy::Block { .. } => false,
+    };
+    let unknown: Vec<CoordinateId> = topology.unknown_coordinates().collect();
+    let pivots = eliminate(&mut rows, |c| topology[c].is_unknown());
+    let free = unknown.iter().filter(|c| !pivots.contains(c));
+    let free = free.filter_map(|&c| {
+        let link = &topology[topology[c].link];
+        let step = link.steps.iter().position(|step| step.first == c && step.freedom.coordinates() == 1)?;
+        let freedom = if link.parent_end == 0 { step } else { link.steps.len() - 1 - step };
+        Some((link.joint?, freedom))
+    });
+    let free = free.collect();
+    let determined = eliminate(&mut rows, is_opening).into_iter().filter_map(|c| match topology[c].set_by {
+        SetBy::Driver(d) => Some(d),
+        SetBy::Block { .. } => None,
+    });
+    Dependence { determined: determined.collect(), free }
+}
+
+/// Eliminates rows over the columns that count, by the largest pivot, and removes them. Returns the columns of the
+/// pivots.
+fn eliminate(
+    rows: &mut Vec<BTreeMap<CoordinateId, f64>>,
+    counts: impl Fn(CoordinateId) -> bool,
+) -> Vec<CoordinateId> {
+    let (mut pivots, mut largest) = (Vec::new(), 0.0);
+    loop {
+        let entries = rows.iter().enumerate().flat_map(|(r, row)| row.iter().map(move |(c, x)| (r, *c, *x)));
+        let candidates = entries.filter(|(_, c, _)| counts(*c));
+        // Among equals the first one, so that the choice does not depend on round-off alone.
+        let best = candidates.reduce(|best, next| if next.2.abs() > best.2.abs() { next } else { best });
+        let Some((r, column, pivot)) = best else { break };
+        largest = f64::max(largest, pivot.abs());
+        if !(pivot.abs() > RANK_TOLERANCE * largest) {
+            break;
+        }
+        let row = rows.swap_remove(r);
+        for other in rows.iter_mut() {
+            let Some(x) = other.remove(&column) else { continue };
+            for (c, y) in row.iter().filter(|(c, _)| **c != column) {
+                *other.entry(*c).or_insert(0.0) -= x / pivot * y;
+            }
+        }
+        pivots.push(column);
+    }
+    pivots
+}
+
+impl Topology {
+    /// Plan of a model whose openings are drivers.
+    pub(crate) fn of_openings(model: &Model, formulation: Formulation) -> Result<Self, super::TopologyError> {
+        let topology = Self::of(model, Formulation::Relative)?;
+        Ok(Self { formulation, ..topology })
+    }
+}
