@@ -89,9 +89,17 @@ fn wishbone(at: State, how: &Written) -> String {
     let k_upper = 5.0e6 * s;
     let front = bushing("lca_front_bush", "lca_front", [0.0, 8.0e6, 1.2e6, 3500.0, 3000.0], "80.0", "");
     let front = front.replace("x = 0.0, y", "x = \"k_front\", y");
-    let rear = bushing("lca_rear_bush", "lca_rear", [4.0e6, 3.0e6, 3.0e5, 2000.0, 2000.0], "\"k_rear_about\"", cubic);
-    let upper_front = bushing("uca_front_bush", "uca_front", [5.0e6, 5.0e6, 4.0e5, 1500.0, 1500.0], "40.0", "");
-    let upper_rear = bushing("uca_rear_bush", "uca_rear", [5.0e6, 0.0, 4.0e5, 1500.0, 1500.0], "40.0", preload);
+    let rear = bushing(
+        "lca_rear_bush",
+        "lca_rear",
+        [4.0e6, 3.0e6, 3.0e5, 2000.0, 2000.0],
+        "\"k_rear_about\"",
+        cubic,
+    );
+    let upper_front =
+        bushing("uca_front_bush", "uca_front", [5.0e6, 5.0e6, 4.0e5, 1500.0, 1500.0], "40.0", "");
+    let upper_rear =
+        bushing("uca_rear_bush", "uca_rear", [5.0e6, 0.0, 4.0e5, 1500.0, 1500.0], "40.0", preload);
     let upper_rear = upper_rear.replace("y = 0.0, z", "y = \"k_upper\", z");
     let loads = if how.forces {
         "spring = { type = \"spring\", from = { body = \"ground\", at = \"spring_top\" }, to = { body = \"lca\", at = \
@@ -282,7 +290,12 @@ fn positions_forces_and_sensitivities_are_those_published() {
             for (measure, expected) in case["sensitivities"][published].as_object().unwrap() {
                 let expected = number(expected);
                 let found = value(&solution, 0, &format!("{measure}_over_{driver}"));
-                near(found, expected, DERIVATIVES * (1.0 + expected.abs()), &format!("{name}: {measure} over {driver}"));
+                near(
+                    found,
+                    expected,
+                    DERIVATIVES * (1.0 + expected.abs()),
+                    &format!("{name}: {measure} over {driver}"),
+                );
             }
         }
         for (force, variable, published) in
@@ -296,10 +309,8 @@ fn positions_forces_and_sensitivities_are_those_published() {
                 let what = format!("{name}: {measure} per {force}");
                 near(solution.measured.d(0, v, m)[0], number(expected), DERIVATIVES * largest, &what);
                 let state = state_of(case);
-                let size = [state.road[0], state.road[1], state.align][["side", "brake", "align"]
-                    .iter()
-                    .position(|f| *f == force)
-                    .unwrap()];
+                let size = [state.road[0], state.road[1], state.align]
+                    [["side", "brake", "align"].iter().position(|f| *f == force).unwrap()];
                 // A force of zero has no direction.
                 if size != 0.0 {
                     let found = value(&solution, 0, &format!("{measure}_per_{force}"));
@@ -391,12 +402,23 @@ fn sensitivities_are_those_of_solved_designs() {
             analysis.solve(Run::new().at(&design).without_sensitivities())
         };
         let [a, b] = [at(step), at(-step)];
-        for (m, output) in here.measured.outputs.iter().enumerate().filter(|(_, o)| !o.name.contains("_over_") && !o.name.contains("_per_")) {
+        for (m, output) in here
+            .measured
+            .outputs
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| !o.name.contains("_over_") && !o.name.contains("_per_"))
+        {
             let difference = (a.measured.value(0, m)[0] - b.measured.value(0, m)[0]) / (2.0 * step);
             let exact = here.measured.d(0, hardpoint::model::VariableId(v), m)[0];
             let what = format!("d {} / d {}", output.name, model.variables[v].name);
             // Round-off of the values over the step.
-            near(exact, difference, 1e-6 * difference.abs() + 1e-12 * here.measured.value(0, m)[0].abs() / step, &what);
+            near(
+                exact,
+                difference,
+                1e-6 * difference.abs() + 1e-12 * here.measured.value(0, m)[0].abs() / step,
+                &what,
+            );
         }
     }
 }
@@ -410,13 +432,16 @@ fn without_loads_compliances_are_those_of_the_rigid_mechanism() {
     let single = |equilibrium: &'static str| {
         let text = wishbone(at, &Written { equilibrium, ..free.clone() });
         let kept = |line: &&str| {
-            !["lca_rear =", "uca_rear =", "lca_rear_bush", "uca_rear_bush"].iter().any(|x| {
-                line.starts_with(x) && (line.contains("revolute") || line.contains("elastic_joint"))
-            })
+            !["lca_rear =", "uca_rear =", "lca_rear_bush", "uca_rear_bush"]
+                .iter()
+                .any(|x| line.starts_with(x) && (line.contains("revolute") || line.contains("elastic_joint")))
         };
         // Without torsion about the hinges, no force remains in the position of the rigid mechanism.
-        let text: Vec<String> =
-            text.lines().filter(kept).map(|l| l.replace(", about_z = 80.0", "").replace(", about_z = 40.0", "")).collect();
+        let text: Vec<String> = text
+            .lines()
+            .filter(kept)
+            .map(|l| l.replace(", about_z = 80.0", "").replace(", about_z = 40.0", ""))
+            .collect();
         text.join("\n").replace("[measures]", &format!("[measures]{measure}"))
     };
     let [rigid, open] = ["", "[equilibrium]"].map(|e| value(&solved(&single(e)), 0, "soft"));
@@ -458,8 +483,24 @@ at = [0]
 #[test]
 fn a_lever_has_its_closed_form() {
     for (force, turn, tip, by_stiffness, by_load, by_length, soft) in [
-        (800.0, 0.4178178551059, [0.3655906232177, -0.1631067965777], -0.0005034887659133, 0.0004405526701741, 0.8811053403482, 0.0001620619252492),
-        (3000.0, 0.9696209092603, [0.2262448788274, -0.3328685417016], -0.0005738741010643, 0.000133903956915, 1.004279676863, 3.129508450675e-05),
+        (
+            800.0,
+            0.4178178551059,
+            [0.3655906232177, -0.1631067965777],
+            -0.0005034887659133,
+            0.0004405526701741,
+            0.8811053403482,
+            0.0001620619252492,
+        ),
+        (
+            3000.0,
+            0.9696209092603,
+            [0.2262448788274, -0.3328685417016],
+            -0.0005738741010643,
+            0.000133903956915,
+            1.004279676863,
+            3.129508450675e-05,
+        ),
     ] {
         let model = file(&lever(force)).model;
         let solution = Analysis::new(&model).unwrap().run();
@@ -536,7 +577,9 @@ fn faults_are_reported() {
         lever(800.0).replace("[equilibrium]", ""),
         lever(800.0).replace("force = \"load\"", "force = \"elastic\""),
     ];
-    let found: Vec<String> =
-        texts.iter().map(|text| parse(text, "lever.toml").err().map_or("none".into(), |e| e.to_string())).collect();
+    let found: Vec<String> = texts
+        .iter()
+        .map(|text| parse(text, "lever.toml").err().map_or("none".into(), |e| e.to_string()))
+        .collect();
     snapshot("equilibrium_faults", &found.join("\n\n"));
 }

@@ -116,17 +116,15 @@ impl<'a> EquilibriumSolver<'a> {
         }
     }
 
-    /// Moves the mechanism to its equilibrium at time t, at rest. Before the first it is in its position at that time
-    /// with all openings closed.
+    /// Moves the mechanism to its equilibrium at time t, at rest. Before the first it is in the design configuration,
+    /// without loads.
     pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
-        if self.last.time.is_none() {
-            self.last.drivers = one.mechanism.drivers.iter().map(|f| f[0]).collect();
-        }
-        let from = self.last.drivers.clone();
-        let mut to: Vec<f64> = (0..from.len()).map(|d| one.mechanism.parts.law(d, t)[0]).collect();
+        let drivers = self.last.drivers.len();
+        let mut to: Vec<Option<f64>> = (0..drivers).map(|d| Some(one.mechanism.parts.law(d, t)[0])).collect();
         let predicted = self.predicted(t);
         for (k, d) in self.openings.iter().enumerate() {
-            to[d.0] = predicted.as_ref().map_or(from[d.0], |p| p[k]);
+            // Without a prediction the openings stay.
+            to[d.0] = predicted.as_ref().map(|p| p[k]);
         }
         let (start, end) = (self.last.loads.clone(), GivenLoads::at(self.model, t));
         let (mut done, mut part) = (0.0, 1.0);
@@ -134,9 +132,12 @@ impl<'a> EquilibriumSolver<'a> {
             let next = f64::min(done + part, 1.0);
             // The part of the rest that this attempt goes.
             let way = (next - done) / (1.0 - done);
-            let now = self.last.drivers.clone();
-            let between = |d: usize| if next == 1.0 { to[d] } else { now[d] + (to[d] - now[d]) * way };
-            let target: Vec<f64> = (0..to.len()).map(between).collect();
+            let between = |(now, to): (&f64, &Option<f64>)| match to {
+                Some(to) if next == 1.0 => *to,
+                Some(to) => now + (to - now) * way,
+                None => *now,
+            };
+            let target: Vec<f64> = self.last.drivers.iter().zip(&to).map(between).collect();
             let loads = start.towards(&end, next);
             match self.attempt(one, t, target, &loads) {
                 Ok(drivers) => {

@@ -18,15 +18,28 @@ use super::step::{RoughStep, Step, take};
 use super::stepper::Stepper;
 use super::walk::walk;
 
-/// Solves the design configuration, then moves on to the first output time.
+/// Solves the design configuration, in which all drivers are zero.
 ///
 /// A changed design starts from the nominal design configuration and closes there first.
-pub(crate) fn start(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
+fn start_at_design(one: &mut Stepper<'_>) -> Result<(), Box<Stop>> {
     (one.crossing, one.at_change_point) = (None, false);
     assemble(one)?;
     if let Some(turns) = &mut one.turns {
         turns.begin(&one.mechanism.state);
     }
+    Ok(())
+}
+
+/// Solves the design configuration, at rest.
+pub(crate) fn start_at_rest(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
+    start_at_design(one)?;
+    one.mechanism.line.fill([0.0; 2]);
+    one.start_on(Path::Line { at: t }, 0.0, false)
+}
+
+/// Solves the design configuration, then moves on to the first output time.
+pub(crate) fn start(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
+    start_at_design(one)?;
     // From there, where all drivers are zero, to their values at the first output time.
     let Mechanism { line, parts, .. } = &mut one.mechanism;
     for (d, line) in line.iter_mut().enumerate() {

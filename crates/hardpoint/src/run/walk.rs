@@ -192,7 +192,7 @@ impl<'a> Walk<'a> {
         let t = self.analysis.model().times[k];
         let step = match &mut self.equilibrium {
             Some(equilibrium) => {
-                let begun = if k == 0 { advance::start(&mut self.one, t) } else { Ok(()) };
+                let begun = if k == 0 { advance::start_at_rest(&mut self.one, t) } else { Ok(()) };
                 begun.and_then(|()| equilibrium.step(&mut self.one, t))
             }
             None if k == 0 => advance::start(&mut self.one, t),
