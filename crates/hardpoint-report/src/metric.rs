@@ -161,6 +161,7 @@ fn what(model: &Model, units: Units, metric: &Metric) -> String {
         Reduction::Least => format!("least {of}{within}"),
         Reduction::Greatest => format!("greatest {of}{within}"),
         Reduction::Range => format!("range of {of} (max - min){within}"),
+        Reduction::Change => format!("change of {of} from the first to the last output time"),
         Reduction::Integral => format!("integral of {of} over {over}{within}"),
         Reduction::Mean => format!("mean of {of}{mean_over}{within}"),
         Reduction::Rms(target) if target.is_empty() => format!("root mean square of {of}{mean_over}{within}"),

@@ -48,6 +48,7 @@ macro_rules! templates {
 static TEMPLATES: &[Template] = templates! {
     "double-wishbone": "front suspension on two wishbones, with a rack", true;
     "macpherson": "front suspension on a strut, with a rack", true;
+    "k-and-c": "front axle on bushings, on a rig for kinematics and compliance", true;
     "five-link": "rear suspension on five rods", true;
     "solid-axle": "live axle on three links and a Panhard rod, both sides", true;
     "four-bar": "crank, coupler and rocker in a plane", false;

@@ -23,7 +23,7 @@ fn output_of(bench: &Bench, arguments: &[&str]) -> (Option<i32>, String) {
 #[test]
 fn every_template_is_a_model_with_everything_that_checks_and_runs_at_once() {
     let all = templates();
-    assert_eq!(all.len(), 8, "{all:?}");
+    assert_eq!(all.len(), 9, "{all:?}");
     for template in &all {
         let bench = Bench::with(&[]);
         assert_eq!(bench.run(&["new", "mine", "--template", template]).status.code(), Some(0), "{template}");

@@ -46,6 +46,7 @@ const TAKE: Shape = Shape::Any(
         ("min", "The least value."),
         ("max", "The greatest value."),
         ("range", "The greatest less the least value."),
+        ("change", "The value at the last less that at the first output time."),
         ("mean", "The mean over time, or over the travel of the abscissa to and fro."),
         (
             "integral",
@@ -102,10 +103,16 @@ fn take(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Reduction> {
         r.out_of_place(fields, "window", "it is taken at one place");
         r.need(fields, "at");
     }
+    if word == "change" {
+        for key in ["window", "over"] {
+            r.out_of_place(fields, key, "a change is that from the first to the last output time");
+        }
+    }
     Some(match word {
         "min" => Reduction::Least,
         "max" => Reduction::Greatest,
         "range" => Reduction::Range,
+        "change" => Reduction::Change,
         "mean" => Reduction::Mean,
         "integral" => Reduction::Integral,
         "rms" => Reduction::Rms(match fields.get("target") {

@@ -18,7 +18,7 @@ impl WheelForce {
         let [o, f, z] = [self.outboard, self.forward, self.up].map(|n| at.or_zero(n.map(|n| n.0)));
         let up: Vec3<T> = Vec3::AXES[2].spread();
         let push = now.outboard() * o + now.forward() * f + up * z;
-        let turn = up * at.or_zero(self.about_up.map(|n| n.0));
+        let turn = up * (now.side * at.or_zero(self.about_up.map(|n| n.0)));
         let point = match self.at.unwrap_or_default() {
             WheelPoint::Contact => now.contact(),
             WheelPoint::Centre => now.centre,

@@ -1,7 +1,7 @@
 //! Static equilibrium of a mechanism with elastic joints, along its prescribed motion.
 //!
 //! Every elastic direction is a driver whose value is unknown, an *opening*: the mechanism is solved for any values of
-//! the openings, and they are in equilibrium where no force is needed to hold them (`docs/theory.md`, section 17).
+//! the openings, and they are in equilibrium where no force is needed to hold them (`docs/theory.md`, section 15).
 //! Elastic forces, springs and given loads are loads like all others, so that forces at the openings, their derivatives
 //! and all sensitivities follow from what the rooms before this one compute.
 //!

@@ -191,7 +191,7 @@ impl<'a> EquilibriumSolver<'a> {
             self.loads.forces(one, given, &mut self.forces);
             self.set_tangent(one, t);
             let positive = self.factor()?;
-            // K dp = -r, in units of the openings
+            // K dp = -r, in units of the openings                                                             (52)
             let scaled = self.correction.iter_mut().zip(&self.forces).zip(&self.units);
             scaled.for_each(|((dp, r), unit)| *dp = -r * unit);
             self.tangent.solve(&mut self.correction);
@@ -287,7 +287,7 @@ impl<'a> EquilibriumSolver<'a> {
     }
 
     /// Derivatives of the openings by the variables, `p_b = -K^-1 r_b` with r_b those of their forces while all openings
-    /// stand (E8); `each` receives the variable and the derivatives.
+    /// stand (53); `each` receives the variable and the derivatives.
     pub fn differentiate(&mut self, one: &mut Stepper<'_>, t: f64, mut each: impl FnMut(usize, &[f64])) {
         for v in 0..self.variables {
             let rates = self.openings_along(one, self.openings.len() + v, t);
@@ -325,7 +325,7 @@ impl<'a> EquilibriumSolver<'a> {
         for (m, measure) in model.measures.iter().enumerate() {
             let MeasureKind::Compliance { of, .. } = measure.kind else { continue };
             let force = self.loads.unit_force(&measure.kind);
-            // K v = W_a . f
+            // K v = W_a . f                                                                               (54)
             let work = |w: &Vec<Twist>| force.iter().map(|(body, f)| f.on(w[*body])).sum();
             let mut response: Vec<f64> = self.unit_twists.iter().map(work).collect();
             self.respond(&mut response);

@@ -319,7 +319,8 @@ macro_rules! elements {
             forward: Option<NumberDraft> => Option<Force>,
             /// Along z: the wheel load.
             up: Option<NumberDraft> => Option<Force>,
-            /// Moment about z: the aligning torque.
+            /// The aligning torque: a moment about z on a left wheel and about -z on a right one, so that both sides of a
+            /// vehicle have the same sign.
             about_up: Option<NumberDraft> => Option<Moment>,
             /// Factor of all components over time.
             law: Option<Law> => Option<Law>,

@@ -30,6 +30,8 @@ pub enum Reduction {
     Greatest,
     /// The greatest less the least value.
     Range,
+    /// The value at the last less that at the first output time.
+    Change,
     /// The mean.
     Mean,
     /// The integral over the abscissa, which counts down where that goes back: of a power over time, or of a force over
@@ -49,8 +51,8 @@ pub enum Reduction {
 
 impl Reduction {
     /// The names of all of them, as model files write them.
-    pub const NAMES: [&str; 9] =
-        ["min", "max", "range", "mean", "integral", "rms", "rms_at_points", "value", "slope"];
+    pub const NAMES: [&str; 10] =
+        ["min", "max", "range", "change", "mean", "integral", "rms", "rms_at_points", "value", "slope"];
 
     /// As model files write it.
     pub fn name(&self) -> &'static str {
@@ -58,12 +60,13 @@ impl Reduction {
             Self::Least => 0,
             Self::Greatest => 1,
             Self::Range => 2,
-            Self::Mean => 3,
-            Self::Integral => 4,
-            Self::Rms(_) => 5,
-            Self::RmsAtPoints(_) => 6,
-            Self::Value(_) => 7,
-            Self::Slope(_) => 8,
+            Self::Change => 3,
+            Self::Mean => 4,
+            Self::Integral => 5,
+            Self::Rms(_) => 6,
+            Self::RmsAtPoints(_) => 7,
+            Self::Value(_) => 8,
+            Self::Slope(_) => 9,
         }]
     }
 
@@ -74,6 +77,7 @@ impl Reduction {
             Self::Least
             | Self::Greatest
             | Self::Range
+            | Self::Change
             | Self::Mean
             | Self::Integral
             | Self::Value(_)

@@ -47,6 +47,7 @@ fn is_between_outputs(metric: &Metric, times: &[f64]) -> bool {
         | Reduction::Mean
         | Reduction::Integral
         | Reduction::Rms(_) => true,
+        Reduction::Change => false,
         Reduction::Value(_) | Reduction::Slope(_) | Reduction::RmsAtPoints(_) => {
             metric.over.is_some() || !window_times(metric).iter().all(|t| times.contains(t))
         }

@@ -87,7 +87,7 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
     let hidden = match metric.take {
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => true,
         Reduction::Least | Reduction::Greatest | Reduction::Range => y.orders == 1,
-        Reduction::RmsAtPoints(_) | Reduction::Value(_) | Reduction::Slope(_) => false,
+        Reduction::Change | Reduction::RmsAtPoints(_) | Reduction::Value(_) | Reduction::Slope(_) => false,
     };
     let resolved = !hidden
         && solution.between.is_some()
@@ -99,6 +99,7 @@ fn metric_value(model: &Model, solution: &Solution, metric: &Metric) -> MetricVa
         Reduction::Least
         | Reduction::Greatest
         | Reduction::Range
+        | Reduction::Change
         | Reduction::Mean
         | Reduction::Rms(_)
         | Reduction::RmsAtPoints(_)
@@ -140,6 +141,7 @@ pub(crate) fn window_times(metric: &Metric) -> Vec<f64> {
         Reduction::Least
         | Reduction::Greatest
         | Reduction::Range
+        | Reduction::Change
         | Reduction::Mean
         | Reduction::Integral
         | Reduction::Rms(_) => Vec::new(),
@@ -157,6 +159,8 @@ pub(crate) fn unresolved_times(solution: &Solution, metric: &Metric, finer: bool
         Reduction::Greatest => far_out_times(metric, &y, &x, 1.0, finer),
         Reduction::Least => far_out_times(metric, &y, &x, -1.0, finer),
         Reduction::Range => [1.0, -1.0].map(|sign| far_out_times(metric, &y, &x, sign, finer)).concat(),
+        // It is taken at output times.
+        Reduction::Change => return Vec::new(),
         Reduction::Value(at) | Reduction::Slope(at) => {
             crossings(&y, &x, *at).map(|(_, t)| t).take(1).collect()
         }
@@ -308,6 +312,7 @@ pub fn misfits(model: &Model, solution: &Solution, metric: &Metric) -> Option<Me
             Reduction::Least
             | Reduction::Greatest
             | Reduction::Range
+            | Reduction::Change
             | Reduction::Mean
             | Reduction::Integral
             | Reduction::Value(_)
@@ -439,6 +444,7 @@ fn interpolation_error(
             };
             Some(of(Reduction::Greatest)? + of(Reduction::Least)?)
         }
+        Reduction::Change => Some(0.0),
         Reduction::Mean | Reduction::Integral | Reduction::Rms(_) => path_error(metric, y, x, value),
         Reduction::RmsAtPoints(points) => {
             // The root mean square of the errors at the points
@@ -471,6 +477,10 @@ fn take<T: Real>(
         Reduction::Range => {
             let ends = extreme(metric, y, x, 1.0).zip(extreme(metric, y, x, -1.0));
             ends.map(|((most, _), (least, _))| (most - least, None))
+        }
+        Reduction::Change => {
+            let [first, last] = [y.values.first()?, y.values.last()?];
+            Some((last[0] - first[0], None))
         }
         Reduction::Value(at) => {
             let (k, t) = crossings(y, x, *at).next()?;
@@ -525,6 +535,7 @@ fn take_at_single_time<T: Real>(
         | Reduction::Greatest
         | Reduction::Least
         | Reduction::Range
+        | Reduction::Change
         | Reduction::Mean
         | Reduction::Integral
         | Reduction::Rms(_)

@@ -29,6 +29,7 @@ impl<'m> PathIntegral<'m> {
             Reduction::Least
             | Reduction::Greatest
             | Reduction::Range
+            | Reduction::Change
             | Reduction::RmsAtPoints(_)
             | Reduction::Value(_)
             | Reduction::Slope(_) => None,

@@ -212,8 +212,10 @@ impl Checker<'_> {
                 .help("use its value, or the slope of a measure that depends on positions only");
             return None;
         }
+        // Between its output times an equilibrium is known by straight lines.
         if let Some(over) = over
             && self.model.known(over).orders == 1
+            && self.model.equilibrium.is_none()
         {
             let name = m.over.as_deref().unwrap_or_default();
             let message = format!("`{name}` cannot be an abscissa, because its rate is not known");
