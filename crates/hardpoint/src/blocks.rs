@@ -16,6 +16,15 @@ pub(crate) fn lanes_of(lines: &mut [AlignedLanes]) -> &mut [Lanes] {
     bytemuck::cast_slice_mut(lines)
 }
 
+/// Appends lines of zeros up to this length, in copies of many lines: `resize` writes one line after another.
+fn lengthen(lines: &mut Vec<AlignedLanes>, length: usize) {
+    static ZEROS: [AlignedLanes; 32] = [AlignedLanes([0.0; LANES]); 32];
+    while lines.len() < length {
+        let count = usize::min(ZEROS.len(), length - lines.len());
+        lines.extend_from_slice(&ZEROS[..count]);
+    }
+}
+
 /// Results of eight output times, or of eight designs, in adjacent lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ResultBlock<'b> {
@@ -94,7 +103,7 @@ impl Blocks {
         let (width, first) = (self.width, k / LANES * self.width);
         let lines = self.times_mut();
         if lines.len() < first + width {
-            lines.resize(first + width, AlignedLanes::default());
+            lengthen(lines, first + width);
         }
         lanes_of(&mut lines[first..first + width])
     }

@@ -99,7 +99,13 @@ impl Expression {
     }
 
     /// Value over any scalar type; see [`at`](Self::at).
+    #[inline]
     pub(crate) fn over<T: Real>(&self, number: impl Fn(usize) -> T) -> T {
+        self.evaluate(&number)
+    }
+
+    /// The body of [`over`](Self::over), compiled once per scalar type for all callers.
+    fn evaluate<T: Real>(&self, number: &dyn Fn(usize) -> T) -> T {
         self.program.at(T::constant(f64::NAN), number)
     }
 

@@ -179,8 +179,12 @@ impl<'a> FormulaEvaluator<'a> {
         for &(_, m) in left {
             measured.set(k, m, instant.output(measured.outputs[m].source).0);
         }
-        whole_turns.clear();
-        whole_turns.resize(model.measures.len(), Jet([0.0; 3]));
+        if whole_turns.len() != model.measures.len() {
+            whole_turns.resize(model.measures.len(), Jet([0.0; 3]));
+        }
+        for turns in whole_turns.iter_mut() {
+            *turns = Jet([0.0; 3]);
+        }
         unwrap_angles(self.laws, motion, k, &self.turns, measured, |m, whole| {
             whole_turns[m].0[0] = whole;
         });

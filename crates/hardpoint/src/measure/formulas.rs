@@ -202,15 +202,15 @@ impl<'a, T: Real> Instant<'a, T> {
 
     /// The wheel whose spin axis is direction d of measure k.
     pub(super) fn wheel(&self, k: usize, d: usize, wheel: WheelId) -> WheelAt<T> {
-        self.wheel_at(k, d, wheel, |b| self.poses[b.0])
+        self.wheel_at(k, d, wheel, &|b| self.poses[b.0])
     }
 
     /// The same in the design configuration.
     fn wheel_as_drawn(&self, k: usize, d: usize, wheel: WheelId) -> WheelAt<T> {
-        self.wheel_at(k, d, wheel, |b| self.model.bodies[b.0].frame.spread())
+        self.wheel_at(k, d, wheel, &|b| self.model.bodies[b.0].frame.spread())
     }
 
-    fn wheel_at(&self, k: usize, d: usize, wheel: WheelId, pose: impl Fn(BodyId) -> Pose<T>) -> WheelAt<T> {
+    fn wheel_at(&self, k: usize, d: usize, wheel: WheelId, pose: &dyn Fn(BodyId) -> Pose<T>) -> WheelAt<T> {
         let wheel = &self.model.wheels[wheel.0];
         let point = |p: PointId| pose(self.model.points[p.0].body).point(self.fixed.points[p.0]);
         let centre = point(wheel.centre);

@@ -90,13 +90,13 @@ impl<T: Real> WheelAt<T> {
             WheelMeasure::ContactY => self.contact().y,
             WheelMeasure::ContactZ => self.contact().z,
             // C + m / m_0 of the lines in which the planes x = C_x, or y = C_y, cut those of the arms
-            WheelMeasure::PlaneCentreFrontY => self.contact().y + self.planes_meet(|n| n.y).beside(),
-            WheelMeasure::PlaneCentreFrontZ => self.contact().z + self.planes_meet(|n| n.y).above(),
-            WheelMeasure::PlaneCentreSideX => self.contact().x + self.planes_meet(|n| n.x).beside(),
-            WheelMeasure::PlaneCentreSideZ => self.contact().z + self.planes_meet(|n| n.x).above(),
+            WheelMeasure::PlaneCentreFrontY => self.contact().y + self.planes_meet(1).beside(),
+            WheelMeasure::PlaneCentreFrontZ => self.contact().z + self.planes_meet(1).above(),
+            WheelMeasure::PlaneCentreSideX => self.contact().x + self.planes_meet(0).beside(),
+            WheelMeasure::PlaneCentreSideZ => self.contact().z + self.planes_meet(0).above(),
             // The line from C to there meets y = 0 at -C_y m_z / m_y above C, also where it is at infinity.
             WheelMeasure::RollCentreHeightPlanes => {
-                let meet = self.planes_meet(|n| n.y);
+                let meet = self.planes_meet(1);
                 -(self.contact().y * meet.z / meet.aside)
             }
             WheelMeasure::BumpSteer
@@ -131,11 +131,11 @@ impl<T: Real> WheelAt<T> {
 
     /// Intersection of the planes of the arms in a view that shows z and another axis, relative to the contact point,
     /// in its plane.
-    fn planes_meet(&self, seen: impl Fn(Vec3<T>) -> T) -> Meet<T> {
+    fn planes_meet(&self, axis: usize) -> Meet<T> {
         let planes = self.planes.expect("a measure that needs planes is of a wheel that has them");
         let contact = self.contact();
         // n_a a + n_z z = n . (P - C) of both,  solved by Cramer's rule
-        let [(a, z, d), (b, y, e)] = planes.map(|[n, p]| (seen(n), n.z, n.dot(p - contact)));
+        let [(a, z, d), (b, y, e)] = planes.map(|[n, p]| (n[axis], n.z, n.dot(p - contact)));
         let lengths = planes.map(|[n, _]| n.norm());
         Meet { aside: d * y - z * e, z: a * e - d * b, by: a * y - z * b, lengths: lengths[0] * lengths[1] }
     }

@@ -492,9 +492,9 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn correction(&self, topology: &Topology, b: BlockId) -> T {
         let mut most = T::zero();
-        for (&c, &d) in topology[b].unknowns.iter().zip(&self.rhs) {
+        for (k, &c) in topology[b].unknowns.iter().enumerate() {
             // max abs(dq_a) / unit_a
-            most = most.larger((d * T::constant(topology[c].per_unit)).abs());
+            most = most.larger((self.rhs[k] * T::constant(topology[c].per_unit)).abs());
         }
         most
     }

@@ -58,6 +58,12 @@ pub(crate) struct Flow<T> {
     bias: Vec<Twist<T>>,
 }
 
+/// Twists of one body, of three orders. An index per order is inlined everywhere, `map` over the array is not.
+#[inline(always)]
+pub(crate) fn of_body<T: Copy>(twists: &[Vec<T>; 3], body: usize) -> [T; 3] {
+    [twists[0][body], twists[1][body], twists[2][body]]
+}
+
 impl<T: Real> Flow<T> {
     /// Zero flow of this number of bodies.
     pub fn new(topology: &Topology, bodies: usize, drives: bool) -> Self {

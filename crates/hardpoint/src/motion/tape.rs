@@ -256,7 +256,8 @@ impl Tape {
     /// Value, first and second derivative of a channel, in one lane.
     #[inline(always)]
     pub fn channel(&self, channel: usize, lane: usize) -> [f64; ORDERS] {
-        std::array::from_fn(|order| self.outputs[ORDERS * channel + order].0[lane])
+        let at = |order: usize| self.outputs[ORDERS * channel + order].0[lane];
+        [at(0), at(1), at(2)]
     }
 
     /// The same, in all lanes.

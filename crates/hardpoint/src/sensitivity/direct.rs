@@ -23,7 +23,7 @@ use crate::design::DesignVelocity;
 use crate::law::Law;
 use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
-use crate::motion::level::{Flow, carried};
+use crate::motion::level::{Flow, carried, of_body};
 use crate::motion::mechanism::LOCKED;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, LinkId, RowId, RowTerm, Topology};
@@ -282,7 +282,7 @@ impl<T: Real> PlanVelocity<T> {
             }
         }
         for &body in &self.reach.bodies {
-            let [w0, w1, w2] = flow.twists.each_ref().map(|w| w[body]);
+            let [w0, w1, w2] = of_body(&flow.twists, body);
             add_each(sums, &loads, |(by_twists, _)| {
                 let [p0, p1, p2] = &by_twists[body];
                 p0.on(w0) + p1.on(w1) + p2.on(w2)
@@ -387,7 +387,9 @@ impl<T: Real> DirectDifferentiation<T> {
             }
         }
         z.clear();
-        z.extend(field.closures.iter().map(|m| m.carried(state)));
+        for m in &field.closures {
+            z.push(m.carried(state));
+        }
     }
 
     /// Solves (24) of `docs/theory.md` with U = W, u = S, z the design twists of the markers, and f = L': (11), (12) or
@@ -404,8 +406,8 @@ impl<T: Real> DirectDifferentiation<T> {
         // The other terms of (12) and (13), -sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)), are added by
         // `Flow::solve`.
         reach.closures.iter().for_each(|&c| flow.ask(topology, c, T::zero()));
-        for (m, z) in field.closures.iter().zip(&*z) {
-            flow.move_end(topology, (m.at, m.end), z[N], &state.l[0]);
+        for (k, m) in field.closures.iter().enumerate() {
+            flow.move_end(topology, (m.at, m.end), z[k][N], &state.l[0]);
         }
         for &(row, rate) in field.kept.iter().filter(|_| N == 0) {
             flow.demand[row.0] += rate;
@@ -420,9 +422,11 @@ impl<T: Real> DirectDifferentiation<T> {
             flow.solve::<N>(topology, b, state.linear());
         }
         if let Some(apart) = flow.apart.get_mut(N) {
-            for (m, z) in field.closures.iter().zip(z).filter(|(m, _)| topology[m.at].block.is_some()) {
-                // D_j - D_i = (W_j - W_i) + (z_j - z_i), for the orders above; the first part is there already.
-                apart[m.at.0] += if m.end == 1 { z[N] } else { -z[N] };
+            for (k, m) in field.closures.iter().enumerate() {
+                if topology[m.at].block.is_some() {
+                    // D_j - D_i = (W_j - W_i) + (z_j - z_i), for the orders above; the first part is there already.
+                    apart[m.at.0] += if m.end == 1 { z[k][N] } else { -z[k][N] };
+                }
             }
         }
     }
@@ -435,8 +439,13 @@ impl<T: Real> DirectDifferentiation<T> {
         field: &PlanVelocity<T>,
     ) -> Option<Defect> {
         let mut worst = None;
-        for (row, defect, limit) in self.judged_defects(topology, state, field) {
-            Defect::enter(&mut worst, row, defect, limit);
+        for &c in &field.reach.closures {
+            for row in topology[c].row_ids() {
+                if topology[row].is_redundant() {
+                    let (_, defect, limit) = self.judged_defect(topology, state, field, row);
+                    Defect::enter(&mut worst, row, defect, limit);
+                }
+            }
         }
         worst
     }
@@ -448,13 +457,23 @@ impl<T: Real> DirectDifferentiation<T> {
         state: &State<T>,
         field: &PlanVelocity<T>,
     ) -> impl Iterator<Item = (RowId, T, T)> {
-        field.left_out(topology).map(|r| {
-            let (sum, most) = self.row_defect(topology, state, field, r);
-            // The tolerance for coordinates in the file is the same as in the motion.
-            // abs(sum) <= max(1e-5 of the largest term, 1e-9 of the field's largest speed)                     (30)
-            let limit = most * T::constant(LOCKED);
-            (r, sum.abs(), limit.larger(field.scale * T::constant(DEFECT_FLOOR)))
-        })
+        field.left_out(topology).map(|r| self.judged_defect(topology, state, field, r))
+    }
+
+    /// Row r with the size of its defect and its round-off limit.
+    #[inline(always)]
+    fn judged_defect(
+        &self,
+        topology: &Topology,
+        state: &State<T>,
+        field: &PlanVelocity<T>,
+        r: RowId,
+    ) -> (RowId, T, T) {
+        let (sum, most) = self.row_defect(topology, state, field, r);
+        // The tolerance for coordinates in the file is the same as in the motion.
+        // abs(sum) <= max(1e-5 of the largest term, 1e-9 of the field's largest speed)                         (30)
+        let limit = most * T::constant(LOCKED);
+        (r, sum.abs(), limit.larger(field.scale * T::constant(DEFECT_FLOOR)))
     }
 
     /// Signed defects of the redundant rows under the change that was solved last.

@@ -5,7 +5,7 @@ use hardpoint_tape::{Lanes, Number};
 use crate::design::DesignVelocity;
 use crate::model::{BodyId, DriverId, Model, VariableId};
 use crate::motion::kinematics::State;
-use crate::motion::level::Flow;
+use crate::motion::level::{Flow, of_body};
 use crate::motion::step_program::RecordedExtras;
 use crate::motion::stepper::Stepper;
 use crate::motion::tape::Tape;
@@ -152,8 +152,8 @@ pub(super) fn note(resisting: &mut Resistance, topology: &Topology, defect: Defe
 /// of these (`docs/theory.md` (14)).
 #[inline(always)]
 fn components<T: Real>(flow: &Flow<T>, state: &State<T>, body: usize) -> [T; BodySensitivity::NUMBERS] {
-    let [w0, w1, w2] = flow.twists.each_ref().map(|w| w[body]);
-    let ([v, a, _], r) = (state.motion.twists.each_ref().map(|v| v[body]), state.pose[body].r);
+    let [w0, w1, w2] = of_body(&flow.twists, body);
+    let ([v, a, _], r) = (of_body(&state.motion.twists, body), state.pose[body].r);
     // v = V at r,    a = V. at r + omega x v
     let velocity = v.at(r);
     let acceleration = v.w.cross_plus(velocity, a.at(r));

@@ -47,7 +47,7 @@ impl<T: Real> Mat3<T> {
     /// This rotation with its derivative along the angular velocity `w` of the rotated frame: `A' = w x A`.
     #[inline(always)]
     pub fn along(self, w: Vec3<T>) -> Mat3<Dual<T>> {
-        Mat3 { cols: self.cols.map(|c| c.with_derivative(w.cross(c))) }
+        T::operation(|| Mat3 { cols: self.cols.map(|c| c.with_derivative(w.cross(c))) })
     }
 
     /// Rotation by `angle`, rad, about a unit vector.
@@ -85,25 +85,29 @@ impl<T: Real> Mat3<T> {
     /// Transpose times a vector: maps world components to components in the rotated frame.
     #[inline(always)]
     pub fn transpose_mul(self, v: Vec3<T>) -> Vec3<T> {
-        Vec3::new(self.cols[0].dot(v), self.cols[1].dot(v), self.cols[2].dot(v))
+        T::operation(|| Vec3::new(self.cols[0].dot(v), self.cols[1].dot(v), self.cols[2].dot(v)))
     }
 
     /// This orientation rotated about its own axis `k` by the angle with this sine and cosine.
     #[inline(always)]
     pub fn turned(self, k: usize, sin: T, cos: T) -> Self {
-        let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-        let mut cols = self.cols;
-        // a <- a cos + b sin,    b <- b cos - a sin;  a, b the axes after k
-        cols[a] = self.cols[b].times_plus(sin, self.cols[a] * cos);
-        cols[b] = self.cols[a].times_plus(-sin, self.cols[b] * cos);
-        Self { cols }
+        T::operation(|| {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            let mut cols = self.cols;
+            // a <- a cos + b sin,    b <- b cos - a sin;  a, b the axes after k
+            cols[a] = self.cols[b].times_plus(sin, self.cols[a] * cos);
+            cols[b] = self.cols[a].times_plus(-sin, self.cols[b] * cos);
+            Self { cols }
+        })
     }
 
     /// This matrix times a vector, plus another vector.
     #[inline(always)]
     pub fn times_plus(self, v: Vec3<T>, addend: Vec3<T>) -> Vec3<T> {
-        let [f, g, h] = self.cols;
-        h.times_plus(v.z, g.times_plus(v.y, f.times_plus(v.x, addend)))
+        T::operation(|| {
+            let [f, g, h] = self.cols;
+            h.times_plus(v.z, g.times_plus(v.y, f.times_plus(v.x, addend)))
+        })
     }
 
     /// This rotation as plain numbers.
@@ -118,8 +122,10 @@ impl<T: Real> Mul<Vec3<T>> for Mat3<T> {
     type Output = Vec3<T>;
     #[inline(always)]
     fn mul(self, v: Vec3<T>) -> Vec3<T> {
-        let [f, g, h] = self.cols;
-        h.times_plus(v.z, g.times_plus(v.y, f * v.x))
+        T::operation(|| {
+            let [f, g, h] = self.cols;
+            h.times_plus(v.z, g.times_plus(v.y, f * v.x))
+        })
     }
 }
 
@@ -127,7 +133,9 @@ impl<T: Real> Mul for Mat3<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        let [f, g, h] = o.cols;
-        Self { cols: [self * f, self * g, self * h] }
+        T::operation(|| {
+            let [f, g, h] = o.cols;
+            Self { cols: [self * f, self * g, self * h] }
+        })
     }
 }

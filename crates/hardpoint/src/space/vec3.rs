@@ -92,37 +92,43 @@ impl<T: Real> Vec3<T> {
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, o: Self) -> T {
-        self.z.times_plus(o.z, self.y.times_plus(o.y, self.x * o.x))
+        T::operation(|| self.z.times_plus(o.z, self.y.times_plus(o.y, self.x * o.x)))
     }
 
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
-        Self::new(
-            self.y.times_plus(o.z, -(self.z * o.y)),
-            self.z.times_plus(o.x, -(self.x * o.z)),
-            self.x.times_plus(o.y, -(self.y * o.x)),
-        )
+        T::operation(|| {
+            Self::new(
+                self.y.times_plus(o.z, -(self.z * o.y)),
+                self.z.times_plus(o.x, -(self.x * o.z)),
+                self.x.times_plus(o.y, -(self.y * o.x)),
+            )
+        })
     }
 
     /// `self x o + addend`.
     #[inline(always)]
     pub fn cross_plus(self, o: Self, addend: Self) -> Self {
-        Self::new(
-            self.y.times_plus(o.z, (-self.z).times_plus(o.y, addend.x)),
-            self.z.times_plus(o.x, (-self.x).times_plus(o.z, addend.y)),
-            self.x.times_plus(o.y, (-self.y).times_plus(o.x, addend.z)),
-        )
+        T::operation(|| {
+            Self::new(
+                self.y.times_plus(o.z, (-self.z).times_plus(o.y, addend.x)),
+                self.z.times_plus(o.x, (-self.x).times_plus(o.z, addend.y)),
+                self.x.times_plus(o.y, (-self.y).times_plus(o.x, addend.z)),
+            )
+        })
     }
 
     /// `self * k + addend`.
     #[inline(always)]
     pub fn times_plus(self, k: T, addend: Self) -> Self {
-        Self::new(
-            self.x.times_plus(k, addend.x),
-            self.y.times_plus(k, addend.y),
-            self.z.times_plus(k, addend.z),
-        )
+        T::operation(|| {
+            Self::new(
+                self.x.times_plus(k, addend.x),
+                self.y.times_plus(k, addend.y),
+                self.z.times_plus(k, addend.z),
+            )
+        })
     }
 
     /// Mirror image in the plane through the origin with this unit normal: `v - 2 (v . n) n`.
@@ -133,7 +139,7 @@ impl<T: Real> Vec3<T> {
     /// Length.
     #[inline(always)]
     pub fn norm(self) -> T {
-        self.dot(self).sqrt()
+        T::operation(|| self.dot(self).sqrt())
     }
 
     /// This vector as plain numbers.
@@ -156,53 +162,57 @@ impl<T> Index<usize> for Vec3<T> {
     }
 }
 
-impl<T: Add<Output = T>> Add for Vec3<T> {
+impl<T: Real> Add for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
+        T::operation(|| Self::new(self.x + o.x, self.y + o.y, self.z + o.z))
     }
 }
 
-impl<T: Sub<Output = T>> Sub for Vec3<T> {
+impl<T: Real> Sub for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
+        T::operation(|| Self::new(self.x - o.x, self.y - o.y, self.z - o.z))
     }
 }
 
-impl<T: Neg<Output = T>> Neg for Vec3<T> {
+impl<T: Real> Neg for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self::new(-self.x, -self.y, -self.z)
+        T::operation(|| Self::new(-self.x, -self.y, -self.z))
     }
 }
 
-impl<T: Mul<Output = T> + Copy> Mul<T> for Vec3<T> {
+impl<T: Real> Mul<T> for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, k: T) -> Self {
-        Self::new(self.x * k, self.y * k, self.z * k)
+        T::operation(|| Self::new(self.x * k, self.y * k, self.z * k))
     }
 }
 
-impl<T: AddAssign> AddAssign for Vec3<T> {
+impl<T: Real> AddAssign for Vec3<T> {
     #[inline(always)]
     fn add_assign(&mut self, o: Self) {
-        self.x += o.x;
-        self.y += o.y;
-        self.z += o.z;
+        T::operation(|| {
+            self.x += o.x;
+            self.y += o.y;
+            self.z += o.z;
+        })
     }
 }
 
-impl<T: SubAssign> SubAssign for Vec3<T> {
+impl<T: Real> SubAssign for Vec3<T> {
     #[inline(always)]
     fn sub_assign(&mut self, o: Self) {
-        self.x -= o.x;
-        self.y -= o.y;
-        self.z -= o.z;
+        T::operation(|| {
+            self.x -= o.x;
+            self.y -= o.y;
+            self.z -= o.z;
+        })
     }
 }
 
