@@ -184,7 +184,7 @@ impl<'a> EquilibriumSolver<'a> {
         mut drivers: Vec<f64>,
         given: &GivenLoads,
     ) -> Result<Vec<f64>, Rejection> {
-        advance::move_at_rest(one, t, &drivers).map_err(|_| Rejection::NoConvergence)?;
+        advance::move_at_rest(one, &drivers).map_err(|_| Rejection::NoConvergence)?;
         let mut before = f64::INFINITY;
         for pass in 0..MOST_ITERATIONS {
             self.iterations += 1;
@@ -353,7 +353,7 @@ impl<'a> EquilibriumSolver<'a> {
                 // The direction in which the stiffness vanishes.
                 let given = self.last.loads.clone();
                 let values = self.last.drivers.clone();
-                if advance::move_at_rest(one, t, &values).is_ok() {
+                if advance::move_at_rest(one, &values).is_ok() {
                     self.loads.forces(one, &given, &mut self.forces);
                     self.set_tangent(one, t);
                     let _ = self.factor();

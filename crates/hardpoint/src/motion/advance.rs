@@ -70,20 +70,13 @@ pub(crate) fn advance(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
 }
 
 /// Moves all drivers straight to these values from the accepted position, to a position at rest that is not accepted
-/// yet.
-pub(crate) fn move_at_rest(one: &mut Stepper<'_>, t: f64, values: &[f64]) -> Result<(), Box<Stop>> {
-    let Mechanism { line, saved, .. } = &mut one.mechanism;
-    for (line, (from, to)) in line.iter_mut().zip(saved.drivers.iter().zip(values)) {
-        *line = [from[0], *to];
-    }
+/// yet. Fails if they are too far for one step.
+pub(crate) fn move_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), StepRejection> {
+    let Mechanism { saved, driver_units, .. } = &one.mechanism;
+    let travel = |((from, to), unit): ((&[f64; 3], &f64), &f64)| (to - from[0]).abs() / unit;
+    let moved = saved.drivers.iter().zip(values).zip(driver_units).map(travel).fold(0.0, f64::max);
     one.mechanism.restore();
-    let path = Path::Line { at: t };
-    if hold(one, values, trust(one.mechanism.unit_of(path))).is_err() {
-        one.start_on(path, 0.0, false)?;
-        walk(one, path, 1.0)?;
-        hold(one, values, f64::INFINITY).map_err(|r| one.stop(path, 1.0, r, true))?;
-    }
-    Ok(())
+    hold(one, values, trust(moved))
 }
 
 /// Moves all drivers to these values, which are near the position of the state, to a position at rest.

@@ -113,6 +113,11 @@ impl Analysis<'_> {
         let mut found: Vec<[Vec<f64>; 2]> = Vec::new();
         let mut steps = here.motion.len();
         for &[u, w] in pairs {
+            // Where the nominal design has no equilibrium, others need not have one.
+            if here.stop.is_some() {
+                steps = 0;
+                break;
+            }
             let natural = |(v, rate): (usize, &f64)| rate.abs() / model.natural_step(VariableId(v));
             let size = directions[w].iter().enumerate().map(natural).fold(0.0, f64::max);
             let step = if size > 0.0 { DIFFERENCE / size } else { 1.0 };
