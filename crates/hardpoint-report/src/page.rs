@@ -117,8 +117,12 @@ pub struct Payload {
     pub first: Option<usize>,
     /// Quantity on the abscissa of that first plot, an index into [`Payload::quantities`]; time if there is none.
     pub over: Option<usize>,
+    /// Plots that the model file asks for; none for those that suit the mechanism.
+    pub plots: Vec<Plot>,
     /// Other designs over the same motion for comparison: changed, predicted, re-solved.
     pub designs: Vec<Design>,
+    /// Named designs of the model file.
+    pub named_designs: Vec<NamedDesign>,
     /// Measures over grids of two drivers.
     pub maps: Vec<GridMap>,
     /// Designs of a sweep.
@@ -420,6 +424,36 @@ pub struct VehicleAxes {
     pub up: [f64; 3],
 }
 
+/// Plot that the page opens with.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Plot {
+    /// Quantities of one unit on the ordinate, indices into [`Payload::quantities`].
+    pub y: Vec<usize>,
+    /// Quantity on the abscissa; time if there is none.
+    pub over: Option<usize>,
+}
+
+/// Named design of the model file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct NamedDesign {
+    /// Name.
+    pub name: String,
+    /// Changes of variables from the nominal design; all others are nominal.
+    pub changes: Vec<NamedChange>,
+}
+
+/// Change of a variable.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct NamedChange {
+    /// Name of the variable.
+    pub name: String,
+    /// Change from the nominal design, in its unit.
+    pub by: f64,
+}
+
 /// Single value that characterises the design.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
@@ -510,6 +544,8 @@ pub struct Quantity {
     pub accel_unit: String,
     /// Heading in the list of quantities: `measure`, `point`, `body` or `joint`.
     pub group: String,
+    /// Type of the measure as model files write it, such as `toe`; `position` for a coordinate of a point or body.
+    pub kind: String,
     /// The quantity, `n` steps.
     pub value: Curve,
     /// First time derivative.
@@ -820,7 +856,9 @@ pub(crate) mod tests {
             values: vec![],
             first: None,
             over: None,
+            plots: vec![],
             designs: vec![],
+            named_designs: vec![],
             maps: vec![],
             sweep: None,
             margin: None,
@@ -889,7 +927,7 @@ pub(crate) mod tests {
         }
         declare!(
             Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark SlideMark JointCurve CouplerMark CouplerTerm
-            DriverMark BodyPlace WheelMark DistanceMark LoadMark VehicleAxes Quantity Value Design DesignKind DesignCurves
+            DriverMark BodyPlace WheelMark DistanceMark LoadMark VehicleAxes Quantity Plot NamedDesign NamedChange Value Design DesignKind DesignCurves
             GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");

@@ -32,8 +32,8 @@ use crate::facts::{Facts, VariableAdmissibility};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
 use crate::page::{
-    self, Admissibility, Curve, Design, Detail, Fact, FiniteDifference, Margin, ModelText, Payload, Quantity,
-    Sensitivity, Status, Units as PageUnits, Variable,
+    self, Admissibility, Curve, Design, Detail, Fact, FiniteDifference, Margin, ModelText, NamedChange,
+    NamedDesign, Payload, Plot, Quantity, Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
 
@@ -192,7 +192,9 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
         values,
         first: compose.first(course),
         over: None,
+        plots: compose.plots(),
         designs,
+        named_designs: compose.named_designs(),
         maps: Vec::new(),
         sweep: None,
         margin: summary.margin.as_ref().map(|m| Margin {
@@ -476,7 +478,9 @@ impl<'a> Compose<'a> {
         let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
             let value = |k, order: usize| measured.value(k, m)[order];
             let group = if matches!(output.source, OutputSource::Measure(_)) { "measure" } else { "point" };
-            let quantity = self.quantity(&output.name, output.dimension, output.known.orders, group, value);
+            let kind = self.model.type_of(output.source);
+            let quantity =
+                self.quantity(&output.name, output.dimension, output.known.orders, (group, kind), value);
             Quantity { wanted: self.wanted(output.source, output.dimension), ..quantity }
         });
         let bodies = if self.detail.origins { self.model.bodies.len() } else { 1 };
@@ -486,28 +490,55 @@ impl<'a> Compose<'a> {
                 let s = &self.solution.motion.at(k).body(b);
                 [s.r, s.v, s.a][order].to_array()[axis]
             };
-            self.quantity(&name, Dimension::LENGTH, 3, "body", value)
+            self.quantity(&name, Dimension::LENGTH, 3, ("body", "position"), value)
         });
         outputs.chain(origins).collect()
     }
 
-    /// Quantity from a function of step and order, SI.
+    /// Plots of the model file.
+    fn plots(&self) -> Vec<Plot> {
+        let outputs = &self.solution.measured.outputs;
+        let place = |source: OutputSource| outputs.iter().position(|o| o.source == source);
+        let plot = |plot: &hardpoint::model::Plot| {
+            let y = plot.y.iter().map(|source| place(*source)).collect::<Option<Vec<_>>>()?;
+            match plot.over {
+                None => Some(Plot { y, over: None }),
+                Some(over) => Some(Plot { y, over: Some(place(over)?) }),
+            }
+        };
+        self.model.plots.iter().filter_map(plot).collect()
+    }
+
+    /// Named designs of the model file.
+    fn named_designs(&self) -> Vec<NamedDesign> {
+        let change = |(variable, by): &(VariableId, f64)| {
+            let of = &self.model.variables[variable.0];
+            NamedChange { name: of.name.clone(), by: self.units.from_si(of.quantity, *by) }
+        };
+        let design = |design: &hardpoint::model::NamedDesign| NamedDesign {
+            name: design.name.clone(),
+            changes: design.changes.iter().map(change).collect(),
+        };
+        self.model.designs.iter().map(design).collect()
+    }
+
+    /// Quantity from a function of step and order, SI. `group` and `kind` are its heading and its type.
     fn quantity(
         &self,
         name: &str,
-        kind: Dimension,
+        dimension: Dimension,
         orders: usize,
-        group: &str,
+        (group, kind): (&str, &str),
         value: impl Fn(usize, usize) -> f64,
     ) -> Quantity {
-        let [unit, rate_unit, accel_unit] = [0, 1, 2].map(|order| order_unit(self.units, kind, order));
+        let [unit, rate_unit, accel_unit] = [0, 1, 2].map(|order| order_unit(self.units, dimension, order));
         let spans = [0, 1, 2].map(|order| Span::of((0..self.solution.motion.len()).map(|k| value(k, order))));
         let (per_si, round_off) =
-            (self.units.per_si(kind), [0, 1, 2].map(|order| self.round_off.value(kind, order)));
+            (self.units.per_si(dimension), [0, 1, 2].map(|order| self.round_off.value(dimension, order)));
         let [value, rate, accel] =
             self.curves(orders, |k, order| spans[order].shown(value(k, order), round_off[order]) * per_si);
         let (name, group, wanted) = (name.into(), group.into(), Curve::default());
-        Quantity { name, unit, rate_unit, accel_unit, group, value, rate, accel, wanted }
+        Quantity { name, unit, rate_unit, accel_unit, group, kind: kind.into(), value, rate, accel, wanted }
     }
 
     /// Target curve of the first metric that has one for this output.

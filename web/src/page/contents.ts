@@ -102,7 +102,7 @@ export function valueContent(state: State, subject: Subject): Content {
       const label = !several ? alone : plain ? own : `${own}, ${design.name}`
       const color = several ? hue(k) : (design.color ?? css('--former'))
       const dash = several && plain ? PATTERNS[k % PATTERNS.length] : design.dash
-      content.lines.push({ label, color, curve, over: x, width: design.width, dash, about: aboutQuantity(one.name) })
+      content.lines.push({ label, color, curve, over: x, width: design.width, dash, about: aboutQuantity(one) })
     }
   }
   if (difference) content.caption = differenceCaption(state, reference)

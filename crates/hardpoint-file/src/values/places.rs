@@ -68,7 +68,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 28] = [
+const SECTIONS: [Section; 30] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -97,6 +97,8 @@ const SECTIONS: [Section; 28] = [
     Section::ToleranceLimits,
     Section::Sweep,
     Section::SweepRanges,
+    Section::Plots,
+    Section::Designs,
 ];
 
 /// Locations of all entries, by section and index in the draft's list.

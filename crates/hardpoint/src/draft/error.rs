@@ -89,6 +89,10 @@ pub enum Section {
     Sweep,
     /// [`super::SweepSettingsDraft::ranges`].
     SweepRanges,
+    /// [`super::Draft::plots`].
+    Plots,
+    /// [`super::Draft::designs`].
+    Designs,
 }
 
 /// Location in a draft.
@@ -132,6 +136,8 @@ impl fmt::Display for Section {
             Self::Tolerances | Self::SweepRanges => "variables",
             Self::Correlations => "correlations",
             Self::Sweep => "sweep",
+            Self::Plots => "plots",
+            Self::Designs => "designs",
         })
     }
 }
