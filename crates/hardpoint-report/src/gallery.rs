@@ -79,6 +79,13 @@ pub fn trouble(file: &str, why: &str, text: &str, lines: &[usize]) -> String {
     sheet(file, &(body + "</pre>"))
 }
 
+/// Page in place of a model that is not there: the reason, and a link to the models that are.
+pub fn missing(file: &str, why: &str, models: &str) -> String {
+    let [title, why, models] = [file, why, models].map(escape_text);
+    let lead = format!("<p class=\"lead\" data-testid=\"trouble\">{why}.</p>");
+    sheet(file, &format!("<h1>{title}</h1>\n{lead}\n<p><a href=\"{models}\">Models in this folder</a></p>"))
+}
+
 fn sheet(title: &str, body: &str) -> String {
     fill(include_str!("../page/sheet.html"), |slot| match slot {
         "title" => escape_text(title),
@@ -98,5 +105,7 @@ mod tests {
         let page = trouble("<x>.toml", "error: `<b>`", "a = \"<script>\"\nb", &[2]);
         assert!(!page.contains("<script>") && !page.contains("<b>") && !page.contains("<x>"));
         assert!(page.contains("<span class=\"at\">b</span>"));
+        let page = missing("<x>.toml", "there is no `<x>`", "/?a&b");
+        assert!(!page.contains("<x>") && page.contains("<a href=\"/?a&amp;b\">"));
     }
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Driver, DriverId, Metric, Model, OutputSource, VariableId};
 use hardpoint::run::DriverRates;
-use hardpoint::sensitivity::BodySensitivity;
+use hardpoint::sensitivity::{BodySensitivity, admissibility_at_design};
 use hardpoint::space::Vec3;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Appearance, ModelFile, Units};
@@ -44,6 +44,9 @@ const MOST_BYTES: usize = 8 << 20;
 /// Minimum and maximum size of a value of a smooth curve on the page, in bytes; the page is packed to measure its size
 /// if these bounds do not decide whether it fits.
 const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
+/// Opening of a joint that the page calls a re-assembly, relative to the motion of the variable that opens it: rounded
+/// coordinates of a file open joints by less.
+const VISIBLE: f64 = 1e-5;
 /// Number of marks of differences along a curve.
 const MARKS: usize = 36;
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -396,7 +399,10 @@ fn headline(summary: &Summary) -> Vec<Fact> {
     if !model.variables.is_empty() {
         facts.push(fact("design variables", model.variables_line()));
     }
-    facts.push(fact("solved in", seconds(summary.timings.solve)));
+    // There is no clock in the browser.
+    if summary.timings.solve > 0.0 {
+        facts.push(fact("solved in", seconds(summary.timings.solve)));
+    }
     facts
 }
 
@@ -566,7 +572,10 @@ impl<'a> Compose<'a> {
                     VariableAdmissibility::Admissible | VariableAdmissibility::Unknown => {
                         Admissibility::Admissible
                     }
-                    VariableAdmissibility::Reassembled => Admissibility::Reassembled,
+                    VariableAdmissibility::Reassembled if self.opens_visibly(VariableId(b)) => {
+                        Admissibility::Reassembled
+                    }
+                    VariableAdmissibility::Reassembled => Admissibility::Admissible,
                     VariableAdmissibility::CannotFollow => Admissibility::CannotFollow,
                 },
                 note: fact.note(),
@@ -579,6 +588,13 @@ impl<'a> Compose<'a> {
             }
         };
         facts.variables.iter().enumerate().map(variable).collect()
+    }
+
+    /// True if a variable opens a joint by a visible part of its own motion.
+    fn opens_visibly(&self, variable: VariableId) -> bool {
+        let field = self.model.field(variable);
+        let speed = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
+        admissibility_at_design(self.model, &field).iter().any(|open| !(open.value <= VISIBLE * speed))
     }
 
     /// First-order motion of every body by a variable.

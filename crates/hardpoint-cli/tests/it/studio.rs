@@ -258,6 +258,18 @@ fn no_name_leads_out_of_the_folder_or_to_other_files() {
     assert_eq!(listed["models"].as_array().unwrap().len(), 1, "{listed}");
 }
 
+#[test]
+fn a_model_that_is_not_there_is_a_page_with_a_way_to_the_others() {
+    let bench = Bench::with(&["slider.toml"]);
+    let server = Server::start(&bench, &["slider.toml"]);
+    let page = server.get("/?file=nosuch.toml");
+    assert_eq!(page.status, 404);
+    assert!(page.body.contains("there is no `nosuch.toml` in this folder"), "{}", page.body);
+    assert!(page.body.starts_with("<!doctype html>") && page.body.contains("href=\"/gallery\""));
+    let answer = server.get("/api/model?file=nosuch.toml");
+    assert_eq!((answer.status, answer.json()["error"].is_string()), (404, true));
+}
+
 /// A symbolic link within the folder is another name: its target is saved, and the link remains.
 #[cfg(unix)]
 #[test]

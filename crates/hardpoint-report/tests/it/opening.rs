@@ -1,8 +1,8 @@
-//! What the page opens with: plots and named designs of the model file, and the types of quantities.
+//! Opening of the page: plots and named designs of the model file, and the types of quantities.
 
 use hardpoint::Analysis;
 use hardpoint_report::course::Course;
-use hardpoint_report::page::{NamedChange, NamedDesign, Payload, Plot};
+use hardpoint_report::page::{Admissibility, NamedChange, NamedDesign, Payload, Plot};
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 
@@ -58,4 +58,16 @@ fn quantities_have_the_types_of_their_measures() {
     ] {
         assert_eq!(kind(name), expected, "{name}");
     }
+}
+
+#[test]
+fn a_variable_that_opens_a_joint_by_rounded_coordinates_is_not_called_a_reassembly() {
+    let admissibility =
+        |text: &str, name: &str| page(text).variables.iter().find(|v| v.name == name).unwrap().admissibility;
+    // 2.8e-7 mm per mm.
+    let cam = include_str!("../../../../models/cam.toml");
+    assert_eq!(admissibility(cam, "camshaft_x"), Admissibility::Admissible);
+    // 0.99 mm per mm.
+    let rack = include_str!("../../../../models/double_wishbone.toml");
+    assert_eq!(admissibility(rack, "tie_rod_outer_y_fixed_length"), Admissibility::Reassembled);
 }
