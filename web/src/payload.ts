@@ -678,10 +678,31 @@ quantity: number | null,
  */
 target: [number | null, number | null] | null,
 /**
+ * Part of the target that limits the curve of the quantity.
+ */
+gate: Gate | null,
+/**
  * Derivatives by every design variable, in the order of [`Payload::variables`]; empty if the mechanism cannot
  * follow one.
  */
 sensitivities: Array<number | null>, };
+
+/**
+ * Limits of a curve that follow from the target of a metric.
+ */
+export type Gate = {
+/**
+ * Minimum.
+ */
+low: number | null,
+/**
+ * Maximum.
+ */
+high: number | null,
+/**
+ * Time of the limits; the whole curve if there is none.
+ */
+at: number | null, };
 
 /**
  * Another design over the same output times. Unknown curves are empty.

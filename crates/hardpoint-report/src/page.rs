@@ -472,9 +472,23 @@ pub struct Value {
     pub quantity: Option<usize>,
     /// Required minimum and maximum, if the model defines them.
     pub target: Option<[Option<f64>; 2]>,
+    /// Part of the target that limits the curve of the quantity.
+    pub gate: Option<Gate>,
     /// Derivatives by every design variable, in the order of [`Payload::variables`]; empty if the mechanism cannot
     /// follow one.
     pub sensitivities: Vec<Option<f64>>,
+}
+
+/// Limits of a curve that follow from the target of a metric.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Gate {
+    /// Minimum.
+    pub low: Option<f64>,
+    /// Maximum.
+    pub high: Option<f64>,
+    /// Time of the limits; the whole curve if there is none.
+    pub at: Option<f64>,
 }
 
 /// Another design over the same output times. Unknown curves are empty.
@@ -927,7 +941,7 @@ pub(crate) mod tests {
         }
         declare!(
             Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark SlideMark JointCurve CouplerMark CouplerTerm
-            DriverMark BodyPlace WheelMark DistanceMark LoadMark VehicleAxes Quantity Plot NamedDesign NamedChange Value Design DesignKind DesignCurves
+            DriverMark BodyPlace WheelMark DistanceMark LoadMark VehicleAxes Quantity Plot NamedDesign NamedChange Value Gate Design DesignKind DesignCurves
             GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");

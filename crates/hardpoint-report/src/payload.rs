@@ -13,6 +13,7 @@ mod values;
 
 pub use designs::ChangedDesign;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
@@ -409,6 +410,8 @@ fn headline(summary: &Summary) -> Vec<Fact> {
 struct Compose<'a> {
     model: &'a Model,
     looks: &'a Appearance,
+    /// Minimum and maximum of metrics by name, SI.
+    limits: &'a BTreeMap<String, [Option<f64>; 2]>,
     units: Units,
     analysis: &'a Analysis<'a>,
     course: &'a Course,
@@ -454,6 +457,7 @@ impl<'a> Compose<'a> {
         Self {
             model: &file.model,
             looks: &file.drawing,
+            limits: &file.limits,
             units: file.units,
             analysis,
             course,

@@ -1,18 +1,23 @@
 //! Opening of the page: plots and named designs of the model file, and the types of quantities.
 
 use hardpoint::Analysis;
+use hardpoint::model::CaseId;
+use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
-use hardpoint_report::page::{Admissibility, NamedChange, NamedDesign, Payload, Plot};
+use hardpoint_report::page::{Admissibility, Gate, NamedChange, NamedDesign, Payload, Plot};
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 
 fn page(text: &str) -> Payload {
-    let file = hardpoint_file::parse(text, "models.toml").unwrap_or_else(|e| panic!("{e}"));
+    page_of(&hardpoint_file::parse(text, "models.toml").unwrap_or_else(|e| panic!("{e}")))
+}
+
+fn page_of(file: &ModelFile) -> Payload {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(&file, analysis.topology(), &course);
-    payload(&Request::of(&file, &analysis, &course, &summary))
+    let summary = Summary::new(file, analysis.topology(), &course);
+    payload(&Request::of(file, &analysis, &course, &summary))
 }
 
 const STRUT: &str = include_str!("../../../../models/macpherson.toml");
@@ -70,4 +75,43 @@ fn a_variable_that_opens_a_joint_by_rounded_coordinates_is_not_called_a_reassemb
     // 0.99 mm per mm.
     let rack = include_str!("../../../../models/double_wishbone.toml");
     assert_eq!(admissibility(rack, "tie_rod_outer_y_fixed_length"), Admissibility::Reassembled);
+}
+
+#[test]
+fn limits_of_metrics_are_targets_of_cards_and_limits_of_curves_in_every_case() {
+    let limits = r#"
+[metrics]
+highest_camber = { of = "camber", take = "max" }
+toe_at_ride = { of = "toe", over = "wheel_travel", take = "value", at = 0 }
+toe_range = { of = "toe", take = "range" }
+free = { of = "toe", take = "max" }
+[tolerance]
+variables = { tie_rod_outer_z = 0.5 }
+[tolerance.limits]
+camber = { metric = "highest_camber", min = -9, max = 2 }
+camber_of_tyre = { metric = "highest_camber", max = 3 }
+ride = { metric = "toe_at_ride", min = -1, max = 1 }
+range = { metric = "toe_range", max = 20 }
+[cases.bump]
+laws = { strut_drive = "40 - 80*t" }
+time = { end = 1, steps = 20 }
+"#;
+    let file =
+        hardpoint_file::parse(&format!("{STRUT}{limits}"), "models.toml").unwrap_or_else(|e| panic!("{e}"));
+    for page in [page_of(&file), page_of(&file.in_case(CaseId(0)))] {
+        let value = |name: &str| page.values.iter().find(|v| v.name == name).unwrap();
+        let rounded = |ends: [Option<f64>; 2]| ends.map(|end| end.map(|x| (x * 1e9).round() / 1e9));
+        let camber = value("highest_camber");
+        assert_eq!(camber.target.map(rounded), Some([Some(-9.0), Some(2.0)]));
+        // A maximum says nothing of how low the curve may be.
+        let gate = camber.gate.unwrap();
+        assert_eq!((rounded([gate.low, gate.high]), gate.at), ([None, Some(2.0)], None));
+        let ride = value("toe_at_ride");
+        let Gate { low, high, at } = ride.gate.unwrap();
+        assert_eq!((rounded([low, high]), at), ([Some(-1.0), Some(1.0)], ride.time));
+        assert!(at.is_some());
+        assert_eq!(value("toe_range").target.map(rounded), Some([None, Some(20.0)]));
+        assert_eq!([value("toe_range").gate, value("free").gate, value("toe").gate], [None; 3]);
+        assert_eq!(value("free").target, None);
+    }
 }
