@@ -766,8 +766,9 @@ pub struct Studio {
 
 const AFTER_SITE: &str = "\
 Files in the folder (each appears whole or not at all):
-  index.html  all models with their descriptions
-  NAME.html   the report of NAME.toml (NAME-CASE.html for each further case)
+  index.html    all models with their descriptions
+  NAME.html     the report of NAME.toml (NAME-CASE.html for each further case)
+  hardpoint.js  engine and code of all reports
 Any static host can serve it, and it opens from disk. Models that cannot be shown are left
 out, with the reason.
 

@@ -20,6 +20,25 @@ pub struct Card {
     pub more: Vec<(String, String)>,
 }
 
+/// Number of models that are shown without a field for a search.
+const MOST_UNSEARCHED: usize = 6;
+/// Field for a search, which hides the models without its words.
+const SEARCH: &str = r#"<template id="search">
+<input type="search" class="search" placeholder="Search the models" aria-label="Search the models" data-testid="search">
+</template>
+<script>
+const list = document.querySelector('.gallery')
+list.before(document.getElementById('search').content.cloneNode(true))
+const field = document.querySelector('.search')
+field.addEventListener('input', () => {
+  const words = field.value.toLowerCase().split(/\s+/)
+  for (const model of list.children) {
+    const text = model.textContent.toLowerCase()
+    model.hidden = !words.every((word) => text.includes(word))
+  }
+})
+</script>"#;
+
 /// Page of all models, with an introduction `lead`.
 ///
 /// ```
@@ -41,7 +60,7 @@ pub fn gallery(title: &str, lead: &str, cards: &[Card]) -> String {
         escape_text(lead)
     );
     cards.iter().for_each(|card| body += &card.html());
-    sheet(title, &(body + "</div>"))
+    sheet(title, &(body + "</div>\n" + if cards.len() > MOST_UNSEARCHED { SEARCH } else { "" }))
 }
 
 impl Card {

@@ -801,14 +801,36 @@ pub fn html(payload: &Payload) -> Result<String, serde_json::Error> {
     Ok(file(&payload.title, &packed(payload)?))
 }
 
+/// Engine and code of a page, deflated and in letters.
+const ENGINE: &str = include_str!(concat!(env!("OUT_DIR"), "/engine.wasm.txt"));
+const CODE: &str = include_str!(concat!(env!("OUT_DIR"), "/app.js.txt"));
+
+/// Name of the file with the engine and the code that the pages of a folder share.
+pub const SHARED: &str = "hardpoint.js";
+
+/// Contents of the file [`SHARED`]. It is a plain script, which a page may load from disk.
+pub fn shared_script() -> String {
+    let part = |id: &str, text: &str| format!("document.getElementById(\"{id}\").textContent = \"{text}\"\n");
+    part("engine", ENGINE) + &part("code", CODE)
+}
+
+/// Page of this crate that loads its engine and its code from the file [`SHARED`] next to it.
+pub fn sharing(page: &str) -> String {
+    const END: &str = "<script type=\"text/plain\" id=\"code\"></script>";
+    let missing =
+        format!("document.getElementById('page').textContent = 'This page needs {SHARED} in its folder.'");
+    let load = format!("{END}\n<script src=\"{SHARED}\" onerror=\"{missing}\"></script>");
+    page.replacen(ENGINE, "", 1).replacen(CODE, "", 1).replacen(END, &load, 1)
+}
+
 /// HTML file of a packed payload.
 pub(crate) fn file(title: &str, packed: &[u8]) -> String {
     fill(include_str!("../page/report.html"), |slot| match slot {
         "title" => escape_text(title),
         "style" => include_str!("../page/app.css").to_owned(),
         "payload" => base64(packed),
-        "engine" => include_str!(concat!(env!("OUT_DIR"), "/engine.wasm.txt")).to_owned(),
-        "code" => include_str!(concat!(env!("OUT_DIR"), "/app.js.txt")).to_owned(),
+        "engine" => ENGINE.to_owned(),
+        "code" => CODE.to_owned(),
         _ => panic!("the report template names an unknown slot `{slot}`"),
     })
 }
@@ -892,6 +914,18 @@ pub(crate) mod tests {
             5,
             "ends of the server, the payload, the engine, the code and what starts it"
         );
+    }
+
+    #[test]
+    fn pages_of_a_folder_share_the_engine_and_the_code() {
+        let page = html(&payload("sample")).unwrap();
+        let (sharing, script) = (sharing(&page), shared_script());
+        assert!(sharing.len() + ENGINE.len() + CODE.len() < page.len() + 400);
+        assert!(sharing.contains("<script type=\"text/plain\" id=\"engine\"></script>"));
+        assert!(sharing.contains("<script src=\"hardpoint.js\""));
+        assert!(script.contains(ENGINE) && script.contains(CODE));
+        // A text in double quotes.
+        assert!([ENGINE, CODE].iter().all(|text| !text.contains(['"', '\\', '\n'])));
     }
 
     #[test]

@@ -627,7 +627,8 @@ fn a_site_has_a_page_for_each_model_that_can_be_shown() {
     bench.put("broken.toml", "[hardpoints]");
     let output = bench.run(&["site", "public", "slider.toml", "strut & co.toml", "broken.toml"]);
     assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
-    let pages = ["index.html", "slider.html", "strut%20%26%20co-steer.html", "strut%20%26%20co.html"];
+    let pages =
+        ["hardpoint.js", "index.html", "slider.html", "strut%20%26%20co-steer.html", "strut%20%26%20co.html"];
     assert_eq!(bench.list("public"), pages);
     let index = bench.text("public/index.html");
     assert!(
@@ -636,6 +637,10 @@ fn a_site_has_a_page_for_each_model_that_can_be_shown() {
     );
     assert!(!index.contains("broken"));
     assert!(bench.page("public/slider.html")["quantities"].is_array());
+    // The engine is there once, for all pages.
+    let [engine, one] =
+        ["hardpoint.js", "slider.html"].map(|file| bench.text(&format!("public/{file}")).len());
+    assert!(one < engine / 3, "{one} of {engine} bytes");
 
     let nothing = bench.run(&["site", "nothing", "broken.toml"]);
     assert_eq!((nothing.status.code(), bench.list("nothing").len()), (Some(3), 0));
