@@ -50,7 +50,7 @@ export const TERMS: [term: string, meaning: string][] = [
 
 /**
  * Kind of a measure: `toe`, `wheel_travel`. A measure of a general type, such as the position of a wheel centre, has no
- * kind but its type; its name then tells what it is for: `toe` of `front.left.toe` and of `left_toe`.
+ * kind but its type; its name then says which: `toe` of `front.left.toe` and of `left_toe`.
  */
 export function kindOf({ kind, name }: Pick<Quantity, 'kind' | 'name'>): string {
   if (kind in MEASURES) return kind

@@ -42,10 +42,10 @@ const STILL = 1e-4
 const WIDE = 0.02
 
 /**
- * Plots of a report: the requested one, if the run named it; those of the model file, if it has any; toe, camber and
- * so on over wheel travel for wheels and axles; else the measure that judges the linkage, the path of its point, and further measures that the driver does
- * not prescribe. Motions of several independent drivers are drawn over time, because curves over another quantity
- * would be loops.
+ * Plots of a report: the requested one, if the run named it; those of the model file, if it has any; toe, camber and so
+ * on over wheel travel for wheels and axles; else the measure that judges the linkage, the path of its point, and
+ * further measures that the driver does not prescribe. Motions of several independent drivers are drawn over time,
+ * because curves over another quantity would be loops.
  */
 export function sheetOf(report: Report): Sheet {
   const measures = groups(report).find(([name]) => name === 'measure')?.[1] ?? []
