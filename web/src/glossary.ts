@@ -1,4 +1,4 @@
-import { kindOf } from './sheet'
+import type { Quantity } from './report'
 
 /** Meaning and sign of the measures that have a fixed name; `docs/measures.md` has their formulas. */
 const MEASURES: Record<string, string> = {
@@ -48,7 +48,16 @@ export const TERMS: [term: string, meaning: string][] = [
   ['margin', 'distance of a position from a singular one, where the mechanism locks: 1 is best, 0 is singular'],
 ]
 
-/** Explanation of a quantity by its name; undefined for a name of the model's own. */
-export function aboutQuantity(name: string): string | undefined {
-  return MEASURES[kindOf(name)]
+/**
+ * Kind of a measure: `toe`, `wheel_travel`. A measure of a general type, such as the position of a wheel centre, has no
+ * kind but its type; its name then says which: `toe` of `front.left.toe` and of `left_toe`.
+ */
+export function kindOf({ kind, name }: Pick<Quantity, 'kind' | 'name'>): string {
+  if (kind in MEASURES) return kind
+  return name.slice(name.lastIndexOf('.') + 1).replace(/^(front_|rear_)?(left|right)_/, '')
+}
+
+/** Explanation of a quantity by its kind; undefined for a measure of the model's own. */
+export function aboutQuantity(quantity: Quantity): string | undefined {
+  return MEASURES[kindOf(quantity)]
 }

@@ -109,9 +109,17 @@ first: number | null,
  */
 over: number | null,
 /**
+ * Plots that the model file asks for; none for those that suit the mechanism.
+ */
+plots: Array<Plot>,
+/**
  * Other designs over the same motion for comparison: changed, predicted, re-solved.
  */
 designs: Array<Design>,
+/**
+ * Named designs of the model file.
+ */
+named_designs: Array<NamedDesign>,
 /**
  * Measures over grids of two drivers.
  */
@@ -578,6 +586,10 @@ accel_unit: string,
  */
 group: string,
 /**
+ * Type of the measure as model files write it, such as `toe`; `position` for a coordinate of a point or body.
+ */
+kind: string,
+/**
  * The quantity, `n` steps.
  */
 value: Curve,
@@ -593,6 +605,45 @@ accel: Curve,
  * Target curve of a metric, `n` steps; empty without one.
  */
 wanted: Curve, };
+
+/**
+ * Plot that the page opens with.
+ */
+export type Plot = {
+/**
+ * Quantities of one unit on the ordinate, indices into [`Payload::quantities`].
+ */
+y: Array<number>,
+/**
+ * Quantity on the abscissa; time if there is none.
+ */
+over: number | null, };
+
+/**
+ * Named design of the model file.
+ */
+export type NamedDesign = {
+/**
+ * Name.
+ */
+name: string,
+/**
+ * Changes of variables from the nominal design; all others are nominal.
+ */
+changes: Array<NamedChange>, };
+
+/**
+ * Change of a variable.
+ */
+export type NamedChange = {
+/**
+ * Name of the variable.
+ */
+name: string,
+/**
+ * Change from the nominal design, in its unit.
+ */
+by: number, };
 
 /**
  * Single value that characterises the design.
@@ -627,10 +678,31 @@ quantity: number | null,
  */
 target: [number | null, number | null] | null,
 /**
+ * Part of the target that limits the curve of the quantity.
+ */
+gate: Gate | null,
+/**
  * Derivatives by every design variable, in the order of [`Payload::variables`]; empty if the mechanism cannot
  * follow one.
  */
 sensitivities: Array<number | null>, };
+
+/**
+ * Limits of a curve that follow from the target of a metric.
+ */
+export type Gate = {
+/**
+ * Minimum.
+ */
+low: number | null,
+/**
+ * Maximum.
+ */
+high: number | null,
+/**
+ * Time of the limits; the whole curve if there is none.
+ */
+at: number | null, };
 
 /**
  * Another design over the same output times. Unknown curves are empty.

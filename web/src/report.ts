@@ -35,6 +35,8 @@ export interface Quantity {
   index: number
   name: string
   group: string
+  /** Type of the measure, such as `toe`; `position` for a coordinate of a point or body. */
+  kind: string
   units: ByOrder<string>
   curves: ByOrder<Curve>
   /** Target of a metric, one number per step; empty without one. */
@@ -137,6 +139,7 @@ export function read(payload: wire.Payload, decode: Decode): Report {
       index,
       name: quantity.name,
       group: quantity.group,
+      kind: quantity.kind,
       units: [quantity.unit, quantity.rate_unit, quantity.accel_unit],
       curves: curves(quantity, decode),
       wanted: decode(quantity.wanted),

@@ -1,5 +1,6 @@
 import { type Curve, firstIndex } from './curve'
 import { extent } from './export/axis'
+import { kindOf } from './glossary'
 import { groups, type Quantity, type Report } from './report'
 import { noise } from './rounding'
 
@@ -20,18 +21,18 @@ export interface Sheet {
 }
 
 /** Measures of wheels and axles in the order of the sheet; each is a plot. */
-const WHEEL_PLOTS: readonly RegExp[] = [
-  /^toe$/,
-  /^camber$/,
-  /^caster$/,
-  /^motion_ratio$/,
-  /^roll_centre(_height)?$/,
-  /^(half_)?track$/,
-  /^half_track_change$/,
-  /^steer(_angle)?$/,
+const WHEEL_PLOTS: readonly (readonly string[])[] = [
+  ['toe'],
+  ['camber'],
+  ['caster'],
+  ['motion_ratio'],
+  ['roll_centre', 'roll_centre_height'],
+  ['track', 'half_track'],
+  ['half_track_change'],
+  ['steer', 'steer_angle'],
 ]
-const TRAVEL = /^(wheel_)?travel$/
-/** Measures that judge a linkage whatever else is measured. */
+const TRAVEL = ['wheel_travel', 'travel']
+/** Measures that judge a linkage whatever else is measured: by their kind, or by their name. */
 const TRANSMISSION = /transmission|pressure_angle/
 /** Plots of a linkage's measures besides its path. */
 const LINKAGE_PLOTS = 3
@@ -41,20 +42,33 @@ const STILL = 1e-4
 const WIDE = 0.02
 
 /**
- * Plots of a report: the requested one, if the run named it; toe, camber and so on over wheel travel for wheels and
- * axles; else the measure that judges the linkage, the path of its point, and further measures that the driver does
- * not prescribe. Motions of several independent drivers are drawn over time, because curves over another quantity
- * would be loops.
+ * Plots of a report: the requested one, if the run named it; those of the model file, if it has any; toe, camber and so
+ * on over wheel travel for wheels and axles; else the measure that judges the linkage, the path of its point, and
+ * further measures that the driver does not prescribe. Motions of several independent drivers are drawn over time,
+ * because curves over another quantity would be loops.
  */
 export function sheetOf(report: Report): Sheet {
   const measures = groups(report).find(([name]) => name === 'measure')?.[1] ?? []
   const travel = travelOf(report, measures)
   const requested = report.first !== null && report.over !== null ? [{ y: [report.first], over: report.over }] : []
+  const kept = filePlots(report)
+  if (kept.length > 0) return { plots: [...requested, ...kept], travel }
   const wheels = wheelPlots(report, measures, travel)
   const plots = [...requested, ...(wheels.length > 0 ? wheels : linkagePlots(report, measures, travel))]
   const first = report.first ?? groups(report)[0]?.[1][0]?.index
   if (plots.length === 0 && first !== undefined) plots.push({ y: [first] })
   return { plots: leading(report, plots), travel }
+}
+
+/** Plots of the model file without those over a quantity that does not move here. */
+function filePlots(report: Report): SheetPlot[] {
+  return report.plots.flatMap(({ y, over }): SheetPlot[] => {
+    if (over === null) return [{ y }]
+    if (!moves(report.quantities[over].curves[0])) return []
+    const place = (index: number) => /^(.*)\.[xyz]$/.exec(report.quantities[index].name)?.[1]
+    const isPath = y.length === 1 && place(over) !== undefined && place(y[0]) === place(over)
+    return [isPath ? { y, over, path: true } : { y, over }]
+  })
 }
 
 /** The abscissa of another page: the quantity of that name, or the sheet's own if that does not move here. */
@@ -64,11 +78,6 @@ export function abscissaNamed(report: Report, name: string | undefined): number 
   return found && moves(found.curves[0]) ? found.index : sheetOf(report).travel
 }
 
-/** `toe` of `front.left.toe` and of `left_toe`. */
-export function kindOf(name: string): string {
-  return name.slice(name.lastIndexOf('.') + 1).replace(/^(front_|rear_)?(left|right)_/, '')
-}
-
 /** `front.left` of `front.left.toe`; `left` of `left_toe`; empty if the measure belongs to no side. */
 export function sideOf(name: string): string {
   const dot = name.lastIndexOf('.')
@@ -76,15 +85,15 @@ export function sideOf(name: string): string {
 }
 
 /** True for the travel of a wheel. */
-export function isTravel(name: string): boolean {
-  return TRAVEL.test(kindOf(name))
+export function isTravel(quantity: Quantity): boolean {
+  return TRAVEL.includes(kindOf(quantity))
 }
 
 /** The quantity of the same kind on another quantity's side: `right.wheel_travel` for `right.toe`. */
 export function onSideOf(report: Report, over: number, quantity: number): number {
-  const kind = kindOf(report.quantities[over].name)
+  const kind = kindOf(report.quantities[over])
   const side = sideOf(report.quantities[quantity].name)
-  return report.quantities.find(({ name }) => kindOf(name) === kind && sideOf(name) === side)?.index ?? over
+  return report.quantities.find((one) => kindOf(one) === kind && sideOf(one.name) === side)?.index ?? over
 }
 
 const freedoms = new WeakMap<Report, boolean>()
@@ -102,16 +111,14 @@ export function hasOneFreedom(report: Report): boolean {
 /** The abscissa of a motion with one degree of freedom: moving wheel travel, else the driver's own measure. */
 function travelOf(report: Report, measures: Quantity[]): number | undefined {
   if (!hasOneFreedom(report)) return undefined
-  const wheel = measures.find(({ name, curves }) => isTravel(name) && moves(curves[0]))
+  const wheel = measures.find((one) => isTravel(one) && moves(one.curves[0]))
   return (wheel ?? measures.find((quantity) => isDriven(report, quantity)))?.index
 }
 
 function wheelPlots(report: Report, measures: Quantity[], over?: number): SheetPlot[] {
-  if (report.wheels.length === 0 && !measures.some(({ name }) => /^(toe|camber)$/.test(kindOf(name)))) return []
+  if (report.wheels.length === 0 && !measures.some((one) => ['toe', 'camber'].includes(kindOf(one)))) return []
   const known = measures.filter(({ curves }) => curves[0].some(Number.isFinite))
-  const members = WHEEL_PLOTS.map((kind) =>
-    known.filter(({ name, index }) => index !== over && kind.test(kindOf(name))),
-  )
+  const members = WHEEL_PLOTS.map((kinds) => known.filter((one) => one.index !== over && kinds.includes(kindOf(one))))
   const plots = members.flatMap((found) => {
     const same = found.filter(({ units }) => units[0] === found[0].units[0])
     return same.length > 0 ? [{ y: same.map(({ index }) => index), over }] : []
@@ -123,8 +130,13 @@ function wheelPlots(report: Report, measures: Quantity[], over?: number): SheetP
 
 function linkagePlots(report: Report, measures: Quantity[], over?: number): SheetPlot[] {
   const metric = report.values.find(({ quantity, time, target }) => quantity !== null && (time === null || target))
-  const weight = ({ name, index, wanted }: Quantity) =>
-    [wanted.length > 0, TRANSMISSION.test(name), index === metric?.quantity, index === report.first].indexOf(true)
+  const weight = ({ kind, name, index, wanted }: Quantity) =>
+    [
+      wanted.length > 0,
+      TRANSMISSION.test(kind) || TRANSMISSION.test(name),
+      index === metric?.quantity,
+      index === report.first,
+    ].indexOf(true)
   const rank = (quantity: Quantity) => (weight(quantity) < 0 ? Infinity : weight(quantity))
   const free = measures.filter((quantity) => moves(quantity.curves[0]) && !isDriven(report, quantity))
   const ranked = free.sort((a, b) => rank(a) - rank(b) || a.index - b.index).slice(0, LINKAGE_PLOTS)

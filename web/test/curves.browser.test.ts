@@ -84,6 +84,20 @@ describe('the sheet', () => {
       expect(titles).toContain(`front_left.${name}`)
   })
 
+  test('is that of the model file, whose named designs are compared', async () => {
+    await open('solid_axle')
+    expect([await chosen(0, 'quantity'), await chosen(0, 'over')]).toEqual(['lateral_shift', 'over left_travel'])
+    expect([await chosen(2, 'quantity'), await chosen(3, 'quantity')]).toEqual(['axle_steer', 'axle_roll'])
+    await page.getByTestId('designs').click()
+    const name = page.getByTestId('snapshots').getByTestId('snapshot-rename')
+    expect([await name.inputValue(), await name.getAttribute('readonly')]).toEqual(['level_rod', ''])
+    await page.getByTestId('snapshot-compare').click()
+    await expect.poll(() => plot(0).locator('.legend .label').allInnerTexts()).toEqual(['current', 'level_rod'])
+    await page.getByTestId('snapshot-open').click()
+    const value = page.getByTestId('variable-panhard_chassis_z').getByTestId('change-value')
+    await expect.poll(() => value.inputValue()).toBe('-60')
+  })
+
   test('holds several quantities and designs, whose lines are hidden by a click on the legend', async () => {
     await open('front_axle')
     const labels = () => plot(0).locator('.legend .label').allInnerTexts()

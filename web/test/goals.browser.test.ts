@@ -5,9 +5,6 @@ import { pages, ready, settled } from './pages'
 
 const { models } = inject('samples')
 
-/** Time in which a study has ended after it was cancelled, ms, as the page measures it. */
-const SOON = 300
-
 let page: Page
 const visit = pages()
 const open = async (name: string) => {
@@ -50,15 +47,21 @@ describe('a goal', () => {
     expect(await page.getByLabel('highest of tie_rod_outer_z').inputValue()).toBe('10')
     expect(await page.getByTestId('goal-toe_range').getByRole('checkbox').isChecked()).toBe(true)
     await page.getByTestId('optimise-starts').fill('40')
-    await page.getByTestId('optimise-run').click()
-    await expect.poll(() => page.getByTestId('plot-0').innerText()).toContain('best so far')
-    const took = await page.evaluate(async () => {
-      const begun = performance.now()
-      document.querySelector<HTMLElement>('[data-testid=optimise-cancel]')!.click()
-      while (!document.querySelector('[data-testid=optimise-outcome]')) await new Promise((done) => setTimeout(done))
-      return performance.now() - begun
-    })
-    expect(took).toBeLessThan(SOON)
+    // From a click until the page shows its effect, ms, as the page measures it.
+    const time = (click: string, shown: string, text = '') =>
+      page.evaluate(
+        async ([click, shown, text]) => {
+          const begun = performance.now()
+          document.querySelector<HTMLElement>(`[data-testid=${click}]`)!.click()
+          const isShown = () => document.querySelector<HTMLElement>(`[data-testid=${shown}]`)?.innerText.includes(text)
+          while (!isShown()) await new Promise((done) => setTimeout(done))
+          return performance.now() - begun
+        },
+        [click, shown, text],
+      )
+    const first = await time('optimise-run', 'plot-0', 'best so far')
+    // A cancelled search neither ends its step nor solves another: it is sooner than the first design was.
+    expect(await time('optimise-cancel', 'optimise-outcome')).toBeLessThan(first)
     await page.getByTestId('optimise-take').click()
     await settled(page)
     expect(await page.getByTestId('plot-0').innerText()).not.toContain('best so far')

@@ -107,3 +107,28 @@ test('designs are named, renamed and forgotten', () => {
   expect(history.save().name).toBe('design 1')
   expect(changes).toBe(6)
 })
+
+test('designs of the file are listed first, keep their names, and follow its text', () => {
+  const history = new History(first())
+  history.setFileDesigns([{ name: 'higher', changes: [{ name: 'rack_z', by: 3 }] }], 'model')
+  const mine = history.save('mine', step(1))
+  expect(history.snapshots.map(({ name, isOfFile }) => [name, isOfFile])).toEqual([
+    ['higher', true],
+    ['mine', false],
+  ])
+  history.compareWith([history.snapshots[0], mine])
+  const changes = [{ name: 'rack_z', by: 4 }]
+  history.setFileDesigns(
+    [
+      { name: 'lower', changes: [] },
+      { name: 'higher', changes },
+    ],
+    'edited',
+  )
+  expect(history.snapshots.map(({ name }) => name)).toEqual(['lower', 'higher', 'mine'])
+  expect(history.compared.map(({ name }) => name)).toEqual(['higher', 'mine'])
+  expect(history.compared[0].step).toEqual({ text: 'edited', settings: changes, label: 'higher' })
+  history.setFileDesigns([], 'model')
+  expect(history.compared).toEqual([mine])
+  expect(history.changed).toBe(false)
+})

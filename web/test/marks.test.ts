@@ -348,6 +348,7 @@ describe('a measured distance that is pointed at', () => {
     index,
     name,
     group: '',
+    kind: '',
     units: ['mm', 'mm/s', 'mm/s^2'],
     curves: [[], [], []],
     wanted: [],

@@ -6,8 +6,8 @@ import { frames } from './person'
 type Options = Parameters<typeof visit>[2]
 
 /**
- * Opens pages in a browser of a file of tests, one in each test: after the test nothing may have been complained of, and
- * the page is closed.
+ * Opens pages in a browser of a file of tests, one in each test: after the test nothing may have been complained of,
+ * and the page is closed.
  */
 export function pages(...browser: Parameters<typeof launch>): (url: string, options?: Options) => Promise<Page> {
   let launched: Awaited<ReturnType<typeof launch>>

@@ -25,6 +25,7 @@ const variable = (name: string, unit: string, scale?: number): Variable => ({
 const quantity = (name: string, group: string) => ({
   name,
   group,
+  kind: 'angle',
   unit: 'deg',
   rate_unit: 'deg/s',
   accel_unit: 'deg/s^2',

@@ -49,7 +49,13 @@ export default async function setup(project: TestProject): Promise<() => void> {
   const files = readdirSync(MODELS)
     .filter((file) => file.endsWith('.toml'))
     .sort()
-  const models = files.map((file) => [basename(file, '.toml'), page(basename(file, '.toml'), 'report.html')])
+  // A model with cases has a folder for each; its page is that of the first one.
+  const firstCase = (file: string) =>
+    /^\[cases\.(\w+)\]/m.exec(readFileSync(join(MODELS, file), 'utf8'))?.slice(1) ?? []
+  const models = files.map((file) => {
+    const name = basename(file, '.toml')
+    return [name, page(name, ...firstCase(file), 'report.html')]
+  })
   const ride = join(folder, 'ride.toml')
   writeFileSync(ride, ridden(readFileSync(join(MODELS, 'macpherson.toml'), 'utf8')))
   const large = join(folder, 'rockers.toml')

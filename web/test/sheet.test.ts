@@ -1,19 +1,20 @@
 import { describe, expect, test } from 'vitest'
+import { kindOf } from '../src/glossary'
 import type { Report } from '../src/report'
-import { abscissaNamed, hasOneFreedom, kindOf, onSideOf, sheetOf, sideOf } from '../src/sheet'
+import { abscissaNamed, hasOneFreedom, onSideOf, sheetOf, sideOf } from '../src/sheet'
 import { crank } from './mechanisms'
 
 const STEPS = 41
 const curve = (at: (t: number) => number) => Float32Array.from({ length: STEPS }, (_, k) => at(k / (STEPS - 1)))
 const wave = (turns: number) => curve((t) => Math.sin(2 * Math.PI * turns * t))
 
-type Measure = [name: string, values: Float32Array, unit?: string, group?: string]
+type Measure = [name: string, values: Float32Array, unit?: string, group?: string, kind?: string]
 
 /** A report of these measures, its drivers moving as the curves say. */
 function reportOf(measures: Measure[], drivers: Float32Array[], changes: Partial<Report> = {}): Report {
   const [driver] = crank().drivers
-  const quantities = measures.map(([name, values, unit = 'deg', group = 'measure'], index) => ({
-    ...{ index, name, group, units: [unit, `${unit}/s`, `${unit}/s^2`] as const },
+  const quantities = measures.map(([name, values, unit = 'deg', group = 'measure', kind = 'position'], index) => ({
+    ...{ index, name, group, kind, units: [unit, `${unit}/s`, `${unit}/s^2`] as const },
     curves: [values, values, values] as const,
     wanted: new Float32Array(),
   }))
@@ -72,8 +73,40 @@ describe('the sheet of a suspension', () => {
     const report = reportOf(measures, [wave(1)])
     expect(onSideOf(report, 3, 4)).toBe(5)
     expect(onSideOf(report, 3, 1)).toBe(3)
-    expect([kindOf('front.left.toe'), kindOf('left_toe'), kindOf('toe_left')]).toEqual(['toe', 'toe', 'toe_left'])
+    const named = (name: string, kind = 'angle') => kindOf({ name, kind })
+    expect([named('front.left.toe'), named('left_toe'), named('toe_left')]).toEqual(['toe', 'toe', 'toe_left'])
+    // A measure of a wheel is what its type says, whatever its name.
+    expect([named('vorspur', 'toe'), named('left.toe', 'camber')]).toEqual(['toe', 'camber'])
     expect([sideOf('front.left.toe'), sideOf('right_toe'), sideOf('toe')]).toEqual(['front.left', 'right', ''])
+  })
+})
+
+describe('the sheet of a model file', () => {
+  const measures: Measure[] = [
+    ['left.toe', wave(2)],
+    ['right.toe', wave(2)],
+    ['left.wheel_travel', wave(1), 'mm'],
+    ['held', curve(() => 4), 'mm'],
+    ['P.x', wave(1), 'mm', 'point'],
+    ['P.z', wave(2), 'mm', 'point'],
+  ]
+  const asked = (...plots: [y: number[], over: number | null][]) =>
+    reportOf(measures, [wave(1)], { plots: plots.map(([y, over]) => ({ y, over })) })
+
+  test('has its plots in its order, over time where it names no abscissa', () => {
+    expect(names(asked([[1, 0], 2], [[4], null]))).toEqual([
+      ['right.toe', 'left.toe', 'left.wheel_travel'],
+      ['P.x', 'time'],
+    ])
+  })
+
+  test('draws a coordinate of a point over another one as a path', () => {
+    expect(sheetOf(asked([[5], 4], [[5], 2])).plots.map(({ path }) => path)).toEqual([true, undefined])
+  })
+
+  test('leaves out plots over a quantity at rest, and is that of the mechanism where none is left', () => {
+    expect(names(asked([[0], 3], [[1], 2]))).toEqual([['right.toe', 'left.wheel_travel']])
+    expect(names(asked([[0], 3]))).toEqual([['left.toe', 'right.toe', 'left.wheel_travel']])
   })
 })
 

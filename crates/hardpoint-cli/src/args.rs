@@ -3,7 +3,7 @@
 use std::num::NonZero;
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use hardpoint::model::{AllocationRule, SweepSettings, ToleranceSettings};
 use hardpoint::space::Angles;
@@ -364,8 +364,8 @@ impl Differences {
 }
 
 const AFTER_WHATIF: &str = "\
-Without --set: ranks all variables of the model, and all coordinates of its
-hardpoints, by their influence on each measure. With --set: compares the nominal
+Without --set or --design: ranks all variables of the model, and all coordinates of
+its hardpoints, by their influence on each measure. With either: compares the nominal
 curves with those of the changed design:
   1st order     predicted from the exact sensitivities
   2nd order     predicted with their exact derivative along the change
@@ -373,7 +373,8 @@ curves with those of the changed design:
 
 NAME is a design variable of the file, a hardpoint's coordinate (tie_rod_outer.z)
 or a joint's tilt about a global axis (lca_pivot.tilt_y). The value is a change,
-in mm, cm, m, in, deg or rad; without a unit, in that of the file.
+in mm, cm, m, in, deg or rad; without a unit, in that of the file. Fractions (1/2in) and
+decimal commas (2,5mm) are read too. --design takes the changes of a design of the file.
 
 Examples:
   hardpoint whatif models/macpherson.toml --measure toe
@@ -383,7 +384,7 @@ Examples:
 
 /// `hardpoint whatif`.
 #[derive(Args, Debug)]
-#[command(after_help = AFTER_WHATIF)]
+#[command(after_help = AFTER_WHATIF, group = ArgGroup::new("change").args(["set", "design"]).multiple(true))]
 pub struct Whatif {
     #[command(flatten)]
     pub common: Common,
@@ -392,8 +393,11 @@ pub struct Whatif {
     /// Change of a variable, such as `tie_rod_outer.z=+2mm`; may be repeated
     #[arg(long, value_name = "NAME=CHANGE")]
     pub set: Vec<String>,
+    /// Change of all variables of this design in `[designs]`
+    #[arg(long, value_name = "NAME")]
+    pub design: Option<String>,
     /// Make the nearest admissible change if the requested one would open joints
-    #[arg(long, requires = "set")]
+    #[arg(long, requires = "change")]
     pub admissible: bool,
     /// Show this measure only; may be repeated
     #[arg(long, value_name = "NAME")]
@@ -405,14 +409,15 @@ pub struct Whatif {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Write the model file with the changed design; comments and layout are kept
-    #[arg(long, value_name = "FILE", requires = "set")]
+    #[arg(long, value_name = "FILE", requires = "change")]
     pub save: Option<PathBuf>,
 }
 
 const AFTER_COMPARE: &str = "\
 Both are solved at the output times of the first, and compared in its units:
 hardpoints, parameters, metrics, curves of measures, and entries of one file only.
-Cases are compared with those of the same name.
+Cases are compared with those of the same name. Instead of a second file, name a design
+of `[designs]` in the first: its variables change, and all else is the same.
 
 With --output it writes into the folder:
   compare.html  both designs on one page, if they have the same bodies and measures
@@ -421,6 +426,7 @@ With --output it writes into the folder:
 
 Examples:
   hardpoint compare models/macpherson.toml strut_2.toml
+  hardpoint compare models/solid_axle.toml level_rod
   hardpoint compare models/studies/strut_toe.toml found.toml --case bump --measure toe -o results/found";
 
 /// `hardpoint compare`.
@@ -429,7 +435,7 @@ Examples:
 pub struct Compare {
     #[command(flatten)]
     pub common: Common,
-    /// Model file to compare with
+    /// Model file to compare with, or the name of a design in `[designs]` of the first
     pub other: PathBuf,
     #[command(flatten)]
     pub motions: Motions,
@@ -760,8 +766,9 @@ pub struct Studio {
 
 const AFTER_SITE: &str = "\
 Files in the folder (each appears whole or not at all):
-  index.html  all models with their descriptions
-  NAME.html   the report of NAME.toml (NAME-CASE.html for each further case)
+  index.html    all models with their descriptions
+  NAME.html     the report of NAME.toml (NAME-CASE.html for each further case)
+  hardpoint.js  engine and code of all reports
 Any static host can serve it, and it opens from disk. Models that cannot be shown are left
 out, with the reason.
 

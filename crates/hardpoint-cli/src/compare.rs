@@ -28,13 +28,32 @@ pub fn compare(options: &Compare) -> Outcome {
     session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
 }
 
+/// Second model of the comparison: the first one with a design of its `[designs]`, or another file.
+fn second(session: &Session, options: &Compare) -> Result<ModelFile, Outcome> {
+    let path = &options.other;
+    let name = path.to_string_lossy();
+    let first = session.read(&options.common.model)?;
+    let designs = &first.model.designs;
+    let is_design = designs.iter().any(|design| design.name == name);
+    if !is_design && (designs.is_empty() || path.extension().is_some() || path.exists()) {
+        return session.read(path);
+    }
+    let k = named("design", &name, designs.iter().map(|design| design.name.as_str()))
+        .map_err(|error| session.refused(&first, &error))?;
+    let text = session.edited(&first, &designs[k].changes_of(first.model.variables.len()))?;
+    hardpoint_file::parse_in(options.common.model.parent(), &text, &name).map_err(|diagnostics| {
+        session.not_read(&diagnostics);
+        Outcome::BadModel
+    })
+}
+
 fn compare_in(
     session: &Session,
     options: &Compare,
     mut file: ModelFile,
     case: Option<&str>,
 ) -> Result<Outcome, Outcome> {
-    let mut other = session.read(&options.other)?;
+    let mut other = second(session, options)?;
     match options.motions.case.as_deref().or(case) {
         Some(name) => other.model = other.model.in_case(session.case(&other, name)?),
         None if other.model.cases.is_empty() => {}

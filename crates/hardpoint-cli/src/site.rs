@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 use hardpoint_report::gallery::{Card, gallery};
+use hardpoint_report::page::{SHARED, shared_script, sharing};
 
 use crate::args::Site;
 use crate::folder::{Folder, file_name};
@@ -57,7 +58,8 @@ fn site_in(session: &Session, options: &Site) -> Result<Outcome, Outcome> {
     }
     let lead = "Mechanisms with their motion and exact design sensitivities. Each page is the report of one model: open one and play.";
     let index = gallery("Hardpoint", lead, &cards);
-    let written = folder.write("index.html", |out| out.write_all(index.as_bytes()));
+    let shared = folder.write(SHARED, |out| out.write_all(shared_script().as_bytes()));
+    let written = shared.and_then(|()| folder.write("index.html", |out| out.write_all(index.as_bytes())));
     written.and_then(|()| folder.commit(&[])).map_err(|e| session.not_written(&e))?;
     text::print(&format!("{} models: {}\n", cards.len(), options.folder.join("index.html").display()));
     Ok(outcome)
@@ -80,7 +82,7 @@ fn card(session: &Session, model: &Path, folder: &mut Folder) -> Result<Card, Ou
     let file = session.read(model)?;
     let maps = maps::solved(session, &file, Formulation::Relative);
     let mut write = |name: &str, one: &ModelFile| {
-        let html = run::page(session, one, &maps, Formulation::Relative)?;
+        let html = sharing(&run::page(session, one, &maps, Formulation::Relative)?);
         folder.write(name, |out| out.write_all(html.as_bytes())).map_err(|e| session.not_written(&e))
     };
     let stem = file_name(&stem(model));

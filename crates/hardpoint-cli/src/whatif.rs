@@ -46,7 +46,13 @@ fn whatif_in(
     mut file: ModelFile,
     case: Option<&str>,
 ) -> Result<Outcome, Outcome> {
-    let mut settings = Vec::new();
+    let mut settings: Vec<(usize, f64)> = Vec::new();
+    if let Some(name) = &options.design {
+        let designs = &file.model.designs;
+        let k = named("design", name, designs.iter().map(|design| design.name.as_str()))
+            .map_err(|error| session.refused(&file, &error))?;
+        settings.extend(designs[k].changes.iter().map(|(variable, by)| (variable.0, *by)));
+    }
     for text in &options.set {
         let (variable, by) = setting(&mut file, text).map_err(|why| session.misunderstood(&why))?;
         if settings.iter().any(|(known, _)| *known == variable) {
@@ -208,27 +214,92 @@ fn setting(file: &mut ModelFile, text: &str) -> Result<(usize, f64), String> {
     Ok((variable.0, by))
 }
 
-/// Parses a change and converts it to SI.
+/// Parses a change and converts it to SI: `2`, `2.5mm`, `2,5 mm`, `1/2 in`, `-1 1/2 IN`, `0.5 °`.
 fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String> {
-    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    // The exponent of `1e3` is not a unit.
-    let (number, unit) = match text.parse::<f64>() {
-        Ok(_) => (text, ""),
-        Err(_) => (number, &text[number.len()..]),
-    };
-    let value: f64 = number.trim().parse().map_err(|_| format!("`{text}` is not a number with a unit"))?;
+    let (value, written) = amount(text).ok_or_else(|| format!("`{text}` is not a number with a unit"))?;
     if !value.is_finite() {
         return Err(format!("`{text}` is not finite"));
     }
+    let unit = if written == "°" { "deg".to_owned() } else { written.to_lowercase() };
     let length = LengthUnit::ALL.into_iter().find(|u| u.symbol() == unit);
     let angle = AngleUnit::ALL.into_iter().find(|u| u.symbol() == unit);
     match (quantity, length, angle) {
         (_, None, None) if unit.is_empty() => Ok(units.to_si(quantity, value)),
         (Quantity::Length, Some(unit), _) => Ok(unit.metres(value)),
         (Quantity::Angle, _, Some(unit)) => Ok(unit.radians(value)),
-        (_, None, None) => Err(format!("there is no unit `{unit}`; write mm, cm, m, in, deg or rad")),
-        (Quantity::Length, ..) => Err(format!("it is a length, but {unit} is not a unit of length")),
-        (Quantity::Angle, ..) => Err(format!("it is an angle, but {unit} is not a unit of angle")),
-        (Quantity::Number, ..) => Err(format!("it is dimensionless, but the unit `{unit}` was given")),
+        (_, None, None) => Err(format!("there is no unit `{written}`; write mm, cm, m, in, deg or rad")),
+        (Quantity::Length, ..) => Err(format!("it is a length, but {written} is not a unit of length")),
+        (Quantity::Angle, ..) => Err(format!("it is an angle, but {written} is not a unit of angle")),
+        (Quantity::Number, ..) => Err(format!("it is dimensionless, but the unit `{written}` was given")),
+    }
+}
+
+/// Number and unit of a text, by the rules of the page's fields. The unit may be empty.
+fn amount(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    let (negative, rest) = match text.strip_prefix(['-', '−']) {
+        Some(rest) => (true, rest),
+        None => (false, text.strip_prefix('+').unwrap_or(text)),
+    };
+    let rest = rest.trim_start();
+    let is_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | '/') || c.is_whitespace();
+    let mut end = rest.find(|c| !is_number(c)).unwrap_or(rest.len());
+    // The exponent of `1e3` is no unit.
+    if let Some(exponent) = rest[end..].strip_prefix(['e', 'E']) {
+        let digits = exponent.strip_prefix(['+', '-']).unwrap_or(exponent);
+        let count = digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
+        if count > 0 && rest[..end].ends_with(|c: char| !c.is_whitespace()) {
+            end = rest.len() - digits.len() + count;
+        }
+    }
+    let (number, unit) = (rest[..end].trim(), rest[end..].trim());
+    let whole = |text: &str| text.parse::<u32>().ok().filter(|_| !text.starts_with('+')).map(f64::from);
+    let size = match number.split_once('/') {
+        Some((top, bottom)) => {
+            let top = top.trim();
+            let (before, top) = top.split_once(char::is_whitespace).unwrap_or(("0", top));
+            whole(before)? + whole(top.trim())? / whole(bottom.trim())?
+        }
+        None => number.replacen(',', ".", 1).parse().ok()?,
+    };
+    Some((if negative { -size } else { size }, unit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amounts_are_read_as_in_the_fields_of_the_page() {
+        let units = Units { length: LengthUnit::Millimetre, angle: AngleUnit::Degree };
+        let length = |text: &str| in_si(text, Quantity::Length, units).map(|x| (x * 1e9).round() / 1e9);
+        for (text, metres) in [
+            ("2", 0.002),
+            ("+2mm", 0.002),
+            ("-2,5 mm", -0.0025),
+            ("−2,5", -0.0025),
+            (".5cm", 0.005),
+            ("1e-2", 0.000_01),
+            ("1E1mm", 0.01),
+            ("1/2 in", 0.0127),
+            ("1 1/2in", 0.0381),
+            ("-1/4 IN", -0.006_35),
+            ("3 MM", 0.003),
+            ("1e3 mm", 1.0),
+        ] {
+            assert_eq!(length(text), Ok(metres), "{text}");
+        }
+        let angle = |text: &str| in_si(text, Quantity::Angle, units).map(f64::to_degrees);
+        assert!((angle("0,5°").unwrap() - 0.5).abs() < 1e-12);
+        assert!((angle("1 Deg").unwrap() - 1.0).abs() < 1e-12);
+        for text in ["", "mm", "1,2,3", "1.2.3mm", "1 2 mm", "1/2/3", "--1", "1//2", "e3", "+-1", "1/ in"] {
+            assert!(in_si(text, Quantity::Length, units).is_err(), "{text}");
+        }
+        assert_eq!(length("1/0"), Err("`1/0` is not finite".into()));
+        assert_eq!(length("1 deg"), Err("it is a length, but deg is not a unit of length".into()));
+        assert_eq!(
+            length("1 Furlong"),
+            Err("there is no unit `Furlong`; write mm, cm, m, in, deg or rad".into())
+        );
     }
 }

@@ -176,6 +176,7 @@ fn quantities(times: &[f64]) -> Vec<Quantity> {
             rate_unit: format!("{unit}/s"),
             accel_unit: format!("{unit}/s^2"),
             group: group.into(),
+            kind: if group == "point" { "position" } else { "coordinate" }.into(),
             value,
             rate,
             accel,
@@ -321,7 +322,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         values: vec![],
         first: Some(0),
         over: None,
+        plots: vec![],
         designs: vec![],
+        named_designs: vec![],
         maps: vec![],
         sweep: None,
         margin: Some(Margin {

@@ -20,6 +20,25 @@ pub struct Card {
     pub more: Vec<(String, String)>,
 }
 
+/// Number of models that are shown without a field for a search.
+const MOST_UNSEARCHED: usize = 6;
+/// Field for a search, which hides the models without its words.
+const SEARCH: &str = r#"<template id="search">
+<input type="search" class="search" placeholder="Search the models" aria-label="Search the models" data-testid="search">
+</template>
+<script>
+const list = document.querySelector('.gallery')
+list.before(document.getElementById('search').content.cloneNode(true))
+const field = document.querySelector('.search')
+field.addEventListener('input', () => {
+  const words = field.value.toLowerCase().split(/\s+/)
+  for (const model of list.children) {
+    const text = model.textContent.toLowerCase()
+    model.hidden = !words.every((word) => text.includes(word))
+  }
+})
+</script>"#;
+
 /// Page of all models, with an introduction `lead`.
 ///
 /// ```
@@ -41,7 +60,7 @@ pub fn gallery(title: &str, lead: &str, cards: &[Card]) -> String {
         escape_text(lead)
     );
     cards.iter().for_each(|card| body += &card.html());
-    sheet(title, &(body + "</div>"))
+    sheet(title, &(body + "</div>\n" + if cards.len() > MOST_UNSEARCHED { SEARCH } else { "" }))
 }
 
 impl Card {
@@ -79,6 +98,13 @@ pub fn trouble(file: &str, why: &str, text: &str, lines: &[usize]) -> String {
     sheet(file, &(body + "</pre>"))
 }
 
+/// Page in place of a model that is not there: the reason, and a link to the models that are.
+pub fn missing(file: &str, why: &str, models: &str) -> String {
+    let [title, why, models] = [file, why, models].map(escape_text);
+    let lead = format!("<p class=\"lead\" data-testid=\"trouble\">{why}.</p>");
+    sheet(file, &format!("<h1>{title}</h1>\n{lead}\n<p><a href=\"{models}\">Models in this folder</a></p>"))
+}
+
 fn sheet(title: &str, body: &str) -> String {
     fill(include_str!("../page/sheet.html"), |slot| match slot {
         "title" => escape_text(title),
@@ -98,5 +124,7 @@ mod tests {
         let page = trouble("<x>.toml", "error: `<b>`", "a = \"<script>\"\nb", &[2]);
         assert!(!page.contains("<script>") && !page.contains("<b>") && !page.contains("<x>"));
         assert!(page.contains("<span class=\"at\">b</span>"));
+        let page = missing("<x>.toml", "there is no `<x>`", "/?a&b");
+        assert!(!page.contains("<x>") && page.contains("<a href=\"/?a&amp;b\">"));
     }
 }

@@ -117,8 +117,12 @@ pub struct Payload {
     pub first: Option<usize>,
     /// Quantity on the abscissa of that first plot, an index into [`Payload::quantities`]; time if there is none.
     pub over: Option<usize>,
+    /// Plots that the model file asks for; none for those that suit the mechanism.
+    pub plots: Vec<Plot>,
     /// Other designs over the same motion for comparison: changed, predicted, re-solved.
     pub designs: Vec<Design>,
+    /// Named designs of the model file.
+    pub named_designs: Vec<NamedDesign>,
     /// Measures over grids of two drivers.
     pub maps: Vec<GridMap>,
     /// Designs of a sweep.
@@ -420,6 +424,36 @@ pub struct VehicleAxes {
     pub up: [f64; 3],
 }
 
+/// Plot that the page opens with.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Plot {
+    /// Quantities of one unit on the ordinate, indices into [`Payload::quantities`].
+    pub y: Vec<usize>,
+    /// Quantity on the abscissa; time if there is none.
+    pub over: Option<usize>,
+}
+
+/// Named design of the model file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct NamedDesign {
+    /// Name.
+    pub name: String,
+    /// Changes of variables from the nominal design; all others are nominal.
+    pub changes: Vec<NamedChange>,
+}
+
+/// Change of a variable.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct NamedChange {
+    /// Name of the variable.
+    pub name: String,
+    /// Change from the nominal design, in its unit.
+    pub by: f64,
+}
+
 /// Single value that characterises the design.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
@@ -438,9 +472,23 @@ pub struct Value {
     pub quantity: Option<usize>,
     /// Required minimum and maximum, if the model defines them.
     pub target: Option<[Option<f64>; 2]>,
+    /// Part of the target that limits the curve of the quantity.
+    pub gate: Option<Gate>,
     /// Derivatives by every design variable, in the order of [`Payload::variables`]; empty if the mechanism cannot
     /// follow one.
     pub sensitivities: Vec<Option<f64>>,
+}
+
+/// Limits of a curve that follow from the target of a metric.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Gate {
+    /// Minimum.
+    pub low: Option<f64>,
+    /// Maximum.
+    pub high: Option<f64>,
+    /// Time of the limits; the whole curve if there is none.
+    pub at: Option<f64>,
 }
 
 /// Another design over the same output times. Unknown curves are empty.
@@ -510,6 +558,8 @@ pub struct Quantity {
     pub accel_unit: String,
     /// Heading in the list of quantities: `measure`, `point`, `body` or `joint`.
     pub group: String,
+    /// Type of the measure as model files write it, such as `toe`; `position` for a coordinate of a point or body.
+    pub kind: String,
     /// The quantity, `n` steps.
     pub value: Curve,
     /// First time derivative.
@@ -751,14 +801,36 @@ pub fn html(payload: &Payload) -> Result<String, serde_json::Error> {
     Ok(file(&payload.title, &packed(payload)?))
 }
 
+/// Engine and code of a page, deflated and in letters.
+const ENGINE: &str = include_str!(concat!(env!("OUT_DIR"), "/engine.wasm.txt"));
+const CODE: &str = include_str!(concat!(env!("OUT_DIR"), "/app.js.txt"));
+
+/// Name of the file with the engine and the code that the pages of a folder share.
+pub const SHARED: &str = "hardpoint.js";
+
+/// Contents of the file [`SHARED`]. It is a plain script, which a page may load from disk.
+pub fn shared_script() -> String {
+    let part = |id: &str, text: &str| format!("document.getElementById(\"{id}\").textContent = \"{text}\"\n");
+    part("engine", ENGINE) + &part("code", CODE)
+}
+
+/// Page of this crate that loads its engine and its code from the file [`SHARED`] next to it.
+pub fn sharing(page: &str) -> String {
+    const END: &str = "<script type=\"text/plain\" id=\"code\"></script>";
+    let missing =
+        format!("document.getElementById('page').textContent = 'This page needs {SHARED} in its folder.'");
+    let load = format!("{END}\n<script src=\"{SHARED}\" onerror=\"{missing}\"></script>");
+    page.replacen(ENGINE, "", 1).replacen(CODE, "", 1).replacen(END, &load, 1)
+}
+
 /// HTML file of a packed payload.
 pub(crate) fn file(title: &str, packed: &[u8]) -> String {
     fill(include_str!("../page/report.html"), |slot| match slot {
         "title" => escape_text(title),
         "style" => include_str!("../page/app.css").to_owned(),
         "payload" => base64(packed),
-        "engine" => include_str!(concat!(env!("OUT_DIR"), "/engine.wasm.txt")).to_owned(),
-        "code" => include_str!(concat!(env!("OUT_DIR"), "/app.js.txt")).to_owned(),
+        "engine" => ENGINE.to_owned(),
+        "code" => CODE.to_owned(),
         _ => panic!("the report template names an unknown slot `{slot}`"),
     })
 }
@@ -820,7 +892,9 @@ pub(crate) mod tests {
             values: vec![],
             first: None,
             over: None,
+            plots: vec![],
             designs: vec![],
+            named_designs: vec![],
             maps: vec![],
             sweep: None,
             margin: None,
@@ -840,6 +914,18 @@ pub(crate) mod tests {
             5,
             "ends of the server, the payload, the engine, the code and what starts it"
         );
+    }
+
+    #[test]
+    fn pages_of_a_folder_share_the_engine_and_the_code() {
+        let page = html(&payload("sample")).unwrap();
+        let (sharing, script) = (sharing(&page), shared_script());
+        assert!(sharing.len() + ENGINE.len() + CODE.len() < page.len() + 400);
+        assert!(sharing.contains("<script type=\"text/plain\" id=\"engine\"></script>"));
+        assert!(sharing.contains("<script src=\"hardpoint.js\""));
+        assert!(script.contains(ENGINE) && script.contains(CODE));
+        // A text in double quotes.
+        assert!([ENGINE, CODE].iter().all(|text| !text.contains(['"', '\\', '\n'])));
     }
 
     #[test]
@@ -889,7 +975,7 @@ pub(crate) mod tests {
         }
         declare!(
             Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark SlideMark JointCurve CouplerMark CouplerTerm
-            DriverMark BodyPlace WheelMark DistanceMark LoadMark VehicleAxes Quantity Value Design DesignKind DesignCurves
+            DriverMark BodyPlace WheelMark DistanceMark LoadMark VehicleAxes Quantity Plot NamedDesign NamedChange Value Gate Design DesignKind DesignCurves
             GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");

@@ -13,12 +13,13 @@ mod values;
 
 pub use designs::ChangedDesign;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
 use hardpoint::model::{BodyId, Dimension, Driver, DriverId, Metric, Model, OutputSource, VariableId};
 use hardpoint::run::DriverRates;
-use hardpoint::sensitivity::BodySensitivity;
+use hardpoint::sensitivity::{BodySensitivity, admissibility_at_design};
 use hardpoint::space::Vec3;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{Appearance, ModelFile, Units};
@@ -32,8 +33,8 @@ use crate::facts::{Facts, VariableAdmissibility};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
 use crate::metric::MetricFact;
 use crate::page::{
-    self, Admissibility, Curve, Design, Detail, Fact, FiniteDifference, Margin, ModelText, Payload, Quantity,
-    Sensitivity, Status, Units as PageUnits, Variable,
+    self, Admissibility, Curve, Design, Detail, Fact, FiniteDifference, Margin, ModelText, NamedChange,
+    NamedDesign, Payload, Plot, Quantity, Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
 
@@ -44,6 +45,9 @@ const MOST_BYTES: usize = 8 << 20;
 /// Minimum and maximum size of a value of a smooth curve on the page, in bytes; the page is packed to measure its size
 /// if these bounds do not decide whether it fits.
 const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
+/// Opening of a joint that the page calls a re-assembly, relative to the motion of the variable that opens it: rounded
+/// coordinates of a file open joints by less.
+const VISIBLE: f64 = 1e-5;
 /// Number of marks of differences along a curve.
 const MARKS: usize = 36;
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -193,7 +197,9 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
         values,
         first: compose.first(course),
         over: None,
+        plots: compose.plots(),
         designs,
+        named_designs: compose.named_designs(),
         maps: Vec::new(),
         sweep: None,
         margin: summary.margin.as_ref().map(|m| Margin {
@@ -395,13 +401,18 @@ fn headline(summary: &Summary) -> Vec<Fact> {
     if !model.variables.is_empty() {
         facts.push(fact("design variables", model.variables_line()));
     }
-    facts.push(fact("solved in", seconds(summary.timings.solve)));
+    // There is no clock in the browser.
+    if summary.timings.solve > 0.0 {
+        facts.push(fact("solved in", seconds(summary.timings.solve)));
+    }
     facts
 }
 
 struct Compose<'a> {
     model: &'a Model,
     looks: &'a Appearance,
+    /// Minimum and maximum of metrics by name, SI.
+    limits: &'a BTreeMap<String, [Option<f64>; 2]>,
     units: Units,
     analysis: &'a Analysis<'a>,
     course: &'a Course,
@@ -447,6 +458,7 @@ impl<'a> Compose<'a> {
         Self {
             model: &file.model,
             looks: &file.drawing,
+            limits: &file.limits,
             units: file.units,
             analysis,
             course,
@@ -477,7 +489,9 @@ impl<'a> Compose<'a> {
         let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
             let value = |k, order: usize| measured.value(k, m)[order];
             let group = if matches!(output.source, OutputSource::Measure(_)) { "measure" } else { "point" };
-            let quantity = self.quantity(&output.name, output.dimension, output.known.orders, group, value);
+            let kind = self.model.type_of(output.source);
+            let quantity =
+                self.quantity(&output.name, output.dimension, output.known.orders, (group, kind), value);
             Quantity { wanted: self.wanted(output.source, output.dimension), ..quantity }
         });
         let bodies = if self.detail.origins { self.model.bodies.len() } else { 1 };
@@ -487,28 +501,55 @@ impl<'a> Compose<'a> {
                 let s = &self.solution.motion.at(k).body(b);
                 [s.r, s.v, s.a][order].to_array()[axis]
             };
-            self.quantity(&name, Dimension::LENGTH, 3, "body", value)
+            self.quantity(&name, Dimension::LENGTH, 3, ("body", "position"), value)
         });
         outputs.chain(origins).collect()
     }
 
-    /// Quantity from a function of step and order, SI.
+    /// Plots of the model file.
+    fn plots(&self) -> Vec<Plot> {
+        let outputs = &self.solution.measured.outputs;
+        let place = |source: OutputSource| outputs.iter().position(|o| o.source == source);
+        let plot = |plot: &hardpoint::model::Plot| {
+            let y = plot.y.iter().map(|source| place(*source)).collect::<Option<Vec<_>>>()?;
+            match plot.over {
+                None => Some(Plot { y, over: None }),
+                Some(over) => Some(Plot { y, over: Some(place(over)?) }),
+            }
+        };
+        self.model.plots.iter().filter_map(plot).collect()
+    }
+
+    /// Named designs of the model file.
+    fn named_designs(&self) -> Vec<NamedDesign> {
+        let change = |(variable, by): &(VariableId, f64)| {
+            let of = &self.model.variables[variable.0];
+            NamedChange { name: of.name.clone(), by: self.units.from_si(of.quantity, *by) }
+        };
+        let design = |design: &hardpoint::model::NamedDesign| NamedDesign {
+            name: design.name.clone(),
+            changes: design.changes.iter().map(change).collect(),
+        };
+        self.model.designs.iter().map(design).collect()
+    }
+
+    /// Quantity from a function of step and order, SI. `group` and `kind` are its heading and its type.
     fn quantity(
         &self,
         name: &str,
-        kind: Dimension,
+        dimension: Dimension,
         orders: usize,
-        group: &str,
+        (group, kind): (&str, &str),
         value: impl Fn(usize, usize) -> f64,
     ) -> Quantity {
-        let [unit, rate_unit, accel_unit] = [0, 1, 2].map(|order| order_unit(self.units, kind, order));
+        let [unit, rate_unit, accel_unit] = [0, 1, 2].map(|order| order_unit(self.units, dimension, order));
         let spans = [0, 1, 2].map(|order| Span::of((0..self.solution.motion.len()).map(|k| value(k, order))));
         let (per_si, round_off) =
-            (self.units.per_si(kind), [0, 1, 2].map(|order| self.round_off.value(kind, order)));
+            (self.units.per_si(dimension), [0, 1, 2].map(|order| self.round_off.value(dimension, order)));
         let [value, rate, accel] =
             self.curves(orders, |k, order| spans[order].shown(value(k, order), round_off[order]) * per_si);
         let (name, group, wanted) = (name.into(), group.into(), Curve::default());
-        Quantity { name, unit, rate_unit, accel_unit, group, value, rate, accel, wanted }
+        Quantity { name, unit, rate_unit, accel_unit, group, kind: kind.into(), value, rate, accel, wanted }
     }
 
     /// Target curve of the first metric that has one for this output.
@@ -536,7 +577,10 @@ impl<'a> Compose<'a> {
                     VariableAdmissibility::Admissible | VariableAdmissibility::Unknown => {
                         Admissibility::Admissible
                     }
-                    VariableAdmissibility::Reassembled => Admissibility::Reassembled,
+                    VariableAdmissibility::Reassembled if self.opens_visibly(VariableId(b)) => {
+                        Admissibility::Reassembled
+                    }
+                    VariableAdmissibility::Reassembled => Admissibility::Admissible,
                     VariableAdmissibility::CannotFollow => Admissibility::CannotFollow,
                 },
                 note: fact.note(),
@@ -549,6 +593,13 @@ impl<'a> Compose<'a> {
             }
         };
         facts.variables.iter().enumerate().map(variable).collect()
+    }
+
+    /// True if a variable opens a joint by a visible part of its own motion.
+    fn opens_visibly(&self, variable: VariableId) -> bool {
+        let field = self.model.field(variable);
+        let speed = field.markers.iter().map(|m| m.twist.w.norm().max(m.twist.v.norm())).fold(0.0, f64::max);
+        admissibility_at_design(self.model, &field).iter().any(|open| !(open.value <= VISIBLE * speed))
     }
 
     /// First-order motion of every body by a variable.

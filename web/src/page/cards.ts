@@ -82,7 +82,7 @@ function card(state: State, value: Value, index: number): Card {
   const verdict = el('span', { class: 'hidden' })
   const motion = el('span', { class: 'card-motion', 'data-testid': 'card-motion' })
   const what = whatOf(state.report, value)
-  const about = value.quantity === null ? undefined : aboutQuantity(state.report.quantities[value.quantity].name)
+  const about = value.quantity === null ? undefined : aboutQuantity(state.report.quantities[value.quantity])
   const element = el(
     'button',
     {
@@ -145,7 +145,7 @@ function motionText(state: State, { quantity, time, unit }: Value): string {
  */
 function slopeText(state: State, index: number, time: number, unit: string): string {
   const { report, sensitivityReport } = state
-  const travel = report.quantities.find(({ name }) => isTravel(name))?.index
+  const travel = report.quantities.find(isTravel)?.index
   const over = travel === undefined ? undefined : onSideOf(report, travel, index)
   if (over === undefined || over === index) return ''
   const step = Math.round(stepAt(report.times, time))

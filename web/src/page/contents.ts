@@ -102,7 +102,7 @@ export function valueContent(state: State, subject: Subject): Content {
       const label = !several ? alone : plain ? own : `${own}, ${design.name}`
       const color = several ? hue(k) : (design.color ?? css('--former'))
       const dash = several && plain ? PATTERNS[k % PATTERNS.length] : design.dash
-      content.lines.push({ label, color, curve, over: x, width: design.width, dash, about: aboutQuantity(one.name) })
+      content.lines.push({ label, color, curve, over: x, width: design.width, dash, about: aboutQuantity(one) })
     }
   }
   if (difference) content.caption = differenceCaption(state, reference)
@@ -171,7 +171,7 @@ function addPredictions(state: State, { quantity, order, over }: Subject, conten
   })
 }
 
-/** Target curve and gates of the metrics of a quantity. */
+/** Target curve and limits of the metrics of a quantity. */
 function addTargets(
   { report }: State,
   { index, wanted }: Quantity,
@@ -180,13 +180,15 @@ function addTargets(
   over?: number,
 ): void {
   content.lines.push({ label: 'target', color: css('--good'), curve: wanted, width: 2.4, dash: DOTTED })
-  const gates = report.values.filter(({ quantity, target, time }) => quantity === index && target && time !== null)
+  const limited = report.values.filter(({ quantity, gate }) => quantity === index && gate)
+  if (limited.length > 0)
+    content.caption ??= `Shaded: range that the limits of ${limited.map(({ name }) => name).join(', ')} allow.`
   const at = (time: number) => {
     if (over === undefined) return time
     const x = present?.quantities[over]?.[0] ?? report.quantities[over].curves[0]
     return valueAt(x, stepAt(report.times, time))
   }
-  content.wanted = gates.map(({ target, time }) => ({ low: target![0], high: target![1], at: at(time!) }))
+  content.wanted = limited.map(({ gate }) => ({ ...gate!, at: gate!.at === null ? undefined : at(gate!.at) }))
 }
 
 /**

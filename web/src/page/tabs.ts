@@ -17,7 +17,7 @@ export interface Tabs {
 
 /** Screens with one section at a time, as in the style sheet. */
 const NARROW = '(max-width: 700px)'
-/** Event of the page when another panel or section comes to the front. */
+/** Event of the page when another panel or section is selected. */
 export const FRONT = 'front'
 
 /** Panels of which one is shown; arrow keys go from tab to tab. */
@@ -80,7 +80,7 @@ export function tabs(label: string, list: Tab[]): Tabs {
 }
 
 /**
- * Renders the content of a tab whenever `listen` calls back while it is seen, and else when it comes to the front or is
+ * Renders the content of a tab whenever `listen` calls back while it is seen, and else when it is selected or is
  * printed: what is not seen costs nothing while a point is dragged.
  */
 export function whileSeen(

@@ -15,6 +15,8 @@ export interface Snapshot {
   readonly id: number
   name: string
   readonly step: Step
+  /** True for a design of the model's text, which keeps its name and stays in the list. */
+  readonly isOfFile: boolean
 }
 
 /** Steps that are kept; earlier ones are forgotten, but for the first. */
@@ -128,10 +130,25 @@ export class History {
   /** Gives the present design a name; `design 1` and so on where none is given. */
   save(name = '', step = this.present): Snapshot {
     this.#named++
-    const snapshot = { id: this.#named, name: this.#free(name.trim()), step }
+    const snapshot = { id: this.#named, name: this.#free(name.trim()), step, isOfFile: false }
     this.#snapshots.push(snapshot)
     this.#notify()
     return snapshot
+  }
+
+  /** Lists the named designs of a text in place of those of the text before; compared ones stay so by their names. */
+  setFileDesigns(designs: readonly { name: string; changes: readonly VariableSetting[] }[], text: string): void {
+    const own = this.#snapshots.filter(({ isOfFile }) => !isOfFile)
+    this.#snapshots.splice(0, Infinity, ...own)
+    const found = designs.map(({ name, changes }) => {
+      const step = { text, settings: changes, label: name }
+      return { id: ++this.#named, name: this.#free(name), step, isOfFile: true }
+    })
+    this.#snapshots.unshift(...found)
+    this.#compared = this.#compared.flatMap((one) =>
+      one.isOfFile ? (found.find(({ name }) => name === one.name) ?? []) : one,
+    )
+    this.#notify()
   }
 
   /** Goes to a design that was given a name, as a step that can be undone. */

@@ -198,8 +198,12 @@ function snapshotRow(
   const actions = [
     action('Open this design', 'Open', open),
     action('Draw this design together with the current one', 'Compare', compare),
-    action('Delete this design', 'Delete', remove),
+    ...(snapshot.isOfFile ? [] : [action('Delete this design', 'Delete', remove)]),
   ]
+  if (snapshot.isOfFile) {
+    field.readOnly = true
+    field.title = 'A design of the model’s text: [designs]'
+  }
   actions[1].setAttribute('aria-pressed', String(isCompared))
   const label = () => {
     field.value = snapshot.name

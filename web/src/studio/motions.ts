@@ -15,7 +15,7 @@ export interface SeparateMotions {
  * a motion with one degree of freedom, without wheel travel, or with laws that are not written in one line.
  */
 export function separateMotions(text: string, report: Report): SeparateMotions | undefined {
-  const travel = report.quantities.find(({ name }) => isTravel(name))
+  const travel = report.quantities.find(isTravel)
   if (!travel || hasOneFreedom(report)) return undefined
   const entries = outline(text)
   const isMirrored = entries.some(({ path }) => path[0] === 'mirror')

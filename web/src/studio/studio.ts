@@ -109,6 +109,7 @@ export class Studio {
     this.#checks = new Solver(module)
     this.#text = model.text
     this.history = new History({ text: model.text, settings: [], label: 'original' })
+    this.history.setFileDesigns(state.report.named_designs, model.text)
     const bar = historyBar(this.history, {
       show: (step) => void this.#showStep(step),
       compare: () => void this.#compare(),
@@ -325,7 +326,7 @@ export class Studio {
     const saved = ({ text, settings }: Step) => ({ text: text === first.text ? undefined : text, settings })
     return {
       design: saved(present),
-      named: snapshots.map(({ name, step }) => ({ name, ...saved(step) })),
+      named: snapshots.filter(({ isOfFile }) => !isOfFile).map(({ name, step }) => ({ name, ...saved(step) })),
       compared: compared.map(({ name }) => name),
       choices: this.state.memory,
       page: this.made.memory,
@@ -341,8 +342,8 @@ export class Studio {
   #save(): void {
     clearTimeout(this.#saving)
     this.#saving = undefined
-    const { changed, snapshots } = this.history
-    if (changed || snapshots.length > 0) this.#storage.save(this.#session)
+    const { changed, snapshots, compared } = this.history
+    if (changed || compared.length > 0 || snapshots.some(({ isOfFile }) => !isOfFile)) this.#storage.save(this.#session)
     else if (!this.#stored) this.#storage.clear()
   }
 
@@ -375,7 +376,8 @@ export class Studio {
       settings,
       label,
     })
-    const snapshots = named.map((one) => history.save(one.name, step(one, one.name)))
+    const saved = named.map((one) => history.save(one.name, step(one, one.name)))
+    const snapshots = [...saved, ...history.snapshots.filter(({ isOfFile }) => isOfFile)]
     history.compareWith(compared.flatMap((name) => snapshots.find((one) => one.name === name) ?? []))
     this.#recalled = { choices, page }
     const { text, settings } = step(design, label)
@@ -592,7 +594,9 @@ export class Studio {
       const former = this.model.case
       this.model = json.model ?? model
       this.#next = undefined
-      this.#show(read(json, decode), former)
+      const report = read(json, decode)
+      this.history.setFileDesigns(report.named_designs, this.model.text)
+      this.#show(report, former)
       this.#setText(this.model.text)
       await this.#open()
       if (this.history.compared.length > 0) await this.#compare()

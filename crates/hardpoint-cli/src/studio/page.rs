@@ -16,7 +16,7 @@ use crate::session::Session;
 use crate::{maps, run};
 
 use super::Studio;
-use super::routes::{blocking, no_file};
+use super::routes::{blocking, no_page};
 use super::server::Answer;
 
 /// Facts about the server for a page.
@@ -73,7 +73,7 @@ pub async fn model(studio: Arc<Studio>, file: String, case: Option<String>) -> A
 }
 
 fn made(studio: &Studio, name: &str, case: Option<&str>) -> Result<String, Answer> {
-    let found = studio.models.read(name).map_err(|why| no_file(name, why))?;
+    let found = studio.models.read(name).map_err(|why| no_page(name, why))?;
     let mut about = About {
         token: studio.address.token(),
         file: Some(name),

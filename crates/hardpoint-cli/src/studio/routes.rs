@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use hardpoint_file::Diagnostics;
+use hardpoint_report::gallery;
 use hyper::body::Incoming;
 use hyper::header;
 use hyper::{Method, Request, StatusCode};
@@ -208,7 +209,23 @@ fn no_model(found: &Diagnostics) -> Answer {
 
 /// Answer for a file that does not exist or was not written.
 pub fn no_file(name: &str, why: FileError) -> Answer {
-    let (status, sentence): (StatusCode, Cow<'_, str>) = match why {
+    match reason(name, why) {
+        Ok((status, sentence)) => Answer::refusal(status, &sentence),
+        Err(conflict) => conflict,
+    }
+}
+
+/// The same as a page for a person, with a link to the models of the folder.
+pub fn no_page(name: &str, why: FileError) -> Answer {
+    match reason(name, why) {
+        Ok((status, sentence)) => Answer::page(status, gallery::missing(name, &sentence, "/gallery")),
+        Err(conflict) => conflict,
+    }
+}
+
+/// Status and reason why there is no such file; the answer itself if the file was changed meanwhile.
+fn reason(name: &str, why: FileError) -> Result<(StatusCode, Cow<'static, str>), Answer> {
+    Ok(match why {
         FileError::Name => {
             let why = format!(
                 "`{name}` is not a valid name of a model in this folder: use a plain name that ends with `.toml`"
@@ -225,8 +242,7 @@ pub fn no_file(name: &str, why: FileError) -> Answer {
             let error = format!("`{name}` was changed on disk meanwhile");
             let document =
                 json!({ "error": error, "file": name, "text": now.text, "revision": now.revision });
-            return Answer::json(StatusCode::CONFLICT, &document);
+            return Err(Answer::json(StatusCode::CONFLICT, &document));
         }
-    };
-    Answer::refusal(status, &sentence)
+    })
 }

@@ -261,14 +261,24 @@ fn the_gallery_runs_and_its_reports_are_complete() {
         seen += 1;
         let output = bench.run(&["run", path.to_str().unwrap(), "-o", "out", "--json"]);
         assert_eq!(output.status.code(), Some(0), "{}", path.display());
-        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let size = bench.text("out/report.html").len();
-        assert!(size < 10_000_000, "{}: {size} bytes", path.display());
-        let report = bench.page("out/report.html").to_string();
-        let all = ["bodies", "joints", "drivers", "measures", "variables"];
-        for fact in all.iter().flat_map(|list| summary["model"][list].as_array().unwrap()) {
-            let name = fact["name"].as_str().unwrap();
-            assert!(report.contains(&format!("\"{name}\"")), "{}: no {name}", path.display());
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let cases = document["cases"].as_array();
+        let motions = match cases {
+            Some(cases) => cases
+                .iter()
+                .map(|one| (format!("out/{}/report.html", one["case"].as_str().unwrap()), &one["result"]))
+                .collect(),
+            None => vec![("out/report.html".to_owned(), &document)],
+        };
+        for (page, summary) in motions {
+            let size = bench.text(&page).len();
+            assert!(size < 10_000_000, "{} {page}: {size} bytes", path.display());
+            let report = bench.page(&page).to_string();
+            let all = ["bodies", "joints", "drivers", "measures", "variables"];
+            for fact in all.iter().flat_map(|list| summary["model"][list].as_array().unwrap()) {
+                let name = fact["name"].as_str().unwrap();
+                assert!(report.contains(&format!("\"{name}\"")), "{} {page}: no {name}", path.display());
+            }
         }
     }
     assert!(seen >= 5, "only {seen} models");

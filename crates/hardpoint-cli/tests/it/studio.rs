@@ -258,6 +258,18 @@ fn no_name_leads_out_of_the_folder_or_to_other_files() {
     assert_eq!(listed["models"].as_array().unwrap().len(), 1, "{listed}");
 }
 
+#[test]
+fn a_model_that_is_not_there_is_a_page_with_a_way_to_the_others() {
+    let bench = Bench::with(&["slider.toml"]);
+    let server = Server::start(&bench, &["slider.toml"]);
+    let page = server.get("/?file=nosuch.toml");
+    assert_eq!(page.status, 404);
+    assert!(page.body.contains("there is no `nosuch.toml` in this folder"), "{}", page.body);
+    assert!(page.body.starts_with("<!doctype html>") && page.body.contains("href=\"/gallery\""));
+    let answer = server.get("/api/model?file=nosuch.toml");
+    assert_eq!((answer.status, answer.json()["error"].is_string()), (404, true));
+}
+
 /// A symbolic link within the folder is another name: its target is saved, and the link remains.
 #[cfg(unix)]
 #[test]
@@ -615,7 +627,8 @@ fn a_site_has_a_page_for_each_model_that_can_be_shown() {
     bench.put("broken.toml", "[hardpoints]");
     let output = bench.run(&["site", "public", "slider.toml", "strut & co.toml", "broken.toml"]);
     assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
-    let pages = ["index.html", "slider.html", "strut%20%26%20co-steer.html", "strut%20%26%20co.html"];
+    let pages =
+        ["hardpoint.js", "index.html", "slider.html", "strut%20%26%20co-steer.html", "strut%20%26%20co.html"];
     assert_eq!(bench.list("public"), pages);
     let index = bench.text("public/index.html");
     assert!(
@@ -624,6 +637,10 @@ fn a_site_has_a_page_for_each_model_that_can_be_shown() {
     );
     assert!(!index.contains("broken"));
     assert!(bench.page("public/slider.html")["quantities"].is_array());
+    // The engine is there once, for all pages.
+    let [engine, one] =
+        ["hardpoint.js", "slider.html"].map(|file| bench.text(&format!("public/{file}")).len());
+    assert!(one < engine / 3, "{one} of {engine} bytes");
 
     let nothing = bench.run(&["site", "nothing", "broken.toml"]);
     assert_eq!((nothing.status.code(), bench.list("nothing").len()), (Some(3), 0));

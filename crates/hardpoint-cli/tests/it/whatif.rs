@@ -96,7 +96,7 @@ fn invalid_changes_and_measures_are_rejected_with_suggestions() {
         (["--set", "tie_rod_outr.z=2"], "did you mean `tie_rod_outer.z`?"),
         (["--set", "tie_rod_outer.z=2deg"], "it is a length, but deg is not a unit of length"),
         (["--set", "tie_rod_outer.z=2furlong"], "there is no unit `furlong`"),
-        (["--set", "tie_rod_outer.z=inf"], "is not finite"),
+        (["--set", "tie_rod_outer.z=1/0"], "is not finite"),
         (["--set", "tie_rod_outer.z"], "write NAME=CHANGE"),
         (["--set", "lca_pivot.tilt_y=1e400deg"], "is not finite"),
         (["--measure", "tow"], "did you mean `toe`?"),
@@ -192,4 +192,48 @@ fn an_inadmissible_change_is_reported_with_the_nearest_admissible_one() {
     assert_eq!(document["change"].as_array().unwrap().len(), 4);
     assert!(document["nearest"].as_array().unwrap().is_empty());
     assert_eq!(document["times"].as_array().unwrap().len(), 401);
+}
+
+#[test]
+fn a_named_design_is_compared_and_taken_by_its_name() {
+    let bench = Bench::with(&[]);
+    ride(&bench);
+    let text = bench.text("ride.toml");
+    bench
+        .put("ride.toml", &format!("{text}\n[designs.higher]\ntie_rod_inner_z = 32\ntie_rod_outer_y = -1\n"));
+    let succeeds = |words: &[&str]| {
+        let output = bench.run(words);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    succeeds(&["whatif", "ride.toml", "--design", "higher", "-o", "named"]);
+    let both = ["--set", "tie_rod_inner_z=32", "--set", "tie_rod_outer_y=-1"];
+    succeeds(&[&["whatif", "ride.toml", "-o", "typed"], &both[..]].concat());
+    let [named, typed] = ["named", "typed"].map(|folder| bench.json(&format!("{folder}/whatif.json")));
+    assert_eq!(curve(measure(&named, "toe"), "exact"), curve(measure(&typed, "toe"), "exact"));
+    // The page lists the design for its own comparison.
+    let page = bench.page("named/whatif.html");
+    assert_eq!(page["named_designs"][0]["name"], "higher");
+
+    let shown = succeeds(&["compare", "ride.toml", "higher", "-o", "compared"]);
+    assert!(shown.contains("tie_rod_inner.z") && shown.contains("higher"), "{shown}");
+    let compared = bench.json("compared/compare.json");
+    assert_eq!(compared["files"], serde_json::json!(["ride.toml", "higher"]));
+    let second = measure(&compared, "toe")["curves"][1].as_array().unwrap().clone();
+    for (a, b) in second.iter().zip(curve(measure(&typed, "toe"), "exact")) {
+        assert!((a.as_f64().unwrap() - b).abs() < 1e-9, "{a} {b}");
+    }
+    let changed = succeeds(&["whatif", "ride.toml", "--design", "higher", "--set", "tie_rod_outer_z=1"]);
+    assert!(changed.contains("tie_rod_outer_z") && changed.contains("tie_rod_inner_z"), "{changed}");
+    for (words, why) in [
+        (&["compare", "ride.toml", "hihger"][..], "did you mean `higher`?"),
+        (&["whatif", "ride.toml", "--design", "lower"], "there is no design named `lower`"),
+        (&["whatif", "ride.toml", "--design", "higher", "--set", "tie_rod_inner_z=1"], "is set already"),
+        (&["compare", "ride.toml", "lower.toml"], "there is no file `lower.toml`"),
+    ] {
+        let output = bench.run(words);
+        assert_ne!(output.status.code(), Some(0), "{words:?}");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(said.contains(why), "{said}");
+    }
 }

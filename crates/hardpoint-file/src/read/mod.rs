@@ -20,6 +20,7 @@ mod metrics;
 mod model;
 mod model_file;
 mod optimize;
+mod page;
 mod parameters;
 mod parse;
 mod points;

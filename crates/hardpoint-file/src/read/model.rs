@@ -14,7 +14,7 @@ use super::elements::{LOAD_MODES, LOADS};
 use super::raw::Raw;
 use super::{
     bodies, cases, couplers, design, drivers, elements, equilibrium, hardpoints, joints, measures, metrics,
-    optimize, parameters, points, sweep, times, tolerance, wheels,
+    optimize, page, parameters, points, sweep, times, tolerance, wheels,
 };
 
 /// The file as a whole.
@@ -84,6 +84,10 @@ pub(crate) const MODEL: Table = table! {
     may "tolerance": Shape::Table(&tolerance::TOLERANCE), "{ variables = { B_x = 0.1 } }";
     /// Designs of a sweep, and the results that are stored.
     may "sweep": Shape::Table(&sweep::SWEEP), "{ variables = { B_x = [-5, 5] } }";
+    /// Named designs: values of design variables, for comparison.
+    may "designs": Shape::Entries("a design", &page::DESIGN), "{ softer = { B_x = 2.5 } }";
+    /// Contents of the report's page.
+    may "page": Shape::Table(&page::PAGE), "{ plots = [{ y = [\"toe\"], over = \"wheel_travel\" }] }";
 };
 const CHANGE_POINTS: Shape = Shape::Words(&[
     ("stop", "The motion ends there."),
@@ -117,7 +121,7 @@ const UNIT_WORDS: [(&str, &str); 12] = [
 ];
 /// Tables of `docs/file-format.md`, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 40] {
+pub(crate) fn tables() -> [(&'static str, Shape); 42] {
     use super::{declared, law, mesh};
     use crate::compose::INCLUDE_TABLE;
 
@@ -162,6 +166,8 @@ pub(crate) fn tables() -> [(&'static str, Shape); 40] {
         ("limits of tolerances", Shape::Table(&tolerance::LIMIT)),
         ("sweep", Shape::Table(&sweep::SWEEP)),
         ("ranges of variables", Shape::Table(&sweep::RANGE)),
+        ("page", Shape::Table(&page::PAGE)),
+        ("plots", Shape::Table(&page::PLOT)),
     ]
 }
 
@@ -205,6 +211,8 @@ pub(crate) fn model<'a>(
     optimize::optimize(r, &fields, &mut raw);
     tolerance::tolerance(r, &fields, &mut raw);
     sweep::sweep(r, &fields, &mut raw);
+    page::designs(r, &fields, &mut raw);
+    page::page(r, &fields, &mut raw);
     raw
 }
 

@@ -1,10 +1,11 @@
 //! A model with its text.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
 use hardpoint::draft::{Section, some_of};
-use hardpoint::model::{BodyId, CaseId, Model, SweepRange, SweepSettings, VariableId};
+use hardpoint::model::{BodyId, CaseId, LimitTarget, Model, SweepRange, SweepSettings, VariableId};
 
 use crate::compose::{Origins, Plane, with_origin};
 use crate::values::{DataError, Diagnostic, Diagnostics, Places, Severity, Source, Texts, closest, shown};
@@ -33,6 +34,9 @@ pub struct ModelFile {
     pub texts: Texts,
     /// Plane of a planar model.
     pub plane: Option<Plane>,
+    /// Minimum and maximum of metrics by name, SI: those of the optimisation and of the tolerance study, which a single
+    /// case no longer has.
+    pub limits: BTreeMap<String, [Option<f64>; 2]>,
     /// Mirror images with their originals, by name.
     pub(crate) origins: Origins,
     /// Selected case, if the file has cases.
@@ -150,6 +154,20 @@ impl ModelFile {
     ) -> Diagnostic {
         let span = about.and_then(|(section, index)| self.span(section, index));
         with_origin(self.source.diagnostic(severity, code, message, span), &self.origins)
+    }
+
+    /// Limits of all metrics that have any; of two limits of a metric the tighter one.
+    pub(super) fn limits_of(model: &Model) -> BTreeMap<String, [Option<f64>; 2]> {
+        let studies = model.optimization.iter().map(|o| &o.limits);
+        let studies = studies.chain(model.tolerancing.iter().map(|t| &t.limits));
+        let mut found: BTreeMap<String, [Option<f64>; 2]> = BTreeMap::new();
+        for limit in studies.flatten() {
+            let LimitTarget::Metric(metric) = limit.of else { continue };
+            let [least, most] = found.entry(model.metrics[metric].name.clone()).or_default();
+            *least = limit.least.into_iter().chain(*least).reduce(f64::max);
+            *most = limit.most.into_iter().chain(*most).reduce(f64::min);
+        }
+        found
     }
 
     /// HP0253: notes on a model with loads whose bodies have no mass, or whose gravity has no effect.

@@ -211,6 +211,7 @@ pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<
             let (description, drawing, places) = (raw.description, raw.drawing, raw.places);
             let mut file = ModelFile {
                 plane,
+                limits: ModelFile::limits_of(&model),
                 model,
                 units,
                 description,

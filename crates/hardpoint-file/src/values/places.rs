@@ -68,7 +68,7 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 29] = [
+const SECTIONS: [Section; 31] = [
     Section::Model,
     Section::Parameters,
     Section::Hardpoints,
@@ -98,6 +98,8 @@ const SECTIONS: [Section; 29] = [
     Section::ToleranceLimits,
     Section::Sweep,
     Section::SweepRanges,
+    Section::Plots,
+    Section::Designs,
 ];
 
 /// Locations of all entries, by section and index in the draft's list.

@@ -22,6 +22,7 @@ mod mirror;
 mod models;
 mod motions;
 mod optimize;
+mod page;
 mod parameters;
 mod path;
 mod planar;

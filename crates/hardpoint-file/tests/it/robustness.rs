@@ -16,7 +16,7 @@ const MODELS: [&str; 8] = [
 ];
 
 /// Pieces that make a broken file interesting.
-const PIECES: [&str; 62] = [
+const PIECES: [&str; 65] = [
     "[",
     "]",
     "{",
@@ -79,6 +79,9 @@ const PIECES: [&str; 62] = [
     "method = \"indices\"",
     "designs = \"../x.csv\"",
     "C_x = { from = 2, to = 1, levels = 1 }",
+    "[designs.d]",
+    "[page]",
+    "plots = [{ y = [\"P.x\"], over = \"P.y\" }, 3]",
 ];
 
 fn survives(text: &str) {
@@ -283,6 +286,8 @@ fn large_files_take_no_more_work_than_they_must() {
         ("tolerance.correlations", "{ between = [\"A_x\", \"A_y\"], coefficient = 0.5 }"),
         ("tolerance.limits", "{ metric = \"m\", max = 1 }"),
         ("sweep.variables", "{ from = -1, to = 1, levels = 3 }"),
+        ("designs", "{ A_x = 1, A_y = 2 }"),
+        ("designs.d", "1"),
         ("optimize.limits", "{ hardpoint = \"A\", x = [2, 1], z = { max = 1 } }"),
     ] {
         grows_in_proportion(|n| many(table, entry, n));

@@ -1,12 +1,12 @@
 //! Single values that characterise a design.
 
-use hardpoint::model::{Dimension, Driver, OutputSource, VariableId};
+use hardpoint::model::{Dimension, Driver, Metric, OutputSource, Reduction, VariableId};
 use hardpoint_table::series::settled;
 
 use crate::facts::VariableAdmissibility;
 use crate::figures::order_unit;
 use crate::metric::MetricFact;
-use crate::page::Value;
+use crate::page::{Gate, Value};
 use crate::summary::Summary;
 
 use super::Compose;
@@ -37,6 +37,10 @@ impl Compose<'_> {
             Some(settled(found, least))
         });
         let outputs = &self.solution.measured.outputs;
+        let target = self
+            .limits
+            .get(&fact.name)
+            .map(|ends| ends.map(|end| end.map(|x| self.units.from_si(dimension, x))));
         Value {
             name: fact.name.clone(),
             what: fact.what.clone(),
@@ -44,7 +48,8 @@ impl Compose<'_> {
             value: fact.value,
             time: fact.time,
             quantity: outputs.iter().position(|o| o.source == metric.of),
-            target: None,
+            gate: target.and_then(|target| gate(metric, target, fact.time)),
+            target,
             sensitivities: by_variable.collect(),
         }
     }
@@ -85,7 +90,28 @@ impl Compose<'_> {
             time: Some(self.solution.motion.times[step]),
             quantity: Some(m),
             target: None,
+            gate: None,
             sensitivities: (0..self.model.variables.len()).map(sensitivity).collect(),
         }
     }
+}
+
+/// Limits of a curve from the limits of its metric: a maximum limits the whole curve from above, a minimum from below,
+/// and a value at a position limits it there. Other metrics, and those of a part of the curve, limit no point of it.
+fn gate(metric: &Metric, [low, high]: [Option<f64>; 2], time: Option<f64>) -> Option<Gate> {
+    let gate = match metric.take {
+        Reduction::Greatest if metric.window.is_none() => Gate { low: None, high, at: None },
+        Reduction::Least if metric.window.is_none() => Gate { low, high: None, at: None },
+        Reduction::Value(_) => Gate { low, high, at: Some(time?) },
+        Reduction::Greatest
+        | Reduction::Least
+        | Reduction::Range
+        | Reduction::Change
+        | Reduction::Mean
+        | Reduction::Integral
+        | Reduction::Rms(_)
+        | Reduction::RmsAtPoints(_)
+        | Reduction::Slope(_) => return None,
+    };
+    (gate.low.is_some() || gate.high.is_some()).then_some(gate)
 }

@@ -4,6 +4,7 @@ mod accidents;
 mod drawing;
 mod files;
 mod mesh;
+mod opening;
 mod rockers;
 mod shown;
 mod weight;

@@ -11,6 +11,7 @@ mod joints;
 mod measures;
 mod motion;
 mod optimization;
+mod page;
 mod sweeping;
 mod tolerancing;
 mod wheels;
@@ -83,6 +84,8 @@ impl Model {
         c.add_optimization();
         c.add_tolerancing();
         c.add_sweeping();
+        c.add_plots();
+        c.add_designs();
         c.faults.retain(|f| !draft.unread.has(f.at.section, f.at.index, f.at.key));
         if !c.faults.is_empty() || !draft.unread.is_empty() {
             return Err(c.faults);
@@ -218,6 +221,8 @@ impl<'a> Checker<'a> {
             optimization: None,
             tolerancing: None,
             sweeping: None,
+            plots: Vec::new(),
+            designs: Vec::new(),
         };
         let ground = ["ground"].into_iter();
         let numbers = HashMap::from([
@@ -287,7 +292,7 @@ impl<'a> Checker<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn check_names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 21] = [
+        let lists: [(Section, &str, Vec<&str>); 22] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -304,6 +309,7 @@ impl<'a> Checker<'a> {
             (Section::Metrics, "metric", d.metrics.iter().map(|x| x.name.as_str()).collect()),
             (Section::Cases, "case", d.cases.iter().map(|x| x.name.as_str()).collect()),
             (Section::Grids, "case", d.grids.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Designs, "design", d.designs.iter().map(|x| x.name.as_str()).collect()),
             (
                 Section::Goals,
                 "goal",

@@ -91,6 +91,10 @@ pub enum Section {
     Sweep,
     /// [`super::SweepSettingsDraft::ranges`].
     SweepRanges,
+    /// [`super::Draft::plots`].
+    Plots,
+    /// [`super::Draft::designs`].
+    Designs,
 }
 
 /// Location in a draft.
@@ -135,6 +139,8 @@ impl fmt::Display for Section {
             Self::Tolerances | Self::SweepRanges => "variables",
             Self::Correlations => "correlations",
             Self::Sweep => "sweep",
+            Self::Plots => "plots",
+            Self::Designs => "designs",
         })
     }
 }

@@ -332,6 +332,17 @@ macro_rules! in_models {
                 }
             }
 
+            /// Type of an output as model files write it, such as `toe` or `position`; of a wheel or axle that of its
+            /// measure.
+            pub fn type_of(&self, output: OutputSource) -> &'static str {
+                let OutputSource::Measure(k) = output else { return "position" };
+                match &self.measures[k].kind {
+                    $(MeasureKind::$variant { .. } => $name,)*
+                    MeasureKind::Wheel { what, .. } => what.name(),
+                    MeasureKind::Axle { what, .. } => what.name(),
+                }
+            }
+
             /// Time derivatives that are known of an output: the motion ends at accelerations.
             pub fn known(&self, output: OutputSource) -> KnownOrders {
                 let known = self.known_along_motion(output);

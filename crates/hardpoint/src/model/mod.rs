@@ -13,6 +13,7 @@ mod measure;
 mod measured;
 mod metric;
 mod optimization;
+mod page;
 mod shared;
 mod solid;
 mod spring_table;
@@ -41,6 +42,7 @@ pub use measured::{Measurements, Reading};
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, LimitTarget, OptimizationSettings};
+pub use page::{NamedDesign, Plot};
 pub use shared::SharedModel;
 pub(crate) use solid::about_centre;
 pub use solid::{OpenSurface, Solid};
@@ -155,6 +157,10 @@ pub struct Model {
     pub tolerancing: Option<ToleranceSettings>,
     /// Settings of the sweep, if the file has them.
     pub sweeping: Option<SweepSettings>,
+    /// Plots that a page opens with, in the order of the file; by default those that suit the mechanism.
+    pub plots: Vec<Plot>,
+    /// Named designs, in the order of the file.
+    pub designs: Vec<NamedDesign>,
 }
 
 /// A named point of the design configuration.

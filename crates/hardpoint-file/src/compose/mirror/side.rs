@@ -399,7 +399,8 @@ impl<'a> Side<'_, 'a> {
         }
     }
 
-    /// Cases of one side become cases of the other; in all other cases a driver's law also applies to its image.
+    /// Cases of one side become cases of the other; in all other cases the law of a driver or a force also applies to
+    /// its image.
     pub fn cases(&mut self, cases: &mut DeTable<'a>) {
         let of_case = self.format.entries_of("cases");
         let of_laws = if let Shape::Table(case) = of_case { case.entries_of("laws") } else { Shape::Text };
@@ -417,11 +418,14 @@ impl<'a> Side<'_, 'a> {
                 laws.iter().map(|(k, v)| (k.get_ref().to_string(), k.span(), v.clone())).collect();
             for (driver, at, mut law) in originals {
                 let Some(twin) = self.rule.twin(&driver) else { continue };
-                if !self.made.contains_key(&("drivers", twin.clone())) || laws.contains_key(&*twin) {
+                // The image of a force has the same sign.
+                let is_force = self.made.contains_key(&("forces", twin.clone()));
+                let is_made = is_force || self.made.contains_key(&("drivers", twin.clone()));
+                if !is_made || laws.contains_key(&*twin) {
                     continue;
                 }
                 self.rule.mirror(of_laws, &mut law, &|_| false);
-                if self.is_turned(&driver) && !turn_law(&mut law, self.rule.numbers) {
+                if !is_force && self.is_turned(&driver) && !turn_law(&mut law, self.rule.numbers) {
                     self.no_law(at.clone(), &driver);
                 }
                 laws.insert(Spanned::new(at, Cow::Owned(twin)), law);

@@ -274,7 +274,7 @@ impl Checker<'_> {
     }
 
     /// Returns the output with this name: a measure, or a component of a point.
-    fn output(&mut self, name: &str, at: DraftLocation) -> Option<OutputSource> {
+    pub(super) fn output(&mut self, name: &str, at: DraftLocation) -> Option<OutputSource> {
         let number = |what: &str, name: &str| self.numbers.get(what).and_then(|n| n.get(name)).copied();
         if let Some(k) = number("measure", name) {
             return Some(OutputSource::Measure(k));

@@ -153,7 +153,7 @@ impl Checker<'_> {
 
     /// Converts a value of a variable from user units to a change in SI; values of a parameter are relative to its
     /// nominal value.
-    fn in_si(&self, variable: VariableId, quantity: Quantity, x: f64, per: [f64; 2]) -> f64 {
+    pub(super) fn in_si(&self, variable: VariableId, quantity: Quantity, x: f64, per: [f64; 2]) -> f64 {
         x / per_si(Dimension::from(quantity), per[0], per[1]) - self.model.nominal_value(variable)
     }
 
