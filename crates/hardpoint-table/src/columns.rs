@@ -99,6 +99,9 @@ impl Columns<'_> {
 
     /// Columns of the third time derivatives of all bodies.
     pub fn of_jerk(&self) -> Vec<Column> {
+        if self.is_at_rest() {
+            return Vec::new();
+        }
         let of_body = |body: &hardpoint::model::Body| {
             let place = self.components(&body.name, LETTERS[3], Length, 3);
             place.into_iter().chain(self.components(&body.name, "angular_jerk_", Angle, 3))
@@ -160,6 +163,9 @@ impl Columns<'_> {
 
     /// Appends the third time derivatives at output time k.
     pub fn jerk(&self, jerks: &Jerks, k: usize, row: &mut Vec<f64>) {
+        if self.is_at_rest() {
+            return;
+        }
         for body in &jerks.at(k)[1..] {
             push(row, |x| self.units.from_si(Length, x), body.jerk);
             push(row, |x| self.units.from_si(Angle, x), body.angular);

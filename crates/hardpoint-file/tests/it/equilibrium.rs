@@ -576,6 +576,8 @@ fn faults_are_reported() {
         lever(800.0).replace("[measures]", "[measures]\nspeed = { type = \"velocity\", point = \"tip\" }"),
         lever(800.0).replace("[equilibrium]", ""),
         lever(800.0).replace("force = \"load\"", "force = \"elastic\""),
+        lever(800.0)
+            + "[metrics]\nsoft = { of = \"soft\", take = \"max\" }\n[optimize]\nvariables = [\"length\"]\ngoals = { soft = {} }\n",
     ];
     let found: Vec<String> = texts
         .iter()

@@ -936,6 +936,15 @@ impl Model {
         self.depends_on_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
     }
 
+    /// True if the sensitivities of an output by the design variables are known. In a model with equilibrium those of
+    /// slopes and compliances are not.
+    pub fn has_sensitivities(&self, output: OutputSource) -> bool {
+        let (Some(_), OutputSource::Measure(k)) = (&self.equilibrium, output) else { return true };
+        let kind = &self.measures[k].kind;
+        let is_derivative = self.depends_on_driver(k) || matches!(kind, MeasureKind::Compliance { .. });
+        !is_derivative && kind.sources().into_iter().all(|source| self.has_sensitivities(source))
+    }
+
     /// Dimension of a driver's force: its product with the driven quantity is work.
     pub fn force_on(&self, driver: &Driver) -> Dimension {
         match self.driven(driver).quantity {

@@ -146,7 +146,8 @@ fn deflection_against_a_spring_table_follows_its_slope() {
             of: "tip.y".into(),
             at: Some(on("rotor", [arm, 0.0, 0.0])),
             wheel: None,
-            along: [0.0, 1.0, 0.0].into(),
+            force: None,
+            along: Some([0.0, 1.0, 0.0].into()),
             released: Some("motor".into()),
         };
         values(&run(&draft.measure("give", kind), Formulation::Relative), "give")[0]
@@ -314,7 +315,9 @@ fn strut_on_its_wheel(push: [Option<NumberDraft>; 3]) -> Draft {
         brakes: None,
     });
     let [outboard, forward, up] = push;
-    let kind = ElementKindDraft::WheelForce { wheel: "fl".into(), outboard, forward, up, law: None };
+    let (at, about_up) = (None, None);
+    let kind =
+        ElementKindDraft::WheelForce { wheel: "fl".into(), at, outboard, forward, up, about_up, law: None };
     draft.forces.push(ElementDraft::new("road", kind));
     for what in [WheelMeasure::ContactX, WheelMeasure::ContactY, WheelMeasure::ContactZ, WheelMeasure::Toe] {
         draft = draft.measure(what.name(), MeasureKindDraft::Wheel { wheel: "fl".into(), what });
@@ -376,7 +379,8 @@ fn a_wheel_is_compliant_like_its_point_of_the_knuckle() {
         of: "toe".into(),
         at,
         wheel,
-        along: [0.0, 1.0, 0.0].into(),
+        force: None,
+        along: Some([0.0, 1.0, 0.0].into()),
         released: None,
     };
     draft = draft.measure("gives", give(None, Some("fl".into())));

@@ -495,16 +495,18 @@ fn compliance(of: &str, at: PointRef, along: [f64; 3]) -> MeasureKindDraft {
         of: of.into(),
         at: Some(at),
         wheel: None,
-        along: along.into(),
+        force: None,
+        along: Some(along.into()),
         released: None,
     }
 }
 
 fn elastic(name: &str, joint: &str, stiffness: [f64; 3], about_z: Option<f64>) -> ElementDraft {
-    let [x, y, z] = stiffness.map(|k| Some(k.into()));
-    let (about_x, about_y, about_z) = (None, None, about_z.map(NumberDraft::from));
-    let kind = ElementKindDraft::ElasticJoint { joint: joint.into(), x, y, z, about_x, about_y, about_z };
-    ElementDraft::new(name, kind)
+    let mut element = Draft::default().elastic_joint(name, joint, stiffness).forces.remove(0);
+    if let ElementKindDraft::ElasticJoint { about_z: about, .. } = &mut element.kind {
+        *about = about_z.map(NumberDraft::from);
+    }
+    element
 }
 
 #[test]
@@ -618,7 +620,8 @@ fn with_its_driver_released_a_strut_deflects_against_its_spring() {
         of: "tip.y".into(),
         at: Some(on("rotor", [arm, 0.0, 0.0])),
         wheel: None,
-        along: [0.0, 1.0, 0.0].into(),
+        force: None,
+        along: Some([0.0, 1.0, 0.0].into()),
         released: Some("motor".into()),
     };
     let solution = run(&draft.measure("give", kind), Formulation::Relative);
