@@ -522,15 +522,16 @@ impl<'a> Compose<'a> {
 
     /// Named designs of the model file.
     fn named_designs(&self) -> Vec<NamedDesign> {
+        // A motion that is solved without variables has no designs.
         let change = |(variable, by): &(VariableId, f64)| {
-            let of = &self.model.variables[variable.0];
-            NamedChange { name: of.name.clone(), by: self.units.from_si(of.quantity, *by) }
+            let of = self.model.variables.get(variable.0)?;
+            Some(NamedChange { name: of.name.clone(), by: self.units.from_si(of.quantity, *by) })
         };
-        let design = |design: &hardpoint::model::NamedDesign| NamedDesign {
-            name: design.name.clone(),
-            changes: design.changes.iter().map(change).collect(),
+        let design = |design: &hardpoint::model::NamedDesign| {
+            let changes = design.changes.iter().map(change).collect::<Option<_>>()?;
+            Some(NamedDesign { name: design.name.clone(), changes })
         };
-        self.model.designs.iter().map(design).collect()
+        self.model.designs.iter().filter_map(design).collect()
     }
 
     /// Quantity from a function of step and order, SI. `group` and `kind` are its heading and its type.

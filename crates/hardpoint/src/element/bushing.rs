@@ -15,7 +15,7 @@ impl Bushing {
 
     /// Wrench on body j.                                                                                      (44)
     fn wrench<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Wrench<T> {
-        let push = self.opening(at).wrench(at, &self.elasticities());
+        let push = at.elastic_wrench(&self.opening(at), &self.elasticities());
         let Some(damping) = self.damping else { return push };
         // -c v,  v of P_j as seen from i
         let (i, j, q) = (at.body(self.from), at.body(self.to), at.point(self.to));
@@ -64,7 +64,8 @@ impl ForceFormula for Bushing {
     fn deflections<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId, mut each: impl FnMut(T, T)) {
         let opening = self.opening(at);
         for (k, of) in self.elasticities().iter().enumerate() {
-            each(opening.coordinates[k], opening.force(at, k, of)[1]);
+            let [_, stiffness] = at.elastic_force(opening.coordinates[k], of);
+            each(opening.coordinates[k], stiffness);
         }
     }
 }

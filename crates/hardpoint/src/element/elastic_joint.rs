@@ -24,7 +24,11 @@ impl ForceProperties for ElasticJoint {
             table: None,
             law: None,
             is_arithmetic: self.elasticities().iter().all(|of| of.curve.is_none()),
-            compliance: Compliance::Joint(self.joint, self.stiffnesses()),
+            compliance: Compliance::Joint {
+                joint: self.joint,
+                stiffnesses: self.stiffnesses(),
+                gives: self.elasticities().map(|of| of.gives()),
+            },
             friction: None,
         }
     }
@@ -53,11 +57,12 @@ impl CheckElement for ElasticJoint {
 impl ForceFormula for ElasticJoint {
     fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId, out: &mut [Wrench<T>]) {
         let Some(opening) = at.opening(self.joint) else { return };
-        at.apply_between(self.joint, opening.wrench(at, &self.elasticities()), T::one(), out);
+        at.apply_between(self.joint, at.elastic_wrench(&opening, &self.elasticities()), T::one(), out);
     }
 
     fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId) -> T {
-        at.opening(self.joint).map_or(T::zero(), |opening| opening.wrench(at, &self.elasticities()).f.norm())
+        at.opening(self.joint)
+            .map_or(T::zero(), |opening| at.elastic_wrench(&opening, &self.elasticities()).f.norm())
     }
 
     fn deflections<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId, _: impl FnMut(T, T)) {}

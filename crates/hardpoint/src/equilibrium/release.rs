@@ -2,7 +2,7 @@
 
 use crate::joint::{self, DIRECTIONS, elastic, free_directions};
 use crate::law::Law;
-use crate::model::element::ElementKind;
+use crate::model::element::Compliance;
 use crate::model::{BodyId, Driver, DriverId, GROUND, HardpointId, Joint, JointId, LoadMode, Model};
 use crate::space::Mat3;
 use crate::topology::{Formulation, OpenTree, Topology, TopologyError, dependence, open_tree};
@@ -95,12 +95,11 @@ fn elastic_directions(model: &Model, joint: JointId) -> [bool; DIRECTIONS] {
     let free = free_directions(model.joints[joint.0].kind);
     let mut gives = [false; DIRECTIONS];
     for element in &model.elements {
-        if let ElementKind::ElasticJoint(elastic) = &element.kind
-            && elastic.joint == joint
+        if let Some(Compliance::Joint { joint: of, gives: own, .. }) =
+            element.kind.force(model).map(|force| force.compliance)
+            && of == joint
         {
-            for (k, of) in elastic.elasticities().iter().enumerate() {
-                gives[k] |= of.gives() && !free[k];
-            }
+            (0..DIRECTIONS).for_each(|k| gives[k] |= own[k] && !free[k]);
         }
     }
     gives

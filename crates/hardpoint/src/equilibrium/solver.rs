@@ -5,6 +5,7 @@ use crate::linalg::Elimination;
 use crate::load::{GivenLoads, OpeningLoads};
 use crate::measure::{Instant, StepValues};
 use crate::model::{DriverId, MeasureKind, Model};
+use crate::motion::mechanism::StepRejection;
 use crate::motion::stepper::Stepper;
 use crate::motion::{GivingDirection, Stop, StopKind, advance};
 use crate::number::Dual;
@@ -26,14 +27,29 @@ const SHORTEST: f64 = 1e-9;
 const HOLDS_NOTHING: f64 = 1e-12;
 
 /// Reason why an equilibrium was not found.
-#[derive(Clone, Copy, Debug)]
 enum Rejection {
+    /// Redundant constraints contradict each other in the position.
+    Locked(StepRejection),
     /// The mechanism does not reach the position, or Newton's method does not converge.
     NoConvergence,
     /// The determinant of the stiffness has changed its sign: the equilibrium is not the one that continues the last.
     OtherBranch,
     /// No force resists a motion of this opening.
     NothingHolds(usize),
+}
+
+impl Rejection {
+    /// Why the mechanism does not reach a position.
+    fn of(rejection: StepRejection) -> Self {
+        match rejection {
+            locked @ StepRejection::Locked { .. } => Self::Locked(locked),
+            StepRejection::Position(_)
+            | StepRejection::Branch { .. }
+            | StepRejection::Law { .. }
+            | StepRejection::TooFar { .. }
+            | StepRejection::TooNear => Self::NoConvergence,
+        }
+    }
 }
 
 /// Accepted equilibrium.
@@ -184,7 +200,7 @@ impl<'a> EquilibriumSolver<'a> {
         mut drivers: Vec<f64>,
         given: &GivenLoads,
     ) -> Result<Vec<f64>, Rejection> {
-        advance::move_at_rest(one, &drivers).map_err(|_| Rejection::NoConvergence)?;
+        advance::move_at_rest(one, &drivers).map_err(Rejection::of)?;
         let mut before = f64::INFINITY;
         for pass in 0..MOST_ITERATIONS {
             self.iterations += 1;
@@ -213,7 +229,7 @@ impl<'a> EquilibriumSolver<'a> {
             for (dp, d) in self.correction.iter().zip(self.openings) {
                 drivers[d.0] += dp;
             }
-            advance::shift_at_rest(one, &drivers).map_err(|_| Rejection::NoConvergence)?;
+            advance::shift_at_rest(one, &drivers).map_err(Rejection::of)?;
             if size <= QUADRATIC {
                 // Only an equilibrium has a stability.
                 if self.last.positive.is_some_and(|last| last != positive) {
@@ -344,6 +360,7 @@ impl<'a> EquilibriumSolver<'a> {
     /// Reason why the way to the equilibrium at time t ends after a part of it.
     fn stop(&mut self, one: &mut Stepper<'_>, t: f64, done: f64, rejection: Rejection) -> Box<Stop> {
         let kind = match (rejection, self.last.time) {
+            (Rejection::Locked(rejection), _) => advance::stop_at_rest(one, t, rejection).kind,
             (Rejection::NothingHolds(k), _) => {
                 StopKind::NothingHolds { direction: self.direction(self.openings[k]) }
             }

@@ -6,7 +6,7 @@
 use crate::constraint::{MarkerPair, Row};
 use crate::design::Geometry;
 use crate::measure::WheelAt;
-use crate::model::element::JointFriction;
+use crate::model::element::{Elasticity, JointFriction};
 use crate::model::{
     Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, Wheel,
     WheelId, elements, if_mass,
@@ -255,6 +255,32 @@ impl<T: Real> AppliedLoads<'_, T> {
         let [m_i, m_j] = self.geometry.markers[joint.0];
         let [i, j] = self.model.joints[joint.0].bodies.map(|b| self.bodies[b.0].pose);
         Some(Opening::between(&i.compose(m_i), &j.compose(m_j)))
+    }
+
+    /// Elastic force or moment on body j along a coordinate of an opening, `-(k e + k_3 e^3 + C(e) - f_0)`, and the
+    /// stiffness against it.
+    pub fn elastic_force(&self, e: T, of: &Elasticity<'_>) -> [T; 2] {
+        let stiffness = self.or_zero(of.stiffness);
+        let (mut push, mut slope) = (stiffness * e, stiffness);
+        if let Some(cubic) = of.cubic {
+            let square = self.number(cubic) * e * e;
+            (push, slope) = (push + square * e, slope + square * T::constant(3.0));
+        }
+        if let Some(curve) = of.curve {
+            let [force, by_way] = curve.at(e);
+            (push, slope) = (push + force, slope + by_way);
+        }
+        [self.preload(of.preload) - push, slope]
+    }
+
+    /// Elastic wrench of these laws on body j of an opening; its opposite acts on body i.                       (51)
+    pub fn elastic_wrench(&self, opening: &Opening<T>, laws: &[Elasticity<'_>; 6]) -> Wrench<T> {
+        let mut sum = Wrench::zero();
+        for (k, of) in laws.iter().enumerate().filter(|(_, of)| of.acts()) {
+            let [force, _] = self.elastic_force(opening.coordinates[k], of);
+            sum = opening.wrenches[k].times_plus(force, sum);
+        }
+        sum
     }
 
     /// Unit wrench on body j that does work on a coordinate.

@@ -235,7 +235,7 @@ fn elastic_directions(model: &Model) -> (Vec<Deflection>, Vec<PairDirection>) {
     let (mut ways, mut directions) = (Vec::new(), Vec::new());
     for element in &model.elements {
         let (joint, [slides, turns]) = match element.kind.force(model).map(|force| force.compliance) {
-            Some(Compliance::Joint(joint, stiffnesses)) => (joint, stiffnesses),
+            Some(Compliance::Joint { joint, stiffnesses, gives: _ }) => (joint, stiffnesses),
             Some(Compliance::None | Compliance::Element) | None => continue,
         };
         for (axis, (slide, turn)) in Vec3::AXES.into_iter().zip(slides.into_iter().zip(turns)) {

@@ -4,10 +4,7 @@
 //! displacement along the axes of marker i, then Cardan angles. A force that works on them has a potential if its
 //! stiffnesses are symmetric. Turns of any size are possible about z alone; alpha and beta stay below 90 deg.
 
-use crate::model::element::Elasticity;
 use crate::space::{Pose, Real, Wrench};
-
-use super::acting::AppliedLoads;
 
 /// Coordinates of marker j relative to marker i: x, y, z, m; alpha, beta, gamma, rad.
 pub(crate) struct Opening<T> {
@@ -38,30 +35,5 @@ impl<T: Real> Opening<T> {
         let slides = [x_i, y_i, z_i].map(|axis| Wrench::force(axis, j.r));
         let ([x, y, z], [a, b, c]) = (slides, turns);
         Self { coordinates: [d.x, d.y, d.z, alpha, beta, gamma], wrenches: [x, y, z, a, b, c] }
-    }
-
-    /// Force or moment of each coordinate on body j: `-(k e + k_3 e^3 + C(e) - f_0)`, and the stiffness against it.
-    pub fn force(&self, at: &AppliedLoads<'_, T>, k: usize, of: &Elasticity<'_>) -> [T; 2] {
-        let e = self.coordinates[k];
-        let stiffness = at.or_zero(of.stiffness);
-        let (mut push, mut slope) = (stiffness * e, stiffness);
-        if let Some(cubic) = of.cubic {
-            let square = at.number(cubic) * e * e;
-            (push, slope) = (push + square * e, slope + square * T::constant(3.0));
-        }
-        if let Some(curve) = of.curve {
-            let [force, by_way] = curve.at(e);
-            (push, slope) = (push + force, slope + by_way);
-        }
-        [at.preload(of.preload) - push, slope]
-    }
-
-    /// Wrench on body j of these laws; its opposite acts on body i.
-    pub fn wrench(&self, at: &AppliedLoads<'_, T>, laws: &[Elasticity<'_>; 6]) -> Wrench<T> {
-        let mut sum = Wrench::zero();
-        for (k, of) in laws.iter().enumerate().filter(|(_, of)| of.acts()) {
-            sum = self.wrenches[k].times_plus(self.force(at, k, of)[0], sum);
-        }
-        sum
     }
 }

@@ -607,8 +607,15 @@ pub enum Compliance {
     None,
     /// It deflects: its force depends on the position.
     Element,
-    /// The joint deflects, with these stiffnesses along and about the joint's axes; rigid without one.
-    Joint(JointId, [[Option<NumberId>; 3]; 2]),
+    /// The joint deflects.
+    Joint {
+        /// The joint.
+        joint: JointId,
+        /// Stiffnesses along and about the joint's axes.
+        stiffnesses: [[Option<NumberId>; 3]; 2],
+        /// Directions that give, by a stiffness or a curve; the others are rigid.
+        gives: [bool; 6],
+    },
 }
 
 /// Coulomb friction in a joint, and viscous friction besides.

@@ -76,8 +76,13 @@ pub(crate) fn move_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), 
     let travel = |((from, to), unit): ((&[f64; 3], &f64), &f64)| (to - from[0]).abs() / unit;
     let moved = saved.drivers.iter().zip(values).zip(driver_units).map(travel).fold(0.0, f64::max);
     one.mechanism.restore();
-    hold(one, values, trust(moved))
+    // Without a prediction the first correction is the move itself.
+    hold(one, values, trust(MOVE_PER_TRAVEL * moved))
 }
+
+/// Largest move of a coordinate per travel of the drivers that is taken at once, rad or sizes: arms are shorter than
+/// their loops. The branch is checked besides.
+const MOVE_PER_TRAVEL: f64 = 8.0;
 
 /// Moves all drivers to these values, which are near the position of the state, to a position at rest.
 pub(crate) fn shift_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), StepRejection> {
@@ -88,6 +93,11 @@ pub(crate) fn shift_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(),
 pub(crate) fn accept_at_rest(one: &mut Stepper<'_>, t: f64) {
     one.save(t);
     one.renew_turns();
+}
+
+/// Reason why a mechanism at rest does not reach a position at time t.
+pub(crate) fn stop_at_rest(one: &mut Stepper<'_>, t: f64, rejection: StepRejection) -> Box<Stop> {
+    one.stop(Path::Line { at: t }, 1.0, rejection, true)
 }
 
 /// Counts an output step of a mechanism at rest.

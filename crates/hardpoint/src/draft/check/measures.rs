@@ -60,7 +60,7 @@ impl Checker<'_> {
             self.fault("HP0250", here.key("type"), message).help("add `[masses]`, `[gravity]` or `[forces]`");
         }
         let deflects = |e: &Element| match e.kind.force(&self.model).map(|force| force.compliance) {
-            Some(Compliance::Element | Compliance::Joint(..)) => true,
+            Some(Compliance::Element | Compliance::Joint { .. }) => true,
             Some(Compliance::None) | None => false,
         };
         let rigid = !self.model.elements.iter().any(deflects);
