@@ -59,7 +59,7 @@ pub(crate) const MODEL: Table = table! {
     may "masses": Shape::Entries("a mass", &Shape::Kinds(&elements::MASS)), "{}";
     /// Applied forces: springs, dampers, friction, given forces; bushings and elastic joints.
     may "forces": Shape::Entries("a force", &Shape::Kinds(&elements::FORCE)), "{}";
-    /// Static equilibrium at every output time: elastic joints open under load, and released drivers give way.
+    /// Static equilibrium at every output time: elastic joints open under load, and released drivers move.
     may "equilibrium": Shape::Table(&equilibrium::EQUILIBRIUM), "{ released = [\"bump\"] }";
     /// Numbers to compute from the motion, with their sensitivities.
     may "measures": Shape::Entries("a measure", &measures::MEASURE), "{}";

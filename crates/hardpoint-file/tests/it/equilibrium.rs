@@ -44,7 +44,7 @@ struct State {
     rack: f64,
 }
 
-/// How the double wishbone is written.
+/// Form in which the double wishbone is written.
 #[derive(Clone)]
 struct Written {
     /// Factor of all stiffnesses but those about the axes.

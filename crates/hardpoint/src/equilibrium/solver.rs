@@ -39,7 +39,7 @@ enum Rejection {
 }
 
 impl Rejection {
-    /// Why the mechanism does not reach a position.
+    /// Reason why the mechanism does not reach a position.
     fn of(rejection: StepRejection) -> Self {
         match rejection {
             locked @ StepRejection::Locked { .. } => Self::Locked(locked),
@@ -302,8 +302,8 @@ impl<'a> EquilibriumSolver<'a> {
         self.is_regular = self.factor().is_ok();
     }
 
-    /// Derivatives of the openings by the variables, `p_b = -K^-1 r_b` with r_b those of their forces while all openings
-    /// stand (53); `each` receives the variable and the derivatives.
+    /// Derivatives of the openings by the variables, `p_b = -K^-1 r_b` with r_b those of their forces while all
+    /// openings are fixed (53); `each` receives the variable and the derivatives.
     pub fn differentiate(&mut self, one: &mut Stepper<'_>, t: f64, mut each: impl FnMut(usize, &[f64])) {
         for v in 0..self.variables {
             let rates = self.openings_along(one, self.openings.len() + v, t);
@@ -339,8 +339,8 @@ impl<'a> EquilibriumSolver<'a> {
     pub fn add_compliances(&mut self, one: &Stepper<'_>, out: &mut StepValues) {
         let model = self.model;
         for (m, measure) in model.measures.iter().enumerate() {
-            let MeasureKind::Compliance { of, .. } = measure.kind else { continue };
-            let force = self.loads.unit_force(&measure.kind);
+            let Some(compliance) = measure.kind.compliance() else { continue };
+            let force = self.loads.unit_force(&compliance);
             // K v = W_a . f                                                                               (54)
             let work = |w: &Vec<Twist>| force.iter().map(|(body, f)| f.on(w[*body])).sum();
             let mut response: Vec<f64> = self.unit_twists.iter().map(work).collect();
@@ -353,7 +353,7 @@ impl<'a> EquilibriumSolver<'a> {
                     pose.along(w)
                 })
                 .collect();
-            out.set(m, Instant::new(model, &self.fixed, &poses).output(of).d);
+            out.set(m, Instant::new(model, &self.fixed, &poses).output(compliance.of).d);
         }
     }
 
@@ -393,7 +393,7 @@ impl<'a> EquilibriumSolver<'a> {
         })
     }
 
-    /// What an opening is to the user.
+    /// Returns the direction of an opening, as the user knows it.
     fn direction(&self, opening: DriverId) -> GivingDirection {
         let driver = &self.model.drivers[opening.0];
         let joint = &self.model.joints[driver.joint.0];

@@ -1,7 +1,8 @@
 //! Types of joints that give along and about some of their axes.
 //!
-//! The chain of such a joint is `S(x, y, z) Rx(alpha) Ry(beta) Rz(gamma)` from marker i to marker j, with the directions
-//! that give and those that are free; a rigid direction has no freedom. Its force is a load (`element/elastic_joint.rs`).
+//! The chain of such a joint is `S(x, y, z) Rx(alpha) Ry(beta) Rz(gamma)` from marker i to marker j, with the
+//! directions that give and those that are free; a rigid direction has no freedom. Its force is a load
+//! (`element/elastic_joint.rs`).
 
 use std::sync::{Mutex, PoisonError};
 

@@ -1,7 +1,7 @@
 //! Forces that hold the openings of a mechanism, and their derivatives, at a position at rest.
 
 use crate::design::{DesignMap, DesignVelocity};
-use crate::model::{DriverId, MeasureKind, Model, VariableId};
+use crate::model::{DriverId, ForceOfCompliance, MeasureKind, Model, VariableId};
 use crate::motion::stepper::Stepper;
 use crate::sensitivity::{Differentiated, DirectDifferentiation, PlanVelocity};
 use crate::space::{Twist, Vec3, Wrench};
@@ -142,8 +142,8 @@ impl<'a> OpeningLoads<'a> {
 
     /// Wrenches of a unit force on the bodies, at the position that was solved last: on a point or a wheel's contact
     /// along a direction, or of an element that grows in proportion.
-    pub fn unit_force(&mut self, kind: &MeasureKind) -> Vec<(usize, Wrench<f64>)> {
-        let MeasureKind::Compliance { at, wheel, force, along, .. } = *kind else { return Vec::new() };
+    pub fn unit_force(&mut self, of: &ForceOfCompliance) -> Vec<(usize, Wrench<f64>)> {
+        let ForceOfCompliance { at, wheel, force, along, .. } = *of;
         let bodies = self.statics.position.bodies.len();
         if let Some(e) = force {
             let law = std::mem::replace(&mut self.statics.position.laws[e.0], 1.0);

@@ -310,8 +310,8 @@ macro_rules! elements {
         WheelForce "wheel_force" forces {
             /// The wheel's name.
             wheel: String => WheelId,
-            /// Where it acts: at the contact, as outboard brakes need, or at the wheel centre, as half shafts and
-            /// inboard brakes do. Default: the contact.
+            /// Point that it acts at: the contact, for outboard brakes, or the wheel centre, for half shafts and
+            /// inboard brakes. Default: the contact.
             at: Option<WheelPoint> => Option<WheelPoint>,
             /// Along the ground, away from the vehicle: the horizontal part of the spin axis.
             outboard: Option<NumberDraft> => Option<Force>,
@@ -319,8 +319,8 @@ macro_rules! elements {
             forward: Option<NumberDraft> => Option<Force>,
             /// Along z: the wheel load.
             up: Option<NumberDraft> => Option<Force>,
-            /// The aligning torque: a moment about z on a left wheel and about -z on a right one, so that both sides of a
-            /// vehicle have the same sign.
+            /// The aligning torque: a moment about z on a left wheel and about -z on a right one, so that both sides
+            /// of a vehicle have the same sign.
             about_up: Option<NumberDraft> => Option<Moment>,
             /// Factor of all components over time.
             law: Option<Law> => Option<Law>,

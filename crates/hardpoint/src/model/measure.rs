@@ -638,6 +638,16 @@ impl MeasureKind {
         }
     }
 
+    /// Force of a compliance, and the output that it changes.
+    pub(crate) fn compliance(&self) -> Option<ForceOfCompliance> {
+        match *self {
+            Self::Compliance { of, at, wheel, force, along, released: _ } => {
+                Some(ForceOfCompliance { of, at, wheel, force, along })
+            }
+            Self::Slope { .. } | Self::Wheel { .. } | Self::Axle { .. } | of_bodies!() | loads!() => None,
+        }
+    }
+
     /// Outputs that the measure is made of.
     pub fn sources(&self) -> Vec<OutputSource> {
         match self {
@@ -899,6 +909,17 @@ impl From<Quantity> for Dimension {
     }
 }
 
+/// Unit force of a compliance: on a point or the contact of a wheel along a direction, or an element that grows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ForceOfCompliance {
+    /// Output that it changes.
+    pub of: OutputSource,
+    pub at: Option<PointId>,
+    pub wheel: Option<WheelId>,
+    pub force: Option<ElementId>,
+    pub along: Option<Vec3>,
+}
+
 /// Time derivatives that are known of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KnownOrders {
@@ -941,7 +962,7 @@ impl Model {
     pub fn has_sensitivities(&self, output: OutputSource) -> bool {
         let (Some(_), OutputSource::Measure(k)) = (&self.equilibrium, output) else { return true };
         let kind = &self.measures[k].kind;
-        let is_derivative = self.depends_on_driver(k) || matches!(kind, MeasureKind::Compliance { .. });
+        let is_derivative = self.depends_on_driver(k) || kind.compliance().is_some();
         !is_derivative && kind.sources().into_iter().all(|source| self.has_sensitivities(source))
     }
 

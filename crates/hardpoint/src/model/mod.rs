@@ -37,7 +37,7 @@ pub use measure::{
     Combination, Dimension, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource, Ray,
     ReactionPart,
 };
-pub(crate) use measure::{loads, measures, of_bodies};
+pub(crate) use measure::{ForceOfCompliance, loads, measures, of_bodies};
 pub use measured::{Measurements, Reading};
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
@@ -265,7 +265,7 @@ pub struct IdleRotation {
     pub axis: Vec3,
 }
 
-/// Static equilibrium at every output time: elastic joints open, and some drivers give way, until no force remains.
+/// Static equilibrium at every output time: elastic joints open and some drivers move, until no force remains.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Equilibrium {
     /// Drivers that are not held: the forces on the mechanism determine their values.

@@ -73,7 +73,7 @@ pub enum StopKind {
     NoEquilibrium,
     /// The equilibrium becomes unstable (HP0424).
     Unstable {
-        /// The direction in which the mechanism gives way.
+        /// The direction in which the mechanism moves away.
         direction: GivingDirection,
     },
 }
@@ -172,10 +172,9 @@ impl Stop {
             StopKind::NoEquilibrium => {
                 format!("beyond t = {t:.6} s there is no equilibrium near by: the mechanism snaps through")
             }
-            StopKind::Unstable { direction } => format!(
-                "the equilibrium becomes unstable at t = {t:.6} s: {} gives way",
-                direction.words(model)
-            ),
+            StopKind::Unstable { direction } => {
+                format!("the equilibrium becomes unstable at t = {t:.6} s along {}", direction.words(model))
+            }
         }
     }
 
@@ -196,7 +195,7 @@ impl Stop {
             StopKind::Interrupted => "interrupted".into(),
             StopKind::NoEquilibrium => "there is no further equilibrium near by".into(),
             StopKind::Unstable { direction } => {
-                format!("the equilibrium becomes unstable: {} gives way", direction.words(model))
+                format!("the equilibrium becomes unstable along {}", direction.words(model))
             }
             StopKind::NothingHolds { .. }
             | StopKind::LimitLoad { .. }

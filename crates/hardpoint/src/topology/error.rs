@@ -66,7 +66,7 @@ pub enum TopologyError {
     ElasticLoop {
         /// The joint.
         joint: JointId,
-        /// Its name.
+        /// Name of the joint.
         joint_name: String,
     },
 }
