@@ -341,8 +341,7 @@ macro_rules! elements {
         }
 
         /// A bushing: springs and dampers between two bodies at a place, along the global axes in the design
-        /// configuration, which turn with the first. Angles are counted about x, then y, then z; those about x and y
-        /// stay below 90 deg.
+        /// configuration, which turn with the first.
         Bushing "bushing" forces {
             /// Place on the first body.
             from: PointRef => PointId,
@@ -388,9 +387,8 @@ macro_rules! elements {
             damping: Option<NumberDraft> => Option<Damping>,
         }
 
-        /// A joint that gives along its own axes, z along its axis; they turn with its first body. With
-        /// `[equilibrium]` it opens under load; without, it is rigid, and measures of `compliance` say what it deflects
-        /// to.
+        /// A joint that gives along its own axes, z along its axis. With `[equilibrium]` it opens under load; without,
+        /// it counts for measures of `compliance` only.
         ElasticJoint "elastic_joint" forces {
             /// The joint.
             joint: String => JointId,
