@@ -5,6 +5,7 @@ use hardpoint::motion::StopKind;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse};
+use hardpoint_study::verify::{Options, verify};
 use serde_json::Value;
 
 use crate::diagnostics::snapshot;
@@ -421,6 +422,17 @@ fn sensitivities_are_those_of_solved_designs() {
             );
         }
     }
+}
+
+#[test]
+fn sensitivities_are_verified() {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    let model = file(&wishbone(at, &AS_PUBLISHED)).model;
+    let analysis = Analysis::new(&model).unwrap();
+    let options = Options::default();
+    let found = verify(&analysis, &analysis.run(), &options, |_| std::ops::ControlFlow::Continue(()));
+    let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
+    assert!(found.passed() && found.checks.len() == model.variables.len(), "{worst:?}");
 }
 
 #[test]
