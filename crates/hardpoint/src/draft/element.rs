@@ -68,6 +68,7 @@ macro_rules! in_drafts {
     )*) => {
         /// Kind of an element as written; see [`ElementKind`].
         #[derive(Clone, Debug)]
+        #[allow(clippy::large_enum_variant, reason = "a draft has few elements, and builders name their fields")]
         pub enum ElementKindDraft {
             /// Entry that could not be read.
             Unread,
