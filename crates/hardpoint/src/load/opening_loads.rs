@@ -99,14 +99,8 @@ impl<'a> OpeningLoads<'a> {
         }
         position.laws.copy_from_slice(&given.laws);
         position.share = given.share;
-        let counted = counted.as_ref().map_or(&[][..], |turns| &turns.values);
-        for (near, turns) in position.near.iter_mut().zip(turns) {
-            match *turns {
-                Turns::None | Turns::Length => {}
-                Turns::Coordinate(c) => *near = state.q[c.0],
-                Turns::Path(place) => *near = counted[place],
-            }
-        }
+        let counted = counted.as_ref().map(|turns| &turns.values[..]);
+        Turns::write(turns, state, counted, &mut position.near);
         statics.solve(topology, state);
         for (d, to) in self.openings.iter().zip(out) {
             *to = statics.transmitted.drivers[d.0];

@@ -84,14 +84,8 @@ impl<'a> LoadSolver<'a> {
         for (law, element) in position.laws.iter_mut().zip(&model.elements) {
             *law = element.kind.law(model).map_or(1.0, |law| law.at(t).value());
         }
-        let counted = counted.as_ref().map_or(&[][..], |turns| &turns.values);
-        for (near, turns) in position.near.iter_mut().zip(turns) {
-            match *turns {
-                Turns::None | Turns::Length => {}
-                Turns::Coordinate(c) => *near = state.q[c.0],
-                Turns::Path(place) => *near = counted[place],
-            }
-        }
+        let counted = counted.as_ref().map(|turns| &turns.values[..]);
+        Turns::write(turns, state, counted, &mut position.near);
         position.friction.fill(0.0);
         equilibrium.solve(topology, state);
         let has_friction = !equilibrium.friction.is_empty();

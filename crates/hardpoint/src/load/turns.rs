@@ -2,6 +2,7 @@
 
 use crate::measure::is_counted_of_element;
 use crate::model::{ElementId, Model};
+use crate::motion::kinematics::State;
 use crate::topology::{CoordinateId, Topology};
 
 /// Source of the number of turns of an element's coordinate.
@@ -39,6 +40,18 @@ impl Turns {
             Some((link, freedom)) => Self::Coordinate(link.coordinate_of(freedom)),
             None if is_counted_of_element(model, topology, e) => Self::Path(0),
             None => Self::Length,
+        }
+    }
+
+    /// Sets the coordinates that elements act on, with whole turns, from a position; `counted` are the angles of its
+    /// path.
+    pub fn write(all: &[Self], state: &State<f64>, counted: Option<&[f64]>, near: &mut [f64]) {
+        for (near, turns) in near.iter_mut().zip(all) {
+            match *turns {
+                Self::None | Self::Length => {}
+                Self::Coordinate(c) => *near = state.q[c.0],
+                Self::Path(place) => *near = counted.map_or(f64::NAN, |counted| counted[place]),
+            }
         }
     }
 }
