@@ -20,8 +20,7 @@ const MOST_CASES: usize = 1000;
 pub(crate) const CASE: Table = table! {
     /// A motion of the mechanism, with laws and output times of its own.
     "Case":
-    /// Laws of drivers and forces in this case, by name; each like the `law` of a driver, or that of a force, which
-    /// multiplies it. All other forces keep their laws.
+    /// Laws of drivers and forces in this case, by name; all other forces keep their laws.
     or("{}") "laws": Shape::Entries("a driver", &law::LAW), "{ bump = \"40*sin(2*pi*t)\" }";
     /// Motion of all other drivers.
     or("\"fixed\"") "other_drivers": REST, "\"as_in_model\"";

@@ -23,7 +23,8 @@ fn model(name: &str) -> ModelFile {
     hardpoint_file::read(&folder.join(format!("{name}.toml"))).unwrap()
 }
 
-fn page_of(file: &ModelFile) -> Payload {
+/// Page of a model in its motion.
+pub fn page_of(file: &ModelFile) -> Payload {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let course = Course::of(&file.model, &solution);

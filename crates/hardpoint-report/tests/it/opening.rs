@@ -1,23 +1,12 @@
 //! Opening of the page: plots and named designs of the model file, and the types of quantities.
 
-use hardpoint::Analysis;
 use hardpoint::model::CaseId;
-use hardpoint_file::ModelFile;
-use hardpoint_report::course::Course;
 use hardpoint_report::page::{Admissibility, Gate, NamedChange, NamedDesign, Payload, Plot};
-use hardpoint_report::payload::{Request, payload};
-use hardpoint_report::summary::Summary;
+
+use crate::drawing::page_of;
 
 fn page(text: &str) -> Payload {
     page_of(&hardpoint_file::parse(text, "models.toml").unwrap_or_else(|e| panic!("{e}")))
-}
-
-fn page_of(file: &ModelFile) -> Payload {
-    let analysis = Analysis::new(&file.model).unwrap();
-    let solution = analysis.run();
-    let course = Course::of(&file.model, &solution);
-    let summary = Summary::new(file, analysis.topology(), &course);
-    payload(&Request::of(file, &analysis, &course, &summary))
 }
 
 const STRUT: &str = include_str!("../../../../models/macpherson.toml");

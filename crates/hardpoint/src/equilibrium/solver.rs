@@ -1,7 +1,7 @@
 //! Equilibria of a mechanism at its output times, by Newton's method on the openings.
 
 use crate::design::{BodyFixed, DesignMap, DesignVelocity};
-use crate::linalg::Elimination;
+use crate::linalg::{Elimination, Factored};
 use crate::load::{GivenLoads, OpeningLoads};
 use crate::measure::{Instant, StepValues};
 use crate::model::{DriverId, MeasureKind, Model};
@@ -69,7 +69,8 @@ pub(crate) struct EquilibriumSolver<'a> {
     openings: &'a [DriverId],
     loads: OpeningLoads<'a>,
     variables: usize,
-    /// Drivers that are held.
+    /// Number of the user's drivers, which come first, and those of them that are held.
+    own_drivers: usize,
     held: Vec<DriverId>,
     /// Per opening: twists of the bodies while it moves alone.
     unit_twists: Vec<Vec<Twist>>,
@@ -85,9 +86,10 @@ pub(crate) struct EquilibriumSolver<'a> {
     tangent: Elimination<f64>,
     /// Per opening: its unit, in which the stiffness is near one.
     units: Vec<f64>,
-    correction: Vec<f64>,
     /// True if the stiffness that was factored last is regular.
     is_regular: bool,
+    /// True if the derivatives are those at the equilibrium that was found last.
+    is_prepared: bool,
     /// Iterations so far.
     pub iterations: usize,
 }
@@ -112,6 +114,7 @@ impl<'a> EquilibriumSolver<'a> {
             openings,
             loads: OpeningLoads::new(design_map, topology, values, (openings, kinds), fields, &held),
             variables: fields.len(),
+            own_drivers,
             held,
             unit_twists: vec![vec![Twist::ZERO; model.bodies.len()]; n],
             fixed: design_map.fixed(&constant),
@@ -126,8 +129,8 @@ impl<'a> EquilibriumSolver<'a> {
             stiffness: vec![0.0; n * n],
             tangent: Elimination::new(n),
             units: vec![1.0; n],
-            correction: vec![0.0; n],
             is_regular: false,
+            is_prepared: false,
             iterations: 0,
         }
     }
@@ -175,7 +178,7 @@ impl<'a> EquilibriumSolver<'a> {
             self.path.remove(0);
         }
         one.effort.equilibrium_iterations = self.iterations;
-        advance::count_at_rest(one);
+        advance::count(one);
         self.path.push((t, self.openings.iter().map(|d| self.last.drivers[d.0]).collect()));
         Ok(())
     }
@@ -200,6 +203,7 @@ impl<'a> EquilibriumSolver<'a> {
         mut drivers: Vec<f64>,
         given: &GivenLoads,
     ) -> Result<Vec<f64>, Rejection> {
+        self.is_prepared = false;
         advance::move_at_rest(one, &drivers).map_err(Rejection::of)?;
         let mut before = f64::INFINITY;
         for pass in 0..MOST_ITERATIONS {
@@ -207,14 +211,12 @@ impl<'a> EquilibriumSolver<'a> {
             self.loads.forces(one, given, &mut self.forces);
             self.set_tangent(one, t);
             let positive = self.factor()?;
-            // K dp = -r, in units of the openings                                                             (52)
-            let scaled = self.correction.iter_mut().zip(&self.forces).zip(&self.units);
-            scaled.for_each(|((dp, r), unit)| *dp = -r * unit);
-            self.tangent.solve(&mut self.correction);
+            // K dp = -r                                                                                       (52)
+            let mut correction: Vec<f64> = self.forces.iter().map(|r| -r).collect();
+            self.respond(&mut correction);
             let mut size = 0.0_f64;
-            for ((dp, unit), d) in self.correction.iter_mut().zip(&self.units).zip(self.openings) {
-                *dp *= unit;
-                let scaled = (*dp / one.mechanism.driver_units[d.0]).abs();
+            for (dp, d) in correction.iter().zip(self.openings) {
+                let scaled = (dp / one.mechanism.driver_units[d.0]).abs();
                 // NaN is larger than anything.
                 size = if scaled <= size { size } else { scaled };
             }
@@ -226,7 +228,7 @@ impl<'a> EquilibriumSolver<'a> {
             if !(size <= limit) {
                 return Err(Rejection::NoConvergence);
             }
-            for (dp, d) in self.correction.iter().zip(self.openings) {
+            for (dp, d) in correction.iter().zip(self.openings) {
                 drivers[d.0] += dp;
             }
             advance::shift_at_rest(one, &drivers).map_err(Rejection::of)?;
@@ -262,16 +264,21 @@ impl<'a> EquilibriumSolver<'a> {
             let diagonal = self.stiffness[a * n + a].abs();
             self.units[a] = if diagonal > 0.0 { 1.0 / diagonal.sqrt() } else { 1.0 };
         }
+        let factored = self.factor_shifted(0.0);
+        self.is_regular = n == 0 || factored.pivot_ratio > HOLDS_NOTHING;
+        if self.is_regular { Ok(factored.positive) } else { Err(Rejection::NothingHolds(self.least_held())) }
+    }
+
+    /// Factors the scaled stiffness, with this added to its diagonal.
+    fn factor_shifted(&mut self, shift: f64) -> Factored<f64> {
+        let n = self.openings.len();
         for a in 0..n {
             for (b, to) in self.tangent.row_mut(a).iter_mut().enumerate() {
-                *to = self.stiffness[a * n + b] * self.units[a] * self.units[b];
+                let diagonal = if a == b { shift } else { 0.0 };
+                *to = self.stiffness[a * n + b] * self.units[a] * self.units[b] + diagonal;
             }
         }
-        let factored = self.tangent.factor();
-        if n > 0 && !(factored.pivot_ratio > HOLDS_NOTHING) {
-            return Err(Rejection::NothingHolds(self.least_held()));
-        }
-        Ok(factored.positive)
+        self.tangent.factor()
     }
 
     /// The opening that the least force resists: the largest component of the direction without stiffness.
@@ -279,13 +286,7 @@ impl<'a> EquilibriumSolver<'a> {
         let n = self.openings.len();
         // Inverse iteration from a vector that is not symmetric.
         let mut direction: Vec<f64> = (0..n).map(|k| 1.0 + 0.1 * k as f64).collect();
-        for a in 0..n {
-            for (b, to) in self.tangent.row_mut(a).iter_mut().enumerate() {
-                let shift = if a == b { HOLDS_NOTHING } else { 0.0 };
-                *to = self.stiffness[a * n + b] * self.units[a] * self.units[b] + shift;
-            }
-        }
-        self.tangent.factor();
+        self.factor_shifted(HOLDS_NOTHING);
         for _ in 0..3 {
             self.tangent.solve(&mut direction);
             let size = direction.iter().map(|x| x.abs()).fold(0.0, f64::max);
@@ -294,17 +295,20 @@ impl<'a> EquilibriumSolver<'a> {
         (0..n).fold(0, |best, k| if direction[k].abs() > direction[best].abs() { k } else { best })
     }
 
-    /// Prepares the derivatives at the equilibrium that was found last.
-    pub fn prepare(&mut self, one: &mut Stepper<'_>, t: f64) {
-        let given = self.last.loads.clone();
-        self.loads.forces(one, &given, &mut self.forces);
-        self.set_tangent(one, t);
-        self.is_regular = self.factor().is_ok();
+    /// Sets the derivatives at the equilibrium that was found last, unless they are set.
+    fn prepare(&mut self, one: &mut Stepper<'_>, t: f64) {
+        if !std::mem::replace(&mut self.is_prepared, true) {
+            self.loads.forces(one, &self.last.loads, &mut self.forces);
+            self.set_tangent(one, t);
+            // A singular stiffness gives derivatives that are not known.
+            let _ = self.factor();
+        }
     }
 
     /// Derivatives of the openings by the variables, `p_b = -K^-1 r_b` with r_b those of their forces while all
     /// openings are fixed (53); `each` receives the variable and the derivatives.
     pub fn differentiate(&mut self, one: &mut Stepper<'_>, t: f64, mut each: impl FnMut(usize, &[f64])) {
+        self.prepare(one, t);
         for v in 0..self.variables {
             let rates = self.openings_along(one, self.openings.len() + v, t);
             each(v, &rates);
@@ -313,6 +317,7 @@ impl<'a> EquilibriumSolver<'a> {
 
     /// Derivatives of the openings by each driver that is held.
     pub fn driver_rates(&mut self, one: &mut Stepper<'_>, t: f64) -> Vec<(DriverId, Vec<f64>)> {
+        self.prepare(one, t);
         let first = self.openings.len() + self.variables;
         let held = self.held.clone();
         held.into_iter().enumerate().map(|(k, d)| (d, self.openings_along(one, first + k, t))).collect()
@@ -336,10 +341,11 @@ impl<'a> EquilibriumSolver<'a> {
     }
 
     /// Writes the compliances at the equilibrium: derivatives of outputs by forces, with all loads there.
-    pub fn add_compliances(&mut self, one: &Stepper<'_>, out: &mut StepValues) {
+    pub fn add_compliances(&mut self, one: &mut Stepper<'_>, t: f64, out: &mut StepValues) {
         let model = self.model;
         for (m, measure) in model.measures.iter().enumerate() {
             let Some(compliance) = measure.kind.compliance() else { continue };
+            self.prepare(one, t);
             let force = self.loads.unit_force(&compliance);
             // K v = W_a . f                                                                               (54)
             let work = |w: &Vec<Twist>| force.iter().map(|(body, f)| f.on(w[*body])).sum();
@@ -368,12 +374,8 @@ impl<'a> EquilibriumSolver<'a> {
             (Rejection::NoConvergence, Some(_)) => StopKind::NoEquilibrium,
             (Rejection::OtherBranch, _) => {
                 // The direction in which the stiffness vanishes.
-                let given = self.last.loads.clone();
-                let values = self.last.drivers.clone();
-                if advance::move_at_rest(one, &values).is_ok() {
-                    self.loads.forces(one, &given, &mut self.forces);
-                    self.set_tangent(one, t);
-                    let _ = self.factor();
+                if advance::move_at_rest(one, &self.last.drivers).is_ok() {
+                    self.prepare(one, t);
                 }
                 let k = self.least_held();
                 StopKind::Unstable { direction: self.direction(self.openings[k]) }
@@ -398,10 +400,11 @@ impl<'a> EquilibriumSolver<'a> {
         let driver = &self.model.drivers[opening.0];
         let joint = &self.model.joints[driver.joint.0];
         let along = joint.kind.coordinates[driver.coordinate].name;
-        if joint.unnamed && joint.bodies[0] == crate::model::GROUND && joint.kind.name == "fixed" {
-            GivingDirection::Body(joint.bodies[1], along)
-        } else if joint.unnamed {
+        // Released drivers come first, then openings of joints, some of which only place a body.
+        if opening.0 < self.own_drivers {
             GivingDirection::Driver(opening)
+        } else if joint.unnamed {
+            GivingDirection::Body(joint.bodies[1], along)
         } else {
             GivingDirection::Joint(driver.joint, along)
         }

@@ -310,8 +310,7 @@ macro_rules! elements {
         WheelForce "wheel_force" forces {
             /// The wheel's name.
             wheel: String => WheelId,
-            /// Point that it acts at: the contact, for outboard brakes, or the wheel centre, for half shafts and
-            /// inboard brakes. Default: the contact.
+            /// The contact, for outboard brakes, or the wheel centre, for half shafts. Default: the contact.
             at: Option<WheelPoint> => Option<WheelPoint>,
             /// Along the ground, away from the vehicle: the horizontal part of the spin axis.
             outboard: Option<NumberDraft> => Option<Force>,
@@ -319,8 +318,7 @@ macro_rules! elements {
             forward: Option<NumberDraft> => Option<Force>,
             /// Along z: the wheel load.
             up: Option<NumberDraft> => Option<Force>,
-            /// The aligning torque: a moment about z on a left wheel and about -z on a right one, so that both sides
-            /// of a vehicle have the same sign.
+            /// The aligning torque: a moment about z on a left wheel, about -z on a right one.
             about_up: Option<NumberDraft> => Option<Moment>,
             /// Factor of all components over time.
             law: Option<Law> => Option<Law>,
@@ -387,8 +385,8 @@ macro_rules! elements {
             damping: Option<NumberDraft> => Option<Damping>,
         }
 
-        /// A joint that gives along its own axes, z along its axis. With `[equilibrium]` it opens under load; without,
-        /// it counts for measures of `compliance` only.
+        /// A joint that gives along its own axes, z along its axis: under load with `[equilibrium]`, otherwise only for
+        /// measures of `compliance`.
         ElasticJoint "elastic_joint" forces {
             /// The joint.
             joint: String => JointId,

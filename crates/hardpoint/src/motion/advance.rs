@@ -100,11 +100,6 @@ pub(crate) fn stop_at_rest(one: &mut Stepper<'_>, t: f64, rejection: StepRejecti
     one.stop(Path::Line { at: t }, 1.0, rejection, true)
 }
 
-/// Counts an output step of a mechanism at rest.
-pub(crate) fn count_at_rest(one: &mut Stepper<'_>) {
-    count(one);
-}
-
 /// Solves the position from that of the state with all drivers at rest at these values.
 fn hold(one: &mut Stepper<'_>, values: &[f64], trust: f64) -> Result<(), StepRejection> {
     let mechanism = &mut one.mechanism;
@@ -117,7 +112,7 @@ fn hold(one: &mut Stepper<'_>, values: &[f64], trust: f64) -> Result<(), StepRej
 }
 
 /// Counts an output step.
-fn count(Stepper { mechanism, effort, .. }: &mut Stepper<'_>) {
+pub(crate) fn count(Stepper { mechanism, effort, .. }: &mut Stepper<'_>) {
     effort.steps += 1;
     effort.iterations = mechanism.state.iterations;
     effort.worst_residual = effort.worst_residual.max(mechanism.residuals.largest);

@@ -1,6 +1,8 @@
 //! Second design derivatives over a motion: Hessians, Hessian-vector products, and the curvature of curves along a
 //! change.
 
+use std::collections::BTreeSet;
+
 use super::{Analysis, PreparedDesign, Run, Solution, Walk};
 use crate::design::BodyFixed;
 use crate::measure::{Instant, Output, bodies_asked_for, outputs};
@@ -110,31 +112,30 @@ impl Analysis<'_> {
                 .collect()
         };
         let here = self.solve(Run::new().at(&values));
-        let mut found: Vec<[Vec<f64>; 2]> = Vec::new();
-        let mut steps = here.motion.len();
-        for &[u, w] in pairs {
-            // Where the nominal design has no equilibrium, others need not have one.
-            if here.stop.is_some() {
-                steps = 0;
-                break;
-            }
+        // Where the nominal design has no equilibrium, others need not have one.
+        let mut steps = if here.stop.is_some() { 0 } else { here.motion.len() };
+        let mut found: Vec<[Vec<f64>; 2]> = vec![Default::default(); pairs.len()];
+        let seconds: BTreeSet<usize> = pairs.iter().map(|[_, w]| *w).filter(|_| steps > 0).collect();
+        for w in seconds {
             let natural = |(v, rate): (usize, &f64)| rate.abs() / model.natural_step(VariableId(v));
             let size = directions[w].iter().enumerate().map(natural).fold(0.0, f64::max);
             let step = if size > 0.0 { DIFFERENCE / size } else { 1.0 };
-            let [ahead, behind] = [step, -step].map(|h| {
-                let moved: Vec<f64> =
-                    values.iter().zip(&directions[w]).map(|(x, rate)| x + h * rate).collect();
-                let run = self.solve(Run::new().at(&moved));
-                steps = steps.min(run.motion.len());
-                along(&run, &directions[u])
+            let ends = [step, -step].map(|h| {
+                let along_w = values.iter().zip(&directions[w]);
+                let moved: Vec<f64> = along_w.map(|(x, rate)| x + h * rate).collect();
+                self.solve(Run::new().at(&moved))
             });
-            let bend = ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * step)).collect();
-            found.push([bend, along(&here, &directions[w])]);
+            steps = ends.iter().fold(steps, |steps, run| steps.min(run.motion.len()));
+            for (pair, found) in pairs.iter().zip(&mut found).filter(|([_, of], _)| *of == w) {
+                let [ahead, behind] = ends.each_ref().map(|run| along(run, &directions[pair[0]]));
+                let bend = ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * step)).collect();
+                *found = [bend, along(&here, &directions[w])];
+            }
         }
         let nan = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
         let unknown = BodyCurvature { d2r: nan, ddpi: nan };
+        let count = outputs.len();
         let numbers = |which: usize| -> Vec<f64> {
-            let count = outputs.len();
             let of = |k: usize| found.iter().flat_map(move |pair| &pair[which][k * count..][..count]);
             (0..steps).flat_map(of).copied().collect()
         };
@@ -146,7 +147,7 @@ impl Analysis<'_> {
             bodies: model.bodies.len(),
             curvatures: vec![unknown; steps * pairs.len() * model.bodies.len()],
             stop: here.stop,
-            outputs: outputs.clone(),
+            outputs,
         }
     }
 }

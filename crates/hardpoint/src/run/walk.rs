@@ -233,11 +233,8 @@ impl<'a> Walk<'a> {
         if let Some(loads) = loads {
             loads.step(&mut self.one, t);
         }
-        if let Some(equilibrium) = &mut self.equilibrium {
-            equilibrium.prepare(&mut self.one, t);
-            if let Some(solver) = &mut self.solver {
-                equilibrium.differentiate(&mut self.one, t, |v, rates| solver.set_openings(v, rates));
-            }
+        if let (Some(equilibrium), Some(solver)) = (&mut self.equilibrium, &mut self.solver) {
+            equilibrium.differentiate(&mut self.one, t, |v, rates| solver.set_openings(v, rates));
         }
         if let Some(solver) = &mut self.solver {
             let found = |variable, body, found: &_| sink.sensitivity(k, variable, body, found);

@@ -140,7 +140,7 @@ impl Analysis<'_> {
                         found.set_openings(&equilibrium.driver_rates(one, times[0]));
                     }
                     if let (Some(equilibrium), true) = (equilibrium, measures) {
-                        equilibrium.add_compliances(one, &mut window.slopes);
+                        equilibrium.add_compliances(one, times[0], &mut window.slopes);
                     }
                     if let Some(found) = &mut slopes {
                         found.add(&mut one.mechanism, times[0], &mut window.slopes);
