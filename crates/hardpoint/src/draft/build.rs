@@ -11,6 +11,30 @@ use crate::law::Law;
 use crate::model::Solid;
 use crate::space::Vec3;
 
+/// An element with no elastic laws besides its stiffnesses along x, y and z.
+macro_rules! linear {
+    ($kind:ident { $($field:ident),* }) => {
+        ElementKindDraft::$kind {
+            $($field,)*
+            about_x: None,
+            about_y: None,
+            about_z: None,
+            cubic_x: None,
+            cubic_y: None,
+            cubic_z: None,
+            curve_x: None,
+            curve_y: None,
+            curve_z: None,
+            preload_x: None,
+            preload_y: None,
+            preload_z: None,
+            preload_about_x: None,
+            preload_about_y: None,
+            preload_about_z: None,
+        }
+    };
+}
+
 /// Builder methods, one per kind of entry. Names may be used before they are declared;
 /// [`Model::from_draft`](crate::model::Model::from_draft) checks all of them.
 impl Draft {
@@ -348,30 +372,8 @@ impl Draft {
         stiffness: [impl Into<NumberDraft>; 3],
     ) -> Self {
         let ([i, j], [from, to], [x, y, z]) = (bodies, between, stiffness.map(Into::into));
-        let kind = ElementKindDraft::Bushing {
-            from: PointRef::on(i, from),
-            to: PointRef::on(j, to),
-            x,
-            y,
-            z,
-            about_x: None,
-            about_y: None,
-            about_z: None,
-            cubic_x: None,
-            cubic_y: None,
-            cubic_z: None,
-            curve_x: None,
-            curve_y: None,
-            curve_z: None,
-            preload_x: None,
-            preload_y: None,
-            preload_z: None,
-            preload_about_x: None,
-            preload_about_y: None,
-            preload_about_z: None,
-            damping: None,
-        };
-        self.element(name, kind)
+        let (from, to, damping) = (PointRef::on(i, from), PointRef::on(j, to), None);
+        self.element(name, linear!(Bushing { from, to, x, y, z, damping }))
     }
 
     /// Adds the compliance of a joint, with its stiffnesses along the joint's axes, N/m, z along its axis.
@@ -382,29 +384,8 @@ impl Draft {
         stiffness: [impl Into<NumberDraft>; 3],
     ) -> Self {
         let [x, y, z] = stiffness.map(|k| Some(k.into()));
-        let [about_x, about_y, about_z] = [None, None, None];
-        let kind = ElementKindDraft::ElasticJoint {
-            joint: joint.into(),
-            x,
-            y,
-            z,
-            about_x,
-            about_y,
-            about_z,
-            cubic_x: None,
-            cubic_y: None,
-            cubic_z: None,
-            curve_x: None,
-            curve_y: None,
-            curve_z: None,
-            preload_x: None,
-            preload_y: None,
-            preload_z: None,
-            preload_about_x: None,
-            preload_about_y: None,
-            preload_about_z: None,
-        };
-        self.element(name, kind)
+        let joint = joint.into();
+        self.element(name, linear!(ElasticJoint { joint, x, y, z }))
     }
 
     /// Adds output times, s.

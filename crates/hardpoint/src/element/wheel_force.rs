@@ -35,7 +35,7 @@ impl ForceProperties for WheelForce {
             dimension: if self.is_moment() { Dimension::MOMENT } else { Dimension::FORCE },
             given: match self.about_up {
                 Some(moment) if self.is_moment() => [Some(moment.0), None, None],
-                _ => [self.outboard, self.forward, self.up].map(|n| n.map(|n| n.0)),
+                Some(_) | None => [self.outboard, self.forward, self.up].map(|n| n.map(|n| n.0)),
             },
             table: None,
             law: self.law.as_ref(),

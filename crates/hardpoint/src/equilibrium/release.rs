@@ -45,7 +45,7 @@ pub(crate) fn release(
         open.joints.iter_mut().for_each(|joint| joint.cut = true);
         (1..model.bodies.len()).for_each(|b| float(&mut open, BodyId(b)));
     }
-    let floats = |open: &mut Model, joints: &[(JointId, usize, bool)]| {
+    let drive_all = |open: &mut Model, joints: &[(JointId, usize, bool)]| {
         open.drivers.truncate(own.0);
         for &(joint, rigid, _) in joints {
             drive_openings(open, joint, rigid);
@@ -54,13 +54,13 @@ pub(crate) fn release(
             drive_openings(open, joint, 0);
         }
     };
-    floats(&mut open, &elastic_joints);
+    drive_all(&mut open, &elastic_joints);
     // Bodies that springs alone hold are placed by openings from ground.
     let OpenTree { floating, .. } = open_tree(&open);
     for body in floating {
         float(&mut open, body);
     }
-    floats(&mut open, &elastic_joints);
+    drive_all(&mut open, &elastic_joints);
     // A joint that closes a loop of elastic joints leaves its directions to its force.
     let OpenTree { cut, .. } = open_tree(&open);
     for (joint, _, can_be_cut) in &elastic_joints {
@@ -71,7 +71,7 @@ pub(crate) fn release(
         }
     }
     elastic_joints.retain(|(joint, ..)| !cut[joint.0]);
-    floats(&mut open, &elastic_joints);
+    drive_all(&mut open, &elastic_joints);
     let depends = dependence(&open, own);
     for (joint, freedom) in depends.free {
         let coordinates = open.joints[joint.0].kind.coordinates;

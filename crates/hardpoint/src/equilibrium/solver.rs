@@ -23,6 +23,8 @@ const CONTRACTION: f64 = 0.5;
 const LONGEST: f64 = 0.5;
 /// Shortest part of the way from one equilibrium to the next: if it is rejected, there is none near by.
 const SHORTEST: f64 = 1e-9;
+/// Number of equilibria that a prediction uses.
+const PREDICTED_FROM: usize = 3;
 /// A pivot of the scaled stiffness below this holds nothing.
 const HOLDS_NOTHING: f64 = 1e-12;
 
@@ -344,9 +346,9 @@ impl<'a> EquilibriumSolver<'a> {
     pub fn add_compliances(&mut self, one: &mut Stepper<'_>, t: f64, out: &mut StepValues) {
         let model = self.model;
         for (m, measure) in model.measures.iter().enumerate() {
-            let Some(compliance) = measure.kind.compliance() else { continue };
+            let Some((of, force)) = measure.kind.compliance() else { continue };
             self.prepare(one, t);
-            let force = self.loads.unit_force(&compliance);
+            let force = self.loads.unit_force(force);
             // K v = W_a . f                                                                               (54)
             let work = |w: &Vec<Twist>| force.iter().map(|(body, f)| f.on(w[*body])).sum();
             let mut response: Vec<f64> = self.unit_twists.iter().map(work).collect();
@@ -359,7 +361,7 @@ impl<'a> EquilibriumSolver<'a> {
                     pose.along(w)
                 })
                 .collect();
-            out.set(m, Instant::new(model, &self.fixed, &poses).output(compliance.of).d);
+            out.set(m, Instant::new(model, &self.fixed, &poses).output(of).d);
         }
     }
 
@@ -410,6 +412,3 @@ impl<'a> EquilibriumSolver<'a> {
         }
     }
 }
-
-/// Number of equilibria that a prediction uses.
-const PREDICTED_FROM: usize = 3;

@@ -9,7 +9,7 @@ use crate::design::{BodyFixed, DesignMap, Geometry};
 use crate::linalg::Elimination;
 use crate::measure::{Instant, StepValues, bodies_asked_for};
 use crate::model::element::Compliance;
-use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, NumberId, WheelId};
+use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, NumberId, UnitForce, WheelId};
 use crate::motion::mechanism::Mechanism;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{PairDirection, Seconds, pair_with_variables, values_along_variable};
@@ -149,10 +149,7 @@ impl<'a> Compliances<'a> {
     fn compliance(&self, m: usize, by: usize, deflections: &[Vec<(Dual, Dual)>]) -> Dual {
         let unknown = Dual::constant(f64::NAN);
         let (model, ChangedDesign { fixed, geometry }) = (self.model, &self.changed[by]);
-        let MeasureKind::Compliance { of, at, wheel, along: Some(along), .. } = &model.measures[m].kind
-        else {
-            return unknown;
-        };
+        let Some((of, force)) = model.measures[m].kind.compliance() else { return unknown };
         let released = released_by(model, m);
         let counts = |way: &Deflection| match way {
             Deflection::Opening(_) => true,
@@ -174,11 +171,14 @@ impl<'a> Compliances<'a> {
         let [mut outputs, mut works] = [const { Vec::new() }; 2];
         for &w in &chosen {
             let poses = &self.poses[w];
-            outputs.push(Instant::new(model, fixed, poses).output(*of).d);
-            let p = match (at, wheel) {
-                (Some(at), _) => poses[model.points[at.0].body.0].point(fixed.points[at.0]),
-                (None, Some(wheel)) => self.contact(poses, geometry, *wheel),
-                (None, None) => Vec3::zero(),
+            outputs.push(Instant::new(model, fixed, poses).output(of).d);
+            let (p, along) = match force {
+                UnitForce::Point(at, along) => {
+                    (poses[model.points[at.0].body.0].point(fixed.points[at.0]), along)
+                }
+                UnitForce::Wheel(wheel, along) => (self.contact(poses, geometry, wheel), along),
+                // A force that grows is one of an equilibrium, which another solver finds.
+                UnitForce::Element(_) => return unknown,
             };
             works.push(along.spread::<Number>().dot(p).d);
         }

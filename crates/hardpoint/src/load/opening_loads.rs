@@ -1,10 +1,10 @@
 //! Forces that hold the openings of a mechanism, and their derivatives, at a position at rest.
 
 use crate::design::{DesignMap, DesignVelocity};
-use crate::model::{DriverId, ForceOfCompliance, MeasureKind, Model, VariableId};
+use crate::model::{DriverId, Element, MeasureKind, Model, UnitForce, VariableId};
 use crate::motion::stepper::Stepper;
 use crate::sensitivity::{Differentiated, DirectDifferentiation, PlanVelocity};
-use crate::space::{Twist, Vec3, Wrench};
+use crate::space::{Twist, Wrench};
 use crate::topology::Topology;
 
 use super::derivatives::LoadDerivatives;
@@ -24,8 +24,7 @@ pub(crate) struct GivenLoads {
 impl GivenLoads {
     /// All loads of a model at time t.
     pub fn at(model: &Model, t: f64) -> Self {
-        let law =
-            |element: &crate::model::Element| element.kind.law(model).map_or(1.0, |law| law.at(t).value());
+        let law = |element: &Element| element.kind.law(model).map_or(1.0, |law| law.at(t).value());
         Self { laws: model.elements.iter().map(law).collect(), share: 1.0 }
     }
 
@@ -134,29 +133,28 @@ impl<'a> OpeningLoads<'a> {
         derivatives.differentiate(statics, &by, |n, slope| out[n] = slope);
     }
 
-    /// Wrenches of a unit force on the bodies, at the position that was solved last: on a point or a wheel's contact
-    /// along a direction, or of an element that grows in proportion.
-    pub fn unit_force(&mut self, of: &ForceOfCompliance) -> Vec<(usize, Wrench<f64>)> {
-        let ForceOfCompliance { at, wheel, force, along, .. } = *of;
-        let bodies = self.statics.position.bodies.len();
-        if let Some(e) = force {
-            let law = std::mem::replace(&mut self.statics.position.laws[e.0], 1.0);
-            let mut out = vec![Wrench::zero(); bodies];
-            let applied = self.statics.applied();
-            applied.add(e, &mut out);
-            // Per unit of its size, opposite to the required wrenches.
-            let per = -1.0 / applied.size(e);
-            self.statics.position.laws[e.0] = law;
-            return out.into_iter().map(|w| w.times_plus(per, Wrench::zero())).enumerate().collect();
-        }
-        let (applied, along) = (self.statics.applied(), along.unwrap_or(Vec3::ZERO));
-        match (at, wheel) {
-            (Some(at), _) => vec![(applied.body(at), Wrench::force(along, applied.point(at)))],
-            (None, Some(wheel)) => {
+    /// Wrenches of a unit force on the bodies, at the position that was solved last.
+    pub fn unit_force(&mut self, force: UnitForce) -> Vec<(usize, Wrench<f64>)> {
+        match force {
+            UnitForce::Point(point, along) => {
+                let applied = self.statics.applied();
+                vec![(applied.body(point), Wrench::force(along, applied.point(point)))]
+            }
+            UnitForce::Wheel(wheel, along) => {
+                let applied = self.statics.applied();
                 let contact = applied.wheel(wheel).contact();
                 vec![(applied.model.wheels[wheel.0].body.0, Wrench::force(along, contact))]
             }
-            (None, None) => Vec::new(),
+            UnitForce::Element(e) => {
+                let law = std::mem::replace(&mut self.statics.position.laws[e.0], 1.0);
+                let mut out = vec![Wrench::zero(); self.statics.position.bodies.len()];
+                let applied = self.statics.applied();
+                applied.add(e, &mut out);
+                // Per unit of its size, opposite to the required wrenches.
+                let per = -1.0 / applied.size(e);
+                self.statics.position.laws[e.0] = law;
+                out.into_iter().map(|w| w.times_plus(per, Wrench::zero())).enumerate().collect()
+            }
         }
     }
 }

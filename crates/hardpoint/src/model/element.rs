@@ -136,9 +136,43 @@ numbers! {
 pub const ENDS_MEET: f64 = 1e-9;
 
 /// The types of elements: their fields, as written and as they mean in a model. With its file in `element/`, which has
-/// its properties, check and formula, a type is complete.
+/// its properties, check and formula, a type is complete. Elements with elastic laws share the fields of these.
 macro_rules! elements {
     ($declare:ident) => {
+        elements! { $declare {
+            /// About x.
+            about_x: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// About y.
+            about_y: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// About z.
+            about_z: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// Cubic stiffness along x: a further force of this times the cube of the displacement.
+            cubic_x: Option<NumberDraft> => Option<CubicStiffness>,
+            /// Along y.
+            cubic_y: Option<NumberDraft> => Option<CubicStiffness>,
+            /// Along z.
+            cubic_z: Option<NumberDraft> => Option<CubicStiffness>,
+            /// A further force against the displacement along x, as a curve: `[displacement, force]`, the force in N.
+            curve_x: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Along y.
+            curve_y: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Along z.
+            curve_z: Option<Vec<[f64; 2]>> => Option<SpringTable>,
+            /// Preload: the force that pushes the second body along x in the design configuration.
+            preload_x: Option<NumberDraft> => Option<Force>,
+            /// Along y.
+            preload_y: Option<NumberDraft> => Option<Force>,
+            /// Along z.
+            preload_z: Option<NumberDraft> => Option<Force>,
+            /// The moment that turns the second body about x in the design configuration.
+            preload_about_x: Option<NumberDraft> => Option<Moment>,
+            /// About y.
+            preload_about_y: Option<NumberDraft> => Option<Moment>,
+            /// About z.
+            preload_about_z: Option<NumberDraft> => Option<Moment>,
+        } }
+    };
+    ($declare:ident { $($laws:tt)* }) => {
         $declare! {
         /// A rigid mass: a point mass, unless its inertia is given.
         Rigid "rigid" masses {
@@ -351,36 +385,7 @@ macro_rules! elements {
             y: NumberDraft => Stiffness,
             /// Along z.
             z: NumberDraft => Stiffness,
-            /// About x.
-            about_x: Option<NumberDraft> => Option<TorsionalStiffness>,
-            /// About y.
-            about_y: Option<NumberDraft> => Option<TorsionalStiffness>,
-            /// About z.
-            about_z: Option<NumberDraft> => Option<TorsionalStiffness>,
-            /// Cubic stiffness along x: a further force of this times the cube of the displacement.
-            cubic_x: Option<NumberDraft> => Option<CubicStiffness>,
-            /// Along y.
-            cubic_y: Option<NumberDraft> => Option<CubicStiffness>,
-            /// Along z.
-            cubic_z: Option<NumberDraft> => Option<CubicStiffness>,
-            /// A further force against the displacement along x, as a curve: `[displacement, force]`, the force in N.
-            curve_x: Option<Vec<[f64; 2]>> => Option<SpringTable>,
-            /// Along y.
-            curve_y: Option<Vec<[f64; 2]>> => Option<SpringTable>,
-            /// Along z.
-            curve_z: Option<Vec<[f64; 2]>> => Option<SpringTable>,
-            /// Preload: the force that pushes the second body along x in the design configuration.
-            preload_x: Option<NumberDraft> => Option<Force>,
-            /// Along y.
-            preload_y: Option<NumberDraft> => Option<Force>,
-            /// Along z.
-            preload_z: Option<NumberDraft> => Option<Force>,
-            /// The moment that turns the second body about x in the design configuration.
-            preload_about_x: Option<NumberDraft> => Option<Moment>,
-            /// About y.
-            preload_about_y: Option<NumberDraft> => Option<Moment>,
-            /// About z.
-            preload_about_z: Option<NumberDraft> => Option<Moment>,
+            $($laws)*
             /// Damping, the same along all axes.
             damping: Option<NumberDraft> => Option<Damping>,
         }
@@ -396,36 +401,7 @@ macro_rules! elements {
             y: Option<NumberDraft> => Option<Stiffness>,
             /// Along z.
             z: Option<NumberDraft> => Option<Stiffness>,
-            /// About x.
-            about_x: Option<NumberDraft> => Option<TorsionalStiffness>,
-            /// About y.
-            about_y: Option<NumberDraft> => Option<TorsionalStiffness>,
-            /// About z.
-            about_z: Option<NumberDraft> => Option<TorsionalStiffness>,
-            /// Cubic stiffness along x: a further force of this times the cube of the displacement.
-            cubic_x: Option<NumberDraft> => Option<CubicStiffness>,
-            /// Along y.
-            cubic_y: Option<NumberDraft> => Option<CubicStiffness>,
-            /// Along z.
-            cubic_z: Option<NumberDraft> => Option<CubicStiffness>,
-            /// A further force against the displacement along x, as a curve: `[displacement, force]`, the force in N.
-            curve_x: Option<Vec<[f64; 2]>> => Option<SpringTable>,
-            /// Along y.
-            curve_y: Option<Vec<[f64; 2]>> => Option<SpringTable>,
-            /// Along z.
-            curve_z: Option<Vec<[f64; 2]>> => Option<SpringTable>,
-            /// Preload: the force that pushes the second body along x in the design configuration.
-            preload_x: Option<NumberDraft> => Option<Force>,
-            /// Along y.
-            preload_y: Option<NumberDraft> => Option<Force>,
-            /// Along z.
-            preload_z: Option<NumberDraft> => Option<Force>,
-            /// The moment that turns the second body about x in the design configuration.
-            preload_about_x: Option<NumberDraft> => Option<Moment>,
-            /// About y.
-            preload_about_y: Option<NumberDraft> => Option<Moment>,
-            /// About z.
-            preload_about_z: Option<NumberDraft> => Option<Moment>,
+            $($laws)*
         }
         }
     };

@@ -638,11 +638,17 @@ impl MeasureKind {
         }
     }
 
-    /// Force of a compliance, and the output that it changes.
-    pub(crate) fn compliance(&self) -> Option<ForceOfCompliance> {
+    /// Output of a compliance, and the force that changes it.
+    pub(crate) fn compliance(&self) -> Option<(OutputSource, UnitForce)> {
         match *self {
             Self::Compliance { of, at, wheel, force, along, released: _ } => {
-                Some(ForceOfCompliance { of, at, wheel, force, along })
+                let force = match (force, at, wheel, along) {
+                    (Some(element), ..) => UnitForce::Element(element),
+                    (None, Some(point), _, Some(along)) => UnitForce::Point(point, along),
+                    (None, None, Some(wheel), Some(along)) => UnitForce::Wheel(wheel, along),
+                    (None, None, None, _) | (None, _, _, None) => return None,
+                };
+                Some((of, force))
             }
             Self::Slope { .. } | Self::Wheel { .. } | Self::Axle { .. } | of_bodies!() | loads!() => None,
         }
@@ -909,15 +915,15 @@ impl From<Quantity> for Dimension {
     }
 }
 
-/// Unit force of a compliance: on a point or the contact of a wheel along a direction, or an element that grows.
+/// Unit force of a compliance.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ForceOfCompliance {
-    /// Output that it changes.
-    pub of: OutputSource,
-    pub at: Option<PointId>,
-    pub wheel: Option<WheelId>,
-    pub force: Option<ElementId>,
-    pub along: Option<Vec3>,
+pub(crate) enum UnitForce {
+    /// On a point, along a direction.
+    Point(PointId, Vec3),
+    /// On a wheel at its contact, along a direction.
+    Wheel(WheelId, Vec3),
+    /// A given force that grows in proportion.
+    Element(ElementId),
 }
 
 /// Time derivatives that are known of an output.

@@ -37,7 +37,7 @@ pub use measure::{
     Combination, Dimension, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource, Ray,
     ReactionPart,
 };
-pub(crate) use measure::{ForceOfCompliance, loads, measures, of_bodies};
+pub(crate) use measure::{UnitForce, loads, measures, of_bodies};
 pub use measured::{Measurements, Reading};
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};

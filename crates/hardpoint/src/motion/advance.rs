@@ -18,6 +18,10 @@ use super::step::{RoughStep, Step, take};
 use super::stepper::Stepper;
 use super::walk::walk;
 
+/// Largest move of a coordinate per travel of the drivers that is taken at once, rad or sizes: arms are shorter than
+/// their loops. The branch is checked besides.
+const MOVE_PER_TRAVEL: f64 = 8.0;
+
 /// Solves the design configuration, in which all drivers are zero.
 ///
 /// A changed design starts from the nominal design configuration and closes there first.
@@ -79,10 +83,6 @@ pub(crate) fn move_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), 
     // Without a prediction the first correction is the move itself.
     hold(one, values, trust(MOVE_PER_TRAVEL * moved))
 }
-
-/// Largest move of a coordinate per travel of the drivers that is taken at once, rad or sizes: arms are shorter than
-/// their loops. The branch is checked besides.
-const MOVE_PER_TRAVEL: f64 = 8.0;
 
 /// Moves all drivers to these values, which are near the position of the state, to a position at rest.
 pub(crate) fn shift_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), StepRejection> {

@@ -1,7 +1,7 @@
 //! Reason why a motion ended before its last output time.
 
 use crate::joint::Quantity;
-use crate::model::{JointId, Model};
+use crate::model::{BodyId, DriverId, JointId, Model};
 use crate::topology::BlockId;
 
 use super::gap::{Gap, SINGULAR_DRAWING};
@@ -50,12 +50,12 @@ pub enum StopKind {
     /// A driver's law has no finite value (HP0404).
     LawNotFinite {
         /// The driver.
-        driver: crate::model::DriverId,
+        driver: DriverId,
     },
     /// A driver moves farther between two output times than the solver follows (HP0408).
     TooFar {
         /// The driver.
-        driver: crate::model::DriverId,
+        driver: DriverId,
     },
     /// The caller asked to stop (HP0405).
     Interrupted,
@@ -84,9 +84,9 @@ pub enum GivingDirection {
     /// A coordinate of a joint, by its name.
     Joint(JointId, &'static str),
     /// A coordinate of a body that springs alone hold, relative to ground.
-    Body(crate::model::BodyId, &'static str),
+    Body(BodyId, &'static str),
     /// A released driver.
-    Driver(crate::model::DriverId),
+    Driver(DriverId),
 }
 
 impl GivingDirection {
@@ -244,7 +244,8 @@ impl Stop {
                 "give the direction a stiffness, hold it with a driver that is not released, or make it rigid"
             }
             StopKind::LimitLoad { .. } | StopKind::NoEquilibrium => {
-                "reduce the loads, make the springs and elastic joints stiffer, or begin with the loads at zero and                  increase them over time to see how it gets there"
+                "reduce the loads, make the springs and elastic joints stiffer, or begin with the loads at zero and \
+                 increase them over time to see how it gets there"
             }
             StopKind::Unstable { .. } => {
                 "the forces push the mechanism away from its position: reduce them, or stiffen that direction"

@@ -13,6 +13,9 @@ use crate::number::Dual;
 use crate::sensitivity::{BodyCurvature, PairDirection, Seconds};
 use crate::space::{Pose, Vec3};
 
+/// Step of the differences, in natural steps of the variables: their error is its square and the round-off over it.
+const DIFFERENCE: f64 = 1e-3;
+
 /// Second derivatives of all bodies' positions and of the values of all outputs, for pairs of directions.
 #[derive(Clone, Debug, Default)]
 pub struct SecondDerivatives {
@@ -151,9 +154,6 @@ impl Analysis<'_> {
         }
     }
 }
-
-/// Step of the differences, in natural steps of the variables: their error is its square and the round-off over it.
-const DIFFERENCE: f64 = 1e-3;
 
 /// Workspace of second derivatives, in addition to a mechanism.
 struct SecondDerivativeSolver<'a> {
