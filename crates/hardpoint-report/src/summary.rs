@@ -270,7 +270,7 @@ fn rankings(model: &Model, units: Units, course: &Course) -> Vec<Ranking> {
     }
     let round_off = course.round_off(model);
     for (m, output) in course.kept.measured.outputs.iter().enumerate() {
-        if !matches!(output.source, OutputSource::Measure(_)) || !model.has_sensitivities(output.source) {
+        if !matches!(output.source, OutputSource::Measure(_)) {
             continue;
         }
         for (order, name) in

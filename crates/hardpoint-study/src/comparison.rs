@@ -305,13 +305,9 @@ impl<'a> ComparisonBuilder<'a> {
         sizes.fold(0.0, f64::max).max(self.negligible(measured.outputs[m].dimension, order))
     }
 
-    /// True if output m has all its orders at time k, and sensitivities. The neighbours of a time without values are
-    /// unreliable.
+    /// True if output m has all its orders at time k. The neighbours of a time without values are unreliable.
     fn is_defined(&self, k: usize, m: usize) -> bool {
         let measured = &self.solution.measured;
-        if !self.model.has_sensitivities(measured.outputs[m].source) {
-            return false;
-        }
         let orders = measured.outputs[m].known.orders;
         measured.value(k, m)[..orders].iter().all(|x| x.is_finite())
     }

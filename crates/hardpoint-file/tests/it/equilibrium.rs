@@ -1,6 +1,7 @@
 //! Equilibria of mechanisms with elastic joints: published data of a double wishbone on four bushings and of a lever in
 //! closed form, limits, identities, and what must not matter.
 
+use hardpoint::model::Model;
 use hardpoint::motion::StopKind;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
@@ -15,6 +16,8 @@ const VALUES: f64 = 1e-10;
 const FORCES: f64 = 1e-9;
 /// Sensitivities and compliances, relative to the largest of their row.
 const DERIVATIVES: f64 = 1e-8;
+/// Gradients of compliances, each relative to itself.
+const SECOND_DERIVATIVES: f64 = 1e-7;
 
 fn file(text: &str) -> ModelFile {
     parse(text, "equilibrium.toml").unwrap_or_else(|e| panic!("{e}\n{text}"))
@@ -319,6 +322,35 @@ fn positions_forces_and_sensitivities_are_those_published() {
                 }
             }
         }
+        gradients_of_compliances_are_those_published(name, case, &solution, &model, &of_variable);
+    }
+}
+
+/// Compares the gradients of compliances with those of a case.
+fn gradients_of_compliances_are_those_published(
+    name: &str,
+    case: &Value,
+    solution: &Solution,
+    model: &Model,
+    of_variable: &[(&str, &str)],
+) {
+    let state = state_of(case);
+    let loads = [("side", "road.F.0", "side", state.road[0]), ("align", "road.Mz", "align", state.align)];
+    let loads = loads.into_iter().chain([("brake", "road.F.1", "forward", state.road[1])]);
+    for (force, published, own, size) in loads.filter(|(.., size)| *size != 0.0) {
+        for measure in ["toe", "camber", "contact_x", "contact_y"] {
+            let Some(of) = case["compliance_sensitivities"].get(format!("d {measure} / d {published}"))
+            else {
+                continue;
+            };
+            let m = solution.measured.index(&format!("{measure}_per_{force}")).unwrap();
+            for (variable, key) in of_variable.iter().chain(&[(own, published)]) {
+                let expected = number(&of[key]) * size.signum();
+                let found = solution.measured.d(0, model.variable(variable).unwrap(), m)[0];
+                let what = format!("{name}: d2 {measure} / d {force} d {variable}");
+                near(found, expected, SECOND_DERIVATIVES * expected.abs(), &what);
+            }
+        }
     }
 }
 
@@ -396,30 +428,21 @@ fn sensitivities_are_those_of_solved_designs() {
     let analysis = Analysis::new(&model).unwrap();
     let here = analysis.run();
     for v in 0..model.variables.len() {
-        let step = 1e-4 * model.natural_step(hardpoint::model::VariableId(v));
+        let step = 2e-4 * model.natural_step(hardpoint::model::VariableId(v));
         let at = |h: f64| {
             let mut design = vec![0.0; model.variables.len()];
             design[v] = h;
             analysis.solve(Run::new().at(&design).without_sensitivities())
         };
-        let [a, b] = [at(step), at(-step)];
-        for (m, output) in here
-            .measured
-            .outputs
-            .iter()
-            .enumerate()
-            .filter(|(_, o)| !o.name.contains("_over_") && !o.name.contains("_per_"))
-        {
-            let difference = (a.measured.value(0, m)[0] - b.measured.value(0, m)[0]) / (2.0 * step);
+        let designs = [step, -step, 2.0 * step, -2.0 * step].map(at);
+        for (m, output) in here.measured.outputs.iter().enumerate() {
+            let [a, b, c, d] = designs.each_ref().map(|run| run.measured.value(0, m)[0]);
+            // The error is of the fourth order in the step.
+            let difference = (8.0 * (a - b) - (c - d)) / (12.0 * step);
             let exact = here.measured.d(0, hardpoint::model::VariableId(v), m)[0];
             let what = format!("d {} / d {}", output.name, model.variables[v].name);
             // Round-off of the values over the step.
-            near(
-                exact,
-                difference,
-                1e-6 * difference.abs() + 1e-12 * here.measured.value(0, m)[0].abs() / step,
-                &what,
-            );
+            near(exact, difference, 1e-7 * difference.abs() + 1e-12 * a.abs() / step, &what);
         }
     }
 }
@@ -596,4 +619,46 @@ fn faults_are_reported() {
         .map(|text| parse(text, "lever.toml").err().map_or("none".into(), |e| e.to_string()))
         .collect();
     snapshot("equilibrium_faults", &found.join("\n\n"));
+}
+
+#[test]
+fn second_derivatives_are_symmetric_and_those_of_solved_designs() {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    // A law that follows a variable has second derivatives of its own.
+    let how = Written { bump_law: Some("0.03*sin(k_spring/40000)"), ..AS_PUBLISHED };
+    let text = wishbone(at, &how);
+    let model = file(&text).model;
+    let analysis = Analysis::new(&model).unwrap();
+    let count = model.variables.len();
+    let natural = |v: usize| model.natural_step(hardpoint::model::VariableId(v));
+    let unit = |v: usize| -> Vec<f64> { (0..count).map(|k| if k == v { natural(v) } else { 0.0 }).collect() };
+    let directions: Vec<Vec<f64>> = (0..count).map(unit).collect();
+    let pairs: Vec<[usize; 2]> = (0..count).flat_map(|u| (0..count).map(move |w| [u, w])).collect();
+    let second = analysis.second(&[], &directions, &pairs);
+    assert!(second.stop.is_none(), "{:?}", second.stop);
+    let step = 6e-4;
+    for w in 0..count {
+        let designs = [step, -step, 2.0 * step, -2.0 * step].map(|h| {
+            let design: Vec<f64> = unit(w).iter().map(|x| h * x).collect();
+            analysis.solve(Run::new().at(&design))
+        });
+        for u in 0..count {
+            for (m, output) in second.outputs.iter().enumerate() {
+                let here = second.value(0, u * count + w, m);
+                // Loads, slopes and compliances have none.
+                if here.is_nan() {
+                    continue;
+                }
+                let [of_u, of_w] = [u, w].map(|v| &model.variables[v].name);
+                let what = format!("d2 {} / d {of_u} d {of_w}", output.name);
+                let first =
+                    |run: &Solution| run.measured.d(0, hardpoint::model::VariableId(u), m)[0] * natural(u);
+                let [a, b, c, d] = designs.each_ref().map(first);
+                // The error is of the fourth order in the step, and round-off over it.
+                let difference = (8.0 * (a - b) - (c - d)) / (12.0 * step);
+                near(here, difference, 1e-6 * difference.abs() + 1e-9 * a.abs() + 1e-12, &what);
+                near(here, second.value(0, w * count + u, m), 1e-9 * here.abs() + 1e-14, &what);
+            }
+        }
+    }
 }

@@ -31,6 +31,7 @@ mod published;
 mod requests;
 mod robustness;
 mod searches;
+mod second;
 mod shapes;
 mod sides;
 mod singular;

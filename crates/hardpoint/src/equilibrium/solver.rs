@@ -2,15 +2,18 @@
 
 use crate::design::{BodyFixed, DesignMap, DesignVelocity};
 use crate::linalg::{Elimination, Factored};
-use crate::load::{GivenLoads, OpeningLoads};
-use crate::measure::{Instant, StepValues};
-use crate::model::{DriverId, MeasureKind, Model};
-use crate::motion::mechanism::StepRejection;
+use crate::load::{ElementTurns, GivenLoads, OpeningLoads};
+use crate::measure::{DriverPoses, Instant, StepValues};
+use crate::model::{DriverId, MeasureKind, Model, UnitForce};
+use crate::motion::mechanism::{Mechanism, StepRejection};
 use crate::motion::stepper::Stepper;
 use crate::motion::{GivingDirection, Stop, StopKind, advance};
 use crate::number::Dual;
+use crate::sensitivity::PlanVelocity;
 use crate::space::{Pose, Twist};
 use crate::topology::Topology;
+
+use super::second::{Along, Curvatures, SolvedEquilibrium};
 
 /// Correction of the openings, rad or sizes, whose square is round-off: after it they are solved.
 const QUADRATIC: f64 = 1e-9;
@@ -69,7 +72,8 @@ struct Accepted {
 pub(crate) struct EquilibriumSolver<'a> {
     model: &'a Model,
     openings: &'a [DriverId],
-    loads: OpeningLoads<'a>,
+    loads: OpeningLoads<'a, f64>,
+    turns: ElementTurns,
     variables: usize,
     /// Number of the user's drivers, which come first, and those of them that are held.
     own_drivers: usize,
@@ -115,6 +119,7 @@ impl<'a> EquilibriumSolver<'a> {
             model,
             openings,
             loads: OpeningLoads::new(design_map, topology, values, (openings, kinds), fields, &held),
+            turns: ElementTurns::new(model, topology),
             variables: fields.len(),
             own_drivers,
             held,
@@ -210,7 +215,7 @@ impl<'a> EquilibriumSolver<'a> {
         let mut before = f64::INFINITY;
         for pass in 0..MOST_ITERATIONS {
             self.iterations += 1;
-            self.loads.forces(one, given, &mut self.forces);
+            self.set_forces(one, given);
             self.set_tangent(one, t);
             let positive = self.factor()?;
             // K dp = -r                                                                                       (52)
@@ -247,16 +252,38 @@ impl<'a> EquilibriumSolver<'a> {
         Err(Rejection::NoConvergence)
     }
 
+    /// Sets the forces of the openings at the position of the stepper, under these loads.
+    fn set_forces(&mut self, one: &mut Stepper<'_>, given: &GivenLoads) {
+        let near = self.turns.at(one);
+        let Mechanism { topology, state, .. } = &mut one.mechanism;
+        self.loads.forces((topology, state), &near, given, |k, force| self.forces[k] = force);
+    }
+
     /// Sets the stiffness at the position of the stepper.
     fn set_tangent(&mut self, one: &mut Stepper<'_>, t: f64) {
         let n = self.openings.len();
-        self.loads.prepare(one);
+        self.loads.prepare(&one.mechanism.topology, &mut one.mechanism.state);
         let mut column = vec![0.0; n];
         for b in 0..n {
-            let twists = &mut self.unit_twists[b];
-            self.loads.derivatives(one, b, t, &mut column, &mut |moved| twists.copy_from_slice(moved));
+            let mut twists = std::mem::take(&mut self.unit_twists[b]);
+            self.derivatives(one, b, t, &mut column, |moved| twists.copy_from_slice(moved));
+            self.unit_twists[b] = twists;
             (0..n).for_each(|a| self.stiffness[a * n + b] = column[a]);
         }
+    }
+
+    /// Derivatives of the forces by opening k, or along another direction while all openings stand.
+    fn derivatives(
+        &mut self,
+        one: &mut Stepper<'_>,
+        k: usize,
+        t: f64,
+        out: &mut [f64],
+        moved: impl FnOnce(&[Twist]),
+    ) {
+        let Mechanism { topology, state, parts, .. } = &mut one.mechanism;
+        let set_time = |field: &mut PlanVelocity<f64>| field.set_time(|d| parts.law_of(d.0), t);
+        self.loads.derivatives((topology, state), k, set_time, out, moved);
     }
 
     /// Factors the stiffness in units of the openings. Returns the sign of its determinant.
@@ -300,7 +327,8 @@ impl<'a> EquilibriumSolver<'a> {
     /// Sets the derivatives at the equilibrium that was found last, unless they are set.
     fn prepare(&mut self, one: &mut Stepper<'_>, t: f64) {
         if !std::mem::replace(&mut self.is_prepared, true) {
-            self.loads.forces(one, &self.last.loads, &mut self.forces);
+            let given = self.last.loads.clone();
+            self.set_forces(one, &given);
             self.set_tangent(one, t);
             // A singular stiffness gives derivatives that are not known.
             let _ = self.factor();
@@ -328,7 +356,7 @@ impl<'a> EquilibriumSolver<'a> {
     /// Derivatives of the openings along a direction of the loads.
     fn openings_along(&mut self, one: &mut Stepper<'_>, direction: usize, t: f64) -> Vec<f64> {
         let mut rates = vec![0.0; self.openings.len()];
-        self.loads.derivatives(one, direction, t, &mut rates, &mut |_| ());
+        self.derivatives(one, direction, t, &mut rates, |_| ());
         rates.iter_mut().for_each(|r| *r = -*r);
         self.respond(&mut rates);
         rates
@@ -342,17 +370,70 @@ impl<'a> EquilibriumSolver<'a> {
         forces.iter_mut().zip(&self.units).for_each(|(p, unit)| *p *= unit * known);
     }
 
-    /// Writes the compliances at the equilibrium: derivatives of outputs by forces, with all loads there.
-    pub fn add_compliances(&mut self, one: &mut Stepper<'_>, t: f64, out: &mut StepValues) {
+    /// Derivatives of the openings by a unit force: `K v = W_a . f`.                                            (54)
+    fn openings_by_force(&mut self, force: UnitForce) -> Vec<f64> {
+        let force = self.loads.unit_force(force);
+        let work = |w: &Vec<Twist>| force.iter().map(|(body, f)| f.on(w[*body])).sum();
+        let mut response: Vec<f64> = self.unit_twists.iter().map(work).collect();
+        self.respond(&mut response);
+        response
+    }
+
+    /// Derivatives of the openings along a direction; `None` along a driver that is released.
+    fn rates(&mut self, one: &mut Stepper<'_>, t: f64, direction: &Along) -> Option<Vec<f64>> {
+        self.prepare(one, t);
+        let n = self.openings.len();
+        match direction {
+            Along::Force(force) => Some(self.openings_by_force(*force)),
+            Along::Driver(driver) => {
+                let held = self.held.iter().position(|d| d == driver)?;
+                Some(self.openings_along(one, n + self.variables + held, t))
+            }
+            Along::Design(speeds) => {
+                let mut sum = vec![0.0; n];
+                for (v, speed) in speeds.iter().enumerate().filter(|(_, speed)| **speed != 0.0) {
+                    let rates = self.openings_along(one, n + v, t);
+                    sum.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += speed * rate);
+                }
+                Some(sum)
+            }
+        }
+    }
+
+    /// Solves second derivatives along direction k at the equilibrium that was found last. Returns false along a driver
+    /// that is released.
+    pub fn curve(
+        &mut self,
+        one: &mut Stepper<'_>,
+        t: f64,
+        curvatures: &mut Curvatures<'_>,
+        k: usize,
+    ) -> bool {
+        let direction = curvatures.direction(k).clone();
+        let Some(rates) = self.rates(one, t, &direction) else { return false };
+        let near = self.turns.at(one);
+        let at = SolvedEquilibrium { time: t, near: &near, loads: &self.last.loads, units: &self.units };
+        curvatures.solve(&mut one.mechanism, &at, k, &rates);
+        true
+    }
+
+    /// Writes the compliances at the equilibrium: derivatives of outputs by forces, with all loads there; and their
+    /// derivatives by the variables, with the curvatures along the forces.
+    pub fn add_compliances(
+        &mut self,
+        one: &mut Stepper<'_>,
+        t: f64,
+        curvatures: Option<&mut Curvatures<'_>>,
+        out: &mut StepValues,
+    ) {
         let model = self.model;
-        for (m, measure) in model.measures.iter().enumerate() {
-            let Some((of, force)) = measure.kind.compliance() else { continue };
+        let asked = || {
+            let kinds = model.measures.iter().enumerate();
+            kinds.filter_map(|(m, measure)| measure.kind.compliance().map(|(of, force)| (m, of, force)))
+        };
+        for (m, of, force) in asked() {
             self.prepare(one, t);
-            let force = self.loads.unit_force(force);
-            // K v = W_a . f                                                                               (54)
-            let work = |w: &Vec<Twist>| force.iter().map(|(body, f)| f.on(w[*body])).sum();
-            let mut response: Vec<f64> = self.unit_twists.iter().map(work).collect();
-            self.respond(&mut response);
+            let response = self.openings_by_force(force);
             let poses: Vec<Pose<Dual>> = (0..model.bodies.len())
                 .map(|b| {
                     let openings = self.unit_twists.iter().zip(&response);
@@ -363,6 +444,36 @@ impl<'a> EquilibriumSolver<'a> {
                 .collect();
             out.set(m, Instant::new(model, &self.fixed, &poses).output(of).d);
         }
+        let Some(curvatures) = curvatures else { return };
+        for k in 0..curvatures.len() {
+            let Along::Force(grows) = *curvatures.direction(k) else { continue };
+            self.curve(one, t, curvatures, k);
+            for v in 0..self.variables {
+                let poses = curvatures.poses(v);
+                let instant = Instant::new(model, &curvatures.fixed[v], &poses);
+                for (m, of, _) in asked().filter(|(.., force)| *force == grows) {
+                    out.set_d(v, m, instant.output(of).d.d);
+                }
+            }
+        }
+    }
+
+    /// Poses while each driver moves alone; those of released drivers are not known.
+    pub fn poses_along_drivers(
+        &mut self,
+        one: &mut Stepper<'_>,
+        t: f64,
+        curvatures: &mut Curvatures<'_>,
+    ) -> Vec<DriverPoses> {
+        let mut found = Vec::new();
+        for k in 0..curvatures.len() {
+            let Along::Driver(driver) = *curvatures.direction(k) else { continue };
+            if self.curve(one, t, curvatures, k) {
+                let of = |v: usize| curvatures.poses(v).into_iter().map(Pose::exchanged).collect();
+                found.push(DriverPoses { driver, by_variable: (0..self.variables).map(of).collect() });
+            }
+        }
+        found
     }
 
     /// Reason why the way to the equilibrium at time t ends after a part of it.

@@ -8,8 +8,8 @@ use crate::design::Geometry;
 use crate::measure::WheelAt;
 use crate::model::element::{Elasticity, JointFriction};
 use crate::model::{
-    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, Wheel,
-    WheelId, elements, if_mass,
+    Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, UnitForce,
+    Wheel, WheelId, elements, if_mass,
 };
 use crate::number::Dual;
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
@@ -70,6 +70,8 @@ pub(crate) struct AppliedLoads<'a, T> {
     pub friction: &'a [T],
     /// Part of weights and preloads that acts; 1 but on the way to an equilibrium.
     pub share: f64,
+    /// Further force, and its size.
+    pub further: Option<(UnitForce, T)>,
 }
 
 /// Mass properties at the current pose.
@@ -160,6 +162,39 @@ impl<T: Real> AppliedLoads<'_, T> {
         out.fill(Wrench::zero());
         for k in 0..self.model.elements.len() {
             self.add(ElementId(k), out);
+        }
+        self.add_further(out);
+    }
+
+    /// Subtracts the wrenches of the further force.
+    pub fn add_further(&self, out: &mut [Wrench<T>]) {
+        if let Some((force, size)) = self.further {
+            self.unit_force(force, |body, wrench| out[body] = wrench.times_plus(-size, out[body]));
+        }
+    }
+
+    /// Calls `each` with the bodies that a unit force acts on, and its wrenches.
+    pub fn unit_force(&self, force: UnitForce, mut each: impl FnMut(usize, Wrench<T>)) {
+        match force {
+            UnitForce::Point(point, along) => {
+                each(self.body(point), Wrench::force(along.spread(), self.point(point)));
+            }
+            UnitForce::Wheel(wheel, along) => {
+                let body = self.model.wheels[wheel.0].body.0;
+                each(body, Wrench::force(along.spread(), self.wheel(wheel).contact()));
+            }
+            UnitForce::Element(e) => {
+                let mut laws = self.laws.to_vec();
+                laws[e.0] = T::one();
+                let full = AppliedLoads { laws: &laws, further: None, ..*self };
+                let mut required = vec![Wrench::zero(); self.bodies.len()];
+                full.add(e, &mut required);
+                // Per unit of its size, opposite to the required wrenches.
+                let per = -(T::one() / full.size(e));
+                for (body, wrench) in required.into_iter().enumerate() {
+                    each(body, wrench.times_plus(per, Wrench::zero()));
+                }
+            }
         }
     }
 

@@ -252,10 +252,18 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         let applied = position.loads(model, geometry);
         let forces = (0..model.elements.len()).filter(|e| !model.elements[*e].kind.has_mass());
         forces.for_each(|e| applied.add(ElementId(e), required));
+        applied.add_further(required);
         // The coefficients have the derivative of the motion.
         let at_rest = AppliedLoads { bodies: nominal, ..applied };
         masses.iter().for_each(|e| at_rest.add(*e, required));
         set_residuals(residuals, friction, &applied, transmitted);
+    }
+
+    /// Takes into account that a further force acts on this body.
+    pub fn act_on(&mut self, body: usize) {
+        if let Err(place) = self.forced.binary_search(&body) {
+            self.forced.insert(place, body);
+        }
     }
 
     /// Derivative of a load along the direction that was set, apart from the coefficients: explicit, and through the

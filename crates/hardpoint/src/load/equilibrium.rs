@@ -6,7 +6,7 @@
 //! | `transmission` | T, mu | transmitted wrenches: (18) with F |
 
 use crate::design::Geometry;
-use crate::model::{DriverId, JointId, MeasureKind, Model};
+use crate::model::{DriverId, JointId, MeasureKind, Model, UnitForce};
 use crate::motion::kinematics::State;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Transmission, Transposed, Way};
@@ -109,6 +109,8 @@ pub(super) struct LoadedPosition<T> {
     pub friction: Vec<T>,
     /// Part of weights and preloads that acts; 1 but on the way to an equilibrium.
     pub share: f64,
+    /// Further force, and its size.
+    pub further: Option<(UnitForce, T)>,
 }
 
 impl<T: Real> LoadedPosition<T> {
@@ -120,12 +122,13 @@ impl<T: Real> LoadedPosition<T> {
             near: vec![T::zero(); elements],
             friction: vec![T::zero(); elements],
             share: 1.0,
+            further: None,
         }
     }
 
     pub fn loads<'s>(&'s self, model: &'s Model, geometry: &'s Geometry<T>) -> AppliedLoads<'s, T> {
-        let Self { bodies, laws, near, friction, share } = self;
-        AppliedLoads { model, geometry, bodies, laws, near, friction, share: *share }
+        let Self { bodies, laws, near, friction, share, further } = self;
+        AppliedLoads { model, geometry, bodies, laws, near, friction, share: *share, further: *further }
     }
 }
 
@@ -137,6 +140,7 @@ impl<T: Real> LoadedPosition<Dual<T>> {
         set_constants(&mut self.near, &of.near);
         set_constants(&mut self.friction, &of.friction);
         self.share = of.share;
+        self.further = of.further.map(|(force, size)| (force, Dual::constant(size)));
     }
 }
 

@@ -128,6 +128,7 @@ impl<T: Real> ChangedGeometry<T> {
             near: none,
             friction: none,
             share: 1.0,
+            further: None,
         };
         let moves = |e: &ElementId| {
             let solid = acting.solid(&model.elements[e.0].kind);

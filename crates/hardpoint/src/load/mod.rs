@@ -44,7 +44,7 @@ pub(crate) use acting::{AppliedLoads, ForceFormula, MassFormula, Solid, Spread};
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
 pub(crate) use opening::Opening;
-pub(crate) use opening_loads::{GivenLoads, OpeningLoads};
+pub(crate) use opening_loads::{ElementTurns, GivenLoads, OpeningLoads};
 pub(crate) use program::{RecordedLoads, hindrance};
 pub use results::{DriverLoad, JointLoad, Loads};
 pub(crate) use solver::{LoadSolver, load_measures};

@@ -1,8 +1,10 @@
-//! Forces that hold the openings of a mechanism, and their derivatives, at a position at rest.
+//! Forces that hold the openings of a mechanism, and their derivatives, at a position at rest; for any number type.
 
 use crate::design::{DesignMap, DesignVelocity};
 use crate::model::{DriverId, Element, MeasureKind, Model, UnitForce, VariableId};
+use crate::motion::kinematics::State;
 use crate::motion::stepper::Stepper;
+use crate::number::Real;
 use crate::sensitivity::{Differentiated, DirectDifferentiation, PlanVelocity};
 use crate::space::{Twist, Wrench};
 use crate::topology::Topology;
@@ -43,26 +45,43 @@ impl GivenLoads {
     }
 }
 
-/// Forces of the openings as drivers, and their derivatives by openings and variables.
-pub(crate) struct OpeningLoads<'a> {
-    statics: Equilibrium<'a, f64>,
-    derivatives: LoadDerivatives<'a, f64>,
-    turns: Vec<Turns>,
-    openings: Vec<DriverId>,
-    /// Unit motion of each opening, then other directions while the openings stand.
-    columns: Vec<PlanVelocity<f64>>,
-    direct: DirectDifferentiation<f64>,
+/// Whole turns of the coordinates that elements act on, at the position of a stepper.
+pub(crate) struct ElementTurns(Vec<Turns>);
+
+impl ElementTurns {
+    /// Sources of the turns of all elements.
+    pub fn new(model: &Model, topology: &Topology) -> Self {
+        Self(Turns::of_all(model, topology))
+    }
+
+    /// Approximate coordinates of the elements.
+    pub fn at(&self, one: &Stepper<'_>) -> Vec<f64> {
+        let mut near = vec![0.0; self.0.len()];
+        let counted = one.turns.as_ref().map(|turns| &turns.values[..]);
+        Turns::write(&self.0, &one.mechanism.state, counted, &mut near);
+        near
+    }
 }
 
-impl<'a> OpeningLoads<'a> {
+/// Forces of the openings as drivers, and their derivatives by openings and variables.
+pub(crate) struct OpeningLoads<'a, T> {
+    statics: Equilibrium<'a, T>,
+    derivatives: LoadDerivatives<'a, T>,
+    openings: Vec<DriverId>,
+    /// Unit motion of each opening, then other directions while the openings stand.
+    columns: Vec<PlanVelocity<T>>,
+    direct: DirectDifferentiation<T>,
+}
+
+impl<'a, T: Real> OpeningLoads<'a, T> {
     /// Loads of these openings, with derivatives by the openings, the variables with these fields and the other
     /// drivers; `kinds` are the loads of the openings as measures.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,
-        values: &[f64],
+        values: &[T],
         (openings, kinds): (&[DriverId], &'a [MeasureKind]),
-        fields: &[DesignVelocity],
+        fields: &[DesignVelocity<T>],
         held: &[DriverId],
     ) -> Self {
         let model = design_map.model();
@@ -78,55 +97,66 @@ impl<'a> OpeningLoads<'a> {
         Self {
             statics,
             derivatives,
-            turns: Turns::of_all(model, topology),
             openings: openings.to_vec(),
             columns: fields.map(|field| PlanVelocity::new(topology, &field)).collect(),
             direct: DirectDifferentiation::new(model, topology),
         }
     }
 
-    /// Solves the forces at the position of a stepper, whose bodies are at rest, under these loads. Writes the force
-    /// that each opening needs as a driver.
-    pub fn forces(&mut self, one: &mut Stepper<'_>, given: &GivenLoads, out: &mut [f64]) {
-        let Self { statics, turns, .. } = self;
-        let Stepper { mechanism, turns: counted, .. } = one;
-        let (topology, state) = (&mechanism.topology, &mut mechanism.state);
-        statics.set_motion(state, |_| 0.0);
+    /// Sets a further force, which acts besides the loads of the model, and its size.
+    pub fn set_further(&mut self, further: Option<(UnitForce, T)>) {
+        self.statics.position.further = further;
+        match further {
+            Some((UnitForce::Point(point, _), _)) => {
+                self.derivatives.act_on(self.statics.applied().body(point))
+            }
+            Some((UnitForce::Wheel(wheel, _), _)) => {
+                self.derivatives.act_on(self.statics.model.wheels[wheel.0].body.0);
+            }
+            Some((UnitForce::Element(_), _)) | None => {}
+        }
+    }
+
+    /// Solves the forces at a state, whose bodies are at rest, under these loads. Writes the force that each opening
+    /// needs as a driver; `near` are approximate coordinates of the elements.
+    pub fn forces(
+        &mut self,
+        (topology, state): (&Topology, &mut State<T>),
+        near: &[f64],
+        given: &GivenLoads,
+        mut each: impl FnMut(usize, T),
+    ) {
+        let Self { statics, .. } = self;
+        statics.set_motion(state, |_| T::zero());
         let position = &mut statics.position;
         for body in &mut position.bodies {
             (body.v, body.a) = (Twist::zero(), Twist::zero());
         }
-        position.laws.copy_from_slice(&given.laws);
+        position.laws.iter_mut().zip(&given.laws).for_each(|(to, law)| *to = T::constant(*law));
+        position.near.iter_mut().zip(near).for_each(|(to, near)| *to = T::constant(*near));
         position.share = given.share;
-        let counted = counted.as_ref().map(|turns| &turns.values[..]);
-        Turns::write(turns, state, counted, &mut position.near);
         statics.solve(topology, state);
-        for (d, to) in self.openings.iter().zip(out) {
-            *to = statics.transmitted.drivers[d.0];
-        }
+        self.openings.iter().enumerate().for_each(|(k, d)| each(k, statics.transmitted.drivers[d.0]));
     }
 
     /// Prepares derivatives of the forces that were solved last.
-    pub fn prepare(&mut self, one: &mut Stepper<'_>) {
-        let (topology, state) = (&one.mechanism.topology, &mut one.mechanism.state);
+    pub fn prepare(&mut self, topology: &Topology, state: &mut State<T>) {
         self.derivatives.set_equilibrium(&self.statics, topology, state, |_| ());
     }
 
-    /// Derivatives of the forces by opening k, or along another direction while all openings stand. `moved` receives
-    /// the twists of the bodies.
+    /// Derivatives of the forces by opening k, or along another direction while all openings stand. `set_time` sets the
+    /// contributions of the drivers' laws; `moved` receives the twists of the bodies.
     pub fn derivatives(
         &mut self,
-        one: &mut Stepper<'_>,
+        (topology, state): (&Topology, &mut State<T>),
         k: usize,
-        t: f64,
-        out: &mut [f64],
-        moved: &mut dyn FnMut(&[Twist<f64>]),
+        set_time: impl FnOnce(&mut PlanVelocity<T>),
+        out: &mut [T],
+        moved: impl FnOnce(&[Twist<T>]),
     ) {
         let Self { statics, derivatives, columns, direct, .. } = self;
-        let mechanism = &mut one.mechanism;
-        let (topology, state, parts) = (&mechanism.topology, &mut mechanism.state, &mechanism.parts);
         let field = &mut columns[k];
-        field.set_time(|d: DriverId| parts.law_of(d.0), t);
+        set_time(field);
         direct.solve_position(topology, state, field);
         moved(&direct.flow.twists[0]);
         let by = Differentiated { variable: VariableId(k), topology, state, field, flow: &direct.flow };
@@ -134,27 +164,9 @@ impl<'a> OpeningLoads<'a> {
     }
 
     /// Wrenches of a unit force on the bodies, at the position that was solved last.
-    pub fn unit_force(&mut self, force: UnitForce) -> Vec<(usize, Wrench<f64>)> {
-        match force {
-            UnitForce::Point(point, along) => {
-                let applied = self.statics.applied();
-                vec![(applied.body(point), Wrench::force(along, applied.point(point)))]
-            }
-            UnitForce::Wheel(wheel, along) => {
-                let applied = self.statics.applied();
-                let contact = applied.wheel(wheel).contact();
-                vec![(applied.model.wheels[wheel.0].body.0, Wrench::force(along, contact))]
-            }
-            UnitForce::Element(e) => {
-                let law = std::mem::replace(&mut self.statics.position.laws[e.0], 1.0);
-                let mut out = vec![Wrench::zero(); self.statics.position.bodies.len()];
-                let applied = self.statics.applied();
-                applied.add(e, &mut out);
-                // Per unit of its size, opposite to the required wrenches.
-                let per = -1.0 / applied.size(e);
-                self.statics.position.laws[e.0] = law;
-                out.into_iter().map(|w| w.times_plus(per, Wrench::zero())).enumerate().collect()
-            }
-        }
+    pub fn unit_force(&self, force: UnitForce) -> Vec<(usize, Wrench<T>)> {
+        let mut wrenches = Vec::new();
+        self.statics.applied().unit_force(force, |body, wrench| wrenches.push((body, wrench)));
+        wrenches
     }
 }

@@ -20,7 +20,7 @@ pub(crate) use bodies::with_rates;
 pub(crate) use evaluate::{Context, MeasuredDesign, derivatives, evaluate};
 pub(crate) use formulas::{Instant, bodies_asked_for};
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
-pub(crate) use slope::{Slopes, hindrance};
+pub(crate) use slope::{DriverPoses, Slopes, hindrance};
 pub(crate) use step_values::{RecordedValue, RecordedValues, StepValues};
 pub(crate) use storage::finite;
 pub use storage::{MeasureResults, Output, outputs};

@@ -6,9 +6,7 @@
 use hardpoint_tape::{Number, record};
 
 use crate::design::{BodyFixed, DesignMap};
-use crate::model::{
-    AxleMeasure, DriverId, GROUND, MeasureKind, Model, WheelId, WheelRequirement, loads, of_bodies,
-};
+use crate::model::{AxleMeasure, DriverId, GROUND, MeasureKind, Model, WheelId, loads, of_bodies};
 use crate::motion::kinematics::State;
 use crate::motion::mechanism::Mechanism;
 use crate::motion::step_program::RecordedStep;
@@ -24,6 +22,13 @@ use super::{Instant, StepValues, bodies_asked_for};
 /// Maximum number of combinations of a driver, a body and a variable for which slopes are recorded: each takes some
 /// hundred operations.
 const MOST_PAIRS: usize = 10_000;
+
+/// Poses of all bodies while a driver moves alone at an equilibrium.
+pub(crate) struct DriverPoses {
+    pub driver: DriverId,
+    /// Per variable: with the derivatives along the driver (outer) and by the variable (inner).
+    pub by_variable: Vec<Vec<Pose<Dual<Dual>>>>,
+}
 
 /// Evaluates the measures that depend on a driver, where a stepper is; or records them with a step.
 pub(crate) struct Slopes<'a, T = f64> {
@@ -71,26 +76,52 @@ impl<'a> Slopes<'a> {
         sensitivities: bool,
         openings: &[DriverId],
     ) -> Option<Self> {
-        let ways = Ways::of(design_map.model(), sensitivities)?;
+        let mut ways = Ways::of(design_map.model(), sensitivities)?;
+        if !openings.is_empty() {
+            // The openings follow both directions of a pair, which the equilibrium solves.
+            ways.pairs.clear();
+        }
         let seconds = Seconds::new(design_map, topology, values, (&ways.directions, openings), &ways.pairs);
         Some(Self::along(design_map, values, ways, seconds))
     }
 
-    /// Sets the rates of the openings while each of these drivers moves alone.
-    pub fn set_openings(&mut self, rates: &[(DriverId, Vec<f64>)]) {
+    /// The drivers that move alone.
+    pub fn drivers(&self) -> &[DriverId] {
+        &self.drivers
+    }
+
+    /// Sets the rates of this number of openings while each of these drivers moves alone; all others are released, and
+    /// nothing is known along them.
+    pub fn set_openings(&mut self, openings: usize, rates: &[(DriverId, Vec<f64>)]) {
+        let unknown = vec![f64::NAN; openings];
         for (k, driver) in self.drivers.iter().enumerate() {
-            if let Some((_, rates)) = rates.iter().find(|(d, _)| d == driver) {
-                self.seconds.set_openings(k, rates);
-            }
+            let found = rates.iter().find(|(d, _)| d == driver);
+            self.seconds.set_openings(k, found.map_or(&unknown, |(_, rates)| rates));
         }
     }
 
-    /// Writes the results at time t, the one that was begun last.
-    pub fn add(&mut self, mechanism: &mut Mechanism<'_>, t: f64, out: &mut StepValues) {
+    /// Writes the results at time t, the one that was begun last. At an equilibrium `curved` are the poses along the
+    /// drivers.
+    pub fn add(
+        &mut self,
+        mechanism: &mut Mechanism<'_>,
+        t: f64,
+        curved: &[DriverPoses],
+        out: &mut StepValues,
+    ) {
         self.seconds.solve(mechanism, t);
         let variables = self.variables;
         let enter = |k, by, x: Dual| if by < variables { out.set_d(by, k, x.d) } else { out.set(k, x.v) };
-        self.measure(&mechanism.state, enter);
+        let drivers = self.drivers.clone();
+        let set = |by: usize, poses: &mut [Vec<Pose<Dual<Dual>>>]| {
+            for (driver, poses) in drivers.iter().zip(poses) {
+                let found = curved.iter().find(|along| along.driver == *driver);
+                if let Some(of_variable) = found.and_then(|along| along.by_variable.get(by)) {
+                    poses.clone_from(of_variable);
+                }
+            }
+        };
+        self.measure(&mechanism.state, set, enter);
     }
 }
 
@@ -111,31 +142,39 @@ impl<'a> Slopes<'a, Number> {
         let (variables, mut limits) = (slopes.variables, recording::limits());
         let zero = Number::constant(0.0);
         let mut found: Vec<RecordedValue> = Vec::new();
-        slopes.measure(state, |measure, by, x| {
-            let holds = recording::limits();
-            let place = match found.iter().position(|f| f.measure == measure) {
-                Some(place) => place,
-                None => {
-                    found.push(RecordedValue { measure, excess: zero, numbers: vec![zero; 1 + variables] });
-                    found.len() - 1
+        slopes.measure(
+            state,
+            |_, _| (),
+            |measure, by, x| {
+                let holds = recording::limits();
+                let place = match found.iter().position(|f| f.measure == measure) {
+                    Some(place) => place,
+                    None => {
+                        found.push(RecordedValue {
+                            measure,
+                            excess: zero,
+                            numbers: vec![zero; 1 + variables],
+                        });
+                        found.len() - 1
+                    }
+                };
+                let RecordedValue { excess, numbers, .. } = &mut found[place];
+                if matches!(model.measures[measure].kind, MeasureKind::Slope { .. }) {
+                    // A formula has another number beyond its limits; ...
+                    limits.extend(holds);
+                } else {
+                    // ... an instant centre has none at infinity.
+                    *excess = holds.into_iter().fold(*excess, Number::larger);
                 }
-            };
-            let RecordedValue { excess, numbers, .. } = &mut found[place];
-            if matches!(model.measures[measure].kind, MeasureKind::Slope { .. }) {
-                // A formula has another number beyond its limits; ...
-                limits.extend(holds);
-            } else {
-                // ... an instant centre has none at infinity.
-                *excess = holds.into_iter().fold(*excess, Number::larger);
-            }
-            if by < variables {
-                numbers[1 + by] = x.d;
-            } else {
-                numbers[0] = x.v;
-                // NaN is left to the kernel: a recording has no sign of zero.
-                limits.extend(x.v.known().is_none().then(|| x.v.abs() + -f64::MAX));
-            }
-        });
+                if by < variables {
+                    numbers[1 + by] = x.d;
+                } else {
+                    numbers[0] = x.v;
+                    // NaN is left to the kernel: a recording has no sign of zero.
+                    limits.extend(x.v.known().is_none().then(|| x.v.abs() + -f64::MAX));
+                }
+            },
+        );
         Some((RecordedValues(found), limits))
     }
 }
@@ -158,10 +197,17 @@ impl<'a, T: Real> Slopes<'a, T> {
     }
 
     /// Evaluates all of them at a state that was solved: `found` gets each measure with a variable and the derivative
-    /// by that, and after the last variable with their number and the value.
-    fn measure(&mut self, state: &State<T>, mut found: impl FnMut(usize, usize, Dual<T>)) {
+    /// by that, and after the last variable with their number and the value. `set` may replace the poses, per driver,
+    /// for a variable.
+    fn measure(
+        &mut self,
+        state: &State<T>,
+        mut set: impl FnMut(usize, &mut [Vec<Pose<Dual<Dual<T>>>>]),
+        mut found: impl FnMut(usize, usize, Dual<T>),
+    ) {
         for by in 0..=self.variables {
             self.seconds.set_poses(state, by, &self.asked_for, &mut self.poses);
+            set(by, &mut self.poses);
             let alone = DriverAlone {
                 drivers: &self.drivers,
                 instants: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),
@@ -176,7 +222,7 @@ impl<'a, T: Real> Slopes<'a, T> {
 /// Drivers that measures depend on.
 fn drivers_of(model: &Model) -> Vec<DriverId> {
     let mut drivers: Vec<DriverId> =
-        (0..model.measures.len()).flat_map(|k| driver_of(model, k)).flatten().collect();
+        (0..model.measures.len()).flat_map(|k| model.drivers_alone(k)).flatten().collect();
     drivers.sort_unstable();
     drivers.dedup();
     drivers
@@ -216,24 +262,6 @@ pub(crate) fn hindrance(design_map: &DesignMap<'_>) -> Option<&'static str> {
     (!fits).then_some("a slope is that of a formula that decides by values")
 }
 
-/// The drivers that a measure depends on, if it does: those of both wheels of an axle may differ.
-fn driver_of(model: &Model, k: usize) -> Option<[DriverId; 2]> {
-    let of_wheel = |wheel: WheelId, need: WheelRequirement| model.wheels[wheel.0].driver(need);
-    if !model.depends_on_driver(k) {
-        return None;
-    }
-    match model.measures[k].kind {
-        MeasureKind::Slope { driver, .. } => Some([driver; 2]),
-        MeasureKind::Wheel { wheel, what } => of_wheel(wheel, what.needs()).map(|d| [d; 2]),
-        MeasureKind::Axle { axle, .. } => {
-            let [left, right] =
-                model.axles[axle.0].wheels.map(|wheel| of_wheel(wheel, WheelRequirement::Bump));
-            left.zip(right).map(|(l, r)| [l, r])
-        }
-        of_bodies!() | loads!() | MeasureKind::Compliance { .. } => None,
-    }
-}
-
 /// The same position as often as there are drivers, each time with what happens while that driver alone moves.
 struct DriverAlone<'m, T> {
     drivers: &'m [DriverId],
@@ -244,7 +272,7 @@ impl<T: Real> DriverAlone<'_, T> {
     /// The value of a measure that depends on a driver; NaN of all others.
     fn measure(&self, model: &Model, k: usize) -> T {
         let unknown = T::constant(f64::NAN);
-        let Some(drivers) = driver_of(model, k) else { return unknown };
+        let Some(drivers) = model.drivers_alone(k) else { return unknown };
         let [first, second] = drivers.map(|d| {
             &self.instants[self.drivers.binary_search(&d).expect("the drivers of all measures are here")]
         });

@@ -53,6 +53,22 @@ impl<T: Real> Contact<T> {
         Self::at(curve, u)
     }
 
+    /// The place next to p, which moves with p to first order: u' = p' . C' / (C'^2 - (p - C) . C'').
+    pub fn follow(curve: &Curve, p: Vec3<T>, near: T) -> Self {
+        let mut contact = Self::nearest(curve, p, near);
+        let [c, d, dd, _] = contact.c;
+        let e = p - c;
+        let step = e.dot(d) / (d.dot(d) - e.dot(dd));
+        let slide = step - T::constant(step.value());
+        if !slide.vanishes() {
+            contact.u += slide;
+            for n in 0..3 {
+                contact.c[n] += contact.c[n + 1] * slide;
+            }
+        }
+        contact
+    }
+
     /// The frame that walks along: x along the curve, y to its left.
     #[inline(always)]
     pub fn frame(&self) -> Pose<T> {

@@ -4,7 +4,7 @@ use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::model::{
     Axes, AxleId, AxleMeasure, BodyId, Direction, Driver, DriverId, ElementId, HardpointId, JointId, Model,
-    PointId, Side, WheelId, WheelMeasure,
+    PointId, Side, WheelId, WheelMeasure, WheelRequirement,
 };
 use crate::space::{Angles, Real, Vec3};
 
@@ -916,7 +916,7 @@ impl From<Quantity> for Dimension {
 }
 
 /// Unit force of a compliance.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum UnitForce {
     /// On a point, along a direction.
     Point(PointId, Vec3),
@@ -963,13 +963,22 @@ impl Model {
         self.depends_on_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
     }
 
-    /// True if the sensitivities of an output by the design variables are known. In a model with equilibrium those of
-    /// slopes and compliances are not.
-    pub fn has_sensitivities(&self, output: OutputSource) -> bool {
-        let (Some(_), OutputSource::Measure(k)) = (&self.equilibrium, output) else { return true };
-        let kind = &self.measures[k].kind;
-        let is_derivative = self.depends_on_driver(k) || kind.compliance().is_some();
-        !is_derivative && kind.sources().into_iter().all(|source| self.has_sensitivities(source))
+    /// The drivers that a measure moves alone, if it does: those of both wheels of an axle may differ.
+    pub(crate) fn drivers_alone(&self, measure: usize) -> Option<[DriverId; 2]> {
+        let of_wheel = |wheel: WheelId, need: WheelRequirement| self.wheels[wheel.0].driver(need);
+        if !self.depends_on_driver(measure) {
+            return None;
+        }
+        match self.measures[measure].kind {
+            MeasureKind::Slope { driver, .. } => Some([driver; 2]),
+            MeasureKind::Wheel { wheel, what } => of_wheel(wheel, what.needs()).map(|d| [d; 2]),
+            MeasureKind::Axle { axle, .. } => {
+                let [left, right] =
+                    self.axles[axle.0].wheels.map(|wheel| of_wheel(wheel, WheelRequirement::Bump));
+                left.zip(right).map(|(l, r)| [l, r])
+            }
+            of_bodies!() | loads!() | MeasureKind::Compliance { .. } => None,
+        }
     }
 
     /// Dimension of a driver's force: its product with the driven quantity is work.

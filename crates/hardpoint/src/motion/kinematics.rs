@@ -238,7 +238,7 @@ impl<T: Real> State<T> {
         // p = P_j in axes of marker i; u is the foot of the perpendicular on the curve, (p - C(u)) . C'(u) = 0. Marker
         // i moves there, with x along C'.
         let p = i.inverse().point(j.r);
-        self.contacts[k] = Contact::nearest(&parts.curves[k], p, self.contacts[k].u);
+        self.contacts[k] = Contact::follow(&parts.curves[k], p, self.contacts[k].u);
         self.ends[c.0].i = i.compose(self.contacts[k].frame());
     }
 
@@ -631,6 +631,17 @@ impl<T: Real> State<T> {
         for &r in singular.iter().flat_map(|b| &topology[*b].selected) {
             let none = Vec3::new(nan, nan, nan);
             self.l[0][r.0] = Wrench { m: none, f: none };
+        }
+    }
+
+    /// Sets the bodies from given coordinates, with the wrenches of all rows and the factors of all blocks there.
+    pub fn stand_with_factors(&mut self, topology: &Topology, parts: &PlanGeometry<T>, drivers: &[[T; 3]]) {
+        self.stand(topology, parts);
+        for r in RowId::all(0..topology.rows.len()) {
+            self.l[0][r.0] = self.wrench_of(topology, r);
+        }
+        for b in topology.block_ids() {
+            self.linearise(topology, parts, drivers, b);
         }
     }
 

@@ -2,19 +2,20 @@
 //! change.
 
 use std::collections::BTreeSet;
+use std::ops::ControlFlow;
 
-use super::{Analysis, PreparedDesign, Run, Solution, Walk};
+use super::sink::NullSink;
+use super::walk::{Scope, SolvedSteps};
+use super::{Analysis, PreparedDesign, Walk};
 use crate::design::BodyFixed;
+use crate::equilibrium::{Along, Curvatures};
 use crate::measure::{Instant, Output, bodies_asked_for, outputs};
-use crate::model::{BodyId, GROUND, VariableId};
+use crate::model::{BodyId, DriverId, GROUND, MeasureKind};
 use crate::motion::Stop;
 use crate::motion::mechanism::Mechanism;
 use crate::number::Dual;
 use crate::sensitivity::{BodyCurvature, PairDirection, Seconds};
-use crate::space::{Pose, Vec3};
-
-/// Step of the differences, in natural steps of the variables: their error is its square and the round-off over it.
-const DIFFERENCE: f64 = 1e-3;
+use crate::space::Pose;
 
 /// Second derivatives of all bodies' positions and of the values of all outputs, for pairs of directions.
 #[derive(Clone, Debug, Default)]
@@ -38,12 +39,14 @@ pub struct SecondDerivatives {
 
 impl SecondDerivatives {
     /// Second derivative of the value of output m at time k along the directions of pair p, in the output's unit per
-    /// unit of both.
+    /// unit of both; NaN for loads and for measures of single drivers and forces, whose second derivatives are not
+    /// computed.
     pub fn value(&self, k: usize, p: usize, m: usize) -> f64 {
         self.values[(k * self.pairs.len() + p) * self.outputs.len() + m]
     }
 
-    /// First derivative of the value of output m at time k along the second direction of pair p.
+    /// First derivative of the value of output m at time k along the second direction of pair p; NaN for the same
+    /// outputs.
     pub fn first(&self, k: usize, p: usize, m: usize) -> f64 {
         self.firsts[(k * self.pairs.len() + p) * self.outputs.len() + m]
     }
@@ -65,25 +68,22 @@ impl Analysis<'_> {
     /// Results for directions that the mechanism cannot follow are meaningless: check
     /// [`Sensitivities::admissibility`](crate::sensitivity::Sensitivities::admissibility) first.
     ///
-    /// Second derivatives of an equilibrium are differences of its exact first derivatives, with six digits or more;
-    /// those of bodies are not known.
-    ///
     /// # Panics
     /// If a pair contains an index that is out of range.
     pub fn second(&self, design: &[f64], directions: &[Vec<f64>], pairs: &[[usize; 2]]) -> SecondDerivatives {
         let directions: Vec<Vec<f64>> = directions.iter().map(|d| self.model().whole(d)).collect();
-        if self.openings().is_some() {
-            return self.second_of_equilibrium(design, &directions, pairs);
-        }
-        let design = self.design(design);
         let model = self.model();
-        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let mut result = SecondDerivatives {
             pairs: pairs.to_vec(),
             outputs: outputs(model),
             bodies: model.bodies.len(),
             ..SecondDerivatives::default()
         };
+        if let Some(openings) = self.openings() {
+            return self.second_at_equilibrium(design, &directions, openings, result);
+        }
+        let design = self.design(design);
+        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let mut bends = SecondDerivativeSolver::new(self, &design, &directions, pairs);
         let mut times = model.times.iter();
         result.stop = walk.each(|one| {
@@ -94,64 +94,68 @@ impl Analysis<'_> {
         result
     }
 
-    /// Second derivatives of an equilibrium.
-    fn second_of_equilibrium(
+    /// Second derivatives at equilibria: by every variable and along the second direction of each pair.
+    fn second_at_equilibrium(
         &self,
         design: &[f64],
         directions: &[Vec<f64>],
-        pairs: &[[usize; 2]],
+        (openings, kinds): (&[DriverId], &[MeasureKind]),
+        mut result: SecondDerivatives,
     ) -> SecondDerivatives {
-        let (model, values) = (self.model(), self.model().whole(design));
-        let outputs = outputs(model);
-        // Per output time and output, the first derivative along a direction in a run.
-        let along = |run: &Solution, u: &[f64]| -> Vec<f64> {
-            let of = |k: usize, m: usize| {
-                let parts = u.iter().enumerate().filter(|(_, rate)| **rate != 0.0);
-                parts.map(|(v, rate)| rate * run.measured.derivative(k, VariableId(v), m, 0)).sum()
-            };
-            (0..run.motion.len())
-                .flat_map(|k| (0..outputs.len()).map(move |m| (k, m)))
-                .map(|(k, m)| of(k, m))
-                .collect()
+        let design = self.prepare(design, Scope::of_one(true, false));
+        let (model, topology) = (self.model(), self.topology());
+        let seconds: BTreeSet<usize> = result.pairs.iter().map(|[_, w]| *w).collect();
+        let of = |w: usize| {
+            let along = (&design.values[..], &directions[w][..]);
+            let direction = vec![Along::Design(directions[w].clone())];
+            (w, Curvatures::new(self.design_map(), topology, along, (openings, kinds), direction))
         };
-        let here = self.solve(Run::new().at(&values));
-        // Where the nominal design has no equilibrium, others need not have one.
-        let mut steps = if here.stop.is_some() { 0 } else { here.motion.len() };
-        let mut found: Vec<[Vec<f64>; 2]> = vec![Default::default(); pairs.len()];
-        let seconds: BTreeSet<usize> = pairs.iter().map(|[_, w]| *w).filter(|_| steps > 0).collect();
-        for w in seconds {
-            let natural = |(v, rate): (usize, &f64)| rate.abs() / model.natural_step(VariableId(v));
-            let size = directions[w].iter().enumerate().map(natural).fold(0.0, f64::max);
-            let step = if size > 0.0 { DIFFERENCE / size } else { 1.0 };
-            let ends = [step, -step].map(|h| {
-                let along_w = values.iter().zip(&directions[w]);
-                let moved: Vec<f64> = along_w.map(|(x, rate)| x + h * rate).collect();
-                self.solve(Run::new().at(&moved))
-            });
-            steps = ends.iter().fold(steps, |steps, run| steps.min(run.motion.len()));
-            for (pair, found) in pairs.iter().zip(&mut found).filter(|([_, of], _)| *of == w) {
-                let [ahead, behind] = ends.each_ref().map(|run| along(run, &directions[pair[0]]));
-                let bend = ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * step)).collect();
-                *found = [bend, along(&here, &directions[w])];
+        let mut curvatures: Vec<(usize, Curvatures<'_>)> = seconds.into_iter().map(of).collect();
+        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
+        let count = result.outputs.len();
+        result.stop = walk.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
+            let SolvedSteps::One(one, _, Some(equilibrium)) = solved else { return };
+            let t = model.times[result.times.len()];
+            // Per second direction: first derivatives of all outputs along it, and per variable the second ones.
+            let mut found = Vec::new();
+            for (w, curvatures) in &mut curvatures {
+                equilibrium.curve(one, t, curvatures, 0);
+                let mut first = Vec::new();
+                let mut by_variable = Vec::new();
+                for v in 0..model.variables.len() {
+                    let poses = curvatures.poses(v);
+                    let instant = Instant::new(model, &curvatures.fixed[v], &poses);
+                    first.clear();
+                    let mut second = Vec::with_capacity(count);
+                    instant.all(|x| {
+                        first.push(x.v.d);
+                        second.push(x.d.d);
+                    });
+                    by_variable.push(second);
+                }
+                found.push((*w, first, by_variable));
             }
-        }
-        let nan = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
-        let unknown = BodyCurvature { d2r: nan, ddpi: nan };
-        let count = outputs.len();
-        let numbers = |which: usize| -> Vec<f64> {
-            let of = |k: usize| found.iter().flat_map(move |pair| &pair[which][k * count..][..count]);
-            (0..steps).flat_map(of).copied().collect()
-        };
-        SecondDerivatives {
-            times: here.motion.times[..steps].to_vec(),
-            pairs: pairs.to_vec(),
-            values: numbers(0),
-            firsts: numbers(1),
-            bodies: model.bodies.len(),
-            curvatures: vec![unknown; steps * pairs.len() * model.bodies.len()],
-            stop: here.stop,
-            outputs,
-        }
+            result.times.push(t);
+            let state = &one.mechanism.state;
+            for [u, w] in &result.pairs {
+                let at = found.iter().position(|(of, ..)| of == w).expect("every second direction is solved");
+                let ((_, first, by_variable), (_, curvatures)) = (&found[at], &curvatures[at]);
+                let parts = || directions[*u].iter().enumerate().filter(|(_, rate)| **rate != 0.0);
+                for (m, output) in result.outputs.iter().enumerate() {
+                    let known = if output.known.by_position { 1.0 } else { f64::NAN };
+                    let second: f64 = parts().map(|(v, rate)| rate * by_variable[v][m]).sum();
+                    result.values.push(known * second);
+                    result.firsts.push(known * first[m]);
+                }
+                for body in 0..result.bodies {
+                    let [along_u, curvature] = curvatures.twist_along(&directions[*u], body);
+                    let [along_w, _] = curvatures.twist_along(&directions[*w], body);
+                    let r = state.pose[body].r;
+                    result.curvatures.push(BodyCurvature::of(r, [along_u, along_w], curvature));
+                }
+            }
+        });
+        result
     }
 }
 
@@ -202,9 +206,11 @@ impl<'a> SecondDerivativeSolver<'a> {
                 self.poses[b] = self.seconds.pose(state, p, b);
             }
             let instant = Instant::new(model, &self.fixed[p], &self.poses);
+            let mut outputs = result.outputs.iter();
             instant.all(|x| {
-                result.values.push(x.d.d);
-                result.firsts.push(x.v.d);
+                let known = if outputs.next().is_some_and(|o| o.known.by_position) { 1.0 } else { f64::NAN };
+                result.values.push(known * x.d.d);
+                result.firsts.push(known * x.v.d);
             });
             let body = |b: usize| self.seconds.curvature(state, p, b);
             result.curvatures.extend((0..result.bodies).map(body));

@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 
 use hardpoint_tape::LANES;
 
+use crate::equilibrium::{Along, Curvatures};
 use crate::load::{Compliances, LoadSolver, load_measures};
 use crate::measure::{self, Slopes, StepValues};
 use crate::model::{BodyId, Model, OutputSource, VariableId};
@@ -93,11 +94,9 @@ impl Analysis<'_> {
         let sensitive = !design.fields.is_empty();
         solution.between = None;
         let variables = if sensitive { model.variables.len() } else { 0 };
-        // The second derivatives of an equilibrium are not known.
         let of_motion = self.openings().is_none();
         let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
-        let slopes =
-            || Slopes::new(self.design_map(), topology, &design.values, sensitive && of_motion, openings);
+        let slopes = || Slopes::new(self.design_map(), topology, &design.values, sensitive, openings);
         let mut slopes = measures.then(slopes).flatten();
         let wanted = vec![true; model.bodies.len()];
         let giving = || Compliances::new(self.design_map(), topology, &design.values, sensitive);
@@ -107,6 +106,18 @@ impl Analysis<'_> {
             true => Walk::new(self, design, wanted),
             false => Walk::by_programs(self, design, wanted, (measures, slopes.is_some(), loads)),
         };
+        // Derivatives of compliances and slopes at an equilibrium by the variables are curvatures.
+        let mut curvatures = self.openings().filter(|_| measures && sensitive).map(|openings| {
+            let compliances = model.measures.iter().filter_map(|m| m.kind.compliance());
+            let mut directions: Vec<Along> = Vec::new();
+            for direction in compliances.map(|(_, force)| Along::Force(force)) {
+                if !directions.contains(&direction) {
+                    directions.push(direction);
+                }
+            }
+            directions.extend(slopes.iter().flat_map(|found| found.drivers()).map(|d| Along::Driver(*d)));
+            Curvatures::new(self.design_map(), topology, (&design.values, &[]), openings, directions)
+        });
         if loads {
             let measures = load_measures(model);
             let solver = LoadSolver::new(self.design_map(), topology, &design.values, measures, sensitive);
@@ -137,13 +148,17 @@ impl Analysis<'_> {
                         window.slopes.begin();
                     }
                     if let (Some(found), Some(equilibrium)) = (&mut slopes, &mut equilibrium) {
-                        found.set_openings(&equilibrium.driver_rates(one, times[0]));
+                        found.set_openings(openings.len(), &equilibrium.driver_rates(one, times[0]));
                     }
+                    let mut along_drivers = Vec::new();
                     if let (Some(equilibrium), true) = (equilibrium, measures) {
-                        equilibrium.add_compliances(one, times[0], &mut window.slopes);
+                        equilibrium.add_compliances(one, times[0], curvatures.as_mut(), &mut window.slopes);
+                        if let Some(curvatures) = &mut curvatures {
+                            along_drivers = equilibrium.poses_along_drivers(one, times[0], curvatures);
+                        }
                     }
                     if let Some(found) = &mut slopes {
-                        found.add(&mut one.mechanism, times[0], &mut window.slopes);
+                        found.add(&mut one.mechanism, times[0], &along_drivers, &mut window.slopes);
                     }
                     if let Some(loads) = loads {
                         loads.enter(&mut window.slopes);

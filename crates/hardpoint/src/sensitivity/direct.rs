@@ -25,10 +25,15 @@ use crate::model::{DriverId, Model};
 use crate::motion::kinematics::State;
 use crate::motion::level::{Flow, carried, of_body};
 use crate::motion::mechanism::LOCKED;
+use crate::number::Dual;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, LinkId, RowId, RowTerm, Topology};
 
 use super::adjoint::Turning;
+
+/// Step of the difference quotients for second derivatives of laws by parameters, in the parameter's unit; first
+/// derivatives are exact. The error is proportional to its square.
+pub(crate) const LAW_STEP: f64 = 1e-4;
 
 /// Design velocities of one variable laid out for the plan: body-fixed marker twists by link and
 /// by closure.
@@ -164,7 +169,8 @@ impl<T: Real> PlanVelocity<T> {
             for (r, row) in closure.numbered_rows() {
                 // L' of this row: `u . (V_j - V_i)` of a rod, or the rate of another constant; 0 for a row without one.
                 let rate = rates.by(row);
-                if rate.abs().decisive() > 0.0 {
+                // A rate that is zero may have a derivative.
+                if !rate.vanishes() {
                     kept.push((r, rate));
                 }
             }
@@ -200,12 +206,6 @@ impl<T: Real> PlanVelocity<T> {
     /// Drivers whose laws change.
     pub fn drivers(&self) -> impl Iterator<Item = DriverId> {
         self.law_rates.iter().map(|(d, _)| *d)
-    }
-
-    /// Derivative of the value of a driver with this law at time t.
-    pub fn law_speed(&self, driver: DriverId, law: &Law, t: f64) -> f64 {
-        let of_driver = self.laws.iter().filter(|(d, ..)| *d == driver);
-        of_driver.map(|(_, parameter, rate)| rate.value() * law.derivative(*parameter, t).value()).sum()
     }
 
     /// Sets the contributions of laws at time t; `law` returns the law of a driver.
@@ -302,6 +302,29 @@ impl<T: Real> PlanVelocity<T> {
     pub fn law_rate(&self, driver: DriverId, order: usize) -> T {
         let of_driver = self.law_rates.iter().find(|(d, _)| *d == driver);
         of_driver.map_or(T::zero(), |(_, rates)| rates[order])
+    }
+}
+
+impl<T: Real> PlanVelocity<Dual<T>> {
+    /// Second derivative of the value of a driver, along the field and along the direction of the duals, by its laws at
+    /// a small step along the latter, forward and back.
+    pub fn law_curvature(&self, driver: DriverId, laws: [&Law; 2], t: f64) -> f64 {
+        let of_driver = self.laws.iter().filter(|(d, ..)| *d == driver);
+        let along = |(_, parameter, rate): &(DriverId, usize, Dual<T>)| {
+            let [ahead, behind] = laws.map(|law| law.derivative(*parameter, t).value());
+            // d/dw (df/dp dp/du) = d(df/dp)/dw dp/du + df/dp d2p/du dw
+            rate.v.value() * (ahead - behind) / (2.0 * LAW_STEP) + rate.d.value() * (ahead + behind) / 2.0
+        };
+        of_driver.map(along).sum()
+    }
+
+    /// Adds these second derivatives to the contributions that were set last.
+    pub fn add_law_curvature(&mut self, [ahead, behind]: [&[Law]; 2], t: f64) {
+        for k in 0..self.law_rates.len() {
+            let d = self.law_rates[k].0;
+            let curvature = self.law_curvature(d, [&ahead[d.0], &behind[d.0]], t);
+            self.law_rates[k].1[0].d += T::constant(curvature);
+        }
     }
 }
 

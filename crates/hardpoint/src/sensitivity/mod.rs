@@ -15,7 +15,7 @@ pub(crate) use adjoint::{Adjoint, DefectWatch, Load, Support, Turning};
 pub use admissible::{Admissibility, Condition, JointDefect, admissibility_at_design, conditions_at_design};
 pub(crate) use direct::{DirectDifferentiation, PlanVelocity};
 pub use second::{BodyCurvature, PairDirection};
-pub(crate) use second::{Seconds, along, pair_with_variables, values_along_variable};
+pub(crate) use second::{Seconds, along, laws_beside, pair_with_variables, values_along_variable};
 pub(crate) use solver::{
     Differentiated, Resistance, SensitivitySolver, admissibility, note_defects, record_derivatives,
 };

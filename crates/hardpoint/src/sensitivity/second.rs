@@ -25,7 +25,7 @@ use crate::number::{Dual, Real, record as recording};
 use crate::space::{Pose, Twist, Vec3, Wrench};
 use crate::topology::{ClosureId, LinkId, RowId, SetBy, Topology};
 
-use super::direct::{DirectDifferentiation, MovingMarker, PlanVelocity};
+use super::direct::{DirectDifferentiation, LAW_STEP, MovingMarker, PlanVelocity};
 
 /// Direction of differentiation.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +65,15 @@ pub struct BodyCurvature {
     /// Derivative along the second direction of dpi, the rotation vector rate along the first: not symmetric, since
     /// rotations do not commute.
     pub ddpi: Vec3,
+}
+
+impl BodyCurvature {
+    /// Curvature of a body at r, by its design twists along both directions, and the derivative along the second of the
+    /// first.
+    pub(crate) fn of(r: Vec3, [u, w]: [Twist; 2], uw: Twist) -> Self {
+        // r_uw = W_uw,v + W_uw,w x r + W_u,w x r_w                                                            (16)
+        Self { d2r: uw.at(r) + u.w.cross(w.at(r)), ddpi: uw.w }
+    }
 }
 
 /// First-order effect of one direction at one position.
@@ -146,9 +155,14 @@ fn along_direction<T: Real>(values: &[T], direction: &PairDirection) -> Vec<Dual
     values.iter().zip(speeds).map(|(v, d)| Dual { v: *v, d: T::constant(d) }).collect()
 }
 
-/// Step of the difference quotients for second derivatives of laws by parameters, in the parameter's unit; first
-/// derivatives are exact. The error is proportional to its square.
-const LAW_STEP: f64 = 1e-4;
+/// Laws of all drivers at a small step along the direction of these values, forward and back.
+pub(crate) fn laws_beside(design_map: &DesignMap<'_>, values: &[Dual]) -> [Vec<Law>; 2] {
+    [LAW_STEP, -LAW_STEP].map(|h| {
+        // b + h w and b - h w
+        let moved: Vec<f64> = values.iter().map(|x| x.v + h * x.d).collect();
+        design_map.laws(&moved)
+    })
+}
 
 /// Second derivatives by pairs of directions.
 pub(crate) struct Seconds<T = f64> {
@@ -179,11 +193,7 @@ impl Seconds {
             // b + eps w with eps^2 = 0: e_u + eps de_u/dw, L_u + eps L_uw, and the same of the laws' parameters
             let moving = along_direction(values, &directions[w]);
             let field = directions[u].field(design_map, &moving);
-            let laws = [LAW_STEP, -LAW_STEP].map(|h| {
-                // b + h w and b - h w
-                let moved: Vec<f64> = moving.iter().map(|x| x.v + h * x.d).collect();
-                design_map.laws(&moved)
-            });
+            let laws = laws_beside(design_map, &moving);
             Pair::new(design_map.model(), topology, ([u, w], &field), Some(laws))
         };
         let pairs = pairs.iter().map(pair).collect();
@@ -217,10 +227,7 @@ impl Seconds {
     /// Second derivatives of a body's position by pair p.
     pub fn curvature(&self, state: &State<f64>, p: usize, body: usize) -> BodyCurvature {
         let pair = &self.pairs[p];
-        let [u, w] = pair.of.map(|k| self.firsts[k].w()[body]);
-        // r_uw = W_uw,v + W_uw,w x r + W_u,w x r_w                                                            (16)
-        let (r, uw) = (state.pose[body].r, pair.w[body]);
-        BodyCurvature { d2r: uw.at(r) + u.w.cross(w.at(r)), ddpi: uw.w }
+        BodyCurvature::of(state.pose[body].r, pair.of.map(|k| self.firsts[k].w()[body]), pair.w[body])
     }
 }
 
@@ -381,13 +388,11 @@ impl<T: Real> Pair<T> {
         }
     }
 
-    /// Computes differences of the laws' exact derivatives.
+    /// Sets the second derivatives of the laws at time t.
     fn set_time(&mut self, t: f64) {
         let Self { field, laws, law_rates, .. } = self;
         for ((driver, [ahead, behind]), (_, out)) in laws.iter().zip(law_rates) {
-            let rate = |law: &Law| field.law_speed(*driver, law, t);
-            // f_uw = d/dw (sum_p df/dp dp/du),  (g(b + h w) - g(b - h w)) / 2h + O(h^2)
-            *out = (rate(ahead) - rate(behind)) / (2.0 * LAW_STEP);
+            *out = field.law_curvature(*driver, [ahead, behind], t);
         }
     }
 

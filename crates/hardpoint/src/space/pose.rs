@@ -82,6 +82,15 @@ impl<T: Real> Pose<T> {
     }
 }
 
+impl<T: Real> Pose<Dual<Dual<T>>> {
+    /// This pose with the outer derivative inside and the inner one outside.
+    pub fn exchanged(self) -> Self {
+        let exchange =
+            |x: Dual<Dual<T>>| Dual { v: Dual { v: x.v.v, d: x.d.v }, d: Dual { v: x.v.d, d: x.d.d } };
+        Self { rot: Mat3 { cols: self.rot.cols.map(|c| c.map(exchange)) }, r: self.r.map(exchange) }
+    }
+}
+
 impl<T: Real> Pose<Dual<T>> {
     /// This pose without derivative.
     pub fn nominal(self) -> Pose<T> {

@@ -35,7 +35,8 @@ impl Checker<'_> {
             }
         }
         for index in 0..draft.measures.len() {
-            let found = self.model.measures.iter().find(|m| m.name == draft.measures[index].name);
+            let k = self.model.measures.iter().position(|m| m.name == draft.measures[index].name);
+            let found = k.map(|k| &self.model.measures[k]);
             let is_rate = found.is_some_and(|m| match m.kind {
                 MeasureKind::Velocity { .. }
                 | MeasureKind::AngularVelocity { .. }
@@ -70,6 +71,17 @@ impl Checker<'_> {
                 );
                 let at = Here { section: Section::Measures, index }.key("type");
                 self.fault("HP0261", at, message).help("remove it, or remove `equilibrium`");
+            }
+            let alone = k.and_then(|k| self.model.drivers_alone(k));
+            if let Some(driver) = alone.into_iter().flatten().find(|d| released.contains(d)) {
+                let message = format!(
+                    "measure `{}` is per motion of driver `{}`, which is released",
+                    draft.measures[index].name, self.model.drivers[driver.0].name
+                );
+                let at = Here { section: Section::Measures, index }.key("type");
+                self.fault("HP0261", at, message)
+                    .note("springs and loads determine its value, so that it cannot move alone")
+                    .help("hold the driver, or remove the measure");
             }
         }
         self.model.equilibrium = Some(Equilibrium { released });

@@ -182,15 +182,6 @@ impl Checker<'_> {
             self.fault("HP0237", here.key("target"), message).help("give the target value of its metric");
         }
         let metric = self.metric(&g.metric, here.key("metric"))?;
-        if !self.model.has_sensitivities(self.model.metrics[metric].of) {
-            let message = format!("goal `{}` has no sensitivities in a model with `equilibrium`", g.name);
-            self.fault("HP0261", here.key("metric"), message)
-                .note("those of slopes and compliances at an equilibrium are not known")
-                .help(
-                    "use a metric of a position, such as the `change` or the `range` of a curve over a case",
-                );
-            return None;
-        }
         let m = &self.model.metrics[metric];
         if m.take.target().is_some() && g.target.is_some() {
             let message =
