@@ -492,6 +492,12 @@ fn summary_text(summary: &Summary) -> String {
     rows.push(("steps", format!("{} of {}, {last}", steps.solved, steps.asked)));
     rows.push(("worst residual", format!("{} m or rad", error(summary.effort.worst_residual_si))));
     rows.extend(summary.margin.as_ref().map(|m| ("margin", m.line())));
+    rows.extend(summary.effort.uncertain_stability.map(|t| {
+        (
+            "stability",
+            format!("not certain from t = {} s on: forces that follow a body have no potential", number(t)),
+        )
+    }));
     rows.push(("design variables", model.variables_line()));
     let parts = [("solving", timings.solve), ("comparing", timings.compare), ("writing", timings.write)];
     let parts: Vec<String> =

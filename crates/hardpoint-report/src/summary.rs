@@ -105,6 +105,8 @@ pub struct EffortFact {
     pub least_pivot_ratio: f64,
     /// Time of the minimum pivot ratio, s.
     pub least_pivot_time: f64,
+    /// First output time whose equilibrium is not certainly stable, s.
+    pub uncertain_stability: Option<f64>,
 }
 
 /// Reason why a run ended early.
@@ -247,6 +249,7 @@ impl Summary {
                 worst_residual_si: effort.worst_residual,
                 least_pivot_ratio: effort.least_pivot_ratio,
                 least_pivot_time: effort.least_pivot_time,
+                uncertain_stability: effort.uncertain_stability,
             },
             margin: MarginFact::new(model, file.units, topology, &course.margins, &solution.motion),
             assembly: solution.motion.assembly.as_ref().map(|a| AssemblyFact::new(model, file.units, a)),

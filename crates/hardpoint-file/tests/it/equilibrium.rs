@@ -595,6 +595,83 @@ fn a_truss_snaps_through_at_its_limit_load() {
     near(part, 1.0 / 1.2, 1e-6, "limit load");
 }
 
+/// Two pendulums that stand upright on torsion springs of this stiffness: 1 kg at 1 m each.
+fn pendulums(stiffness: f64) -> String {
+    let one = |y: i32| {
+        let joints = format!(
+            "p{y} = {{ type = \"revolute\", bodies = [\"ground\", \"b{y}\"], at = [0, {y}, 0], axis = \"y\" }}"
+        );
+        let mass = format!(
+            "m{y} = {{ type = \"rigid\", centre = {{ body = \"b{y}\", at = [0, {y}, 1] }}, mass = 1 }}"
+        );
+        let spring =
+            format!("s{y} = {{ type = \"torsion_spring\", joint = \"p{y}\", stiffness = {stiffness} }}");
+        (joints, mass, spring)
+    };
+    let (left, right) = (one(0), one(1));
+    format!(
+        r#"
+name = "pendulums"
+units = {{ length = "m", angle = "rad" }}
+[bodies]
+b0 = {{}}
+b1 = {{}}
+[joints]
+{}
+{}
+[drivers]
+d0 = {{ joint = "p0", law = 0 }}
+d1 = {{ joint = "p1", law = 0 }}
+[gravity]
+along = "-z"
+[masses]
+{}
+{}
+[forces]
+{}
+{}
+[equilibrium]
+released = ["d0", "d1"]
+[time]
+at = [0]
+"#,
+        left.0, right.0, left.1, right.1, left.2, right.2
+    )
+}
+
+#[test]
+fn an_unstable_equilibrium_is_an_end_even_if_two_directions_are_unstable() {
+    // Upright is stable if k > m g h = 9.80665 N m.
+    let stop = |stiffness: f64| {
+        let model = file(&pendulums(stiffness)).model;
+        Analysis::new(&model).unwrap().run().stop.map(|stop| stop.kind)
+    };
+    assert!(stop(9.81).is_none(), "{:?}", stop(9.81));
+    assert!(matches!(stop(9.80), Some(StopKind::Unstable { .. })), "{:?}", stop(9.80));
+}
+
+#[test]
+fn the_limit_load_and_the_stability_of_the_wishbone_are_those_published() {
+    let at = |bump: f64, factor: f64| {
+        let road = [2000.0 * factor, -1500.0 * factor];
+        let text = wishbone(State { bump, road, align: 50.0 * factor, rack: 0.0 }, &AS_PUBLISHED);
+        let model = file(&text.replace("preload = 150.0", "preload = 0.0")).model;
+        Analysis::new(&model).unwrap().run()
+    };
+    // At 50 mm there is no equilibrium beyond 11.387338753 times these loads.
+    let stop = |factor: f64| at(0.05, factor).stop.map(|stop| stop.kind);
+    assert!(stop(11.3873).is_none(), "{:?}", stop(11.3873));
+    assert!(matches!(stop(11.3874), Some(StopKind::LimitLoad { .. })), "{:?}", stop(11.3874));
+    // At -50 mm the symmetric part of the stiffness is indefinite from 13.09065 times these loads on, just below the
+    // limit load.
+    let uncertain = |factor: f64| {
+        let solution = at(-0.05, factor);
+        assert!(solution.stop.is_none(), "{factor}: {:?}", solution.stop);
+        solution.motion.effort.uncertain_stability
+    };
+    assert_eq!([13.09064, 13.09067].map(uncertain), [None, Some(0.0)]);
+}
+
 #[test]
 fn what_nothing_holds_is_named() {
     let loose = lever(0.0).replace(", about_z = 250", "").replace("\"fixed\"", "\"revolute\", axis = \"z\"");

@@ -30,6 +30,19 @@ const SHORTEST: f64 = 1e-9;
 const PREDICTED_FROM: usize = 3;
 /// A pivot of the scaled stiffness below this holds nothing.
 const HOLDS_NOTHING: f64 = 1e-12;
+/// Difference of symmetric entries of the scaled stiffness above which the forces have no potential; round-off is below.
+const UNSYMMETRIC: f64 = 1e-9;
+
+/// Stability of an equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stability {
+    /// Every virtual motion needs work.
+    Stable,
+    /// A virtual motion releases work.
+    Unstable,
+    /// A virtual motion releases work, but the forces have no potential.
+    Uncertain,
+}
 
 /// Reason why an equilibrium was not found.
 enum Rejection {
@@ -37,8 +50,8 @@ enum Rejection {
     Locked(StepRejection),
     /// The mechanism does not reach the position, or Newton's method does not converge.
     NoConvergence,
-    /// The determinant of the stiffness has changed its sign: the equilibrium is not the one that continues the last.
-    OtherBranch,
+    /// The equilibrium is not stable.
+    Unstable,
     /// No force resists a motion of this opening.
     NothingHolds(usize),
 }
@@ -64,8 +77,6 @@ struct Accepted {
     /// Values of all drivers.
     drivers: Vec<f64>,
     loads: GivenLoads,
-    /// Sign of the determinant of the stiffness; `None` before the first.
-    positive: Option<bool>,
 }
 
 /// Solver of the equilibria of one design.
@@ -129,7 +140,6 @@ impl<'a> EquilibriumSolver<'a> {
                 time: None,
                 drivers: vec![0.0; model.drivers.len()],
                 loads: GivenLoads::none(model),
-                positive: None,
             },
             path: Vec::new(),
             forces: vec![0.0; n],
@@ -153,7 +163,7 @@ impl<'a> EquilibriumSolver<'a> {
             to[d.0] = predicted.as_ref().map(|p| p[k]);
         }
         let (start, end) = (self.last.loads.clone(), GivenLoads::at(self.model, t));
-        let (mut done, mut part) = (0.0, 1.0);
+        let (mut done, mut part, mut certain) = (0.0, 1.0, true);
         while done < 1.0 {
             let next = f64::min(done + part, 1.0);
             // The part of the rest that this attempt goes.
@@ -166,8 +176,9 @@ impl<'a> EquilibriumSolver<'a> {
             let target: Vec<f64> = self.last.drivers.iter().zip(&to).map(between).collect();
             let loads = start.towards(&end, next);
             match self.attempt(one, t, target, &loads) {
-                Ok(drivers) => {
+                Ok((drivers, is_stable)) => {
                     advance::accept_at_rest(one, t);
+                    certain = is_stable;
                     self.last.drivers = drivers;
                     self.last.loads = loads;
                     (done, part) = (next, 2.0 * part);
@@ -185,6 +196,9 @@ impl<'a> EquilibriumSolver<'a> {
             self.path.remove(0);
         }
         one.effort.equilibrium_iterations = self.iterations;
+        if !certain && one.effort.uncertain_stability.is_none() {
+            one.effort.uncertain_stability = Some(t);
+        }
         advance::count(one);
         self.path.push((t, self.openings.iter().map(|d| self.last.drivers[d.0]).collect()));
         Ok(())
@@ -203,13 +217,14 @@ impl<'a> EquilibriumSolver<'a> {
     }
 
     /// Solves the equilibrium with the held drivers at these values, under these loads; the openings are predicted.
+    /// Returns the values of the drivers, and true if it is certainly stable.
     fn attempt(
         &mut self,
         one: &mut Stepper<'_>,
         t: f64,
         mut drivers: Vec<f64>,
         given: &GivenLoads,
-    ) -> Result<Vec<f64>, Rejection> {
+    ) -> Result<(Vec<f64>, bool), Rejection> {
         self.is_prepared = false;
         advance::move_at_rest(one, &drivers).map_err(Rejection::of)?;
         let mut before = f64::INFINITY;
@@ -240,12 +255,14 @@ impl<'a> EquilibriumSolver<'a> {
             }
             advance::shift_at_rest(one, &drivers).map_err(Rejection::of)?;
             if size <= QUADRATIC {
-                // Only an equilibrium has a stability.
-                if self.last.positive.is_some_and(|last| last != positive) {
-                    return Err(Rejection::OtherBranch);
-                }
-                self.last.positive = Some(positive);
-                return Ok(drivers);
+                // The design configuration without loads is stable. Without a change of the sign an even number of
+                // directions may have become unstable.
+                return match self.stability() {
+                    _ if !positive => Err(Rejection::Unstable),
+                    Stability::Unstable => Err(Rejection::Unstable),
+                    Stability::Stable => Ok((drivers, true)),
+                    Stability::Uncertain => Ok((drivers, false)),
+                };
             }
             before = size;
         }
@@ -308,6 +325,31 @@ impl<'a> EquilibriumSolver<'a> {
             }
         }
         self.tangent.factor()
+    }
+
+    /// Stability of the equilibrium whose stiffness was set last, by the definiteness of its symmetric part.
+    fn stability(&self) -> Stability {
+        let n = self.openings.len();
+        let scaled = |a: usize, b: usize| self.stiffness[a * n + b] * self.units[a] * self.units[b];
+        // L D L^T of the symmetric part, row by row: l_ab d_b, with d on the diagonal
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n);
+        for a in 0..n {
+            let mut row: Vec<f64> = (0..=a).map(|b| 0.5 * (scaled(a, b) + scaled(b, a))).collect();
+            for b in 0..a {
+                let reduced: f64 = (0..b).map(|c| row[c] * rows[b][c] / rows[c][c]).sum();
+                row[b] -= reduced;
+            }
+            let reduced: f64 = (0..a).map(|c| row[c] * row[c] / rows[c][c]).sum();
+            row[a] -= reduced;
+            if !(row[a] > 0.0) {
+                let pairs = (0..n).flat_map(|a| (0..a).map(move |b| (a, b)));
+                let has_potential =
+                    pairs.into_iter().all(|(a, b)| (scaled(a, b) - scaled(b, a)).abs() <= UNSYMMETRIC);
+                return if has_potential { Stability::Unstable } else { Stability::Uncertain };
+            }
+            rows.push(row);
+        }
+        Stability::Stable
     }
 
     /// The opening that the least force resists: the largest component of the direction without stiffness.
@@ -485,7 +527,7 @@ impl<'a> EquilibriumSolver<'a> {
             }
             (Rejection::NoConvergence, None) => StopKind::LimitLoad { part: done },
             (Rejection::NoConvergence, Some(_)) => StopKind::NoEquilibrium,
-            (Rejection::OtherBranch, _) => {
+            (Rejection::Unstable, _) => {
                 // The direction in which the stiffness vanishes.
                 if advance::move_at_rest(one, &self.last.drivers).is_ok() {
                     self.prepare(one, t);
