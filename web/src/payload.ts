@@ -752,7 +752,7 @@ margin: Curve | null, };
 /**
  * Source of another design.
  */
-export type DesignKind = "exact" | "first_order" | "second_order" | "band";
+export type DesignKind = "exact" | "first_order" | "second_order" | "band" | "rigid";
 
 /**
  * Quantity of another design with its two time derivatives; unknown curves are empty.

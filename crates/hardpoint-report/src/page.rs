@@ -530,6 +530,8 @@ pub enum DesignKind {
     SecondOrder,
     /// Edge of the band of the curves of many designs, not a design itself.
     Band,
+    /// The nominal design with rigid joints in place of the elastic ones.
+    Rigid,
 }
 
 /// Quantity of another design with its two time derivatives; unknown curves are empty.

@@ -9,6 +9,7 @@ mod designs;
 mod drawing;
 mod first;
 mod loads;
+mod rigid;
 mod values;
 
 pub use designs::ChangedDesign;
@@ -110,6 +111,7 @@ pub fn report(
 /// Finished payload with the highest detail that fits into a page, packed already if its size had to be measured.
 fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payload, Option<Vec<u8>>) {
     let (model, solution) = (&request.file.model, &request.course.kept);
+    let rigid = rigid::solve(request);
     let size = Size {
         steps: solution.motion.len(),
         bodies: model.bodies.len() - 1,
@@ -117,10 +119,10 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         outputs: solution.measured.outputs.len(),
         loads: loads::count(model),
         compared: request.differences.iter().any(Option::is_some),
-        designs: request.changed.as_ref().map_or(0, ChangedDesign::designs),
+        designs: request.changed.as_ref().map_or(0, ChangedDesign::designs) + usize::from(rigid.is_some()),
     };
     let alone = driver_rates(request);
-    let compose = |detail: Detail| finish(composed(request, alone.as_ref(), detail));
+    let compose = |detail: Detail| finish(composed(request, alone.as_ref(), rigid.as_ref(), detail));
     let levels = Detail::levels(size, Bodies::of(request.course));
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
@@ -159,14 +161,25 @@ fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
 }
 
 /// Payload with a given detail.
-fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) -> Payload {
+fn composed(
+    request: &Request<'_>,
+    alone: Option<&DriverRates>,
+    rigid: Option<&Result<Solution, String>>,
+    detail: Detail,
+) -> Payload {
     let &Request { file, course, summary, differences, ref changed, .. } = request;
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let compose = Compose::new(request, alone, detail);
     let (bodies, values) = (compose.bodies(), compose.values(summary));
-    let designs = changed
+    let mut designs = changed
         .as_ref()
         .map_or_else(Vec::new, |changed| compose.designs(changed, course.stride, &bodies, &values));
+    let mut notes = summary.model.all_notes();
+    match rigid {
+        Some(Ok(solved)) => designs.push(compose.rigid(solved, &bodies, &values)),
+        Some(Err(why)) => notes.push(why.clone()),
+        None => {}
+    }
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),
@@ -183,7 +196,7 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
             Detail { stride: detail.stride * course.stride, ..detail },
         ),
         summary: headline(summary),
-        notes: summary.model.all_notes(),
+        notes,
         times: compose.curve(|k| solution.motion.times[k]),
         bodies,
         joints: compose.joints(),

@@ -81,8 +81,11 @@ export function valueContent(state: State, subject: Subject): Content {
   if (quantity.curves[order].length === 0) return { ...content, message: unknown(name) }
   const quantities = [index, ...also.filter((k) => k !== index)].map((k) => report.quantities[k])
   const several = quantities.length > 1
-  const [reference, ...others] = comparedDesigns(state)
-  const drawn = [presentDesign(state), ...(difference ? [] : [reference]), ...others].filter(
+  const [compared, ...others] = comparedDesigns(state)
+  const rigid = rigidDesign(state)
+  // Where nothing else is compared, a change is that to the rigid mechanism.
+  const reference = compared ?? (difference ? rigid : undefined)
+  const drawn = [presentDesign(state), ...(difference ? [] : [reference, rigid]), ...others].filter(
     (design) => design !== undefined,
   )
   const base = reference ?? drawn[0]
@@ -105,7 +108,7 @@ export function valueContent(state: State, subject: Subject): Content {
       content.lines.push({ label, color, curve, over: x, width: design.width, dash, about: aboutQuantity(one) })
     }
   }
-  if (difference) content.caption = differenceCaption(state, reference)
+  if (difference) content.caption = differenceCaption(reference)
   else addPredictions(state, subject, content, scale)
   const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
   // Over another quantity, which has a tolerance itself, bands would have another meaning.
@@ -146,8 +149,14 @@ function comparedDesigns(state: State): (Drawn | undefined)[] {
   ]
 }
 
-function differenceCaption({ isCompared }: State, reference: Drawn | undefined): string {
-  if (!isCompared || !reference) return 'Nothing is changed yet.'
+/** The mechanism with rigid joints, a thin line. */
+function rigidDesign({ rigid }: State): Drawn | undefined {
+  if (!rigid) return undefined
+  return { name: rigid.name, curve: (quantity, order) => curveOf(rigid, quantity, order), width: 1.1 }
+}
+
+function differenceCaption(reference: Drawn | undefined): string {
+  if (!reference) return 'Nothing is changed yet.'
   return `Change to: ${reference.name}.`
 }
 

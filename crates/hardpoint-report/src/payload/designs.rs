@@ -91,7 +91,7 @@ impl Compose<'_> {
         values: &[Value],
     ) -> Vec<Design> {
         let comparison = DesignComparison { today: self, changed, stride };
-        let mut designs = vec![comparison.exact(bodies, values)];
+        let mut designs = vec![comparison.exact(bodies, values, self.forces(changed.change))];
         let follows = |what_if: &&WhatIf| what_if.cannot_follow.is_empty() && changed.solved() > 0;
         if let Some(what_if) = changed.prediction.filter(follows) {
             designs
@@ -108,7 +108,19 @@ impl Compose<'_> {
         bodies: &[BodyTrack],
         values: &[Value],
     ) -> Design {
-        DesignComparison { today: self, changed, stride }.exact(bodies, values)
+        let loads = self.forces(changed.change);
+        DesignComparison { today: self, changed, stride }.exact(bodies, values, loads)
+    }
+
+    /// Design at the stored output times, without its loads.
+    pub(super) fn unloaded(
+        &self,
+        design: &ChangedDesign<'_>,
+        bodies: &[BodyTrack],
+        values: &[Value],
+    ) -> Design {
+        let comparison = DesignComparison { today: self, changed: design, stride: 1 };
+        comparison.exact(bodies, values, Vec::new())
     }
 }
 
@@ -211,7 +223,7 @@ impl DesignComparison<'_> {
     }
 
     /// Design as solved again.
-    fn exact(&self, bodies: &[BodyTrack], values: &[Value]) -> Design {
+    fn exact(&self, bodies: &[BodyTrack], values: &[Value], loads: Vec<Curve>) -> Design {
         let (changed, units) = (self.changed, self.today.units);
         let (today, exact) = (changed.today, changed.exact);
         let output = |m: usize| {
@@ -235,7 +247,7 @@ impl DesignComparison<'_> {
         Design {
             poses: self.poses(),
             skeletons: self.skeletons(bodies),
-            loads: self.today.forces(changed.change),
+            loads,
             quantities: self.quantities(output, origin),
             values: self.values(values, |metric| found[metric], static_value),
             margin: (!margins.is_empty())

@@ -1,0 +1,82 @@
+//! Elastic joints in equilibrium: the rigid mechanism alongside, and deflections.
+
+use std::fs;
+use std::path::Path;
+
+use hardpoint::model::Model;
+use hardpoint::{Analysis, Run};
+use hardpoint_file::ModelFile;
+use hardpoint_report::course::Course;
+use hardpoint_report::page::{DesignKind, Payload};
+use hardpoint_report::payload::{Request, payload};
+use hardpoint_report::summary::Summary;
+
+/// Template of a front axle on bushings, with some text replaced, in a case.
+fn axle(case: &str, replaced: [&str; 2]) -> ModelFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-cli/templates/k-and-c.toml");
+    let text = fs::read_to_string(path).unwrap();
+    assert!(text.contains(replaced[0]));
+    let file = hardpoint_file::parse(&text.replacen(replaced[0], replaced[1], 1), "axle.toml").unwrap();
+    let case = file.model.cases.iter().position(|c| c.name == case).unwrap();
+    file.in_case(hardpoint::model::CaseId(case))
+}
+
+fn page(file: &ModelFile) -> Payload {
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.run();
+    let course = Course::of(&file.model, &solution);
+    let summary = Summary::new(file, analysis.topology(), &course);
+    payload(&Request::of(file, &analysis, &course, &summary))
+}
+
+#[test]
+fn page_of_an_elastic_mechanism_has_the_rigid_one_with_the_same_drivers() {
+    let file = axle("parallel_travel", ["", ""]);
+    let page = page(&file);
+    let [rigid] = &page.designs[..] else { panic!("{} designs", page.designs.len()) };
+    assert_eq!((rigid.kind, rigid.name.as_str()), (DesignKind::Rigid, "rigid"));
+    assert_eq!(rigid.change, vec![0.0; page.variables.len()]);
+    assert!(rigid.loads.is_empty() && rigid.poses.len() == page.bodies.len());
+
+    let without = Model { equilibrium: None, ..file.model.clone() };
+    let solved = Analysis::new(&without).unwrap().solve(Run::new().without_sensitivities());
+    let toe = solved.measured.index("left.toe").unwrap();
+    let curve = rigid.quantities[toe].as_ref().unwrap().value.values();
+    assert_eq!(curve.len(), 41);
+    for (k, shown) in curve.iter().enumerate() {
+        let exact = solved.measured.value(k, toe)[0].to_degrees();
+        assert!((f64::from(*shown) - exact).abs() < 1e-5, "{shown} instead of {exact} at {k}");
+    }
+    // What a rigid mechanism has no meaning for, or another one.
+    for name in ["left_toe_per_side", "left_wheel_load"] {
+        let index = page.quantities.iter().position(|q| q.name == name).unwrap();
+        assert!(rigid.quantities[index].is_none(), "{name}");
+    }
+    let value = |name: &str| page.values.iter().position(|v| v.name == name).unwrap();
+    let [elastic, as_rigid] =
+        [page.values[value("toe_over_travel")].value, rigid.values[value("toe_over_travel")]];
+    assert!((elastic.unwrap() - as_rigid.unwrap()).abs() > 0.1);
+}
+
+#[test]
+fn rigid_mechanism_under_forces_alone_has_positions_but_no_metrics() {
+    let file = axle("lateral_in_phase", ["", ""]);
+    let page = page(&file);
+    let rigid = &page.designs[0];
+    let toe = page.quantities.iter().position(|q| q.name == "left.toe").unwrap();
+    let curve = rigid.quantities[toe].as_ref().unwrap().value.values();
+    assert!(curve.iter().all(|x| x.abs() < 1e-6), "{curve:?}");
+    let metrics = file.model.metrics.len();
+    assert!(metrics >= 4 && rigid.values[..metrics].iter().all(Option::is_none));
+    assert!(page.values[..metrics].iter().all(|v| v.value.is_some()));
+}
+
+#[test]
+fn rigid_mechanism_is_left_out_with_a_sentence_if_only_forces_hold_it() {
+    let released = "[equilibrium]\nreleased = [\"left_bump\"]\n";
+    let page = page(&axle("braking", ["[equilibrium]\n", released]));
+    assert!(page.designs.is_empty());
+    let notes: Vec<&String> = page.notes.iter().filter(|n| n.contains("rigid mechanism")).collect();
+    let [note] = notes[..] else { panic!("{:?}", page.notes) };
+    assert!(note.starts_with("The rigid mechanism is not shown: ") && note.contains("`left_bump`"), "{note}");
+}
