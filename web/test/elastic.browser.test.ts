@@ -20,6 +20,16 @@ describe('a mechanism with elastic joints', () => {
     expect((await picture(page)).equals(before)).toBe(true)
   })
 
+  test('has the deflections of its bushings as curves, and the largest ones in a table', async () => {
+    const page = await open(elastic)
+    await page.getByTestId('plot-0').getByTestId('quantity').selectOption({ label: 'left_lca_rear along z' })
+    expect(await text(page, 'plot-0')).toMatch(/left_lca_rear along z\s+[−\d.]+ mm/)
+    await page.getByRole('tab', { name: 'Checks' }).click()
+    const table = page.locator('details').filter({ hasText: 'force or moment there' })
+    await table.locator('summary').click()
+    expect(await table.locator('tbody tr').count()).toBe(48)
+  })
+
   test('has the metrics of the rigid one in a column of their own, and changes to it in the plots', async () => {
     const page = await open(elastic)
     await page.getByRole('tab', { name: 'Compare' }).click()

@@ -12,6 +12,7 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::GENERATOR;
 use hardpoint_report::columns::Columns;
 use hardpoint_report::course::Course;
+use hardpoint_report::deflection::DeflectionFact;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
 use hardpoint_report::maps::MapFact;
@@ -49,7 +50,7 @@ const TOO_MANY: &str = "the sensitivities were not compared with re-solved desig
 const JERK_ROWS: usize = 256;
 
 /// All files that a run may write; the last one marks them as complete.
-const FILES: [&str; 18] = [
+const FILES: [&str; 19] = [
     "motion.csv",
     "sensitivity.csv",
     "motion.npy",
@@ -60,6 +61,7 @@ const FILES: [&str; 18] = [
     "jerk.csv",
     "loads.csv",
     "drivers.csv",
+    "deflections.csv",
     "motion.xlsx",
     "report.pdf",
     "motion.glb",
@@ -255,8 +257,14 @@ fn run_in(
                     Ok(hardpoint_report::loads::write_drivers(model, units, &loads, out)?)
                 })
             });
-            drivers.map_err(|e| session.not_written(&e))?;
-            for name in ["loads.csv", "drivers.csv"] {
+            let deflections = DeflectionFact::all(model, units, &loads);
+            let elastic = drivers.and_then(|()| match deflections.is_empty() {
+                true => Ok(()),
+                false => folder.write("deflections.csv", |out| Ok(DeflectionFact::write(&deflections, out)?)),
+            });
+            elastic.map_err(|e| session.not_written(&e))?;
+            let deflections = (!deflections.is_empty()).then_some("deflections.csv");
+            for name in ["loads.csv", "drivers.csv"].into_iter().chain(deflections) {
                 summary.files.push(folder.path_of(name).display().to_string());
             }
         }

@@ -27,6 +27,7 @@ pub mod calibrate;
 pub mod cells;
 pub mod compare;
 pub mod course;
+pub mod deflection;
 pub mod diagnose;
 pub mod encoding;
 pub mod facts;

@@ -18,6 +18,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
+use hardpoint::load::Loads;
 use hardpoint::model::{BodyId, Dimension, Driver, DriverId, Metric, Model, OutputSource, VariableId};
 use hardpoint::run::DriverRates;
 use hardpoint::sensitivity::{BodySensitivity, admissibility_at_design};
@@ -29,6 +30,7 @@ use hardpoint_study::difference::Difference;
 use hardpoint_table::series::{self, Scale, settled};
 
 use crate::course::{Course, RoundOff};
+use crate::deflection::DeflectionFact;
 use crate::encoding::{packed, size_in_page};
 use crate::facts::{Facts, VariableAdmissibility};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
@@ -117,7 +119,7 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         bodies: model.bodies.len() - 1,
         variables: model.variables.len(),
         outputs: solution.measured.outputs.len(),
-        loads: loads::count(model),
+        loads: loads::count(model) + model.elastic_directions().len(),
         compared: request.differences.iter().any(Option::is_some),
         designs: request.changed.as_ref().map_or(0, ChangedDesign::designs) + usize::from(rigid.is_some()),
     };
@@ -174,6 +176,8 @@ fn composed(
     let mut designs = changed
         .as_ref()
         .map_or_else(Vec::new, |changed| compose.designs(changed, course.stride, &bodies, &values));
+    let loads = compose.solved_loads(&[]);
+    let deflections = DeflectionFact::all(model, units, &loads);
     let mut notes = summary.model.all_notes();
     match rigid {
         Some(Ok(solved)) => designs.push(compose.rigid(solved, &bodies, &values)),
@@ -204,9 +208,9 @@ fn composed(
         drivers: compose.drivers(),
         wheels: compose.wheels(),
         distances: compose.distances(),
-        loads: compose.loads(),
+        loads: compose.loads(&loads),
         vehicle: compose.vehicle(),
-        quantities: compose.quantities(),
+        quantities: compose.quantities(&loads),
         values,
         first: compose.first(course),
         over: None,
@@ -223,6 +227,7 @@ fn composed(
         checks: MetricFact::table(&summary.metrics)
             .into_iter()
             .chain(summary.assembly.iter().flat_map(|a| a.tables()))
+            .chain(DeflectionFact::table(&deflections))
             .chain(summary.validity_table())
             .chain(summary.model.tables())
             .collect(),
@@ -265,7 +270,7 @@ struct Size {
     bodies: usize,
     variables: usize,
     outputs: usize,
-    /// Forces on bodies.
+    /// Forces on bodies, and deflections.
     loads: usize,
     /// True if there are differences for comparison.
     compared: bool,
@@ -496,8 +501,8 @@ impl<'a> Compose<'a> {
         v.to_array().map(|x| self.units.from_si(Kind::Length, x))
     }
 
-    /// Quantities: all outputs, then x, y and z of every body's origin.
-    fn quantities(&self) -> Vec<Quantity> {
+    /// Quantities: all outputs, then x, y and z of every body's origin, then deflections.
+    fn quantities(&self, loads: &Loads) -> Vec<Quantity> {
         let measured = &self.solution.measured;
         let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
             let value = |k, order: usize| measured.value(k, m)[order];
@@ -516,7 +521,11 @@ impl<'a> Compose<'a> {
             };
             self.quantity(&name, Dimension::LENGTH, 3, ("body", "position"), value)
         });
-        outputs.chain(origins).collect()
+        let deflections = self.deflections(loads).into_iter().map(|(name, dimension, value)| {
+            let (group, kind) = ("deflection", "deflection");
+            Quantity { value, ..self.quantity(&name, dimension, 0, (group, kind), |_, _| f64::NAN) }
+        });
+        outputs.chain(origins).chain(deflections).collect()
     }
 
     /// Plots of the model file.

@@ -46,6 +46,25 @@ fn both_formulations_write_the_same_motion() {
 }
 
 #[test]
+fn largest_deflections_of_bushings_are_written() {
+    let bench = Bench::with(&[]);
+    bench.shown(&["new", "axle", "--template", "k-and-c"]);
+    let output = bench.run(&["run", "axle.toml", "--case", "lateral_in_phase", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = bench.text("out/deflections.csv");
+    let mut lines = text.lines();
+    assert_eq!(lines.next().unwrap(), "element,direction,deflection,deflection unit,force,force unit,t [s]");
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 48);
+    let row = rows.iter().find(|row| row[..2] == ["left_lca_front", "along x"]).unwrap();
+    let [deflection, force]: [f64; 2] = [row[2], row[4]].map(|x| x.parse().unwrap());
+    // 9000 N/mm
+    assert!((force + 9000.0 * deflection).abs() <= 1e-9 * force.abs(), "{row:?}");
+    let summary = bench.json("out/summary.json");
+    assert!(summary["files"].as_array().unwrap().iter().any(|f| f.as_str() == Some("out/deflections.csv")));
+}
+
+#[test]
 fn joint_loads_are_written_and_indeterminate_ones_are_empty() {
     let bench = Bench::with(&[]);
     let press = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/press.toml");

@@ -1,11 +1,12 @@
-//! Forces on bodies, for drawing.
+//! Forces on bodies, for drawing; deflections of elastic joints and bushings, as curves.
 
 use hardpoint::Analysis;
 use hardpoint::load::Loads;
-use hardpoint::model::Model;
+use hardpoint::model::{Dimension, Model};
 use hardpoint::space::Vec3;
 use hardpoint_table::series::settled;
 
+use crate::deflection;
 use crate::page::{BodyPlace, Curve, LoadMark};
 
 use super::Compose;
@@ -27,11 +28,11 @@ fn joints(model: &Model) -> Vec<usize> {
 
 impl Compose<'_> {
     /// Forces of the nominal design.
-    pub(super) fn loads(&self) -> Vec<LoadMark> {
+    pub(super) fn loads(&self, loads: &Loads) -> Vec<LoadMark> {
         if count(self.model) == 0 {
             return Vec::new();
         }
-        let (loads, shown) = (self.solved_loads(&[]), joints(self.model));
+        let shown = joints(self.model);
         let part_of = |j: usize| (0..loads.times.len()).any(|k| loads.joints_at(k)[j].known_directions < 3);
         let of_joints = shown.iter().map(|&j| {
             let joint = &self.model.joints[j];
@@ -44,19 +45,37 @@ impl Compose<'_> {
         let of_points = pushed
             .iter()
             .map(|&(e, point)| (self.model.elements[e.0].name.clone(), None, self.place(point), false));
-        let marks = of_joints.chain(of_points).zip(self.curves_of(&loads));
+        let marks = of_joints.chain(of_points).zip(self.curves_of(loads));
         marks
             .map(|((name, joint, at, is_part), force)| LoadMark { name, joint, at, force, is_part })
             .collect()
     }
 
-    /// Forces of the design with a change of the variables, in the same order.
-    pub(super) fn forces(&self, change: &[f64]) -> Vec<Curve> {
-        if count(self.model) == 0 { Vec::new() } else { self.curves_of(&self.solved_loads(change)) }
+    /// Forces of another design, in the same order.
+    pub(super) fn forces(&self, loads: &Loads) -> Vec<Curve> {
+        if count(self.model) == 0 { Vec::new() } else { self.curves_of(loads) }
     }
 
-    /// Loads at the shown output times.
-    fn solved_loads(&self, change: &[f64]) -> Loads {
+    /// Deflections of elastic joints and bushings: name, dimension, and a value per step.
+    pub(super) fn deflections(&self, loads: &Loads) -> Vec<(String, Dimension, Curve)> {
+        let of = |(i, at): (usize, _)| {
+            let (name, dimension) = deflection::curve_name(self.model, at);
+            let round_off = self.round_off.value(dimension, 0);
+            let value = |k: usize| match k < loads.times.len() {
+                true => settled(loads.deflections_at(k)[i].displacement, round_off),
+                false => f64::NAN,
+            };
+            let shown = |k: usize| self.units.from_si(dimension, value(k));
+            (name, dimension, (0..self.steps.len()).map(shown).collect())
+        };
+        self.model.elastic_directions().into_iter().enumerate().map(of).collect()
+    }
+
+    /// Loads of a design at the shown output times.
+    pub(super) fn solved_loads(&self, change: &[f64]) -> Loads {
+        if !self.model.has_loads() {
+            return Loads::default();
+        }
         let times = self.steps.iter().map(|&k| self.solution.motion.times[k]).collect();
         // The analysed model has the variables of the change; the shown one may have none.
         let model = Model { times, ..self.analysis.model().clone() };

@@ -7,6 +7,7 @@ use hardpoint::model::Model;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
+use hardpoint_report::deflection::DeflectionFact;
 use hardpoint_report::page::{DesignKind, Payload};
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
@@ -56,6 +57,39 @@ fn page_of_an_elastic_mechanism_has_the_rigid_one_with_the_same_drivers() {
     let [elastic, as_rigid] =
         [page.values[value("toe_over_travel")].value, rigid.values[value("toe_over_travel")]];
     assert!((elastic.unwrap() - as_rigid.unwrap()).abs() > 0.1);
+}
+
+#[test]
+fn deflections_are_curves_and_the_largest_of_each_direction_is_in_a_table() {
+    let file = axle("braking", ["", ""]);
+    let analysis = Analysis::new(&file.model).unwrap();
+    let loads = analysis.loads(&[]);
+    let facts = DeflectionFact::all(&file.model, file.units, &loads);
+    // Eight bushings in six directions.
+    assert_eq!(facts.len(), 48);
+    let of = |direction: &str| {
+        facts.iter().find(|d| d.element == "left_lca_front" && d.direction == direction).unwrap()
+    };
+    // Stiffnesses of the template, N/mm and N m/deg; there is no preload.
+    let stiffnesses =
+        [("along x", 9000.0), ("along y", 8000.0), ("along z", 1200.0), ("about x", 60.0), ("about z", 1.4)];
+    for (direction, stiffness) in stiffnesses {
+        let fact = of(direction);
+        let (way, force) = (fact.deflection.unwrap(), fact.force.unwrap());
+        assert!((force + stiffness * way).abs() <= 1e-9 * force.abs(), "{direction}: {way} and {force}");
+    }
+    // Braking pulls the arm to the rear, and most at the full force.
+    let [along, across] = ["along z", "along x"].map(of);
+    assert_eq!((along.time, along.unit.as_str(), along.force_unit.as_str()), (Some(1.0), "mm", "N"));
+    assert_eq!(of("about x").unit, "deg");
+    assert!(along.deflection.unwrap().abs() > across.deflection.unwrap().abs());
+
+    let page = page(&file);
+    let curve = page.quantities.iter().find(|q| q.name == "left_lca_front along z").unwrap();
+    assert_eq!((curve.group.as_str(), curve.unit.as_str()), ("deflection", "mm"));
+    let last = *curve.value.values().last().unwrap();
+    assert!((f64::from(last) - along.deflection.unwrap()).abs() < 1e-6);
+    assert!(page.checks.iter().any(|table| table.title == "Deflections" && table.rows.len() == 48));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::space::{Pose, Real, Wrench};
 
 impl Bushing {
     /// Markers at both points, with the global axes of the design configuration.
-    fn opening<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Opening<T> {
+    pub(crate) fn opening<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Opening<T> {
         let marker = |point: PointId| Pose { rot: at.turned(at.body(point)), r: at.point(point) };
         Opening::between(&marker(self.from), &marker(self.to))
     }

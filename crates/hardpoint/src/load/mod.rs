@@ -46,5 +46,5 @@ pub(crate) use gradient::LoadGradients;
 pub(crate) use opening::Opening;
 pub(crate) use opening_loads::{GivenLoads, OpeningLoads};
 pub(crate) use program::{RecordedLoads, hindrance};
-pub use results::{DriverLoad, JointLoad, Loads};
+pub use results::{Deflection, DriverLoad, JointLoad, Loads};
 pub(crate) use solver::{LoadSolver, load_measures};

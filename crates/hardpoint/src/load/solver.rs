@@ -2,7 +2,7 @@
 
 use crate::design::{DesignMap, Geometry};
 use crate::measure::StepValues;
-use crate::model::{Axes, ElementId, JointId, MeasureKind, Model, PointId, ReactionPart};
+use crate::model::{Axes, ElementId, ElementKind, JointId, MeasureKind, Model, PointId, ReactionPart};
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::sensitivity::Differentiated;
@@ -12,6 +12,7 @@ use crate::topology::Topology;
 use super::derivatives::LoadDerivatives;
 use super::equilibrium::{Equilibrium, SelfStress, TransmittedLoads};
 use super::measures::LoadMeasures;
+use super::results::Deflection;
 use super::turns::Turns;
 
 /// Evaluates loads at the position of a stepper, for one design.
@@ -154,6 +155,19 @@ impl<'a> LoadSolver<'a> {
         let mut required = vec![Wrench::zero(); model.bodies.len()];
         self.equilibrium.applied().add(element, &mut required);
         -required[model.points[at.0].body.0].f
+    }
+
+    /// Deflection of an elastic joint or a bushing in one of its six directions.
+    pub fn deflection(&self, (element, direction): (ElementId, usize)) -> Deflection {
+        let (model, applied) = (self.equilibrium.model, self.equilibrium.applied());
+        let (opening, laws) = match &model.elements[element.0].kind {
+            ElementKind::Bushing(bushing) => (Some(bushing.opening(&applied)), bushing.elasticities()),
+            ElementKind::ElasticJoint(elastic) => (applied.opening(elastic.joint), elastic.elasticities()),
+            _ => (None, Default::default()),
+        };
+        let displacement = opening.map_or(f64::NAN, |opening| opening.coordinates[direction]);
+        let [force, _] = applied.elastic_force(displacement, &laws[direction]);
+        Deflection { displacement, force }
     }
 
     /// Elements whose friction is not determined at this step, because redundant constraints share the normal force.

@@ -743,6 +743,21 @@ impl Model {
         self.elements.iter().enumerate().flat_map(of).collect()
     }
 
+    /// Directions in which elastic joints and bushings deflect: 0 to 2 along x, y and z, 3 to 5 about them. Without
+    /// equilibrium elastic joints are rigid.
+    pub fn elastic_directions(&self) -> Vec<(ElementId, usize)> {
+        let of = |(e, element): (usize, &Element)| {
+            let laws = match &element.kind {
+                ElementKind::Bushing(bushing) => bushing.elasticities(),
+                ElementKind::ElasticJoint(joint) if self.equilibrium.is_some() => joint.elasticities(),
+                _ => Default::default(),
+            };
+            let compliant = laws.map(|of| of.gives());
+            (0..6).filter(move |k| compliant[*k]).map(move |k| (ElementId(e), k))
+        };
+        self.elements.iter().enumerate().flat_map(of).collect()
+    }
+
     /// The laws that forces depend on, in the order of the elements that have one.
     pub(crate) fn laws_of_forces(&self) -> impl Iterator<Item = &Law> {
         self.elements.iter().filter_map(|e| e.kind.law(self))

@@ -14,7 +14,7 @@ impl Analysis<'_> {
         let mut solver = solver.checking_reactions();
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let (mut result, mut times) = (Loads::default(), model.times.iter());
-        let pushed = model.points_of_application();
+        let (pushed, elastic) = (model.points_of_application(), model.elastic_directions());
         result.stop = walk.each(|one| {
             let Some(&t) = times.next() else { return };
             solver.step(one, t);
@@ -36,6 +36,7 @@ impl Analysis<'_> {
                     known_directions,
                 });
             }
+            result.deflections.extend(elastic.iter().map(|at| solver.deflection(*at)));
             result.pushes.extend(pushed.iter().map(|&(element, at)| solver.push(element, at)));
             let transmitted = solver.transmitted();
             let drivers = transmitted.drivers.iter().zip(&transmitted.speeds);
