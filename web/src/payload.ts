@@ -101,6 +101,10 @@ quantities: Array<Quantity>,
  */
 values: Array<Value>,
 /**
+ * Metrics with their most influential variables, of this motion or of all cases.
+ */
+metrics: Table | null,
+/**
  * Quantity that the page shows first, an index into [`Payload::quantities`].
  */
 first: number | null,

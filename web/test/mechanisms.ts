@@ -24,6 +24,7 @@ export const EMPTY: Payload = {
   vehicle: null,
   quantities: [],
   values: [],
+  metrics: null,
   first: null,
   over: null,
   plots: [],

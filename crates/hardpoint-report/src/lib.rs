@@ -40,6 +40,7 @@ pub mod optimize;
 pub mod page;
 pub mod payload;
 mod record;
+mod rigid;
 mod shifts;
 pub mod study;
 pub mod summary;

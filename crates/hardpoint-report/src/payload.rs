@@ -113,7 +113,8 @@ pub fn report(
 /// Finished payload with the highest detail that fits into a page, packed already if its size had to be measured.
 fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payload, Option<Vec<u8>>) {
     let (model, solution) = (&request.file.model, &request.course.kept);
-    let rigid = rigid::solve(request);
+    let times = &solution.motion.times;
+    let rigid = crate::rigid::solve(request.file, request.analysis.topology().formulation, times);
     let size = Size {
         steps: solution.motion.len(),
         bodies: model.bodies.len() - 1,
@@ -224,9 +225,11 @@ fn composed(
             note: m.sentence(),
         }),
         variables: compose.variables(&summary.model, differences),
-        checks: MetricFact::table(&summary.metrics)
-            .into_iter()
-            .chain(summary.assembly.iter().flat_map(|a| a.tables()))
+        metrics: MetricFact::page_table(&summary.metrics),
+        checks: summary
+            .assembly
+            .iter()
+            .flat_map(|a| a.tables())
             .chain(DeflectionFact::table(&deflections))
             .chain(summary.validity_table())
             .chain(summary.model.tables())
