@@ -108,9 +108,17 @@ export function hasOneFreedom(report: Report): boolean {
   return found
 }
 
-/** The abscissa of a motion with one degree of freedom: moving wheel travel, else the driver's own measure. */
+/**
+ * The abscissa of a motion with one degree of freedom: moving wheel travel, else the driver's own measure. Where forces
+ * alone move, it is the first of them if they grow in proportion.
+ */
 function travelOf(report: Report, measures: Quantity[]): number | undefined {
   if (!hasOneFreedom(report)) return undefined
+  if (report.drivers.every(({ travel }) => rangeOf(travel) === 0)) {
+    const forces = report.quantities.filter(({ group, curves }) => group === 'force' && moves(curves[0]))
+    const together = forces.every(({ curves }) => proportional(curves[0], forces[0].curves[0]))
+    return together ? forces[0]?.index : undefined
+  }
   const wheel = measures.find((one) => isTravel(one) && moves(one.curves[0]))
   return (wheel ?? measures.find((quantity) => isDriven(report, quantity)))?.index
 }

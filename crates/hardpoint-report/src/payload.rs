@@ -41,6 +41,8 @@ use crate::page::{
 };
 use crate::summary::{RunStatus, Summary};
 
+use loads::LoadCurve;
+
 /// Approximate maximum number of output times on a page.
 const MOST_STEPS: usize = 1000;
 /// Maximum size of the page without its code, in bytes.
@@ -120,7 +122,7 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         bodies: model.bodies.len() - 1,
         variables: model.variables.len(),
         outputs: solution.measured.outputs.len(),
-        loads: loads::count(model) + model.elastic_directions().len(),
+        loads: loads::count(model) + model.elastic_directions().len() + model.given_forces().len(),
         compared: request.differences.iter().any(Option::is_some),
         designs: request.changed.as_ref().map_or(0, ChangedDesign::designs) + usize::from(rigid.is_some()),
     };
@@ -181,7 +183,7 @@ fn composed(
     let deflections = DeflectionFact::all(model, units, &loads);
     let mut notes = summary.model.all_notes();
     match rigid {
-        Some(Ok(solved)) => designs.push(compose.rigid(solved, &bodies, &values)),
+        Some(Ok(solved)) => designs.push(compose.rigid(solved, &loads, &bodies, &values)),
         Some(Err(why)) => notes.push(why.clone()),
         None => {}
     }
@@ -273,7 +275,7 @@ struct Size {
     bodies: usize,
     variables: usize,
     outputs: usize,
-    /// Forces on bodies, and deflections.
+    /// Forces on bodies, deflections and given forces.
     loads: usize,
     /// True if there are differences for comparison.
     compared: bool,
@@ -504,7 +506,8 @@ impl<'a> Compose<'a> {
         v.to_array().map(|x| self.units.from_si(Kind::Length, x))
     }
 
-    /// Quantities: all outputs, then x, y and z of every body's origin, then deflections.
+    /// Quantities: all outputs, then x, y and z of every body's origin, then deflections and
+    /// given forces.
     fn quantities(&self, loads: &Loads) -> Vec<Quantity> {
         let measured = &self.solution.measured;
         let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
@@ -524,11 +527,12 @@ impl<'a> Compose<'a> {
             };
             self.quantity(&name, Dimension::LENGTH, 3, ("body", "position"), value)
         });
-        let deflections = self.deflections(loads).into_iter().map(|(name, dimension, value)| {
-            let (group, kind) = ("deflection", "deflection");
-            Quantity { value, ..self.quantity(&name, dimension, 0, (group, kind), |_, _| f64::NAN) }
-        });
-        outputs.chain(origins).chain(deflections).collect()
+        let of_loads =
+            self.load_curves(loads).into_iter().map(|LoadCurve { name, group, dimension, curve }| Quantity {
+                value: curve,
+                ..self.quantity(&name, dimension, 0, (group, group), |_, _| f64::NAN)
+            });
+        outputs.chain(origins).chain(of_loads).collect()
     }
 
     /// Plots of the model file.

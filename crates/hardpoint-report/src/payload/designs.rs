@@ -245,10 +245,10 @@ impl DesignComparison<'_> {
         let margins = &exact.motion.margins;
         let mut quantities = self.quantities(output, origin);
         if !loads.times.is_empty() {
-            let deflections = self.today.deflections(loads).into_iter().map(|(_, _, value)| {
-                Some(DesignCurves { value, rate: Curve::default(), accel: Curve::default() })
+            let of_loads = self.today.load_curves(loads).into_iter().map(|of| {
+                Some(DesignCurves { value: of.curve, rate: Curve::default(), accel: Curve::default() })
             });
-            quantities.extend(deflections);
+            quantities.extend(of_loads);
         }
         let found = metrics_beside(self.today.model, today, exact);
         let static_value = |k: usize, m: usize| Some(changed.value(k, m));

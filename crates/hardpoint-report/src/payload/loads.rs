@@ -26,6 +26,14 @@ fn joints(model: &Model) -> Vec<usize> {
     all.filter(|(_, joint)| is_drawn(joint) && !joint.unnamed).map(|(j, _)| j).collect()
 }
 
+/// Load over the shown output times, as a quantity.
+pub(super) struct LoadCurve {
+    pub name: String,
+    pub group: &'static str,
+    pub dimension: Dimension,
+    pub curve: Curve,
+}
+
 impl Compose<'_> {
     /// Forces of the nominal design.
     pub(super) fn loads(&self, loads: &Loads) -> Vec<LoadMark> {
@@ -56,19 +64,28 @@ impl Compose<'_> {
         if count(self.model) == 0 { Vec::new() } else { self.curves_of(loads) }
     }
 
-    /// Deflections of elastic joints and bushings: name, dimension, and a value per step.
-    pub(super) fn deflections(&self, loads: &Loads) -> Vec<(String, Dimension, Curve)> {
-        let of = |(i, at): (usize, _)| {
-            let (name, dimension) = deflection::curve_name(self.model, at);
-            let round_off = self.round_off.value(dimension, 0);
-            let value = |k: usize| match k < loads.times.len() {
-                true => settled(loads.deflections_at(k)[i].displacement, round_off),
-                false => f64::NAN,
-            };
-            let shown = |k: usize| self.units.from_si(dimension, value(k));
-            (name, dimension, (0..self.steps.len()).map(shown).collect())
+    /// Curves of loads: deflections of elastic joints and bushings, and given forces that vary.
+    pub(super) fn load_curves(&self, loads: &Loads) -> Vec<LoadCurve> {
+        let model = self.model;
+        let curve = |dimension: Dimension, value: &dyn Fn(usize) -> f64| {
+            let value = |k: usize| if k < loads.times.len() { value(k) } else { f64::NAN };
+            (0..self.steps.len()).map(|k| self.units.from_si(dimension, value(k))).collect()
         };
-        self.model.elastic_directions().into_iter().enumerate().map(of).collect()
+        let deflection = |(i, at): (usize, _)| {
+            let (name, dimension) = deflection::curve_name(model, at);
+            let round_off = self.round_off.value(dimension, 0);
+            let value = |k: usize| settled(loads.deflections_at(k)[i].displacement, round_off);
+            LoadCurve { name, group: "deflection", dimension, curve: curve(dimension, &value) }
+        };
+        let deflections = model.elastic_directions().into_iter().enumerate().map(deflection);
+        let given = model.given_forces().into_iter().enumerate().filter(|(_, e)| model.varies(*e));
+        let forces = given.map(|(i, e)| {
+            let dimension = model.force_dimension(e);
+            let value = |k: usize| loads.given_at(k)[i];
+            let name = model.elements[e.0].name.clone();
+            LoadCurve { name, group: "force", dimension, curve: curve(dimension, &value) }
+        });
+        deflections.chain(forces).collect()
     }
 
     /// Loads of a design at the shown output times.

@@ -106,6 +106,24 @@ fn rigid_mechanism_under_forces_alone_has_positions_but_no_metrics() {
 }
 
 #[test]
+fn forces_that_vary_are_quantities_with_the_sign_of_their_laws() {
+    let file = axle("lateral_in_phase", ["", ""]);
+    let page = page(&file);
+    let forces: Vec<_> = page.quantities.iter().enumerate().filter(|(_, q)| q.group == "force").collect();
+    let shown: Vec<(&str, &str, f32)> = forces
+        .iter()
+        .map(|(_, q)| (q.name.as_str(), q.unit.as_str(), *q.value.values().last().unwrap()))
+        .collect();
+    // The others have no law here.
+    assert_eq!(shown, [("left_side", "N", 1000.0), ("right_side", "N", -1000.0)]);
+    // The curves of the rigid mechanism can be drawn over them.
+    for (k, force) in forces {
+        let of_rigid = &page.designs[0].quantities[k].as_ref().unwrap().value;
+        assert_eq!(of_rigid.values(), force.value.values());
+    }
+}
+
+#[test]
 fn rigid_mechanism_is_left_out_with_a_sentence_if_only_forces_hold_it() {
     let released = "[equilibrium]\nreleased = [\"left_bump\"]\n";
     let page = page(&axle("braking", ["[equilibrium]\n", released]));

@@ -63,6 +63,11 @@ pub struct Loads {
     ///
     /// [`Model::elastic_directions`]: crate::model::Model::elastic_directions
     pub deflections: Vec<Deflection>,
+    /// `given[k * n + i]`: value of force i of n of [`Model::given_forces`] at time k, N or N m, with the sign of its
+    /// law.
+    ///
+    /// [`Model::given_forces`]: crate::model::Model::given_forces
+    pub given: Vec<f64>,
     /// Friction elements whose friction is undetermined at some time because redundant constraints share their normal
     /// force. No load is determined then.
     pub shared_friction: Vec<ElementId>,
@@ -99,5 +104,13 @@ impl Loads {
     pub fn deflections_at(&self, k: usize) -> &[Deflection] {
         let n = self.deflections.len() / self.times.len().max(1);
         &self.deflections[k * n..(k + 1) * n]
+    }
+
+    /// Values of all forces of [`Model::given_forces`] at output time k.
+    ///
+    /// [`Model::given_forces`]: crate::model::Model::given_forces
+    pub fn given_at(&self, k: usize) -> &[f64] {
+        let n = self.given.len() / self.times.len().max(1);
+        &self.given[k * n..(k + 1) * n]
     }
 }

@@ -170,6 +170,17 @@ impl<'a> LoadSolver<'a> {
         Deflection { displacement, force }
     }
 
+    /// Value of a given force or moment, with the sign of its law.
+    pub fn given(&self, element: ElementId) -> f64 {
+        let applied = self.equilibrium.applied();
+        let size = applied.size(element);
+        match self.equilibrium.model.elements[element.0].kind {
+            // Of several components, the size is their norm.
+            ElementKind::WheelForce(_) => size.copysign(applied.laws[element.0]),
+            _ => size,
+        }
+    }
+
     /// Elements whose friction is not determined at this step, because redundant constraints share the normal force.
     pub fn shared_friction(&self) -> impl Iterator<Item = ElementId> {
         self.equilibrium.friction.shared()

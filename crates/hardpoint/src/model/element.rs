@@ -758,6 +758,20 @@ impl Model {
         self.elements.iter().enumerate().flat_map(of).collect()
     }
 
+    /// Given forces and moments with a law.
+    pub fn given_forces(&self) -> Vec<ElementId> {
+        let has_law = |e: &usize| self.elements[*e].kind.law(self).is_some();
+        (0..self.elements.len()).filter(has_law).map(ElementId).collect()
+    }
+
+    /// True if the law of a given force has different values at the output times.
+    pub fn varies(&self, force: ElementId) -> bool {
+        let Some(law) = self.elements[force.0].kind.law(self) else { return false };
+        let mut values = self.times.iter().map(|t| law.at(*t).value());
+        let first = values.next();
+        values.any(|value| Some(value) != first)
+    }
+
     /// The laws that forces depend on, in the order of the elements that have one.
     pub(crate) fn laws_of_forces(&self) -> impl Iterator<Item = &Law> {
         self.elements.iter().filter_map(|e| e.kind.law(self))
@@ -769,7 +783,7 @@ impl Model {
     }
 
     /// Dimension of the magnitude of a force.
-    pub(crate) fn force_dimension(&self, e: ElementId) -> Dimension {
+    pub fn force_dimension(&self, e: ElementId) -> Dimension {
         self.elements[e.0].kind.force(self).map_or(Dimension::FORCE, |force| force.dimension)
     }
 
