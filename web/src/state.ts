@@ -1,7 +1,7 @@
 import { valueAt, stepAt, type Curve } from './curve'
 import { effects } from './effect'
 import type { VariableSetting } from './engine/protocol'
-import { curveOf, type Design, type Order, type Report } from './report'
+import { curveOf, type Design, isGiven, type Order, type Report } from './report'
 import type { Part } from './scene/drawable'
 import { abscissaNamed, type Sheet, sheetOf } from './sheet'
 
@@ -256,7 +256,10 @@ export class State {
   curve(quantity: number, order: Order): Curve {
     const loaded = this.report.quantities[quantity].curves[order]
     const { present } = this
-    if (present) return curveOf(present, quantity, order)
+    if (present) {
+      const own = curveOf(present, quantity, order)
+      return own.length === 0 && isGiven(this.report.quantities[quantity]) ? loaded : own
+    }
     if (!this.changed) return loaded
     const curve = loaded.slice()
     for (const { index, sensitivities } of this.report.variables) {

@@ -1,6 +1,6 @@
 //! Rigid mechanism: a model with equilibrium, solved with all its elastic joints closed over the same drivers.
 
-use hardpoint::model::{MeasureKind, Metric, Model, OutputSource};
+use hardpoint::model::{Metric, Model, OutputSource};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::ModelFile;
@@ -64,6 +64,7 @@ pub(crate) fn has_metric(model: &Model, metric: &Metric) -> bool {
 pub(crate) fn is_kinematic(model: &Model, output: OutputSource) -> bool {
     let OutputSource::Measure(k) = output else { return true };
     let kind = &model.measures[k].kind;
-    let is_load = kind.is_load() || matches!(kind, MeasureKind::Compliance { .. });
-    !is_load && kind.sources().into_iter().all(|source| is_kinematic(model, source))
+    !kind.is_load()
+        && !kind.is_compliance()
+        && kind.sources().into_iter().all(|source| is_kinematic(model, source))
 }

@@ -21,6 +21,7 @@ import {
   derivativeUnit,
   type Design,
   type Driver,
+  isGiven,
   type Order,
   orderedName,
   type Quantity,
@@ -91,8 +92,12 @@ export function valueContent(state: State, subject: Subject): Content {
   const base = reference ?? drawn[0]
   const scale = largest(state, index, order)
   for (const [k, one] of quantities.entries()) {
-    const abscissa = (design: Drawn) =>
-      over === undefined ? undefined : design.curve(onSideOf(report, over, one.index), 0)
+    const abscissa = (design: Drawn) => {
+      if (over === undefined) return undefined
+      const x = report.quantities[onSideOf(report, over, one.index)]
+      const own = design.curve(x.index, 0)
+      return own.length === 0 && isGiven(x) ? x.curves[0] : own
+    }
     for (const design of drawn) {
       const all = quiet(design.curve(one.index, order), scale)
       const x = abscissa(design)
@@ -300,6 +305,7 @@ function atAbscissa({ sensitivityReport: report }: State, { quantity, order, ove
   if (over === undefined) return { seen: (curve) => curve, note: '' }
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
   if (order > 0) return 'Over another quantity, only sensitivities of values are available: choose the value, or time.'
+  if (isGiven(x)) return { seen: (curve) => curve, note: `At a constant law of ${x.name}.` }
   const keeper = moverOf(report, x.index)
   const alone = keeper?.alone[y.index]?.length ? slopeAlone(keeper.alone[y.index], keeper.alone[x.index]) : undefined
   if (!alone && [y, x].some(({ curves }) => curves[1].length === 0 || curves[2].length === 0)) {

@@ -43,7 +43,6 @@ mod virtual_motion;
 pub(crate) use acting::{AppliedLoads, ForceFormula, MassFormula, Solid, Spread};
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
-pub(crate) use opening::Opening;
 pub(crate) use opening_loads::{GivenLoads, OpeningLoads};
 pub(crate) use program::{RecordedLoads, hindrance};
 pub use results::{Deflection, DriverLoad, JointLoad, Loads};

@@ -2,7 +2,7 @@
 
 use crate::design::{DesignMap, Geometry};
 use crate::measure::StepValues;
-use crate::model::{Axes, ElementId, ElementKind, JointId, MeasureKind, Model, PointId, ReactionPart};
+use crate::model::{Axes, ElementId, JointId, MeasureKind, Model, PointId, ReactionPart};
 use crate::motion::stepper::Stepper;
 use crate::number::{Dual, Real};
 use crate::sensitivity::Differentiated;
@@ -160,11 +160,9 @@ impl<'a> LoadSolver<'a> {
     /// Deflection of an elastic joint or a bushing in one of its six directions.
     pub fn deflection(&self, (element, direction): (ElementId, usize)) -> Deflection {
         let (model, applied) = (self.equilibrium.model, self.equilibrium.applied());
-        let (opening, laws) = match &model.elements[element.0].kind {
-            ElementKind::Bushing(bushing) => (Some(bushing.opening(&applied)), bushing.elasticities()),
-            ElementKind::ElasticJoint(elastic) => (applied.opening(elastic.joint), elastic.elasticities()),
-            _ => (None, Default::default()),
-        };
+        let kind = &model.elements[element.0].kind;
+        let opening = kind.force(model).and_then(|force| applied.opening_at(force.acts_on));
+        let laws = kind.elasticities().unwrap_or_default();
         let displacement = opening.map_or(f64::NAN, |opening| opening.coordinates[direction]);
         let [force, _] = applied.elastic_force(displacement, &laws[direction]);
         Deflection { displacement, force }
@@ -173,12 +171,8 @@ impl<'a> LoadSolver<'a> {
     /// Value of a given force or moment, with the sign of its law.
     pub fn given(&self, element: ElementId) -> f64 {
         let applied = self.equilibrium.applied();
-        let size = applied.size(element);
-        match self.equilibrium.model.elements[element.0].kind {
-            // Of several components, the size is their norm.
-            ElementKind::WheelForce(_) => size.copysign(applied.laws[element.0]),
-            _ => size,
-        }
+        // Of several components, the size is their norm.
+        applied.size(element).copysign(applied.laws[element.0])
     }
 
     /// Elements whose friction is not determined at this step, because redundant constraints share the normal force.

@@ -712,6 +712,26 @@ impl ElementKind {
         }
     }
 
+    /// Elastic laws along and about three axes, of elements that have them.
+    pub(crate) fn elasticities(&self) -> Option<[Elasticity<'_>; 6]> {
+        match self {
+            Self::Bushing(bushing) => Some(bushing.elasticities()),
+            Self::ElasticJoint(joint) => Some(joint.elasticities()),
+            Self::Rigid(_)
+            | Self::Bar(_)
+            | Self::Block(_)
+            | Self::Mesh(_)
+            | Self::Spring(_)
+            | Self::JointSpring(_)
+            | Self::TorsionSpring(_)
+            | Self::Friction(_)
+            | Self::SlideFriction(_)
+            | Self::PointForce(_)
+            | Self::WheelForce(_)
+            | Self::BodyMoment(_) => None,
+        }
+    }
+
     /// The law that a given force or moment is multiplied by.
     #[inline]
     pub(crate) fn law(&self, model: &Model) -> Option<&Law> {
@@ -747,11 +767,9 @@ impl Model {
     /// equilibrium elastic joints are rigid.
     pub fn elastic_directions(&self) -> Vec<(ElementId, usize)> {
         let of = |(e, element): (usize, &Element)| {
-            let laws = match &element.kind {
-                ElementKind::Bushing(bushing) => bushing.elasticities(),
-                ElementKind::ElasticJoint(joint) if self.equilibrium.is_some() => joint.elasticities(),
-                _ => Default::default(),
-            };
+            let acts_on = element.kind.force(self).map(|force| force.acts_on);
+            let is_rigid = matches!(acts_on, Some(ActsOn::Joint(_))) && self.equilibrium.is_none();
+            let laws = element.kind.elasticities().filter(|_| !is_rigid).unwrap_or_default();
             let compliant = laws.map(|of| of.gives());
             (0..6).filter(move |k| compliant[*k]).map(move |k| (ElementId(e), k))
         };
