@@ -221,12 +221,12 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const title = (own ? derivativeName(quantity, order, selected) : `d ${name}`) + of
   const content: Content = { title, unit: derivativeUnit(quantity, order, selected), lines: [] }
   if (quantity.curves[order].length === 0) return { ...content, unit: '', message: unknown(name) }
-  if (!own)
-    return {
-      ...content,
-      unit: '',
-      message: selected.note || `The sensitivity of ${name} to ${selected.name} is not known.`,
-    }
+  if (!own) {
+    // The note of a variable says why the mechanism cannot follow it; curves of loads have no sensitivities at all.
+    const note = ['deflection', 'force'].includes(quantity.group) ? '' : selected.note
+    const message = note || `The sensitivity of ${name} to ${selected.name} is not known.`
+    return { ...content, unit: '', message }
+  }
   const at = atAbscissa(state, subject)
   if (typeof at === 'string') return { ...content, message: at }
   const { seen } = at
