@@ -101,6 +101,10 @@ quantities: Array<Quantity>,
  */
 values: Array<Value>,
 /**
+ * Metrics with their most influential variables, of this motion or of all cases.
+ */
+metrics: Table | null,
+/**
  * Quantity that the page shows first, an index into [`Payload::quantities`].
  */
 first: number | null,
@@ -752,7 +756,7 @@ margin: Curve | null, };
 /**
  * Source of another design.
  */
-export type DesignKind = "exact" | "first_order" | "second_order" | "band";
+export type DesignKind = "exact" | "first_order" | "second_order" | "band" | "rigid";
 
 /**
  * Quantity of another design with its two time derivatives; unknown curves are empty.

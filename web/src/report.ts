@@ -81,6 +81,11 @@ export interface Design extends Omit<wire.Design, 'poses' | 'loads' | 'quantitie
   margin?: Curve
 }
 
+/** True for a given force, whose law no design changes. */
+export function isGiven({ group }: Quantity): boolean {
+  return group === 'force'
+}
+
 /** A quantity of a design; no values where the design does not have it. */
 export function curveOf({ quantities }: Design, quantity: number, order: Order): Curve {
   return quantities[quantity]?.[order] ?? new Float32Array()

@@ -1,7 +1,7 @@
 import { type Curve, firstIndex } from './curve'
 import { extent } from './export/axis'
 import { kindOf } from './glossary'
-import { groups, type Quantity, type Report } from './report'
+import { groups, isGiven, type Quantity, type Report } from './report'
 import { noise } from './rounding'
 
 /** A plot that the page opens with: indices of quantities of one unit. */
@@ -108,9 +108,17 @@ export function hasOneFreedom(report: Report): boolean {
   return found
 }
 
-/** The abscissa of a motion with one degree of freedom: moving wheel travel, else the driver's own measure. */
+/**
+ * The abscissa of a motion with one degree of freedom: moving wheel travel, else the driver's own measure. Where forces
+ * alone move, it is the first of them if they grow in proportion.
+ */
 function travelOf(report: Report, measures: Quantity[]): number | undefined {
   if (!hasOneFreedom(report)) return undefined
+  if (report.drivers.every(({ travel }) => rangeOf(travel) === 0)) {
+    const forces = report.quantities.filter((one) => isGiven(one) && moves(one.curves[0]))
+    const together = forces.every(({ curves }) => proportional(curves[0], forces[0].curves[0]))
+    return together ? forces[0]?.index : undefined
+  }
   const wheel = measures.find((one) => isTravel(one) && moves(one.curves[0]))
   return (wheel ?? measures.find((quantity) => isDriven(report, quantity)))?.index
 }
@@ -146,14 +154,16 @@ function linkagePlots(report: Report, measures: Quantity[], over?: number): Shee
 }
 
 /**
- * A metric with a target curve leads. Without rates its sensitivities are known over time only, and so it is drawn.
+ * A metric with a target curve leads. Without rates its sensitivities are known over time and over a given force only,
+ * and so it is drawn.
  */
 function leading(report: Report, plots: SheetPlot[]): SheetPlot[] {
   if (report.over !== null || plots.length === 0) return plots
   const wanted = plots.findIndex(({ y }) => report.quantities[y[0]].wanted.length > 0)
   const first = plots[Math.max(wanted, 0)]
-  const hasRates = report.quantities[first.y[0]].curves[2].length > 0
-  return [hasRates ? first : { ...first, over: undefined }, ...plots.filter((plot) => plot !== first)]
+  const isOverForce = first.over !== undefined && isGiven(report.quantities[first.over])
+  const isKnown = isOverForce || report.quantities[first.y[0]].curves[2].length > 0
+  return [isKnown ? first : { ...first, over: undefined }, ...plots.filter((plot) => plot !== first)]
 }
 
 /** The path of the first point that moves in a plane of the axes. */

@@ -1,7 +1,7 @@
 import { valueAt, stepAt, type Curve } from './curve'
 import { effects } from './effect'
 import type { VariableSetting } from './engine/protocol'
-import { curveOf, type Design, type Order, type Report } from './report'
+import { curveOf, type Design, isGiven, type Order, type Report } from './report'
 import type { Part } from './scene/drawable'
 import { abscissaNamed, type Sheet, sheetOf } from './sheet'
 
@@ -21,6 +21,8 @@ export interface Choice {
   labels: boolean
   /** True if forces are drawn in the view. */
   forces: boolean
+  /** True if the rigid mechanism is shown alongside the elastic one. */
+  rigid: boolean
   /** The design that the present one is compared with; the one as loaded where there is none. */
   compared?: number
   /** Further designs in the plots: indices into the state's designs. */
@@ -35,6 +37,7 @@ export interface ChoiceMemory {
   order: Order
   labels: boolean
   forces: boolean
+  rigid: boolean
   /** Names of the body and the hardpoint. */
   trace?: [body: string, point: string]
   time: number
@@ -109,25 +112,26 @@ export class State {
       over: sheet.plots[0]?.over,
       labels: false,
       forces: true,
+      rigid: true,
     }
   }
 
   /** Choices, to be made again on another page. */
   get memory(): ChoiceMemory {
     const { quantities, variables, bodies } = this.report
-    const { quantity, variable, order, over, labels, forces, trace } = this.choice
+    const { quantity, variable, order, over, labels, forces, rigid, trace } = this.choice
     return {
       quantity: quantities[quantity]?.name,
       over: over === undefined ? undefined : quantities[over]?.name,
       variable: variables[variable]?.name,
-      ...{ order, labels, forces },
+      ...{ order, labels, forces, rigid },
       trace: trace && [bodies[trace[0]].name, bodies[trace[0]].labels[trace[1]]],
       time: this.time,
     }
   }
 
   /** Makes the choices of another page that are possible here, before anything of this one is shown. */
-  recall({ quantity, over, variable, order, labels, forces, trace, time }: ChoiceMemory): void {
+  recall({ quantity, over, variable, order, labels, forces, rigid, trace, time }: ChoiceMemory): void {
     const { quantities, variables, bodies } = this.report
     const named = (list: readonly { name: string }[], name: string | undefined, otherwise: number) => {
       const found = list.findIndex((one) => one.name === name)
@@ -139,7 +143,7 @@ export class State {
       quantity: named(quantities, quantity, this.choice.quantity),
       variable: named(variables, variable, this.choice.variable),
       over: abscissaNamed(this.report, over),
-      ...{ order, labels, forces },
+      ...{ order, labels, forces, rigid },
       trace: point >= 0 ? [body, point] : undefined,
     })
     this.step = stepAt(this.report.times, time)
@@ -193,7 +197,7 @@ export class State {
 
   /** Indicates one drawn design from another. */
   get edition(): string {
-    return `${this.#edition} ${this.choice.compared}`
+    return `${this.#edition} ${this.choice.compared} ${this.choice.rigid}`
   }
 
   /** The report whose sensitivities are shown: that of the present design, as soon as it is there. */
@@ -218,6 +222,13 @@ export class State {
   /** The design that the present one is compared with; the one as loaded where there is none. */
   get former(): Design | undefined {
     return this.choice.compared === undefined ? undefined : this.designs[this.choice.compared]
+  }
+
+  /** The present design with rigid joints, if it is known and shown; it is not the one that is compared with. */
+  get rigid(): Design | undefined {
+    const { report, sensitivityReport, hasCurrentSensitivities, changed, choice, former } = this
+    if (!choice.rigid || (changed && !hasCurrentSensitivities) || former?.kind === 'rigid') return undefined
+    return (changed ? sensitivityReport : report).designs.find(({ kind }) => kind === 'rigid')
   }
 
   /** Further designs in the plots: indices into the designs, without the reference. */
@@ -245,7 +256,10 @@ export class State {
   curve(quantity: number, order: Order): Curve {
     const loaded = this.report.quantities[quantity].curves[order]
     const { present } = this
-    if (present) return curveOf(present, quantity, order)
+    if (present) {
+      const own = curveOf(present, quantity, order)
+      return own.length === 0 && isGiven(this.report.quantities[quantity]) ? loaded : own
+    }
     if (!this.changed) return loaded
     const curve = loaded.slice()
     for (const { index, sensitivities } of this.report.variables) {

@@ -24,6 +24,7 @@ export const EMPTY: Payload = {
   vehicle: null,
   quantities: [],
   values: [],
+  metrics: null,
   first: null,
   over: null,
   plots: [],
@@ -66,7 +67,7 @@ export const PALETTE: Palette = {
   ...{ light: { sky: 2, earth: '#c2cad2', sun: 1, shadow: 0.16 }, glass: 0.13 },
 }
 /** Initial choice. */
-export const CHOICE: Choice = { quantity: 0, variable: 0, order: 0, labels: false, forces: true }
+export const CHOICE: Choice = { quantity: 0, variable: 0, order: 0, labels: false, forces: true, rigid: true }
 
 /** Rotations about z of the crank from one step to the next. */
 const QUARTER = Math.PI / 2

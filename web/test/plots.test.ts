@@ -48,13 +48,28 @@ test('values at an abscissa are those where the curve first reaches it', () => {
 })
 
 describe('measured data', () => {
-  const subject = { names: ['toe', 'camber'], over: 'wheel_travel' }
+  const angles = ['toe', 'camber'].map((name) => ({ name, unit: 'deg' }))
+  const subject = { quantities: angles, over: { name: 'wheel_travel', unit: 'mm' } }
 
   test('are columns by their names, or the first two', () => {
     const named = measuredOf('wheel_travel [mm],camber (deg)\n-10,1.5\n10,2\n', 'rig.csv', subject)
     expect(named.map(({ label, x, y }) => [label, ...x, ...y])).toEqual([['camber, rig.csv', -10, 10, 1.5, 2]])
     const bare = measuredOf('# a rig\n-10;1,5\n10;2\n', 'rig.csv', subject)
     expect(bare.map(({ label, x, y }) => [label, ...x, ...y])).toEqual([['toe, rig.csv', -10, 10, 1.5, 2]])
+  })
+
+  test('are converted to the units of the plot, which may be over a force', () => {
+    const loaded = { quantities: angles, over: { name: 'left_side', unit: 'N' } }
+    const [rig] = measuredOf('left_side [kN],toe [rad]\n-1,0\n0.5,0.01\n', 'rig.csv', loaded)
+    expect([...rig.x]).toEqual([-1000, 500])
+    expect(rig.y[1]).toBeCloseTo(0.573, 3)
+    const inSI = { quantities: [{ name: 'toe', unit: 'rad' }], over: { name: 'left_align', unit: 'N*m' } }
+    const [turned] = measuredOf('left_align (N mm);toe (deg)\n1000;180\n', 'rig.csv', inSI)
+    expect([turned.x[0], turned.y[0]]).toEqual([1, Math.fround(Math.PI)])
+    // Words in brackets that are no unit.
+    expect([...measuredOf('left_side,toe (front)\n1,2\n', 'rig.csv', loaded)[0].y]).toEqual([2])
+    const wrong = () => measuredOf('left_side [mm],toe [deg]\n1,2\n', 'rig.csv', loaded)
+    expect(wrong).toThrow('`left_side [mm]` of `rig.csv` is no N, as left_side is')
   })
 
   test('that are none are refused by name', () => {

@@ -19,6 +19,8 @@ export interface Samples {
   tutorial: string
   /** The strut over wheel travel and steer: a page with a map. */
   map: string
+  /** A front axle on bushings, in equilibrium over wheel travel. */
+  elastic: string
   /** 81 bodies and 240 design variables. */
   large: string
   /** The program that answers as the page's engine does. */
@@ -59,6 +61,7 @@ export default async function setup(project: TestProject): Promise<() => void> {
   const ride = join(folder, 'ride.toml')
   writeFileSync(ride, ridden(readFileSync(join(MODELS, 'macpherson.toml'), 'utf8')))
   const large = join(folder, 'rockers.toml')
+  const axle = join(folder, 'axle.toml')
   const change = ['--set', 'tie_rod_outer.z=+6mm', '-o', join(folder, 'changed')]
   const higher = [
     '--set',
@@ -74,6 +77,10 @@ export default async function setup(project: TestProject): Promise<() => void> {
     async () => {
       await command(rockers, [large])
       await command(hardpoint, ['run', large, '-o', join(folder, 'large')])
+    },
+    async () => {
+      await command(hardpoint, ['new', axle, '--template', 'k-and-c'])
+      await command(hardpoint, ['run', axle, '--case', 'parallel_travel', '-o', join(folder, 'elastic')])
     },
     () => command(sample, [join(folder, 'sample.html')]),
     () => command(sample, [join(folder, 'partial.html'), '--partial']),
@@ -92,6 +99,7 @@ export default async function setup(project: TestProject): Promise<() => void> {
     changed: page('changed', 'whatif.html'),
     tutorial: page('tutorial', 'whatif.html'),
     map: page('map', 'ride', 'report.html'),
+    elastic: page('elastic', 'report.html'),
     large: page('large', 'report.html'),
     models: Object.fromEntries(models),
     hardpoint,

@@ -61,6 +61,20 @@ describe('the sheet of a suspension', () => {
     expect(names(bump)[0].at(-1)).toBe('left.wheel_travel')
   })
 
+  test('is drawn over the force where forces alone move, in proportion', () => {
+    const forces = (right: Float32Array): Measure[] => [
+      ...measures.slice(0, 2),
+      ['right.toe', wave(2)],
+      ['left_side', curve((t) => 1000 * t), 'N', 'force', 'force'],
+      ['right_side', right, 'N', 'force', 'force'],
+    ]
+    const report = reportOf(forces(curve((t) => -1000 * t)), [curve(() => 0)])
+    expect(names(report)).toEqual([['left.toe', 'right.toe', 'left_side']])
+    expect(onSideOf(report, 3, 2)).toBe(4)
+    expect(names(reportOf(forces(wave(1)), [curve(() => 0)]))[0].at(-1)).toBe('time')
+    expect(names(reportOf(forces(curve((t) => t)), [wave(1)]))[0].at(-1)).not.toBe('left_side')
+  })
+
   test('keeps an abscissa by its name only where that moves', () => {
     const report = reportOf(measures, [wave(1)])
     expect(abscissaNamed(report, 'right.wheel_travel')).toBe(5)

@@ -12,10 +12,11 @@ use hardpoint_file::ModelFile;
 use hardpoint_report::GENERATOR;
 use hardpoint_report::columns::Columns;
 use hardpoint_report::course::Course;
+use hardpoint_report::deflection::DeflectionFact;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
 use hardpoint_report::maps::MapFact;
-use hardpoint_report::metric::MetricFact;
+use hardpoint_report::metric::{CaseMetrics, MetricFact};
 use hardpoint_report::page::Table;
 use hardpoint_report::payload::{Request, report, stride_of_marks};
 use hardpoint_report::results::JerkCsv;
@@ -48,8 +49,12 @@ const TOO_MANY: &str = "the sensitivities were not compared with re-solved desig
 /// Number of output times per window of jerks.
 const JERK_ROWS: usize = 256;
 
+/// Page of a run.
+const REPORT: &str = "report.html";
+/// Metrics with their derivatives.
+const METRICS: &str = "metrics.csv";
 /// All files that a run may write; the last one marks them as complete.
-const FILES: [&str; 18] = [
+const FILES: [&str; 20] = [
     "motion.csv",
     "sensitivity.csv",
     "motion.npy",
@@ -60,13 +65,15 @@ const FILES: [&str; 18] = [
     "jerk.csv",
     "loads.csv",
     "drivers.csv",
+    "deflections.csv",
+    METRICS,
     "motion.xlsx",
     "report.pdf",
     "motion.glb",
     "maps.csv",
     "map_sensitivity.csv",
     "maps.json",
-    "report.html",
+    REPORT,
     "summary.json",
 ];
 
@@ -89,10 +96,11 @@ pub fn run(options: &Run) -> Outcome {
         None => maps::solved(&session, &file, options.common.formulation()),
         Some(_) => Vec::new(),
     };
-    let mut done: Vec<CaseDone> = Vec::new();
+    let all = file.clone();
+    let (mut done, mut metrics): (Vec<CaseDone>, Vec<CaseMetrics>) = (Vec::new(), Vec::new());
     let each = |file: ModelFile, case: Option<&str>| {
         let path = of_case(&whole, case);
-        let outcome = run_in(&session, options, (&file, &maps), case, &path);
+        let outcome = run_in(&session, options, (&file, &maps), case, &path, &mut metrics);
         if let Some(case) = case {
             let (Ok(ended) | Err(ended)) = outcome;
             let folder = path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -109,16 +117,55 @@ pub fn run(options: &Run) -> Outcome {
     if !several {
         return outcome;
     }
-    if !options.common.json {
-        MapFact::table(&maps).iter().for_each(|table| text::print(&text::section(table)));
-    }
     let written = Folder::open(&whole).and_then(|mut folder| {
         maps::write(&maps, &mut folder)?;
+        let page = if session.interrupted() { None } else { page_of_cases(&all, options, &metrics, &maps) };
+        write_metrics(&metrics, &all, &mut folder)?;
+        if let Some(html) = &page {
+            folder.write(REPORT, |out| out.write_all(html.as_bytes()))?;
+        }
         let json = json_text(&serde_json::json!({ "generator": GENERATOR, "cases": done }));
         folder.write("summary.json", |out| out.write_all(json.as_bytes()))?;
-        folder.commit(&[])
+        let report = page.map(|_| folder.path_of(REPORT));
+        folder.commit(&[METRICS, REPORT])?;
+        Ok(report)
     });
-    written.map_or_else(|e| session.not_written(&e), |()| outcome)
+    let report = match written {
+        Ok(report) => report,
+        Err(error) => return session.not_written(&error),
+    };
+    if !options.common.json {
+        let tables = CaseMetrics::table(&metrics, &all.model).into_iter().chain(MapFact::table(&maps));
+        tables.for_each(|table| text::print(&text::section(&table)));
+        if let Some(report) = report {
+            text::print(&format!("\nreport of all cases: {}\n", report.display()));
+        }
+    }
+    outcome
+}
+
+/// Writes the metrics of all cases, if there are any.
+fn write_metrics(metrics: &[CaseMetrics], file: &ModelFile, folder: &mut Folder) -> Result<(), WriteError> {
+    if metrics.iter().all(|of| of.metrics.is_empty()) {
+        return Ok(());
+    }
+    folder.write(METRICS, |out| Ok(CaseMetrics::write(metrics, &file.model, file.units, out)?))
+}
+
+/// Page of the file's first motion with the metrics of all cases; `None` without metrics.
+fn page_of_cases(
+    file: &ModelFile,
+    options: &Run,
+    metrics: &[CaseMetrics],
+    maps: &[MapFact],
+) -> Option<String> {
+    if metrics.iter().all(|of| of.metrics.is_empty()) {
+        return None;
+    }
+    let model = file.model.motions().into_iter().next()?;
+    let analysis = Analysis::with(&model, options.common.formulation()).ok()?;
+    let finish = |page, _: &Solution| CaseMetrics::page(metrics, &file.model, MapFact::page(maps, page));
+    pages::page(file, &analysis, None, finish)
 }
 
 /// Solves only the case of that name, if it is a grid.
@@ -202,6 +249,7 @@ fn run_in(
     (file, maps): (&ModelFile, &[MapFact]),
     case: Option<&str>,
     path: &Path,
+    metrics: &mut Vec<CaseMetrics>,
 ) -> Result<Outcome, Outcome> {
     let analysis = session.plan(file, options.common.formulation())?;
     let read = session.seconds();
@@ -230,7 +278,12 @@ fn run_in(
     let mut results = Results { file, analysis: &analysis, course: &course, differences: Vec::new(), maps };
     results.study(session, options.common.formulation(), !options.no_compare, &mut summary);
 
-    let report = folder.path_of("report.html");
+    metrics.push(CaseMetrics {
+        case: case.map_or_else(String::new, str::to_owned),
+        metrics: summary.metrics.clone(),
+    });
+
+    let report = folder.path_of(REPORT);
     let mut tables_of_maps = Vec::new();
     if solution.motion.is_empty() {
         summary.timings.total = session.seconds();
@@ -255,8 +308,14 @@ fn run_in(
                     Ok(hardpoint_report::loads::write_drivers(model, units, &loads, out)?)
                 })
             });
-            drivers.map_err(|e| session.not_written(&e))?;
-            for name in ["loads.csv", "drivers.csv"] {
+            let deflections = DeflectionFact::all(model, units, &loads);
+            let elastic = drivers.and_then(|()| match deflections.is_empty() {
+                true => Ok(()),
+                false => folder.write("deflections.csv", |out| Ok(DeflectionFact::write(&deflections, out)?)),
+            });
+            elastic.map_err(|e| session.not_written(&e))?;
+            let deflections = (!deflections.is_empty()).then_some("deflections.csv");
+            for name in ["loads.csv", "drivers.csv"].into_iter().chain(deflections) {
                 summary.files.push(folder.path_of(name).display().to_string());
             }
         }
@@ -286,6 +345,10 @@ fn run_in(
         }
         // In a file with cases, the summary of the whole file has the maps.
         if case.is_none() {
+            write_metrics(metrics, file, &mut folder).map_err(|e| session.not_written(&e))?;
+            if !summary.metrics.is_empty() {
+                summary.files.push(folder.path_of(METRICS).display().to_string());
+            }
             maps::note(maps, &mut summary);
             let names = maps::write(maps, &mut folder).map_err(|e| session.not_written(&e))?;
             summary.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));

@@ -320,6 +320,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         vehicle: None,
         quantities: quantities(&times),
         values: vec![],
+        metrics: None,
         first: Some(0),
         over: None,
         plots: vec![],

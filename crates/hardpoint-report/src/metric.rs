@@ -1,13 +1,16 @@
 //! Metrics: values, sensitivities, and their changes in a changed design.
 
+use std::io::Write;
+
 use hardpoint::Solution;
-use hardpoint::model::{DesignVariable, Dimension, Metric, Model, Reduction};
+use hardpoint::model::{DesignVariable, Dimension, Metric, Model, OutputSource, Reduction};
 use hardpoint::run::{MetricValue, metrics, metrics_beside};
 use hardpoint_file::Units;
 use hardpoint_study::whatif::WhatIf;
+use hardpoint_table::csv::CsvWriter;
 
 use crate::figures::{number, per, rounded, unit, variable_unit, with_unit};
-use crate::page::Table;
+use crate::page::{Payload, Table};
 use crate::record::{Column, record};
 
 /// Interpolation error, as a fraction of the curve's range (for a slope: of the slope), above which it is reported,
@@ -16,7 +19,9 @@ const COARSE: f64 = 1e-3;
 
 record! {
     /// Value of a metric with its sensitivities, in the model's units.
-    MetricFact::of(model: &Model, units: Units, metric: &Metric, found: &MetricValue) {
+    MetricFact::of(
+        model: &Model, units: Units, metric: &Metric, found: &MetricValue, rigid: Option<f64>,
+    ) {
         let dimension = model.metric_dimension(metric);
         let known = found.d.iter().zip(&model.variables).filter(|(d, _)| d.is_finite());
         let mut sensitivities: Vec<_> =
@@ -31,6 +36,11 @@ record! {
     value: Option<f64> = found.value.map(|x| units.from_si(dimension, x));
     /// Unit.
     unit: String = unit(units, dimension);
+    /// Direction in which the value is positive, in words; empty for a size, and if the measure has no fixed one.
+    positive: &'static str = positive(model, metric);
+    /// Value for the rigid mechanism: elastic joints closed, the same motion of the drivers; `null` without
+    /// equilibrium, and where no driver moves.
+    rigid: Option<f64> = rigid.map(|x| units.from_si(dimension, x));
     /// Time at which the metric is evaluated, s; `null` if it uses the whole curve.
     time: Option<f64> = found.time;
     /// Interpolation error between output times; `null` for a mean, and if there are too few output times to estimate
@@ -80,16 +90,39 @@ record! {
     exact: Option<f64> = shown(exact);
 }
 
+/// Contents of a table of metrics.
+#[derive(Clone, Copy, Debug)]
+struct Shown {
+    /// Definitions, or else the directions in which values are positive.
+    definitions: bool,
+    /// Number of most influential variables of each unit.
+    variables: usize,
+}
+
 impl MetricFact {
-    /// Metrics of a solution.
-    pub fn all(model: &Model, units: Units, solution: &Solution) -> Vec<Self> {
-        let values = metrics(model, solution);
-        model.metrics.iter().zip(values).map(|(m, value)| Self::of(model, units, m, &value)).collect()
+    /// Metrics of a solution, with those of the rigid mechanism.
+    pub fn all(model: &Model, units: Units, solution: &Solution, rigid: &[Option<f64>]) -> Vec<Self> {
+        let values = metrics(model, solution).into_iter().zip(rigid);
+        let of = |(metric, (value, rigid)): (_, (_, &_))| Self::of(model, units, metric, &value, *rigid);
+        model.metrics.iter().zip(values).map(of).collect()
     }
 
     /// Table of the metrics with their most influential variables.
     pub fn table(facts: &[Self]) -> Option<Table> {
-        let note = match facts.iter().any(|m| m.coarse) {
+        let facts: Vec<(&str, &Self)> = facts.iter().map(|m| ("", m)).collect();
+        Self::table_of("Metrics", &facts, Shown { definitions: true, variables: 3 })
+    }
+
+    /// Table for the page, whose cards have the definitions.
+    pub(crate) fn page_table(facts: &[Self]) -> Option<Table> {
+        let facts: Vec<(&str, &Self)> = facts.iter().map(|m| ("", m)).collect();
+        Self::table_of("Metrics", &facts, Shown { definitions: false, variables: 5 })
+    }
+
+    /// Table of metrics with their cases.
+    fn table_of(title: &str, facts: &[(&str, &Self)], shown: Shown) -> Option<Table> {
+        let Shown { definitions, variables } = shown;
+        let note = match facts.iter().any(|(_, m)| m.coarse) {
             true => {
                 "Between output times these curves are interpolated; the error is an estimate, and more output times make it smaller."
             }
@@ -99,27 +132,88 @@ impl MetricFact {
             let error = m.interpolation_error.filter(|_| m.coarse);
             error.map_or(String::new(), |x| format!("{} {}", rounded(x, 2), m.unit))
         };
-        let columns: [Column<'_, &Self>; 6] = [
-            ("metric", &|m| m.name.clone()),
-            ("definition", &|m| m.what.clone()),
-            ("value", &|m| m.value.map_or("not reached".into(), |x| with_unit(x, &m.unit))),
-            ("at t", &|m| m.time.map_or(String::new(), |t| format!("{} s", number(t)))),
-            ("estimated error", &|m| error(m)),
-            ("most influential variables", &|m| m.most_influential()),
+        let columns: [Column<'_, &(&str, &Self)>; 9] = [
+            ("metric", &|(_, m)| m.name.clone()),
+            ("case", &|(case, _)| (*case).to_owned()),
+            ("definition", &|(_, m)| if definitions { m.what.clone() } else { String::new() }),
+            ("value", &|(_, m)| m.value.map_or("not reached".into(), |x| with_unit(x, &m.unit))),
+            ("rigid", &|(_, m)| m.rigid.map_or(String::new(), |x| with_unit(x, &m.unit))),
+            ("positive", &|(_, m)| if definitions { String::new() } else { m.positive.into() }),
+            ("at t", &|(_, m)| m.time.map_or(String::new(), |t| format!("{} s", number(t)))),
+            ("estimated error", &|(_, m)| error(m)),
+            ("most influential variables", &|(_, m)| m.most_influential(variables)),
         ];
-        Table::of("Metrics", note, &columns, facts).if_any().map(Table::without_empty_columns)
+        Table::of(title, note, &columns, facts).if_any().map(Table::without_empty_columns)
     }
 
-    /// The most influential variables of each unit, with their sensitivities.
-    fn most_influential(&self) -> String {
-        const SHOWN: usize = 3;
+    /// This number of the most influential variables of each unit, with their sensitivities.
+    fn most_influential(&self, shown: usize) -> String {
         let mut units: Vec<&str> = self.sensitivities.iter().map(|s| s.per.as_str()).collect();
         units.dedup();
         let of_unit =
-            |by| self.sensitivities.iter().filter(move |s| s.per == by && s.value != 0.0).take(SHOWN);
+            |by| self.sensitivities.iter().filter(move |s| s.per == by && s.value != 0.0).take(shown);
         let largest = units.into_iter().flat_map(of_unit);
         let text = largest.map(|s| format!("{} {} {}", s.variable, rounded(s.value, 3), s.unit));
         text.collect::<Vec<_>>().join("; ")
+    }
+}
+
+/// Heading of the metrics of several cases.
+const ALL: &str = "Metrics of all cases";
+
+/// Metrics of a case of a model.
+#[derive(Clone, Debug)]
+pub struct CaseMetrics {
+    /// Name of the case; empty for a model without cases.
+    pub case: String,
+    /// Metrics of its motion.
+    pub metrics: Vec<MetricFact>,
+}
+
+impl CaseMetrics {
+    /// Table of the metrics of all cases, with the most influential variable of each unit.
+    pub fn table(cases: &[Self], model: &Model) -> Option<Table> {
+        MetricFact::table_of(ALL, &Self::all(cases, model), Shown { definitions: false, variables: 1 })
+    }
+
+    /// Metrics of all cases in the order of the model file.
+    fn all<'c>(cases: &'c [Self], model: &Model) -> Vec<(&'c str, &'c MetricFact)> {
+        let of = |case: &'c Self| case.metrics.iter().map(|metric| (case.case.as_str(), metric));
+        let mut all: Vec<_> = cases.iter().flat_map(of).collect();
+        all.sort_by_key(|(_, metric)| model.metrics.iter().position(|m| m.name == metric.name));
+        all
+    }
+
+    /// Page of one of the cases with the metrics of all, with the five most influential variables of each unit.
+    pub fn page(cases: &[Self], model: &Model, page: Payload) -> Payload {
+        let shown = Shown { definitions: false, variables: 5 };
+        let table = MetricFact::table_of(ALL, &Self::all(cases, model), shown);
+        Payload { metrics: table.or(page.metrics), ..page }
+    }
+
+    /// Writes `metrics.csv`: a row for each metric and case, with the derivative by every variable per unit of it.
+    ///
+    /// # Errors
+    /// If `out` cannot be written.
+    pub fn write(cases: &[Self], model: &Model, units: Units, out: impl Write) -> csv::Result<()> {
+        let mut csv = CsvWriter::new(out);
+        let names = ["metric", "case", "value", "unit", "positive", "rigid", "t [s]", "definition"];
+        let by = |variable: &DesignVariable| match variable_unit(model, units, variable) {
+            unit if unit == "1" => format!("d {}", variable.name),
+            unit => format!("d {} [per {unit}]", variable.name),
+        };
+        csv.row(names.map(String::from).into_iter().chain(model.variables.iter().map(by)))?;
+        let shown = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+        for (case, metric) in Self::all(cases, model) {
+            let MetricFact { name, what, value, unit, positive, rigid, time, .. } = metric;
+            let facts = [name, case, &shown(*value), unit, positive, &shown(*rigid), &shown(*time), what];
+            let derivative = |variable: &DesignVariable| {
+                shown(metric.sensitivities.iter().find(|s| s.variable == variable.name).map(|s| s.value))
+            };
+            csv.row(facts.map(String::from).into_iter().chain(model.variables.iter().map(derivative)))?;
+        }
+        csv.end()?;
+        Ok(())
     }
 }
 
@@ -144,6 +238,45 @@ impl MetricChange {
         ];
         Table::of("Metrics", "", &columns, changes).if_any()
     }
+}
+
+/// Signs of measures: `docs/measures.md`.
+const POSITIVE: [(&[&str], &str); 13] = [
+    (&["toe", "total_toe"], "toe-in"),
+    (&["camber", "camber_front"], "top outboard"),
+    (&["steer_angle"], "to the left"),
+    (&["caster"], "top rearward"),
+    (&["kingpin_inclination"], "top inboard"),
+    (&["wheel_travel"], "bump"),
+    (&["wheel_recession"], "rearward"),
+    (&["half_track", "half_track_change"], "outboard"),
+    (&["bump_steer"], "toe-in in bump"),
+    (&["bump_camber"], "top outboard in bump"),
+    (&["bump_recession"], "rearward in bump"),
+    (&["bump_scrub"], "outboard in bump"),
+    (&["roll_centre_height", "roll_centre_height_geometric"], "up"),
+];
+
+/// Direction in which a metric is positive; of a slope that of its measure, and none of a size.
+fn positive(model: &Model, metric: &Metric) -> &'static str {
+    match metric.take {
+        Reduction::Range | Reduction::Rms(_) | Reduction::RmsAtPoints(_) => return "",
+        _ => {}
+    }
+    let kind = model.type_of(metric.of);
+    if let Some((_, positive)) = POSITIVE.iter().find(|(kinds, _)| kinds.contains(&kind)) {
+        return positive;
+    }
+    let axis = match metric.of {
+        OutputSource::Point(_, axis) => Some(axis),
+        OutputSource::Measure(_) => ["contact_x", "contact_y", "contact_z"].iter().position(|k| *k == kind),
+    };
+    // A model with wheels has vehicle axes, those of ISO 8855.
+    let axes = match model.wheels.is_empty() {
+        true => ["along +x", "along +y", "along +z"],
+        false => ["forward", "to the left", "up"],
+    };
+    axis.map_or("", |axis| axes[axis])
 }
 
 /// Description of a metric: `slope of toe over wheel_travel at 0 mm`.

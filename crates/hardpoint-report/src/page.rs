@@ -113,6 +113,8 @@ pub struct Payload {
     pub quantities: Vec<Quantity>,
     /// Single values that characterise the design: metrics, then the static values of measures.
     pub values: Vec<Value>,
+    /// Metrics with their most influential variables, of this motion or of all cases.
+    pub metrics: Option<Table>,
     /// Quantity that the page shows first, an index into [`Payload::quantities`].
     pub first: Option<usize>,
     /// Quantity on the abscissa of that first plot, an index into [`Payload::quantities`]; time if there is none.
@@ -530,6 +532,8 @@ pub enum DesignKind {
     SecondOrder,
     /// Edge of the band of the curves of many designs, not a design itself.
     Band,
+    /// The nominal design with rigid joints in place of the elastic ones.
+    Rigid,
 }
 
 /// Quantity of another design with its two time derivatives; unknown curves are empty.
@@ -890,6 +894,7 @@ pub(crate) mod tests {
             vehicle: None,
             quantities: vec![],
             values: vec![],
+            metrics: None,
             first: None,
             over: None,
             plots: vec![],

@@ -9,6 +9,7 @@ mod designs;
 mod drawing;
 mod first;
 mod loads;
+mod rigid;
 mod values;
 
 pub use designs::ChangedDesign;
@@ -17,6 +18,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use hardpoint::joint::Quantity as Kind;
+use hardpoint::load::Loads;
 use hardpoint::model::{BodyId, Dimension, Driver, DriverId, Metric, Model, OutputSource, VariableId};
 use hardpoint::run::DriverRates;
 use hardpoint::sensitivity::{BodySensitivity, admissibility_at_design};
@@ -28,6 +30,7 @@ use hardpoint_study::difference::Difference;
 use hardpoint_table::series::{self, Scale, settled};
 
 use crate::course::{Course, RoundOff};
+use crate::deflection::DeflectionFact;
 use crate::encoding::{packed, size_in_page};
 use crate::facts::{Facts, VariableAdmissibility};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
@@ -37,6 +40,8 @@ use crate::page::{
     NamedDesign, Payload, Plot, Quantity, Sensitivity, Status, Units as PageUnits, Variable,
 };
 use crate::summary::{RunStatus, Summary};
+
+use loads::LoadCurve;
 
 /// Approximate maximum number of output times on a page.
 const MOST_STEPS: usize = 1000;
@@ -110,17 +115,19 @@ pub fn report(
 /// Finished payload with the highest detail that fits into a page, packed already if its size had to be measured.
 fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payload, Option<Vec<u8>>) {
     let (model, solution) = (&request.file.model, &request.course.kept);
+    let times = &solution.motion.times;
+    let rigid = crate::rigid::solve(request.file, request.analysis.topology().formulation, times);
     let size = Size {
         steps: solution.motion.len(),
         bodies: model.bodies.len() - 1,
         variables: model.variables.len(),
         outputs: solution.measured.outputs.len(),
-        loads: loads::count(model),
+        loads: loads::count(model) + model.elastic_directions().len() + model.given_forces().len(),
         compared: request.differences.iter().any(Option::is_some),
-        designs: request.changed.as_ref().map_or(0, ChangedDesign::designs),
+        designs: request.changed.as_ref().map_or(0, ChangedDesign::designs) + usize::from(rigid.is_some()),
     };
     let alone = driver_rates(request);
-    let compose = |detail: Detail| finish(composed(request, alone.as_ref(), detail));
+    let compose = |detail: Detail| finish(composed(request, alone.as_ref(), rigid.as_ref(), detail));
     let levels = Detail::levels(size, Bodies::of(request.course));
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
@@ -159,14 +166,27 @@ fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
 }
 
 /// Payload with a given detail.
-fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) -> Payload {
+fn composed(
+    request: &Request<'_>,
+    alone: Option<&DriverRates>,
+    rigid: Option<&Result<Solution, String>>,
+    detail: Detail,
+) -> Payload {
     let &Request { file, course, summary, differences, ref changed, .. } = request;
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let compose = Compose::new(request, alone, detail);
     let (bodies, values) = (compose.bodies(), compose.values(summary));
-    let designs = changed
+    let mut designs = changed
         .as_ref()
         .map_or_else(Vec::new, |changed| compose.designs(changed, course.stride, &bodies, &values));
+    let loads = compose.solved_loads(&[]);
+    let deflections = DeflectionFact::all(model, units, &loads);
+    let mut notes = summary.model.all_notes();
+    match rigid {
+        Some(Ok(solved)) => designs.push(compose.rigid(solved, &loads, &bodies, &values)),
+        Some(Err(why)) => notes.push(why.clone()),
+        None => {}
+    }
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),
@@ -183,7 +203,7 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
             Detail { stride: detail.stride * course.stride, ..detail },
         ),
         summary: headline(summary),
-        notes: summary.model.all_notes(),
+        notes,
         times: compose.curve(|k| solution.motion.times[k]),
         bodies,
         joints: compose.joints(),
@@ -191,9 +211,9 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
         drivers: compose.drivers(),
         wheels: compose.wheels(),
         distances: compose.distances(),
-        loads: compose.loads(),
+        loads: compose.loads(&loads),
         vehicle: compose.vehicle(),
-        quantities: compose.quantities(),
+        quantities: compose.quantities(&loads),
         values,
         first: compose.first(course),
         over: None,
@@ -207,9 +227,12 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
             note: m.sentence(),
         }),
         variables: compose.variables(&summary.model, differences),
-        checks: MetricFact::table(&summary.metrics)
-            .into_iter()
-            .chain(summary.assembly.iter().flat_map(|a| a.tables()))
+        metrics: MetricFact::page_table(&summary.metrics),
+        checks: summary
+            .assembly
+            .iter()
+            .flat_map(|a| a.tables())
+            .chain(DeflectionFact::table(&deflections))
             .chain(summary.validity_table())
             .chain(summary.model.tables())
             .collect(),
@@ -252,7 +275,7 @@ struct Size {
     bodies: usize,
     variables: usize,
     outputs: usize,
-    /// Forces on bodies.
+    /// Forces on bodies, deflections and given forces.
     loads: usize,
     /// True if there are differences for comparison.
     compared: bool,
@@ -483,8 +506,9 @@ impl<'a> Compose<'a> {
         v.to_array().map(|x| self.units.from_si(Kind::Length, x))
     }
 
-    /// Quantities: all outputs, then x, y and z of every body's origin.
-    fn quantities(&self) -> Vec<Quantity> {
+    /// Quantities: all outputs, then x, y and z of every body's origin, then deflections and
+    /// given forces.
+    fn quantities(&self, loads: &Loads) -> Vec<Quantity> {
         let measured = &self.solution.measured;
         let outputs = measured.outputs.iter().enumerate().map(|(m, output)| {
             let value = |k, order: usize| measured.value(k, m)[order];
@@ -503,7 +527,12 @@ impl<'a> Compose<'a> {
             };
             self.quantity(&name, Dimension::LENGTH, 3, ("body", "position"), value)
         });
-        outputs.chain(origins).collect()
+        let of_loads =
+            self.load_curves(loads).into_iter().map(|LoadCurve { name, group, dimension, curve }| Quantity {
+                value: curve,
+                ..self.quantity(&name, dimension, 0, (group, group), |_, _| f64::NAN)
+            });
+        outputs.chain(origins).chain(of_loads).collect()
     }
 
     /// Plots of the model file.

@@ -16,6 +16,7 @@ use crate::maps::MapLine;
 use crate::margin::{MarginFact, named};
 use crate::metric::MetricFact;
 use crate::page::Table;
+use crate::rigid;
 use crate::validity::ValidityFact;
 
 /// Contents of `summary.json`. Values are in the model's units, times in s.
@@ -223,6 +224,7 @@ impl Summary {
     /// Summary of a run, without files.
     pub fn new(file: &ModelFile, topology: &Topology, course: &Course) -> Self {
         let (model, solution) = (&file.model, &course.kept);
+        let rigid = rigid::metrics(file, topology.formulation, &solution.motion.times);
         let effort = solution.motion.effort;
         Self {
             generator: crate::GENERATOR,
@@ -256,7 +258,7 @@ impl Summary {
             stop: StopFact::of(file, solution),
             validity: Vec::new(),
             maps: Vec::new(),
-            metrics: MetricFact::all(model, file.units, course.curves()),
+            metrics: MetricFact::all(model, file.units, course.curves(), &rigid),
             sensitivities: rankings(model, file.units, course),
             timings: Timings::default(),
             files: Vec::new(),

@@ -107,16 +107,21 @@ export function factTable(table: Table): HTMLDetailsElement {
     'details',
     { open: table.rows.length <= SHORT },
     el('summary', {}, table.title, el('span', { class: 'count' }, String(table.rows.length))),
-    table.note !== '' && el('p', { class: 'lead' }, ...prose(table.note)),
+    ...noteAndRows(table),
+  )
+}
+
+/** Note of a table, if there is one, and its rows. */
+export function noteAndRows({ note, header, rows }: Table): HTMLElement[] {
+  const grid = el(
+    'div',
+    { class: 'scroll', tabindex: 0 },
     el(
-      'div',
-      { class: 'scroll', tabindex: 0 },
-      el(
-        'table',
-        {},
-        el('thead', {}, el('tr', {}, ...table.header.map((cell) => el('th', { scope: 'col' }, cell)))),
-        el('tbody', {}, ...table.rows.map((row) => el('tr', {}, ...row.map((cell) => el('td', {}, ...prose(cell)))))),
-      ),
+      'table',
+      {},
+      el('thead', {}, el('tr', {}, ...header.map((cell) => el('th', { scope: 'col' }, cell)))),
+      el('tbody', {}, ...rows.map((row) => el('tr', {}, ...row.map((cell) => el('td', {}, ...prose(cell)))))),
     ),
   )
+  return note === '' ? [grid] : [el('p', { class: 'lead' }, ...prose(note)), grid]
 }

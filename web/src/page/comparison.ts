@@ -3,7 +3,7 @@ import { el } from '../dom'
 import { extent } from '../export/axis'
 import { pretty, signed } from '../format'
 import { noise } from '../rounding'
-import { curveOf } from '../report'
+import { curveOf, type Design } from '../report'
 import type { State } from '../state'
 import { isStatic, valueText } from './cards'
 import { whileSeen } from './tabs'
@@ -64,25 +64,26 @@ export function comparison(state: State): HTMLElement {
 
 /** The reference first, then the present design if it differs, then the others. */
 function columnsOf(state: State): Column[] {
-  const { report, former, designs, choice, isCompared } = state
+  const { report, former, rigid, designs, choice, isCompared } = state
   const original: Column = {
     name: 'original',
     value: (index) => report.values[index].value,
     curve: (quantity) => report.quantities[quantity].curves[0],
   }
-  const of = (k: number): Column => ({
-    name: designs[k].name,
-    value: (index) => designs[k].values[index] ?? null,
-    curve: (quantity) => curveOf(designs[k], quantity, 0),
+  const of = (design: Design): Column => ({
+    name: design.name,
+    value: (index) => design.values[index] ?? null,
+    curve: (quantity) => curveOf(design, quantity, 0),
   })
   const present: Column = {
     name: 'current',
     value: (index) => state.value(index),
     curve: (quantity) => state.curve(quantity, 0),
   }
-  const reference = choice.compared !== undefined && former ? of(choice.compared) : original
+  const reference = choice.compared !== undefined && former ? of(former) : original
   const last = reference === original || !state.changed ? [] : [original]
-  return [reference, ...(isCompared ? [present] : []), ...state.overlays.map(of), ...last]
+  const others = [...state.overlays.map((index) => designs[index]), ...(rigid ? [rigid] : [])]
+  return [reference, ...(isCompared ? [present] : []), ...others.map(of), ...last]
 }
 
 function changeText(by: number, size: number): string {

@@ -21,6 +21,7 @@ import {
   derivativeUnit,
   type Design,
   type Driver,
+  isGiven,
   type Order,
   orderedName,
   type Quantity,
@@ -81,15 +82,22 @@ export function valueContent(state: State, subject: Subject): Content {
   if (quantity.curves[order].length === 0) return { ...content, message: unknown(name) }
   const quantities = [index, ...also.filter((k) => k !== index)].map((k) => report.quantities[k])
   const several = quantities.length > 1
-  const [reference, ...others] = comparedDesigns(state)
-  const drawn = [presentDesign(state), ...(difference ? [] : [reference]), ...others].filter(
+  const [compared, ...others] = comparedDesigns(state)
+  const rigid = rigidDesign(state)
+  // Where nothing else is compared, a change is that to the rigid mechanism.
+  const reference = compared ?? (difference ? rigid : undefined)
+  const drawn = [presentDesign(state), ...(difference ? [] : [reference, rigid]), ...others].filter(
     (design) => design !== undefined,
   )
   const base = reference ?? drawn[0]
   const scale = largest(state, index, order)
   for (const [k, one] of quantities.entries()) {
-    const abscissa = (design: Drawn) =>
-      over === undefined ? undefined : design.curve(onSideOf(report, over, one.index), 0)
+    const abscissa = (design: Drawn) => {
+      if (over === undefined) return undefined
+      const x = report.quantities[onSideOf(report, over, one.index)]
+      const own = design.curve(x.index, 0)
+      return own.length === 0 && isGiven(x) ? x.curves[0] : own
+    }
     for (const design of drawn) {
       const all = quiet(design.curve(one.index, order), scale)
       const x = abscissa(design)
@@ -105,7 +113,7 @@ export function valueContent(state: State, subject: Subject): Content {
       content.lines.push({ label, color, curve, over: x, width: design.width, dash, about: aboutQuantity(one) })
     }
   }
-  if (difference) content.caption = differenceCaption(state, reference)
+  if (difference) content.caption = differenceCaption(reference)
   else addPredictions(state, subject, content, scale)
   const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
   // Over another quantity, which has a tolerance itself, bands would have another meaning.
@@ -146,8 +154,14 @@ function comparedDesigns(state: State): (Drawn | undefined)[] {
   ]
 }
 
-function differenceCaption({ isCompared }: State, reference: Drawn | undefined): string {
-  if (!isCompared || !reference) return 'Nothing is changed yet.'
+/** The mechanism with rigid joints, a thin line. */
+function rigidDesign({ rigid }: State): Drawn | undefined {
+  if (!rigid) return undefined
+  return { name: rigid.name, curve: (quantity, order) => curveOf(rigid, quantity, order), width: 1.1 }
+}
+
+function differenceCaption(reference: Drawn | undefined): string {
+  if (!reference) return 'Nothing is changed yet.'
   return `Change to: ${reference.name}.`
 }
 
@@ -207,12 +221,12 @@ export function sensitivityContent(state: State, subject: Subject): Content {
   const title = (own ? derivativeName(quantity, order, selected) : `d ${name}`) + of
   const content: Content = { title, unit: derivativeUnit(quantity, order, selected), lines: [] }
   if (quantity.curves[order].length === 0) return { ...content, unit: '', message: unknown(name) }
-  if (!own)
-    return {
-      ...content,
-      unit: '',
-      message: selected.note || `The sensitivity of ${name} to ${selected.name} is not known.`,
-    }
+  if (!own) {
+    // The note of a variable says why the mechanism cannot follow it; curves of loads have no sensitivities at all.
+    const note = ['deflection', 'force'].includes(quantity.group) ? '' : selected.note
+    const message = note || `The sensitivity of ${name} to ${selected.name} is not known.`
+    return { ...content, unit: '', message }
+  }
   const at = atAbscissa(state, subject)
   if (typeof at === 'string') return { ...content, message: at }
   const { seen } = at
@@ -291,6 +305,7 @@ function atAbscissa({ sensitivityReport: report }: State, { quantity, order, ove
   if (over === undefined) return { seen: (curve) => curve, note: '' }
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
   if (order > 0) return 'Over another quantity, only sensitivities of values are available: choose the value, or time.'
+  if (isGiven(x)) return { seen: (curve) => curve, note: `At a constant law of ${x.name}.` }
   const keeper = moverOf(report, x.index)
   const alone = keeper?.alone[y.index]?.length ? slopeAlone(keeper.alone[y.index], keeper.alone[x.index]) : undefined
   if (!alone && [y, x].some(({ curves }) => curves[1].length === 0 || curves[2].length === 0)) {

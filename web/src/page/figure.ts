@@ -295,10 +295,12 @@ export class Figure {
     this.#file.value = ''
     if (!file) return
     const { quantities } = this.state.report
-    const { quantity, also = [], over } = this.subject
-    const names = [quantity, ...also].map((index) => quantities[index].name)
+    const { quantity, order, also = [], over } = this.subject
+    const of = (index: number) => ({ name: quantities[index].name, unit: quantities[index].units[order] })
+    const time = { name: 'time', unit: this.state.report.units.time }
     try {
-      const subject = { names, over: over === undefined ? 'time' : quantities[over].name }
+      const abscissa = over === undefined ? time : { ...of(over), unit: quantities[over].units[0] }
+      const subject = { quantities: [quantity, ...also].map(of), over: abscissa }
       this.#measured.push(...measuredOf(await file.text(), file.name, subject))
       this.#failure.textContent = ''
     } catch (error) {

@@ -49,6 +49,7 @@ const MARKS: Pairs = [
   ['solid', 'the current design'],
   ['dashed', 'the reference design: the original, or one that is compared'],
   ['dash-dotted', 'further compared designs'],
+  ['thin', 'the rigid mechanism; dashed in the view'],
   ['dotted', 'prediction (first or second order), error bound, or target'],
   ['rings', 'check by re-solving (finite differences)'],
 ]

@@ -18,6 +18,7 @@ import { firstSteps } from './first_steps'
 import { help } from './help'
 import type { Item } from './menu'
 import { listenToKeys } from './keys'
+import { hasCases, metrics } from './metrics'
 import { navigation, type Section } from './navigation'
 import { stage } from './stage'
 import { tabs, type Tab } from './tabs'
@@ -77,7 +78,8 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
   const curves = hasQuantities ? new Curves(state, tools.figure, tools.memory?.figures) : undefined
   const all = tableTabs(state, tools.limits)
   const tables = tabs('Variables, tables and checks', all)
-  const opened = tools.memory?.tab ?? all.find(({ name }) => OPENS_ON.includes(name))?.name
+  const cases = report.metrics && hasCases(report.metrics) ? ['metrics'] : []
+  const opened = tools.memory?.tab ?? all.find(({ name }) => [...OPENS_ON, ...cases].includes(name))?.name
   if (opened) tables.show(opened)
   const table = all.find(({ name }) => name !== 'variables')!.name
   const sections: Section[] = [
@@ -147,6 +149,7 @@ function tableTabs(state: State, limits?: VariableLimits): Tab[] {
     const content = el('div', { class: 'influence' }, rankingTable(state), heatMap(state))
     all.push({ name: 'table', title: 'Influence', content })
   }
+  if (state.report.metrics) all.push({ name: 'metrics', title: 'Metrics', content: metrics(state) })
   if (loads.length > 0) all.push({ name: 'loads', title: 'Forces', content: forcePaths(state) })
   if (state.report.values.length > 0) all.push({ name: 'compare', title: 'Compare', content: comparison(state) })
   return [...all, { name: 'checks', title: 'Checks', content: checks(state) }]

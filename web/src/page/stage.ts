@@ -74,9 +74,21 @@ export function stage(state: State, pose?: Pose): Stage {
     },
     'forces',
   )
+  const rigid = el(
+    'button',
+    {
+      type: 'button',
+      title: 'Rigid mechanism alongside the elastic one, in the view and in the plots',
+      'data-testid': 'rigid',
+      hidden: state.report.designs.every(({ kind }) => kind !== 'rigid'),
+      onclick: () => state.choose({ rigid: !state.choice.rigid }),
+    },
+    'rigid',
+  )
   const sync = () => {
     labels.setAttribute('aria-pressed', String(state.choice.labels))
     forces.setAttribute('aria-pressed', String(state.choice.forces))
+    rigid.setAttribute('aria-pressed', String(state.choice.rigid))
   }
   state.onChoice(sync)
   sync()
@@ -91,6 +103,7 @@ export function stage(state: State, pose?: Pose): Stage {
       fit,
       labels,
       forces,
+      rigid,
       measuring.button,
       tracer(state),
     ),
@@ -111,9 +124,10 @@ function ghostKey(state: State): HTMLElement {
     name,
   )
   const sync = () => {
-    element.hidden = !state.isCompared
+    const { isCompared, former, rigid } = state
+    element.hidden = !isCompared && !rigid
     const solid = state.isPredicted ? '; solid: predicted to first order' : ''
-    name.textContent = `${state.former?.name ?? 'original'}${solid}`
+    name.textContent = isCompared ? `${former?.name ?? 'original'}${solid}` : (rigid?.name ?? '')
   }
   state.onChoice(sync)
   sync()

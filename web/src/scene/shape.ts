@@ -20,7 +20,7 @@ export function present(original: Mechanism, state: State): Mechanism {
   const { report, size } = original
   const known = (design?: Design) => (design && design.poses.length === report.bodies.length ? design : undefined)
   const exact = known(state.present)
-  const other = known(state.former)
+  const other = known(state.former ?? (state.isCompared ? undefined : state.rigid))
   const former = other ? new Mechanism(solved(report, other, size), original) : original
   if (exact) return new Mechanism(solved(report, exact, size), original, former)
   if (state.changed) return new Mechanism(predicted(report, state.changes, size), original, former)

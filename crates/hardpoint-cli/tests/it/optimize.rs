@@ -109,7 +109,7 @@ fn commands_run_all_cases_or_the_requested_one() {
     let bench = bench(&["strut_toe.toml"]);
     let output = bench.run(&["run", "strut_toe.toml", "-o", "out", "--no-compare"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(bench.list("out"), ["bump", "steer", "summary.json"]);
+    assert_eq!(bench.list("out"), ["bump", "metrics.csv", "report.html", "steer", "summary.json"]);
     let files = ["motion.csv", "report.html", "sensitivity.csv", "summary.json"];
     assert_eq!(
         (bench.list("out/bump"), bench.list("out/steer")),

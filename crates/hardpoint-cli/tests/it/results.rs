@@ -46,6 +46,68 @@ fn both_formulations_write_the_same_motion() {
 }
 
 #[test]
+fn largest_deflections_of_bushings_are_written() {
+    let bench = Bench::with(&[]);
+    bench.shown(&["new", "axle", "--template", "k-and-c"]);
+    let output = bench.run(&["run", "axle.toml", "--case", "lateral_in_phase", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = bench.text("out/deflections.csv");
+    let mut lines = text.lines();
+    assert_eq!(lines.next().unwrap(), "element,direction,deflection,deflection unit,force,force unit,t [s]");
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 48);
+    let row = rows.iter().find(|row| row[..2] == ["left_lca_front", "along x"]).unwrap();
+    let [deflection, force]: [f64; 2] = [row[2], row[4]].map(|x| x.parse().unwrap());
+    // 9000 N/mm
+    assert!((force + 9000.0 * deflection).abs() <= 1e-9 * force.abs(), "{row:?}");
+    let summary = bench.json("out/summary.json");
+    assert!(summary["files"].as_array().unwrap().iter().any(|f| f.as_str() == Some("out/deflections.csv")));
+}
+
+#[test]
+fn metrics_of_all_cases_are_written_printed_and_first_on_a_page() {
+    let bench = Bench::with(&[]);
+    bench.shown(&["new", "axle", "--template", "k-and-c"]);
+    let output = bench.run(&["run", "axle.toml", "-o", "out", "--no-compare"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = bench.text("out/metrics.csv");
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("{header:?}"));
+    let table = csv::Reader::from_reader(text.as_bytes()).into_records();
+    let rows: Vec<csv::StringRecord> = table.map(Result::unwrap).collect();
+    assert_eq!(rows.len(), 16);
+    let row = |metric: &str| rows.iter().find(|row| &row[0] == metric).unwrap();
+    let number = |row: &csv::StringRecord, name: &str| row[column(name)].parse::<f64>().ok();
+
+    // The same numbers as in the summary of its case.
+    let braking = row("braking_steer");
+    assert_eq!((&braking[column("case")], &braking[column("unit")]), ("braking", "deg"));
+    assert_eq!(&braking[column("positive")], "toe-in");
+    assert_eq!(number(braking, "rigid"), None);
+    let summary = bench.json("out/braking/summary.json");
+    let fact = summary["metrics"].as_array().unwrap().iter().find(|m| m["name"] == "braking_steer").unwrap();
+    assert_eq!(fact["value"].as_f64(), number(braking, "value"));
+    assert!(fact["rigid"].is_null());
+    let by_place = fact["sensitivities"].as_array().unwrap().iter().find(|s| s["variable"] == "lca_rear_x");
+    assert_eq!(by_place.unwrap()["value"].as_f64(), number(braking, "d lca_rear_x [per mm]"));
+
+    // A wheel that moves has a rigid value, near to the elastic one.
+    let toe = row("toe_over_travel");
+    let [elastic, rigid] = ["value", "rigid"].map(|name| number(toe, name).unwrap());
+    assert!((elastic - rigid).abs() > 0.01 && (elastic - rigid).abs() < 0.1 * elastic, "{elastic}, {rigid}");
+
+    let shown = String::from_utf8(output.stdout).unwrap();
+    let (_, all) = shown.split_once("Metrics of all cases").unwrap();
+    assert!(all.contains("braking_steer") && all.contains("report of all cases"));
+    let page = bench.page("out/report.html");
+    let metrics = &page["metrics"];
+    assert_eq!(metrics["rows"].as_array().unwrap().len(), 16);
+    assert_eq!(metrics["rows"][0][0], "toe_per_aligning_torque_in_phase", "the order of the file");
+    let own = bench.page("out/braking/report.html");
+    assert_eq!(own["metrics"]["rows"].as_array().unwrap().len(), 2);
+}
+
+#[test]
 fn joint_loads_are_written_and_indeterminate_ones_are_empty() {
     let bench = Bench::with(&[]);
     let press = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/press.toml");

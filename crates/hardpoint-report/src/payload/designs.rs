@@ -7,6 +7,7 @@ use std::iter;
 
 use hardpoint::Solution;
 use hardpoint::joint::Quantity as Kind;
+use hardpoint::load::Loads;
 use hardpoint::model::{BodyId, Dimension, Direction, Model, VariableId};
 use hardpoint::run::metrics_beside;
 use hardpoint::space::Vec3;
@@ -91,7 +92,7 @@ impl Compose<'_> {
         values: &[Value],
     ) -> Vec<Design> {
         let comparison = DesignComparison { today: self, changed, stride };
-        let mut designs = vec![comparison.exact(bodies, values)];
+        let mut designs = vec![comparison.exact(bodies, values, &self.solved_loads(changed.change))];
         let follows = |what_if: &&WhatIf| what_if.cannot_follow.is_empty() && changed.solved() > 0;
         if let Some(what_if) = changed.prediction.filter(follows) {
             designs
@@ -108,7 +109,19 @@ impl Compose<'_> {
         bodies: &[BodyTrack],
         values: &[Value],
     ) -> Design {
-        DesignComparison { today: self, changed, stride }.exact(bodies, values)
+        let loads = self.solved_loads(changed.change);
+        DesignComparison { today: self, changed, stride }.exact(bodies, values, &loads)
+    }
+
+    /// Design at the stored output times, without its loads.
+    pub(super) fn unloaded(
+        &self,
+        design: &ChangedDesign<'_>,
+        bodies: &[BodyTrack],
+        values: &[Value],
+    ) -> Design {
+        let comparison = DesignComparison { today: self, changed: design, stride: 1 };
+        comparison.exact(bodies, values, &Loads::default())
     }
 }
 
@@ -211,7 +224,7 @@ impl DesignComparison<'_> {
     }
 
     /// Design as solved again.
-    fn exact(&self, bodies: &[BodyTrack], values: &[Value]) -> Design {
+    fn exact(&self, bodies: &[BodyTrack], values: &[Value], loads: &Loads) -> Design {
         let (changed, units) = (self.changed, self.today.units);
         let (today, exact) = (changed.today, changed.exact);
         let output = |m: usize| {
@@ -230,13 +243,20 @@ impl DesignComparison<'_> {
             Some(DesignCurves { value: curve(0), rate: curve(1), accel: curve(2) })
         };
         let margins = &exact.motion.margins;
+        let mut quantities = self.quantities(output, origin);
+        if !loads.times.is_empty() {
+            let of_loads = self.today.load_curves(loads).into_iter().map(|of| {
+                Some(DesignCurves { value: of.curve, rate: Curve::default(), accel: Curve::default() })
+            });
+            quantities.extend(of_loads);
+        }
         let found = metrics_beside(self.today.model, today, exact);
         let static_value = |k: usize, m: usize| Some(changed.value(k, m));
         Design {
             poses: self.poses(),
             skeletons: self.skeletons(bodies),
-            loads: self.today.forces(changed.change),
-            quantities: self.quantities(output, origin),
+            loads: if loads.times.is_empty() { Vec::new() } else { self.today.forces(loads) },
+            quantities,
             values: self.values(values, |metric| found[metric], static_value),
             margin: (!margins.is_empty())
                 .then(|| self.curve(|k| margins.get(k).map_or(f64::NAN, |m| m.value))),

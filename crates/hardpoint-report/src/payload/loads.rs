@@ -1,11 +1,12 @@
-//! Forces on bodies, for drawing.
+//! Forces on bodies, for drawing; deflections of elastic joints and bushings, as curves.
 
 use hardpoint::Analysis;
 use hardpoint::load::Loads;
-use hardpoint::model::Model;
+use hardpoint::model::{Dimension, Model};
 use hardpoint::space::Vec3;
 use hardpoint_table::series::settled;
 
+use crate::deflection;
 use crate::page::{BodyPlace, Curve, LoadMark};
 
 use super::Compose;
@@ -25,13 +26,21 @@ fn joints(model: &Model) -> Vec<usize> {
     all.filter(|(_, joint)| is_drawn(joint) && !joint.unnamed).map(|(j, _)| j).collect()
 }
 
+/// Load over the shown output times, as a quantity.
+pub(super) struct LoadCurve {
+    pub name: String,
+    pub group: &'static str,
+    pub dimension: Dimension,
+    pub curve: Curve,
+}
+
 impl Compose<'_> {
     /// Forces of the nominal design.
-    pub(super) fn loads(&self) -> Vec<LoadMark> {
+    pub(super) fn loads(&self, loads: &Loads) -> Vec<LoadMark> {
         if count(self.model) == 0 {
             return Vec::new();
         }
-        let (loads, shown) = (self.solved_loads(&[]), joints(self.model));
+        let shown = joints(self.model);
         let part_of = |j: usize| (0..loads.times.len()).any(|k| loads.joints_at(k)[j].known_directions < 3);
         let of_joints = shown.iter().map(|&j| {
             let joint = &self.model.joints[j];
@@ -44,19 +53,46 @@ impl Compose<'_> {
         let of_points = pushed
             .iter()
             .map(|&(e, point)| (self.model.elements[e.0].name.clone(), None, self.place(point), false));
-        let marks = of_joints.chain(of_points).zip(self.curves_of(&loads));
+        let marks = of_joints.chain(of_points).zip(self.curves_of(loads));
         marks
             .map(|((name, joint, at, is_part), force)| LoadMark { name, joint, at, force, is_part })
             .collect()
     }
 
-    /// Forces of the design with a change of the variables, in the same order.
-    pub(super) fn forces(&self, change: &[f64]) -> Vec<Curve> {
-        if count(self.model) == 0 { Vec::new() } else { self.curves_of(&self.solved_loads(change)) }
+    /// Forces of another design, in the same order.
+    pub(super) fn forces(&self, loads: &Loads) -> Vec<Curve> {
+        if count(self.model) == 0 { Vec::new() } else { self.curves_of(loads) }
     }
 
-    /// Loads at the shown output times.
-    fn solved_loads(&self, change: &[f64]) -> Loads {
+    /// Curves of loads: deflections of elastic joints and bushings, and given forces that vary.
+    pub(super) fn load_curves(&self, loads: &Loads) -> Vec<LoadCurve> {
+        let model = self.model;
+        let curve = |dimension: Dimension, value: &dyn Fn(usize) -> f64| {
+            let value = |k: usize| if k < loads.times.len() { value(k) } else { f64::NAN };
+            (0..self.steps.len()).map(|k| self.units.from_si(dimension, value(k))).collect()
+        };
+        let deflection = |(i, at): (usize, _)| {
+            let (name, dimension) = deflection::curve_name(model, at);
+            let round_off = self.round_off.value(dimension, 0);
+            let value = |k: usize| settled(loads.deflections_at(k)[i].displacement, round_off);
+            LoadCurve { name, group: "deflection", dimension, curve: curve(dimension, &value) }
+        };
+        let deflections = model.elastic_directions().into_iter().enumerate().map(deflection);
+        let given = model.given_forces().into_iter().enumerate().filter(|(_, e)| model.varies(*e));
+        let forces = given.map(|(i, e)| {
+            let dimension = model.force_dimension(e);
+            let value = |k: usize| loads.given_at(k)[i];
+            let name = model.elements[e.0].name.clone();
+            LoadCurve { name, group: "force", dimension, curve: curve(dimension, &value) }
+        });
+        deflections.chain(forces).collect()
+    }
+
+    /// Loads of a design at the shown output times.
+    pub(super) fn solved_loads(&self, change: &[f64]) -> Loads {
+        if !self.model.has_loads() {
+            return Loads::default();
+        }
         let times = self.steps.iter().map(|&k| self.solution.motion.times[k]).collect();
         // The analysed model has the variables of the change; the shown one may have none.
         let model = Model { times, ..self.analysis.model().clone() };

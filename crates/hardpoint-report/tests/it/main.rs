@@ -2,6 +2,7 @@
 
 mod accidents;
 mod drawing;
+mod elastic;
 mod files;
 mod mesh;
 mod opening;

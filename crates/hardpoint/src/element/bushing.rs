@@ -1,21 +1,15 @@
 //! Bushing: springs and dampers between two bodies at a place.
 
 use crate::draft::{CheckElement, ElementCheck};
-use crate::load::{AppliedLoads, ForceFormula, Opening};
+use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Bushing, Compliance, ForceProperties, Properties};
-use crate::model::{Dimension, ElementId, Model, PointId};
-use crate::space::{Pose, Real, Wrench};
+use crate::model::{Dimension, ElementId, Model};
+use crate::space::{Real, Wrench};
 
 impl Bushing {
-    /// Markers at both points, with the global axes of the design configuration.
-    fn opening<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Opening<T> {
-        let marker = |point: PointId| Pose { rot: at.turned(at.body(point)), r: at.point(point) };
-        Opening::between(&marker(self.from), &marker(self.to))
-    }
-
     /// Wrench on body j.                                                                                      (44)
     fn wrench<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Wrench<T> {
-        let push = at.elastic_wrench(&self.opening(at), &self.elasticities());
+        let push = at.elastic_wrench(&at.opening_between([self.from, self.to]), &self.elasticities());
         let Some(damping) = self.damping else { return push };
         // -c v,  v of P_j as seen from i
         let (i, j, q) = (at.body(self.from), at.body(self.to), at.point(self.to));
@@ -62,7 +56,7 @@ impl ForceFormula for Bushing {
     }
 
     fn deflections<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId, mut each: impl FnMut(T, T)) {
-        let opening = self.opening(at);
+        let opening = at.opening_between([self.from, self.to]);
         for (k, of) in self.elasticities().iter().enumerate() {
             let [_, stiffness] = at.elastic_force(opening.coordinates[k], of);
             each(opening.coordinates[k], stiffness);

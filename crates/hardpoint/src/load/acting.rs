@@ -6,7 +6,7 @@
 use crate::constraint::{MarkerPair, Row};
 use crate::design::Geometry;
 use crate::measure::WheelAt;
-use crate::model::element::{Elasticity, JointFriction};
+use crate::model::element::{ActsOn, Elasticity, JointFriction};
 use crate::model::{
     Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, UnitForce,
     Wheel, WheelId, elements, if_mass,
@@ -290,6 +290,25 @@ impl<T: Real> AppliedLoads<'_, T> {
         let [m_i, m_j] = self.geometry.markers[joint.0];
         let [i, j] = self.model.joints[joint.0].bodies.map(|b| self.bodies[b.0].pose);
         Some(Opening::between(&i.compose(m_i), &j.compose(m_j)))
+    }
+
+    /// Opening between two points: of markers there, with the global axes of the design configuration.
+    pub fn opening_between(&self, [i, j]: [PointId; 2]) -> Opening<T> {
+        let marker = |point: PointId| Pose { rot: self.turned(self.body(point)), r: self.point(point) };
+        Opening::between(&marker(i), &marker(j))
+    }
+
+    /// Opening of an element that acts on a joint or between two points.
+    pub fn opening_at(&self, acts_on: ActsOn) -> Option<Opening<T>> {
+        match acts_on {
+            ActsOn::Joint(joint) => self.opening(joint),
+            ActsOn::Points(points) => Some(self.opening_between(points)),
+            ActsOn::Line(_)
+            | ActsOn::Point(_)
+            | ActsOn::Wheel(_)
+            | ActsOn::Body(_)
+            | ActsOn::Coordinate(..) => None,
+        }
     }
 
     /// Elastic force or moment on body j along a coordinate of an opening, `-(k e + k_3 e^3 + C(e) - f_0)`, and the

@@ -36,6 +36,15 @@ pub struct DriverLoad {
     pub speed: f64,
 }
 
+/// Deflection of an elastic joint or a bushing along or about one of its axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deflection {
+    /// Displacement, m, or angle, rad, of body j relative to body i from the design configuration.
+    pub displacement: f64,
+    /// Elastic force, N, or moment, N m, on body j in that direction.
+    pub force: f64,
+}
+
 /// Loads of all joints and drivers over a motion.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
@@ -50,6 +59,15 @@ pub struct Loads {
     ///
     /// [`Model::points_of_application`]: crate::model::Model::points_of_application
     pub pushes: Vec<Vec3>,
+    /// `deflections[k * n + i]`: deflection in direction i of n of [`Model::elastic_directions`] at time k.
+    ///
+    /// [`Model::elastic_directions`]: crate::model::Model::elastic_directions
+    pub deflections: Vec<Deflection>,
+    /// `given[k * n + i]`: value of force i of n of [`Model::given_forces`] at time k, N or N m, with the sign of its
+    /// law.
+    ///
+    /// [`Model::given_forces`]: crate::model::Model::given_forces
+    pub given: Vec<f64>,
     /// Friction elements whose friction is undetermined at some time because redundant constraints share their normal
     /// force. No load is determined then.
     pub shared_friction: Vec<ElementId>,
@@ -78,5 +96,21 @@ impl Loads {
     pub fn pushes_at(&self, k: usize) -> &[Vec3] {
         let n = self.pushes.len() / self.times.len().max(1);
         &self.pushes[k * n..(k + 1) * n]
+    }
+
+    /// Deflections in all directions of [`Model::elastic_directions`] at output time k.
+    ///
+    /// [`Model::elastic_directions`]: crate::model::Model::elastic_directions
+    pub fn deflections_at(&self, k: usize) -> &[Deflection] {
+        let n = self.deflections.len() / self.times.len().max(1);
+        &self.deflections[k * n..(k + 1) * n]
+    }
+
+    /// Values of all forces of [`Model::given_forces`] at output time k.
+    ///
+    /// [`Model::given_forces`]: crate::model::Model::given_forces
+    pub fn given_at(&self, k: usize) -> &[f64] {
+        let n = self.given.len() / self.times.len().max(1);
+        &self.given[k * n..(k + 1) * n]
     }
 }

@@ -12,6 +12,7 @@ use crate::topology::Topology;
 use super::derivatives::LoadDerivatives;
 use super::equilibrium::{Equilibrium, SelfStress, TransmittedLoads};
 use super::measures::LoadMeasures;
+use super::results::Deflection;
 use super::turns::Turns;
 
 /// Evaluates loads at the position of a stepper, for one design.
@@ -154,6 +155,24 @@ impl<'a> LoadSolver<'a> {
         let mut required = vec![Wrench::zero(); model.bodies.len()];
         self.equilibrium.applied().add(element, &mut required);
         -required[model.points[at.0].body.0].f
+    }
+
+    /// Deflection of an elastic joint or a bushing in one of its six directions.
+    pub fn deflection(&self, (element, direction): (ElementId, usize)) -> Deflection {
+        let (model, applied) = (self.equilibrium.model, self.equilibrium.applied());
+        let kind = &model.elements[element.0].kind;
+        let opening = kind.force(model).and_then(|force| applied.opening_at(force.acts_on));
+        let laws = kind.elasticities().unwrap_or_default();
+        let displacement = opening.map_or(f64::NAN, |opening| opening.coordinates[direction]);
+        let [force, _] = applied.elastic_force(displacement, &laws[direction]);
+        Deflection { displacement, force }
+    }
+
+    /// Value of a given force or moment, with the sign of its law.
+    pub fn given(&self, element: ElementId) -> f64 {
+        let applied = self.equilibrium.applied();
+        // Of several components, the size is their norm.
+        applied.size(element).copysign(applied.laws[element.0])
     }
 
     /// Elements whose friction is not determined at this step, because redundant constraints share the normal force.

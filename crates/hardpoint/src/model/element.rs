@@ -712,6 +712,26 @@ impl ElementKind {
         }
     }
 
+    /// Elastic laws along and about three axes, of elements that have them.
+    pub(crate) fn elasticities(&self) -> Option<[Elasticity<'_>; 6]> {
+        match self {
+            Self::Bushing(bushing) => Some(bushing.elasticities()),
+            Self::ElasticJoint(joint) => Some(joint.elasticities()),
+            Self::Rigid(_)
+            | Self::Bar(_)
+            | Self::Block(_)
+            | Self::Mesh(_)
+            | Self::Spring(_)
+            | Self::JointSpring(_)
+            | Self::TorsionSpring(_)
+            | Self::Friction(_)
+            | Self::SlideFriction(_)
+            | Self::PointForce(_)
+            | Self::WheelForce(_)
+            | Self::BodyMoment(_) => None,
+        }
+    }
+
     /// The law that a given force or moment is multiplied by.
     #[inline]
     pub(crate) fn law(&self, model: &Model) -> Option<&Law> {
@@ -743,6 +763,33 @@ impl Model {
         self.elements.iter().enumerate().flat_map(of).collect()
     }
 
+    /// Directions in which elastic joints and bushings deflect: 0 to 2 along x, y and z, 3 to 5 about them. Without
+    /// equilibrium elastic joints are rigid.
+    pub fn elastic_directions(&self) -> Vec<(ElementId, usize)> {
+        let of = |(e, element): (usize, &Element)| {
+            let acts_on = element.kind.force(self).map(|force| force.acts_on);
+            let is_rigid = matches!(acts_on, Some(ActsOn::Joint(_))) && self.equilibrium.is_none();
+            let laws = element.kind.elasticities().filter(|_| !is_rigid).unwrap_or_default();
+            let compliant = laws.map(|of| of.gives());
+            (0..6).filter(move |k| compliant[*k]).map(move |k| (ElementId(e), k))
+        };
+        self.elements.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// Given forces and moments with a law.
+    pub fn given_forces(&self) -> Vec<ElementId> {
+        let has_law = |e: &usize| self.elements[*e].kind.law(self).is_some();
+        (0..self.elements.len()).filter(has_law).map(ElementId).collect()
+    }
+
+    /// True if the law of a given force has different values at the output times.
+    pub fn varies(&self, force: ElementId) -> bool {
+        let Some(law) = self.elements[force.0].kind.law(self) else { return false };
+        let mut values = self.times.iter().map(|t| law.at(*t).value());
+        let first = values.next();
+        values.any(|value| Some(value) != first)
+    }
+
     /// The laws that forces depend on, in the order of the elements that have one.
     pub(crate) fn laws_of_forces(&self) -> impl Iterator<Item = &Law> {
         self.elements.iter().filter_map(|e| e.kind.law(self))
@@ -754,7 +801,7 @@ impl Model {
     }
 
     /// Dimension of the magnitude of a force.
-    pub(crate) fn force_dimension(&self, e: ElementId) -> Dimension {
+    pub fn force_dimension(&self, e: ElementId) -> Dimension {
         self.elements[e.0].kind.force(self).map_or(Dimension::FORCE, |force| force.dimension)
     }
 

@@ -638,6 +638,11 @@ impl MeasureKind {
         }
     }
 
+    /// True if it is a compliance.
+    pub fn is_compliance(&self) -> bool {
+        self.compliance().is_some()
+    }
+
     /// Output of a compliance, and the force that changes it.
     pub(crate) fn compliance(&self) -> Option<(OutputSource, UnitForce)> {
         match *self {

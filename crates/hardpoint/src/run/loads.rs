@@ -14,7 +14,8 @@ impl Analysis<'_> {
         let mut solver = solver.checking_reactions();
         let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
         let (mut result, mut times) = (Loads::default(), model.times.iter());
-        let pushed = model.points_of_application();
+        let (pushed, given) = (model.points_of_application(), model.given_forces());
+        let elastic = model.elastic_directions();
         result.stop = walk.each(|one| {
             let Some(&t) = times.next() else { return };
             solver.step(one, t);
@@ -36,6 +37,8 @@ impl Analysis<'_> {
                     known_directions,
                 });
             }
+            result.given.extend(given.iter().map(|element| solver.given(*element)));
+            result.deflections.extend(elastic.iter().map(|at| solver.deflection(*at)));
             result.pushes.extend(pushed.iter().map(|&(element, at)| solver.push(element, at)));
             let transmitted = solver.transmitted();
             let drivers = transmitted.drivers.iter().zip(&transmitted.speeds);

@@ -1,0 +1,95 @@
+//! Deflections of elastic joints and bushings: the largest of each direction in `deflections.csv` and on the page.
+
+use std::io::Write;
+
+use hardpoint::load::Loads;
+use hardpoint::model::{Dimension, ElementId, Model};
+use hardpoint_file::Units;
+
+use crate::figures::{number, unit, with_unit};
+use crate::page::Table;
+use crate::record::{Column, record, write_rows};
+
+/// Names of the six directions.
+const DIRECTIONS: [&str; 6] = ["along x", "along y", "along z", "about x", "about y", "about z"];
+
+record! {
+    /// Largest deflection of an element in one direction over the motion.
+    DeflectionFact::of(model: &Model, units: Units, loads: &Loads, i: usize, at: (ElementId, usize)) {
+        let (element, direction) = at;
+        let [dimension, force_dimension] = dimensions(direction);
+        let all = (0..loads.times.len()).map(|k| (k, loads.deflections_at(k)[i]));
+        let known = all.filter(|(_, d)| d.displacement.is_finite());
+        // The first of equal ones.
+        let largest = known.reduce(|most, next| {
+            if next.1.displacement.abs() > most.1.displacement.abs() { next } else { most }
+        });
+    }
+    /// Name of the elastic joint or bushing.
+    element: String = model.elements[element.0].name.clone();
+    /// Direction: along or about an axis of the joint, or of the bushing.
+    direction: &'static str = DIRECTIONS[direction];
+    /// Largest deflection with its sign: of the second body relative to the first.
+    deflection: Option<f64> = largest.map(|(_, d)| units.from_si(dimension, d.displacement));
+    /// Unit of the deflection.
+    unit: String = unit(units, dimension);
+    /// Elastic force or moment on the second body at that time.
+    force: Option<f64> = largest.map(|(_, d)| units.from_si(force_dimension, d.force));
+    /// Unit of the force.
+    force_unit: String = unit(units, force_dimension);
+    /// Time of the largest deflection, s.
+    time: Option<f64> = largest.map(|(k, _)| loads.times[k]);
+}
+
+/// Dimensions of the deflection in a direction, and of the force against it.
+fn dimensions(direction: usize) -> [Dimension; 2] {
+    if direction < 3 { [Dimension::LENGTH, Dimension::FORCE] } else { [Dimension::ANGLE, Dimension::MOMENT] }
+}
+
+/// Name of a deflection as a curve, such as `lca_rear along z`, and its dimension.
+pub(crate) fn curve_name(model: &Model, (element, direction): (ElementId, usize)) -> (String, Dimension) {
+    let [dimension, _] = dimensions(direction);
+    (format!("{} {}", model.elements[element.0].name, DIRECTIONS[direction]), dimension)
+}
+
+impl DeflectionFact {
+    /// Largest deflections of a motion: of each element the directions in which it deflects.
+    pub fn all(model: &Model, units: Units, loads: &Loads) -> Vec<Self> {
+        let directions = model.elastic_directions();
+        let of = |(i, at)| Self::of(model, units, loads, i, at);
+        directions.into_iter().enumerate().map(of).collect()
+    }
+
+    /// Table of the deflections.
+    pub fn table(facts: &[Self]) -> Option<Table> {
+        let shown = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
+        let columns: [Column<'_, &Self>; 5] = [
+            ("element", &|d| d.element.clone()),
+            ("direction", &|d| d.direction.to_owned()),
+            ("largest deflection", &|d| shown(d.deflection, &d.unit)),
+            ("force or moment there", &|d| shown(d.force, &d.force_unit)),
+            ("at t", &|d| d.time.map_or("-".into(), |t| format!("{} s", number(t)))),
+        ];
+        let note =
+            "Of the second body relative to the first, along and about the axes of the joint or bushing.";
+        Table::of("Deflections", note, &columns, facts).if_any()
+    }
+
+    /// Writes `deflections.csv`: a row for each element and direction.
+    ///
+    /// # Errors
+    /// If `out` cannot be written.
+    pub fn write(facts: &[Self], out: impl Write) -> csv::Result<()> {
+        let shown = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+        let columns: [Column<'_, &Self>; 7] = [
+            ("element", &|d| d.element.clone()),
+            ("direction", &|d| d.direction.to_owned()),
+            ("deflection", &|d| shown(d.deflection)),
+            ("deflection unit", &|d| d.unit.clone()),
+            ("force", &|d| shown(d.force)),
+            ("force unit", &|d| d.force_unit.clone()),
+            ("t [s]", &|d| shown(d.time)),
+        ];
+        write_rows(out, &columns, facts)
+    }
+}

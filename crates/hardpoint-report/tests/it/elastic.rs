@@ -1,0 +1,134 @@
+//! Elastic joints in equilibrium: the rigid mechanism alongside, and deflections.
+
+use std::fs;
+use std::path::Path;
+
+use hardpoint::model::Model;
+use hardpoint::{Analysis, Run};
+use hardpoint_file::ModelFile;
+use hardpoint_report::course::Course;
+use hardpoint_report::deflection::DeflectionFact;
+use hardpoint_report::page::{DesignKind, Payload};
+use hardpoint_report::payload::{Request, payload};
+use hardpoint_report::summary::Summary;
+
+/// Template of a front axle on bushings, with some text replaced, in a case.
+fn axle(case: &str, replaced: [&str; 2]) -> ModelFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-cli/templates/k-and-c.toml");
+    let text = fs::read_to_string(path).unwrap();
+    assert!(text.contains(replaced[0]));
+    let file = hardpoint_file::parse(&text.replacen(replaced[0], replaced[1], 1), "axle.toml").unwrap();
+    let case = file.model.cases.iter().position(|c| c.name == case).unwrap();
+    file.in_case(hardpoint::model::CaseId(case))
+}
+
+fn page(file: &ModelFile) -> Payload {
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.run();
+    let course = Course::of(&file.model, &solution);
+    let summary = Summary::new(file, analysis.topology(), &course);
+    payload(&Request::of(file, &analysis, &course, &summary))
+}
+
+#[test]
+fn page_of_an_elastic_mechanism_has_the_rigid_one_with_the_same_drivers() {
+    let file = axle("parallel_travel", ["", ""]);
+    let page = page(&file);
+    let [rigid] = &page.designs[..] else { panic!("{} designs", page.designs.len()) };
+    assert_eq!((rigid.kind, rigid.name.as_str()), (DesignKind::Rigid, "rigid"));
+    assert_eq!(rigid.change, vec![0.0; page.variables.len()]);
+    assert!(rigid.loads.is_empty() && rigid.poses.len() == page.bodies.len());
+
+    let without = Model { equilibrium: None, ..file.model.clone() };
+    let solved = Analysis::new(&without).unwrap().solve(Run::new().without_sensitivities());
+    let toe = solved.measured.index("left.toe").unwrap();
+    let curve = rigid.quantities[toe].as_ref().unwrap().value.values();
+    assert_eq!(curve.len(), 41);
+    for (k, shown) in curve.iter().enumerate() {
+        let exact = solved.measured.value(k, toe)[0].to_degrees();
+        assert!((f64::from(*shown) - exact).abs() < 1e-5, "{shown} instead of {exact} at {k}");
+    }
+    // What a rigid mechanism has no meaning for, or another one.
+    for name in ["left_toe_per_side", "left_wheel_load"] {
+        let index = page.quantities.iter().position(|q| q.name == name).unwrap();
+        assert!(rigid.quantities[index].is_none(), "{name}");
+    }
+    let value = |name: &str| page.values.iter().position(|v| v.name == name).unwrap();
+    let [elastic, as_rigid] =
+        [page.values[value("toe_over_travel")].value, rigid.values[value("toe_over_travel")]];
+    assert!((elastic.unwrap() - as_rigid.unwrap()).abs() > 0.1);
+}
+
+#[test]
+fn deflections_are_curves_and_the_largest_of_each_direction_is_in_a_table() {
+    let file = axle("braking", ["", ""]);
+    let analysis = Analysis::new(&file.model).unwrap();
+    let loads = analysis.loads(&[]);
+    let facts = DeflectionFact::all(&file.model, file.units, &loads);
+    // Eight bushings in six directions.
+    assert_eq!(facts.len(), 48);
+    let of = |direction: &str| {
+        facts.iter().find(|d| d.element == "left_lca_front" && d.direction == direction).unwrap()
+    };
+    // Stiffnesses of the template, N/mm and N m/deg; there is no preload.
+    let stiffnesses =
+        [("along x", 9000.0), ("along y", 8000.0), ("along z", 1200.0), ("about x", 60.0), ("about z", 1.4)];
+    for (direction, stiffness) in stiffnesses {
+        let fact = of(direction);
+        let (way, force) = (fact.deflection.unwrap(), fact.force.unwrap());
+        assert!((force + stiffness * way).abs() <= 1e-9 * force.abs(), "{direction}: {way} and {force}");
+    }
+    // Braking pulls the arm to the rear, and most at the full force.
+    let [along, across] = ["along z", "along x"].map(of);
+    assert_eq!((along.time, along.unit.as_str(), along.force_unit.as_str()), (Some(1.0), "mm", "N"));
+    assert_eq!(of("about x").unit, "deg");
+    assert!(along.deflection.unwrap().abs() > across.deflection.unwrap().abs());
+
+    let page = page(&file);
+    let curve = page.quantities.iter().find(|q| q.name == "left_lca_front along z").unwrap();
+    assert_eq!((curve.group.as_str(), curve.unit.as_str()), ("deflection", "mm"));
+    let last = *curve.value.values().last().unwrap();
+    assert!((f64::from(last) - along.deflection.unwrap()).abs() < 1e-6);
+    assert!(page.checks.iter().any(|table| table.title == "Deflections" && table.rows.len() == 48));
+}
+
+#[test]
+fn rigid_mechanism_under_forces_alone_has_positions_but_no_metrics() {
+    let file = axle("lateral_in_phase", ["", ""]);
+    let page = page(&file);
+    let rigid = &page.designs[0];
+    let toe = page.quantities.iter().position(|q| q.name == "left.toe").unwrap();
+    let curve = rigid.quantities[toe].as_ref().unwrap().value.values();
+    assert!(curve.iter().all(|x| x.abs() < 1e-6), "{curve:?}");
+    let metrics = file.model.metrics.len();
+    assert!(metrics >= 4 && rigid.values[..metrics].iter().all(Option::is_none));
+    assert!(page.values[..metrics].iter().all(|v| v.value.is_some()));
+}
+
+#[test]
+fn forces_that_vary_are_quantities_with_the_sign_of_their_laws() {
+    let file = axle("lateral_in_phase", ["", ""]);
+    let page = page(&file);
+    let forces: Vec<_> = page.quantities.iter().enumerate().filter(|(_, q)| q.group == "force").collect();
+    let shown: Vec<(&str, &str, f32)> = forces
+        .iter()
+        .map(|(_, q)| (q.name.as_str(), q.unit.as_str(), *q.value.values().last().unwrap()))
+        .collect();
+    // The others have no law here.
+    assert_eq!(shown, [("left_side", "N", 1000.0), ("right_side", "N", -1000.0)]);
+    // The curves of the rigid mechanism can be drawn over them.
+    for (k, force) in forces {
+        let of_rigid = &page.designs[0].quantities[k].as_ref().unwrap().value;
+        assert_eq!(of_rigid.values(), force.value.values());
+    }
+}
+
+#[test]
+fn rigid_mechanism_is_left_out_with_a_sentence_if_only_forces_hold_it() {
+    let released = "[equilibrium]\nreleased = [\"left_bump\"]\n";
+    let page = page(&axle("braking", ["[equilibrium]\n", released]));
+    assert!(page.designs.is_empty());
+    let notes: Vec<&String> = page.notes.iter().filter(|n| n.contains("rigid mechanism")).collect();
+    let [note] = notes[..] else { panic!("{:?}", page.notes) };
+    assert!(note.starts_with("The rigid mechanism is not shown: ") && note.contains("`left_bump`"), "{note}");
+}
