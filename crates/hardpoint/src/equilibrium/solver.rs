@@ -30,7 +30,8 @@ const SHORTEST: f64 = 1e-9;
 const PREDICTED_FROM: usize = 3;
 /// A pivot of the scaled stiffness below this holds nothing.
 const HOLDS_NOTHING: f64 = 1e-12;
-/// Difference of symmetric entries of the scaled stiffness above which the forces have no potential; round-off is below.
+/// Difference of symmetric entries of the scaled stiffness above which the forces have no potential; round-off is
+/// below.
 const UNSYMMETRIC: f64 = 1e-9;
 
 /// Stability of an equilibrium.

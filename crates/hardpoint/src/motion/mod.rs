@@ -210,8 +210,8 @@ pub struct SolverStatistics {
     pub iterations: usize,
     /// Iterations on the openings of elastic joints.
     pub equilibrium_iterations: usize,
-    /// First output time whose equilibrium is not certainly stable, s: some virtual motion needs no work, but the forces
-    /// have no potential, so that this proves nothing.
+    /// First output time whose equilibrium is not certainly stable, s: some virtual motion releases work, but the
+    /// forces have no potential, so that this proves nothing.
     pub uncertain_stability: Option<f64>,
     /// Largest residual of any constraint row at an output step, redundant rows included; m or rad.
     pub worst_residual: f64,
