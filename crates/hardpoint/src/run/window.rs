@@ -106,17 +106,13 @@ impl Analysis<'_> {
             true => Walk::new(self, design, wanted),
             false => Walk::by_programs(self, design, wanted, (measures, slopes.is_some(), loads)),
         };
-        // Derivatives of compliances and slopes at an equilibrium by the variables are curvatures.
-        let mut curvatures = self.openings().filter(|_| measures && sensitive).map(|openings| {
-            let compliances = model.measures.iter().filter_map(|m| m.kind.compliance());
-            let mut directions: Vec<Along> = Vec::new();
-            for direction in compliances.map(|(_, force)| Along::Force(force)) {
-                if !directions.contains(&direction) {
-                    directions.push(direction);
-                }
+        let mut curvatures = self.openings().filter(|_| measures && sensitive).and_then(|openings| {
+            let directions = derived_along(model, &slopes);
+            if directions.is_empty() {
+                return None;
             }
-            directions.extend(slopes.iter().flat_map(|found| found.drivers()).map(|d| Along::Driver(*d)));
-            Curvatures::new(self.design_map(), topology, (&design.values, &[]), openings, directions)
+            let along = (&design.values[..], &[][..]);
+            Some(Curvatures::new(self.design_map(), topology, along, openings, directions))
         });
         if loads {
             let measures = load_measures(model);
@@ -206,6 +202,19 @@ impl Analysis<'_> {
         solution.stop = stop;
         window.first
     }
+}
+
+/// Directions along which compliances and slopes at an equilibrium are derivatives: their derivatives by the variables
+/// are curvatures.
+fn derived_along(model: &Model, slopes: &Option<Slopes<'_>>) -> Vec<Along> {
+    let mut directions: Vec<Along> = Vec::new();
+    for (_, force) in model.measures.iter().filter_map(|m| m.kind.compliance()) {
+        if !directions.contains(&Along::Force(force)) {
+            directions.push(Along::Force(force));
+        }
+    }
+    directions.extend(slopes.iter().flat_map(|found| found.drivers()).map(|d| Along::Driver(*d)));
+    directions
 }
 
 /// Window that is being filled with consecutive output times.
