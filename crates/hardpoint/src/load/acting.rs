@@ -6,7 +6,7 @@
 use crate::constraint::{MarkerPair, Row};
 use crate::design::Geometry;
 use crate::measure::WheelAt;
-use crate::model::element::{Elasticity, JointFriction};
+use crate::model::element::{ElasticLaw, Elasticity, JointFriction, StiffnessEntry};
 use crate::model::{
     Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, Wheel,
     WheelId, elements, if_mass,
@@ -273,10 +273,18 @@ impl<T: Real> AppliedLoads<'_, T> {
         [self.preload(of.preload) - push, slope]
     }
 
-    /// Elastic wrench of these laws on body j of an opening; its opposite acts on body i.                       (51)
-    pub fn elastic_wrench(&self, opening: &Opening<T>, laws: &[Elasticity<'_>; 6]) -> Wrench<T> {
+    /// Elastic wrench of a law on body j of an opening; its opposite acts on body i.                            (51)
+    pub fn elastic_wrench(&self, opening: &Opening<T>, law: &ElasticLaw<'_>) -> Wrench<T> {
         let mut sum = Wrench::zero();
-        for (k, of) in laws.iter().enumerate().filter(|(_, of)| of.acts()) {
+        for entry in law.coupled.iter().flat_map(|matrix| &matrix.entries) {
+            let StiffnessEntry { row, column, value } = *entry;
+            let push = -self.number(value);
+            sum = opening.wrenches[row].times_plus(push * opening.coordinates[column], sum);
+            if row != column {
+                sum = opening.wrenches[column].times_plus(push * opening.coordinates[row], sum);
+            }
+        }
+        for (k, of) in law.directions.iter().enumerate().filter(|(_, of)| of.acts()) {
             let [force, _] = self.elastic_force(opening.coordinates[k], of);
             sum = opening.wrenches[k].times_plus(force, sum);
         }
