@@ -153,7 +153,9 @@ impl Units {
             ElementUnit::Angle => angle,
             ElementUnit::Stiffness | ElementUnit::Damping => 1.0 / length,
             ElementUnit::CubicStiffness => 1.0 / (length * length * length),
-            ElementUnit::TorsionalStiffness | ElementUnit::TorsionalDamping => 1.0 / angle,
+            ElementUnit::TorsionalStiffness | ElementUnit::TorsionalDamping | ElementUnit::Coupling => {
+                1.0 / angle
+            }
             ElementUnit::Mass
             | ElementUnit::Inertia
             | ElementUnit::Density

@@ -2,11 +2,11 @@
 
 use hardpoint::draft::{DirectionDraft, FieldDraft, FieldKind, MeasureField, NumberDraft, RayDraft};
 use hardpoint::law::Law;
-use hardpoint::model::{Axes, ElementUnit, OrientationAngle, ReactionPart, WheelPoint};
+use hardpoint::model::{Axes, CoupledStiffness, ElementUnit, OrientationAngle, ReactionPart, WheelPoint};
 
 use crate::values::{
     ANGLE, BODY, DIRECTION, DRIVER, EntryPlace, Field, Fields, JOINT, Key, LENGTH, LINE, NUMBER, Need,
-    OUTPUT, Reader, Shape, TWO_NUMBERS, Table, Value, table,
+    OUTPUT, Reader, Shape, Subject, TWO_NUMBERS, Table, Value, table,
 };
 
 use super::data::COLUMN;
@@ -35,6 +35,9 @@ const FORCE_TABLE: Shape = Shape::Any(
     "A force in N over a way in the length unit.",
     &[Shape::list(&TWO_NUMBERS), Shape::File, Shape::Table(&FORCE_FILE)],
 );
+const MATRIX_ROW: Shape = Shape::exactly(6, &NUMBER);
+const MATRIX: Shape =
+    Shape::Any("StiffnessMatrix", "Six rows of six numbers.", &[Shape::exactly(6, &MATRIX_ROW)]);
 pub(super) const FORCE_FILE: Table = table! {
     /// A force over deflection in a CSV file.
     "ForceFile":
@@ -82,6 +85,10 @@ pub(super) fn key(field: &MeasureField) -> Key {
         FieldKind::Law => (LAW, "\"sin(2*pi*t)\""),
         FieldKind::Wheel => (Shape::Name("a wheel"), "\"front_left\""),
         FieldKind::Table => (FORCE_TABLE, "[[0, 0], [20, 400], [35, 1500]]"),
+        FieldKind::Matrix => (
+            MATRIX,
+            "[[4000, 0, 0, 0, 120, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [120, 0, 0, 0, 35, 0], [0, 0, 0, 0, 0, 0]]",
+        ),
         FieldKind::Mesh => (MESH, "\"knuckle.stl\""),
     };
     // Where no surface is named, the body has one.
@@ -103,6 +110,7 @@ fn with_unit(field: &MeasureField) -> &'static str {
         ElementUnit::Damping => "N s per unit of length",
         ElementUnit::TorsionalStiffness => "N m per unit of angle",
         ElementUnit::TorsionalDamping => "N m s per unit of angle",
+        ElementUnit::Coupling => "N per unit of angle",
         // Their sentences say it, or the shape does.
         ElementUnit::Density | ElementUnit::Plain | ElementUnit::Length | ElementUnit::Angle => {
             return field.summary;
@@ -140,6 +148,7 @@ pub(super) fn own_field(
         }
         FieldKind::Law => r.given(fields, key, |r, f| factor_law(r, fields, f)).map(FieldDraft::Law),
         FieldKind::Table => r.given(fields, key, |r, f| force_table(r, fields, f)).map(FieldDraft::Table),
+        FieldKind::Matrix => r.given(fields, key, |r, f| matrix(r, fields, f)).map(FieldDraft::Matrix),
         FieldKind::Mesh => {
             let solid = mesh::solid(r, &raw.meshes, fields, key);
             // It has been reported why there is none.
@@ -190,6 +199,33 @@ fn force_table(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<
     Some(points.into_iter().map(|[way, force]| [r.units.length.metres(way), force]).collect())
 }
 
+/// Symmetric stiffness matrix.
+fn matrix(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Box<[[NumberDraft; 6]; 6]>> {
+    let subject = fields.subject(f.key);
+    let list = |r: &mut Reader<'_>, value: &Value<'_>, subject: &Subject, expected: &str| {
+        let found = value.get_ref().as_array().filter(|list| list.len() == 6);
+        if found.is_none() {
+            r.wrong(value, subject, expected);
+        }
+        found.is_some()
+    };
+    if !list(r, f.value, &subject, "six rows of six numbers") {
+        return None;
+    }
+    let mut rows = Vec::new();
+    for (row, values) in f.value.get_ref().as_array()?.iter().enumerate() {
+        let subject = subject.item(row);
+        if !list(r, values, &subject, "six numbers") {
+            return None;
+        }
+        let numbers = values.get_ref().as_array()?.iter().enumerate().map(|(column, value)| {
+            number_of(r, value, &subject.item(column), CoupledStiffness::unit(row, column))
+        });
+        rows.push(numbers.collect::<Option<Vec<_>>>()?.try_into().ok()?);
+    }
+    rows.try_into().ok()
+}
+
 /// A number of a mass or force: by itself, or by an expression that the core evaluates.
 fn element_number(
     r: &mut Reader<'_>,
@@ -197,13 +233,21 @@ fn element_number(
     f: Field<'_>,
     unit: ElementUnit,
 ) -> Option<NumberDraft> {
-    let subject = fields.subject(f.key);
+    number_of(r, f.value, &fields.subject(f.key), unit)
+}
+
+fn number_of(
+    r: &mut Reader<'_>,
+    value: &Value<'_>,
+    subject: &Subject,
+    unit: ElementUnit,
+) -> Option<NumberDraft> {
     let per_unit = r.units.per_si_of(unit);
-    if f.value.get_ref().is_str() {
-        let expression = r.expression(f.value, &subject)?;
+    if value.get_ref().is_str() {
+        let expression = r.expression(value, subject)?;
         return Some(NumberDraft { value: 0.0, expression: Some(expression), per_unit });
     }
-    let value = r.number(f.value, &subject)?;
+    let value = r.number(value, subject)?;
     Some(NumberDraft { value: r.units.to_si_of(unit, value), expression: None, per_unit })
 }
 

@@ -458,6 +458,63 @@ fn sensitivities_are_verified() {
     assert!(found.passed() && found.checks.len() == model.variables.len(), "{worst:?}");
 }
 
+/// The double wishbone with axes of its arms through hardpoints; as joints, or with bushings in the place of those that
+/// close loops.
+fn wishbone_on_axes_through_hardpoints(bushings: bool) -> String {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    let axes = [
+        ("lca", "[0.98430677050583, 0.0, 0.1764658084060003]"),
+        ("uca", "[0.9800298014418598, 0.0, 0.19885066830621678]"),
+    ];
+    let mut text = wishbone(at, &AS_PUBLISHED)
+        .replace("[design]", "[design]\nuca_front_y = { move = \"uca_front\", along = \"y\" }");
+    for (arm, axis) in axes {
+        text = text.replace(axis, &format!("{{ through = [\"{arm}_rear\", \"{arm}_front\"] }}"));
+        if bushings {
+            let joint = format!("joint = \"{arm}_rear\"");
+            let bushing = format!(
+                "from = {{ body = \"ground\", at = \"{arm}_rear\" }}, to = {{ body = \"{arm}\", at = \"{arm}_rear\" }}, \
+                 axis = {{ through = [\"{arm}_rear\", \"{arm}_front\"] }}, axis2 = \"y\""
+            );
+            let lines = text.lines().filter(|l| !l.starts_with(&format!("{arm}_rear = {{ type")));
+            let change = |l: &str| match l.contains(&joint) {
+                true => l.replace("elastic_joint", "bushing").replace(&joint, &bushing),
+                false => l.to_owned(),
+            };
+            text = lines.map(change).collect::<Vec<_>>().join("\n");
+        }
+    }
+    text
+}
+
+#[test]
+fn a_bushing_with_axes_is_the_elastic_joint_that_closes_a_loop() {
+    let [joints, bushings] =
+        [false, true].map(|bushings| solved(&wishbone_on_axes_through_hardpoints(bushings)));
+    assert_eq!(bushings.measured.variables, joints.measured.variables);
+    for (m, output) in joints.measured.outputs.iter().enumerate() {
+        let same = bushings.measured.index(&output.name).unwrap();
+        let (a, b) = (joints.measured.value(0, m)[0], bushings.measured.value(0, same)[0]);
+        near(b, a, 1e-10 * (1.0 + a.abs()), &output.name);
+        for v in (0..joints.measured.variables).map(hardpoint::model::VariableId) {
+            let (a, b) = (joints.measured.d(0, v, m)[0], bushings.measured.d(0, v, same)[0]);
+            if a.is_finite() {
+                near(b, a, 1e-8 * (1.0 + a.abs()), &format!("d {}", output.name));
+            }
+        }
+    }
+}
+
+#[test]
+fn sensitivities_of_bushings_with_axes_are_verified() {
+    let model = file(&wishbone_on_axes_through_hardpoints(true)).model;
+    let analysis = Analysis::new(&model).unwrap();
+    let options = Options::default();
+    let found = verify(&analysis, &analysis.run(), &options, |_| std::ops::ControlFlow::Continue(()));
+    let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
+    assert!(found.passed() && found.checks.len() == model.variables.len(), "{worst:?}");
+}
+
 #[test]
 fn without_loads_compliances_are_those_of_the_rigid_mechanism() {
     let at = State { bump: 0.02, road: [0.0; 2], align: 0.0, rack: 0.0 };

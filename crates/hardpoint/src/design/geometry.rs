@@ -6,6 +6,7 @@
 //! | `kept[j]` | L, d0, c0, r0 | C of (4.10), squared there | constants of its rows |
 //! | `points[k]` | | `s_o` of any point of the body | m, in its body's frame |
 //! | `spin_axes[w]` | e' | | unit vector, in the frame of the wheel's body |
+//! | `axes[e]` | C | C (2.2) | axes of a bushing, in the frames of its bodies |
 
 use crate::constraint::Row;
 use crate::number::Real;
@@ -22,6 +23,8 @@ pub struct Geometry<T = f64> {
     pub points: Vec<Vec3<T>>,
     /// Per wheel of the model: spin axis in its body's frame, a unit vector.
     pub spin_axes: Vec<Vec3<T>>,
+    /// Per mass and force of the model: its axes, if it has any of its own, in the frames of the bodies i and j.
+    pub axes: Vec<Option<[Mat3<T>; 2]>>,
     /// Per number of the model's masses and forces: value, SI.
     pub numbers: Vec<T>,
     /// [`Model::size`](crate::model::Model::size), m: reference length at every step, computed once.

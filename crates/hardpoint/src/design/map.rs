@@ -18,8 +18,8 @@ use crate::constraint::Row;
 use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity};
 use crate::law::Law;
 use crate::model::{
-    BodyId, Change, DesignVariable, Direction, DriverId, HardpointId, Joint, JointId, Measure, MeasureKind,
-    Model, NumberId, PointId, SharedModel, Source, Target, VariableId,
+    BodyId, Change, DesignVariable, Direction, DriverId, ElementId, HardpointId, Joint, JointId, Measure,
+    MeasureKind, Model, NumberId, PointId, SharedModel, Source, Target, VariableId,
 };
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
@@ -92,6 +92,7 @@ impl<'m> DesignMap<'m> {
             kept: (0..model.joints.len()).map(|j| design.kept(j)).collect(),
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
             spin_axes: model.wheels.iter().map(|w| design.in_body(w.body, w.spin_axis)).collect(),
+            axes: (0..model.elements.len()).map(|e| design.axes(ElementId(e))).collect(),
             numbers: (0..model.numbers.len()).map(|k| design.number(k)).collect(),
             size: model.size(),
         }
@@ -417,8 +418,16 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     ///
     /// The smallest rotation takes z to its new direction; then x rotates about z with `axis2`.
     fn followed_frame(&self, joint: &Joint, e: usize, values: &Values<T>) -> Mat3<T> {
-        let mut rot = joint.frames[e].spread();
-        let [axis, axis2] = joint.axes_of_marker(e);
+        self.followed(joint.frames[e].spread(), joint.axes_of_marker(e), values)
+    }
+
+    /// Returns axes that have this direction in the nominal design, and whose z and x axes follow these directions.
+    fn followed(
+        &self,
+        mut rot: Mat3<T>,
+        [axis, axis2]: [Option<Direction>; 2],
+        values: &Values<T>,
+    ) -> Mat3<T> {
         if let Some(axis @ Direction::Through(..)) = axis {
             // The rotation about z x h takes z to h; to first order it is h x h'.
             rot = Mat3::between(rot.cols[2], self.direction(axis, values)) * rot;
@@ -464,6 +473,14 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         let [x_i, y_i] = [0, 1].map(|k| m_i.rot.cols[k]);
         let course = if has_course { y_i.dot(z_j).atan2(x_i.dot(z_j)) } else { zero };
         JointConstants { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), course, contact }
+    }
+
+    /// Returns the axes of a force in the frames of its bodies, if it has axes of its own.
+    fn axes(&self, e: ElementId) -> Option<[Mat3<T>; 2]> {
+        let model = self.design_map.model();
+        let (bodies, nominal, axes) = model.axes_of(e)?;
+        let rot = self.followed(nominal.spread(), axes, &self.values);
+        Some(bodies.map(|body| self.frame(body).rot.transpose() * rot))
     }
 
     /// Returns a number of a mass or force, SI.

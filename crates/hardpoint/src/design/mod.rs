@@ -66,8 +66,10 @@ impl Model {
     pub fn without_effect(&self) -> Vec<VariableId> {
         let design_map = DesignMap::of(self);
         let directions = self.measures.iter().flat_map(|m| self.directions(m)).flatten();
-        let seen: Vec<usize> =
-            directions.filter_map(|(_, axis)| axis.hardpoints()).flatten().map(|h| h.0).collect();
+        let of_forces =
+            self.elements.iter().filter_map(|e| e.kind.force(self)).flat_map(|f| f.axes).flatten();
+        let followed = directions.map(|(_, axis)| axis).chain(of_forces).filter_map(|axis| axis.hardpoints());
+        let seen: Vec<usize> = followed.flatten().map(|h| h.0).collect();
         let is_idle = |v: &VariableId| {
             let affected = design_map.affected(&[(*v, 1.0)]);
             let felt = [&affected.joints, &affected.points, &affected.law_formulas];

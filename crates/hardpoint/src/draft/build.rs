@@ -19,6 +19,7 @@ macro_rules! linear {
             about_x: None,
             about_y: None,
             about_z: None,
+            matrix: None,
             cubic_x: None,
             cubic_y: None,
             cubic_z: None,
@@ -373,7 +374,8 @@ impl Draft {
     ) -> Self {
         let ([i, j], [from, to], [x, y, z]) = (bodies, between, stiffness.map(Into::into));
         let (from, to, damping) = (PointRef::on(i, from), PointRef::on(j, to), None);
-        self.element(name, linear!(Bushing { from, to, x, y, z, damping }))
+        let (axis, axis2) = (None, None);
+        self.element(name, linear!(Bushing { from, to, axis, axis2, x, y, z, damping }))
     }
 
     /// Adds the compliance of a joint, with its stiffnesses along the joint's axes, N/m, z along its axis.

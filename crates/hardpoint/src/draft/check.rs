@@ -27,6 +27,7 @@ use crate::draft::{
     Section, did_you_mean,
 };
 use crate::expression::Expression;
+use crate::model::element::Compliance;
 use crate::model::{
     AxleId, Body, BodyId, BodyPoint, Direction, DriverId, Extent, GROUND, Hardpoint, HardpointId, JointId,
     Model, PointId, Source, WheelId,
@@ -73,6 +74,7 @@ impl Model {
         c.add_wheels();
         c.add_axles();
         c.add_elements();
+        c.check_unconnected_bodies();
         c.add_cases();
         c.add_grids();
         c.add_measures();
@@ -607,7 +609,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// HP0212: bodies without joints. Sets the default frames.
+    /// Sets the default frames.
     fn set_default_frames(&mut self) {
         let mut ends = vec![(Vec3::ZERO, 0.0); self.model.bodies.len()];
         for j in self.model.joints.iter().filter(|j| j.at[0] != UNPLACED) {
@@ -617,22 +619,55 @@ impl<'a> Checker<'a> {
                 *count += 1.0;
             }
         }
-        let named: BTreeSet<&str> =
-            self.draft.joints.iter().flat_map(|j| &j.bodies).map(String::as_str).collect();
-        // An unread joint may connect any body.
-        let all_known =
-            !self.is_table_unread("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
         for (index, b) in self.draft.bodies.iter().enumerate() {
-            if !named.contains(b.name.as_str()) && all_known {
-                let at = Here { section: Section::Bodies, index }.key("name");
-                self.fault("HP0212", at, format!("body `{}` is not connected to any joint", b.name))
-                    .help("connect it with a joint, or remove it");
-            }
             let (sum, count) = ends[index + 1];
             if matches!(b.frame, FrameDraft::Default) && count > 0.0 {
                 self.model.bodies[index + 1].frame.r = sum * (1.0 / count);
             }
         }
+    }
+
+    /// HP0212: bodies without joints, unless they are held by springs or bushings in an equilibrium. Sets the default
+    /// frames of those.
+    fn check_unconnected_bodies(&mut self) {
+        let named: BTreeSet<&str> =
+            self.draft.joints.iter().flat_map(|j| &j.bodies).map(String::as_str).collect();
+        // An unread joint may connect any body, and a faulty force may hold any.
+        let all_known =
+            !self.is_table_unread("joint") && !self.draft.unread.anywhere(Section::Joints, "bodies");
+        let forces = self.model.elements.iter().filter(|e| !e.kind.has_mass()).count();
+        let forces_known = !self.is_table_unread("force") && forces == self.draft.forces.len();
+        for (index, b) in self.draft.bodies.iter().enumerate() {
+            if named.contains(b.name.as_str()) || !all_known {
+                continue;
+            }
+            let body = BodyId(index + 1);
+            let places: Vec<Vec3> = self.places_of_elasticity(body).collect();
+            let at_equilibrium = self.draft.equilibrium.is_some();
+            if at_equilibrium && (!places.is_empty() || !forces_known) {
+                if matches!(b.frame, FrameDraft::Default) && !places.is_empty() {
+                    let sum = places.iter().fold(Vec3::ZERO, |sum, p| sum + *p);
+                    self.model.bodies[body.0].frame.r = sum * (1.0 / places.len() as f64);
+                }
+                continue;
+            }
+            let at = Here { section: Section::Bodies, index }.key("name");
+            self.fault("HP0212", at, format!("body `{}` is not connected to any joint", b.name)).help(
+                match places.is_empty() {
+                    true => "connect it with a joint, or remove it",
+                    false => "connect it with a joint, or add `[equilibrium]`, in which springs and bushings hold it",
+                },
+            );
+        }
+    }
+
+    /// Points at which springs and bushings act on a body, in the design configuration.
+    fn places_of_elasticity(&self, body: BodyId) -> impl Iterator<Item = Vec3> {
+        let model = &self.model;
+        let forces = model.elements.iter().filter_map(|e| e.kind.force(model));
+        let elastic = forces.filter(|force| matches!(force.compliance, Compliance::Element));
+        let points = elastic.flat_map(|force| force.acts_on.points(model)).flatten();
+        points.map(|p| &model.points[p.0]).filter(move |p| p.body == body).map(|p| model.position(p.at))
     }
 
     fn add_points(&mut self) {

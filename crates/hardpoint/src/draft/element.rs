@@ -1,12 +1,12 @@
 //! Masses and forces as written, and their resolution to a model.
 
-use crate::draft::{FieldDraft, MeasureField, PointRef};
+use crate::draft::{DirectionDraft, FieldDraft, MeasureField, PointRef};
 use crate::expression::Expression;
 use crate::law::Law;
 use crate::model::{
-    Angle, Axes, BodyId, CubicStiffness, Damping, Density, ElementKind, Force, Inertia, JointId, Length,
-    Mass, Moment, Plain, PointId, Solid, SpringTable, Stiffness, TorsionalDamping, TorsionalStiffness,
-    WheelId, WheelPoint, element, elements, if_mass,
+    Angle, Axes, BodyId, CoupledStiffness, CubicStiffness, Damping, Density, Direction, ElementKind, Force,
+    Inertia, JointId, Length, Mass, Moment, Plain, PointId, Solid, SpringTable, Stiffness, TorsionalDamping,
+    TorsionalStiffness, WheelId, WheelPoint, element, elements, if_mass,
 };
 use crate::space::Vec3;
 

@@ -76,6 +76,8 @@ pub enum FieldKind {
     Wheel,
     /// Force over deflection, as points of a table.
     Table,
+    /// A symmetric matrix of stiffnesses.
+    Matrix,
     /// A closed surface.
     Mesh,
     /// A number, which may be an expression over parameters.
@@ -113,6 +115,8 @@ pub enum FieldDraft {
     Law(Law),
     /// Points of a table, SI.
     Table(Vec<[f64; 2]>),
+    /// Rows of a matrix of stiffnesses.
+    Matrix(Box<[[NumberDraft; 6]; 6]>),
     /// Solid that a closed surface encloses.
     Solid(Solid),
     /// An expression.

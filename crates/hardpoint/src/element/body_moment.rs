@@ -11,6 +11,7 @@ impl ForceProperties for BodyMoment {
     fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
             acts_on: ActsOn::Body(self.body),
+            axes: [None; 2],
             dimension: Dimension::MOMENT,
             given: [Some(self.moment.0), None, None],
             table: None,

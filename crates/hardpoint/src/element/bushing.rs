@@ -2,14 +2,16 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{ActsOn, Bushing, Compliance, ForceProperties, Properties};
-use crate::model::{Dimension, ElementId, Model};
+use crate::model::element::{
+    ActsOn, Bushing, Compliance, Elasticity, ForceProperties, Properties, StiffnessEntry,
+};
+use crate::model::{Dimension, ElementId, Model, NumberId};
 use crate::space::{Real, Wrench};
 
 impl Bushing {
     /// Wrench on body j.                                                                                      (44)
-    fn wrench<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Wrench<T> {
-        let push = at.elastic_wrench(&at.opening_between([self.from, self.to]), &self.elasticities());
+    fn wrench<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> Wrench<T> {
+        let push = at.elastic_wrench(&at.opening_between(e, [self.from, self.to]), &self.law());
         let Some(damping) = self.damping else { return push };
         // -c v,  v of P_j as seen from i
         let (i, j, q) = (at.body(self.from), at.body(self.to), at.point(self.to));
@@ -18,16 +20,35 @@ impl Bushing {
     }
 }
 
+impl Bushing {
+    /// HP0251: x and y axes that are not given, but differ.
+    fn check_across(&self, c: &mut ElementCheck<'_, '_>) {
+        let [x, y, _, about_x, about_y, _] = self.law().directions;
+        let value = |n: Option<NumberId>| n.map_or(0.0, |n| c.value(n));
+        let is_even = |x: &Elasticity<'_>, y: &Elasticity<'_>| {
+            let is_same = value(x.stiffness) == value(y.stiffness) && value(x.cubic) == value(y.cubic);
+            is_same && [x, y].iter().all(|of| of.preload.is_none() && of.curve.is_none())
+        };
+        let is_even = self.matrix.is_none() && is_even(&x, &y) && is_even(&about_x, &about_y);
+        if self.axis.is_some() && self.axis2.is_none() && !is_even {
+            let message =
+                format!("the x and y axes of `{}` differ, and their directions are not given", c.name);
+            c.fault("HP0251", "axis", message).help("add the direction of its x axis, like `axis2 = \"x\"`");
+        }
+    }
+}
+
 impl ForceProperties for Bushing {
     #[inline]
     fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
             acts_on: ActsOn::Points([self.from, self.to]),
+            axes: [self.axis, self.axis2],
             dimension: Dimension::FORCE,
             given: [self.preload_x, self.preload_y, self.preload_z].map(|n| n.map(|n| n.0)),
             table: None,
             law: None,
-            is_arithmetic: self.elasticities().iter().all(|of| of.curve.is_none()),
+            is_arithmetic: self.law().is_arithmetic(),
             compliance: Compliance::Element,
             friction: None,
         }
@@ -41,25 +62,39 @@ impl CheckElement for Bushing {
             c.fault("HP0251", "to", message)
                 .help("put them on two different bodies; `ground` is also a body");
         }
+        c.check_axes([self.axis, self.axis2]);
+        self.check_across(c);
     }
 }
 
 impl ForceFormula for Bushing {
-    fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId, out: &mut [Wrench<T>]) {
-        let push = self.wrench(at);
+    fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, out: &mut [Wrench<T>]) {
+        let push = self.wrench(at, e);
         out[at.body(self.to)] -= push;
         out[at.body(self.from)] += push;
     }
 
-    fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId) -> T {
-        self.wrench(at).f.norm()
+    fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> T {
+        self.wrench(at, e).f.norm()
     }
 
-    fn deflections<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId, mut each: impl FnMut(T, T)) {
-        let opening = at.opening_between([self.from, self.to]);
-        for (k, of) in self.elasticities().iter().enumerate() {
+    fn deflections<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, mut each: impl FnMut(T, T)) {
+        let opening = at.opening_between(e, [self.from, self.to]);
+        let law = self.law();
+        for (k, of) in law.directions.iter().enumerate() {
             let [_, stiffness] = at.elastic_force(opening.coordinates[k], of);
             each(opening.coordinates[k], stiffness);
+        }
+        for StiffnessEntry { row, column, value } in law.coupled.iter().flat_map(|matrix| &matrix.entries) {
+            let ([a, b], k) = ([*row, *column].map(|k| opening.coordinates[k]), at.number(*value));
+            if row == column {
+                each(a, k);
+            } else {
+                // 2 k a b = k (a + b)^2 - k a^2 - k b^2
+                each(a + b, k);
+                each(a, -k);
+                each(b, -k);
+            }
         }
     }
 }

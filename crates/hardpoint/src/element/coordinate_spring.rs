@@ -15,6 +15,7 @@ macro_rules! coordinate_spring {
             fn properties(&self, _: &Model) -> Properties<'_> {
                 Properties {
                     acts_on: ActsOn::Coordinate(self.joint, self.coordinate),
+                    axes: [None; 2],
                     dimension: $dimension,
                     given: [None; 3],
                     table: None,

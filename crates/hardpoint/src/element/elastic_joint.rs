@@ -2,33 +2,22 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{ActsOn, Compliance, ElasticJoint, Elasticity, ForceProperties, Properties};
+use crate::model::element::{ActsOn, Compliance, ElasticJoint, ForceProperties, Properties};
 use crate::model::{Dimension, ElementId, Model, NumberId};
 use crate::space::{Real, Wrench};
-
-impl ElasticJoint {
-    /// Stiffnesses along and about the joint's axes.
-    fn stiffnesses(&self) -> [[Option<NumberId>; 3]; 2] {
-        let [x, y, z, a, b, c] = self.elasticities().map(|of| of.stiffness);
-        [[x, y, z], [a, b, c]]
-    }
-}
 
 impl ForceProperties for ElasticJoint {
     #[inline]
     fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
             acts_on: ActsOn::Joint(self.joint),
+            axes: [None; 2],
             dimension: Dimension::FORCE,
             given: [self.preload_x, self.preload_y, self.preload_z].map(|n| n.map(|n| n.0)),
             table: None,
             law: None,
-            is_arithmetic: self.elasticities().iter().all(|of| of.curve.is_none()),
-            compliance: Compliance::Joint {
-                joint: self.joint,
-                stiffnesses: self.stiffnesses(),
-                gives: self.elasticities().map(|of| of.gives()),
-            },
+            is_arithmetic: self.law().is_arithmetic(),
+            compliance: Compliance::Joint(self),
             friction: None,
         }
     }
@@ -36,15 +25,26 @@ impl ForceProperties for ElasticJoint {
 
 impl CheckElement for ElasticJoint {
     fn check(&self, c: &mut ElementCheck<'_, '_>) {
-        let given: Vec<NumberId> = self.stiffnesses().into_iter().flatten().flatten().collect();
-        if !self.elasticities().iter().any(Elasticity::gives) {
+        let law = self.law();
+        let gives = law.gives();
+        let value = |n: NumberId| c.value(n);
+        // Curves may have any slope in the design configuration.
+        let is_linear = |k: &usize| gives[*k] && law.directions[*k].curve.is_none();
+        let linear: Vec<usize> = (0..6).filter(is_linear).collect();
+        let given = |k: &usize| law.directions[*k].stiffness.is_none_or(|n| value(n) > 0.0);
+        if !gives.contains(&true) {
             let message = format!("`{}` is rigid in all directions", c.name);
             c.fault("HP0251", "type", message)
                 .help("give it a stiffness along or about one of its axes, or remove it");
-        } else if given.iter().any(|n| !(c.value(*n) > 0.0)) {
+        } else if !(0..6).all(|k| given(&k)) {
             let message = format!("a stiffness of `{}` is not positive", c.name);
             c.fault("HP0252", "joint", message)
                 .help("give a positive stiffness, or remove the key to make that direction rigid");
+        } else if self.matrix.is_some() && !is_positive(&linear, |r, k| law.nominal(r, k, value)) {
+            let message = format!("the stiffness matrix of `{}` is not positive definite", c.name);
+            c.fault("HP0252", "matrix", message)
+                .note("it counts with the stiffnesses along and about single axes on its diagonal")
+                .help("increase the diagonal, or reduce the entries beside it");
         }
         let joint = &c.model().joints[self.joint.0];
         if joint.kind.places == 0 {
@@ -54,15 +54,32 @@ impl CheckElement for ElasticJoint {
     }
 }
 
+/// True if a symmetric matrix is positive definite on these rows and columns.
+fn is_positive(rows: &[usize], entry: impl Fn(usize, usize) -> f64) -> bool {
+    let n = rows.len();
+    // L L^T, row by row
+    let mut l = vec![vec![0.0; n]; n];
+    for r in 0..n {
+        for k in 0..=r {
+            let done: f64 = l[r].iter().zip(&l[k]).take(k).map(|(a, b)| a * b).sum();
+            let rest = entry(rows[r], rows[k]) - done;
+            l[r][k] = if r == k { rest.sqrt() } else { rest / l[k][k] };
+        }
+        if !(l[r][r] > 0.0) {
+            return false;
+        }
+    }
+    true
+}
+
 impl ForceFormula for ElasticJoint {
     fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId, out: &mut [Wrench<T>]) {
         let Some(opening) = at.opening(self.joint) else { return };
-        at.apply_between(self.joint, at.elastic_wrench(&opening, &self.elasticities()), T::one(), out);
+        at.apply_between(self.joint, at.elastic_wrench(&opening, &self.law()), T::one(), out);
     }
 
     fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId) -> T {
-        at.opening(self.joint)
-            .map_or(T::zero(), |opening| at.elastic_wrench(&opening, &self.elasticities()).f.norm())
+        at.opening(self.joint).map_or(T::zero(), |opening| at.elastic_wrench(&opening, &self.law()).f.norm())
     }
 
     fn deflections<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId, _: impl FnMut(T, T)) {}

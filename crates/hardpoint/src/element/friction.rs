@@ -21,6 +21,7 @@ macro_rules! joint_friction {
                 Properties {
                     acts_on: coordinate
                         .map_or(ActsOn::Joint(self.joint), |c| ActsOn::Coordinate(self.joint, c)),
+                    axes: [None; 2],
                     dimension: $dimension,
                     given: [None; 3],
                     table: None,

@@ -11,6 +11,7 @@ impl ForceProperties for PointForce {
     fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
             acts_on: ActsOn::Point(self.at),
+            axes: [None; 2],
             dimension: Dimension::FORCE,
             given: [Some(self.force.0), None, None],
             table: None,

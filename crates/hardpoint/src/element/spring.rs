@@ -41,6 +41,7 @@ impl ForceProperties for Spring {
     fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
             acts_on: ActsOn::Line([self.from, self.to]),
+            axes: [None; 2],
             dimension: Dimension::FORCE,
             given: [self.preload.map(|n| n.0), None, None],
             table: self.table(),

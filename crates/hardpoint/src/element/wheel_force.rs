@@ -32,6 +32,7 @@ impl ForceProperties for WheelForce {
     fn properties(&self, _: &Model) -> Properties<'_> {
         Properties {
             acts_on: ActsOn::Wheel(self.wheel),
+            axes: [None; 2],
             dimension: if self.is_moment() { Dimension::MOMENT } else { Dimension::FORCE },
             given: match self.about_up {
                 Some(moment) if self.is_moment() => [Some(moment.0), None, None],

@@ -95,10 +95,10 @@ fn elastic_directions(model: &Model, joint: JointId) -> [bool; DIRECTIONS] {
     let free = free_directions(model.joints[joint.0].kind);
     let mut gives = [false; DIRECTIONS];
     for element in &model.elements {
-        if let Some(Compliance::Joint { joint: of, gives: own, .. }) =
-            element.kind.force(model).map(|force| force.compliance)
-            && of == joint
+        if let Some(Compliance::Joint(of)) = element.kind.force(model).map(|force| force.compliance)
+            && of.joint == joint
         {
+            let own = of.law().gives();
             (0..DIRECTIONS).for_each(|k| gives[k] |= own[k] && !free[k]);
         }
     }

@@ -186,6 +186,8 @@ impl<'a> EquilibriumSolver<'a> {
                 }
                 Err(rejection) => {
                     part *= 0.5;
+                    // A shorter part of the way begins from the openings that were found, not from the prediction.
+                    self.openings.iter().for_each(|d| to[d.0] = None);
                     if part < SHORTEST || matches!(rejection, Rejection::NothingHolds(_)) {
                         return Err(self.stop(one, t, done, rejection));
                     }

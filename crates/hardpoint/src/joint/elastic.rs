@@ -13,8 +13,8 @@ use super::{CoordinateType, Freedom, JointType, Quantity};
 /// A direction of a joint: along x, y, z, then about x, y, z of its marker i.
 pub(crate) const DIRECTIONS: usize = 6;
 
-/// Names of the coordinates of the directions.
-const NAMES: [&str; DIRECTIONS] = ["x", "y", "z", "about_x", "about_y", "about_z"];
+/// Names of the directions of elastic joints and bushings in model files.
+pub const DIRECTION_NAMES: [&str; DIRECTIONS] = ["x", "y", "z", "about_x", "about_y", "about_z"];
 
 /// A joint type with elastic directions.
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +75,7 @@ fn make(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<Ela
         row: c.row,
     });
     let openings = (0..DIRECTIONS).filter(|d| directions[*d]).map(|d| CoordinateType {
-        name: NAMES[d],
+        name: DIRECTION_NAMES[d],
         quantity: if d < 3 { Quantity::Length } else { Quantity::Angle },
         freedom: freedoms.iter().position(|f| *f == freedom_of(d)),
         // Only tree joints are driven in these directions.

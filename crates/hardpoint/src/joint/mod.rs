@@ -53,6 +53,7 @@ mod universal;
 
 use crate::constraint::Row;
 pub(crate) use course::COURSE;
+pub use elastic::DIRECTION_NAMES;
 pub(crate) use elastic::{DIRECTIONS, elastic, free_directions};
 
 /// Exports and lists the types.
@@ -296,9 +297,8 @@ impl JointType {
         Some(coordinate?.quantity)
     }
 
-    /// Returns true if a coordinate of the mirrored joint is the opposite of that of the joint when both move as mirror
-    /// images.
-    pub fn is_reversed_in_mirror(&self, coordinate: &CoordinateType) -> bool {
+    /// Signs of the markers' axes x, y and z in the mirror: 1 if an axis becomes its image, -1 if the opposite of it.
+    pub fn axes_in_mirror(&self) -> [i8; 3] {
         let [z, axis2] = self.vector_kinds.map(VectorKind::sign);
         let x = match self.axis2 {
             Need::Required | Need::Optional => axis2,
@@ -306,7 +306,13 @@ impl JointType {
             Need::OnBodyJ | Need::Unused => VectorKind::Polar.sign(),
         };
         // y = z x x, and the image of a product of polar vectors is the opposite of the product of their images.
-        let signs = [x, -z * x, z];
+        [x, -z * x, z]
+    }
+
+    /// Returns true if a coordinate of the mirrored joint is the opposite of that of the joint when both move as mirror
+    /// images.
+    pub fn is_reversed_in_mirror(&self, coordinate: &CoordinateType) -> bool {
+        let signs = self.axes_in_mirror();
         match coordinate.axis() {
             CoordinateAxis::Along(k) => signs[k] < 0,
             CoordinateAxis::About(k) => signs[k] > 0,

@@ -6,7 +6,7 @@
 use crate::constraint::{MarkerPair, Row};
 use crate::design::Geometry;
 use crate::measure::WheelAt;
-use crate::model::element::{ActsOn, Elasticity, JointFriction};
+use crate::model::element::{ActsOn, ElasticLaw, Elasticity, JointFriction, StiffnessEntry};
 use crate::model::{
     Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, UnitForce,
     Wheel, WheelId, elements, if_mass,
@@ -292,17 +292,25 @@ impl<T: Real> AppliedLoads<'_, T> {
         Some(Opening::between(&i.compose(m_i), &j.compose(m_j)))
     }
 
-    /// Opening between two points: of markers there, with the global axes of the design configuration.
-    pub fn opening_between(&self, [i, j]: [PointId; 2]) -> Opening<T> {
-        let marker = |point: PointId| Pose { rot: self.turned(self.body(point)), r: self.point(point) };
-        Opening::between(&marker(i), &marker(j))
+    /// Opening of an element between two points: of its markers there, which have the same axes in the design
+    /// configuration, its own or the global ones.
+    pub fn opening_between(&self, e: ElementId, [i, j]: [PointId; 2]) -> Opening<T> {
+        let marker = |end: usize, point: PointId| {
+            let body = self.body(point);
+            let rot = match self.geometry.axes[e.0] {
+                Some(axes) => self.bodies[body].pose.rot * axes[end],
+                None => self.turned(body),
+            };
+            Pose { rot, r: self.point(point) }
+        };
+        Opening::between(&marker(0, i), &marker(1, j))
     }
 
     /// Opening of an element that acts on a joint or between two points.
-    pub fn opening_at(&self, acts_on: ActsOn) -> Option<Opening<T>> {
-        match acts_on {
+    pub fn opening_at(&self, e: ElementId) -> Option<Opening<T>> {
+        match self.model.elements[e.0].kind.force(self.model)?.acts_on {
             ActsOn::Joint(joint) => self.opening(joint),
-            ActsOn::Points(points) => Some(self.opening_between(points)),
+            ActsOn::Points(points) => Some(self.opening_between(e, points)),
             ActsOn::Line(_)
             | ActsOn::Point(_)
             | ActsOn::Wheel(_)
@@ -327,10 +335,18 @@ impl<T: Real> AppliedLoads<'_, T> {
         [self.preload(of.preload) - push, slope]
     }
 
-    /// Elastic wrench of these laws on body j of an opening; its opposite acts on body i.                       (51)
-    pub fn elastic_wrench(&self, opening: &Opening<T>, laws: &[Elasticity<'_>; 6]) -> Wrench<T> {
+    /// Elastic wrench of a law on body j of an opening; its opposite acts on body i.                            (51)
+    pub fn elastic_wrench(&self, opening: &Opening<T>, law: &ElasticLaw<'_>) -> Wrench<T> {
         let mut sum = Wrench::zero();
-        for (k, of) in laws.iter().enumerate().filter(|(_, of)| of.acts()) {
+        for entry in law.coupled.iter().flat_map(|matrix| &matrix.entries) {
+            let StiffnessEntry { row, column, value } = *entry;
+            let push = -self.number(value);
+            sum = opening.wrenches[row].times_plus(push * opening.coordinates[column], sum);
+            if row != column {
+                sum = opening.wrenches[column].times_plus(push * opening.coordinates[row], sum);
+            }
+        }
+        for (k, of) in law.directions.iter().enumerate().filter(|(_, of)| of.acts()) {
             let [force, _] = self.elastic_force(opening.coordinates[k], of);
             sum = opening.wrenches[k].times_plus(force, sum);
         }

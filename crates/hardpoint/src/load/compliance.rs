@@ -8,7 +8,7 @@
 use crate::design::{BodyFixed, DesignMap, Geometry};
 use crate::linalg::Elimination;
 use crate::measure::{Instant, StepValues, bodies_asked_for};
-use crate::model::element::Compliance;
+use crate::model::element::{Compliance, ElasticLaw};
 use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, NumberId, UnitForce, WheelId};
 use crate::motion::mechanism::Mechanism;
 use crate::number::{Dual, Real};
@@ -25,8 +25,8 @@ type Number = Dual<Dual>;
 /// A direction of deflection.
 #[derive(Clone, Debug)]
 enum Deflection {
-    /// An elastic joint opens, against this stiffness.
-    Opening(NumberId),
+    /// An elastic joint opens along a direction of this element, against a stiffness of its own besides the matrix.
+    Opening(ElementId, usize, Option<NumberId>),
     /// A driver is released: its load is zero.
     Released(DriverId),
 }
@@ -152,7 +152,7 @@ impl<'a> Compliances<'a> {
         let Some((of, force)) = model.measures[m].kind.compliance() else { return unknown };
         let released = released_by(model, m);
         let counts = |way: &Deflection| match way {
-            Deflection::Opening(_) => true,
+            Deflection::Opening(..) => true,
             Deflection::Released(driver) => Some(*driver) == released,
         };
         let chosen = (0..self.ways.len()).filter(|w| counts(&self.ways[*w]));
@@ -201,11 +201,16 @@ impl<'a> Compliances<'a> {
         let mut stiffness = Elimination::new(chosen.len());
         for (r, &a) in chosen.iter().enumerate() {
             for (c, &b) in chosen.iter().enumerate() {
-                // K_ab = K_a for a = b, + sum over springs k y_a y_b
-                let mut sum = match self.ways[a] {
-                    Deflection::Opening(n) if a == b => geometry.numbers[n.0].v,
-                    Deflection::Opening(_) | Deflection::Released(_) => Dual::zero(),
-                };
+                // K_ab = K_a for a = b, + the entry of the matrix, + sum over springs k y_a y_b
+                let mut sum = Dual::zero();
+                if let (Deflection::Opening(e, row, own), Deflection::Opening(other, column, _)) =
+                    (&self.ways[a], &self.ways[b])
+                    && e == other
+                {
+                    let coupled = self.law(*e).and_then(|law| law.in_matrix(*row, *column));
+                    let numbers = [own.filter(|_| row == column), coupled];
+                    numbers.into_iter().flatten().for_each(|n| sum += geometry.numbers[n.0].v);
+                }
                 for ((y_a, k), (y_b, _)) in deflections[a].iter().zip(&deflections[b]) {
                     sum += *k * *y_a * *y_b;
                 }
@@ -213,6 +218,14 @@ impl<'a> Compliances<'a> {
             }
         }
         stiffness
+    }
+
+    /// Law of an elastic joint.
+    fn law(&self, e: ElementId) -> Option<ElasticLaw<'_>> {
+        match self.model.elements[e.0].kind.force(self.model)?.compliance {
+            Compliance::Joint(joint) => Some(joint.law()),
+            Compliance::None | Compliance::Element => None,
+        }
     }
 
     /// Body point at the contact of a wheel, moved along a deflection. The road acts on this material point, while the
@@ -233,16 +246,17 @@ impl<'a> Compliances<'a> {
 /// Directions in which elastic joints open, with their stiffnesses.
 fn elastic_directions(model: &Model) -> (Vec<Deflection>, Vec<PairDirection>) {
     let (mut ways, mut directions) = (Vec::new(), Vec::new());
-    for element in &model.elements {
-        let (joint, [slides, turns]) = match element.kind.force(model).map(|force| force.compliance) {
-            Some(Compliance::Joint { joint, stiffnesses, gives: _ }) => (joint, stiffnesses),
+    for (e, element) in model.elements.iter().enumerate() {
+        let (joint, law) = match element.kind.force(model).map(|force| force.compliance) {
+            Some(Compliance::Joint(elastic)) => (elastic.joint, elastic.law()),
             Some(Compliance::None | Compliance::Element) | None => continue,
         };
-        for (axis, (slide, turn)) in Vec3::AXES.into_iter().zip(slides.into_iter().zip(turns)) {
+        for (k, axis) in Vec3::AXES.into_iter().enumerate() {
             let twists = [Twist { w: Vec3::ZERO, v: axis }, Twist { w: axis, v: Vec3::ZERO }];
-            for (stiffness, twist) in [slide, turn].into_iter().zip(twists) {
-                if let Some(stiffness) = stiffness {
-                    ways.push(Deflection::Opening(stiffness));
+            for (direction, twist) in [k, 3 + k].into_iter().zip(twists) {
+                let own = law.directions[direction].stiffness;
+                if own.is_some() || law.in_matrix(direction, direction).is_some() {
+                    ways.push(Deflection::Opening(ElementId(e), direction, own));
                     directions.push(PairDirection::Opening(joint, twist));
                 }
             }

@@ -134,6 +134,7 @@ fn is_explicit(model: &Model, changed: &Geometry<Dual>) -> bool {
     let marker = |m: &Pose<Dual>| moves(m.r) || m.rot.cols.iter().any(|c| moves(*c));
     changed.numbers.iter().any(|n| n.d != 0.0)
         || changed.points.iter().chain(&changed.spin_axes).any(|p| moves(*p))
+        || changed.axes.iter().flatten().flatten().any(|axes| axes.cols.iter().any(|c| moves(*c)))
         || of_elements.chain(of_measures).any(|joint| {
             changed.markers[joint.0].iter().any(marker)
                 || changed.kept[joint.0].numbers().iter().any(|x| x.d != 0.0)

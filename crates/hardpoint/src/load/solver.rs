@@ -160,12 +160,16 @@ impl<'a> LoadSolver<'a> {
     /// Deflection of an elastic joint or a bushing in one of its six directions.
     pub fn deflection(&self, (element, direction): (ElementId, usize)) -> Deflection {
         let (model, applied) = (self.equilibrium.model, self.equilibrium.applied());
+        let unknown = Deflection { displacement: f64::NAN, force: f64::NAN };
         let kind = &model.elements[element.0].kind;
-        let opening = kind.force(model).and_then(|force| applied.opening_at(force.acts_on));
-        let laws = kind.elasticities().unwrap_or_default();
-        let displacement = opening.map_or(f64::NAN, |opening| opening.coordinates[direction]);
-        let [force, _] = applied.elastic_force(displacement, &laws[direction]);
-        Deflection { displacement, force }
+        let (Some(opening), Some(law)) = (applied.opening_at(element), kind.elastic_law()) else {
+            return unknown;
+        };
+        let displacement = opening.coordinates[direction];
+        let [own, _] = applied.elastic_force(displacement, &law.directions[direction]);
+        let coupled = (0..6)
+            .filter_map(|k| Some(applied.number(law.in_matrix(direction, k)?) * opening.coordinates[k]));
+        Deflection { displacement, force: own - coupled.sum::<f64>() }
     }
 
     /// Value of a given force or moment, with the sign of its law.

@@ -1,9 +1,11 @@
 //! Sources of a mechanism's loads: masses, springs, given forces.
 
 use crate::law::Law;
-use crate::model::{BodyId, Dimension, GROUND, JointId, Model, PointId, Solid, SpringTable, WheelId};
+use crate::model::{
+    BodyId, Dimension, Direction, GROUND, JointId, Model, PointId, Solid, SpringTable, WheelId,
+};
 use crate::number::Real;
-use crate::space::Vec3;
+use crate::space::{Mat3, Vec3};
 
 /// A mass or an applied force.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,6 +129,8 @@ numbers! {
     TorsionalStiffness
     /// A torsional damping, N m s/rad.
     TorsionalDamping
+    /// A stiffness that couples a displacement with an angle: a force per angle, N/rad.
+    Coupling
     /// A plain number.
     Plain
 }
@@ -146,6 +150,8 @@ macro_rules! elements {
             about_y: Option<NumberDraft> => Option<TorsionalStiffness>,
             /// About z.
             about_z: Option<NumberDraft> => Option<TorsionalStiffness>,
+            /// Further stiffnesses: a symmetric matrix with the rows and columns x, y, z, about_x, about_y, about_z.
+            matrix: Option<Box<[[NumberDraft; 6]; 6]>> => Option<CoupledStiffness>,
             /// Cubic stiffness along x: a further force of this times the cube of the displacement.
             cubic_x: Option<NumberDraft> => Option<CubicStiffness>,
             /// Along y.
@@ -372,13 +378,17 @@ macro_rules! elements {
             law: Option<Law> => Option<Law>,
         }
 
-        /// A bushing: springs and dampers between two bodies at a place, along the global axes in the design
-        /// configuration, which turn with the first.
+        /// A bushing: springs and dampers between two bodies at a place, along axes that are fixed in the first.
         Bushing "bushing" forces {
             /// Place on the first body.
             from: PointRef => PointId,
             /// The same place on the second one.
             to: PointRef => PointId,
+            /// Direction of its z axis in the design configuration. Default: its axes are the global ones there.
+            axis: Option<DirectionDraft> => Option<Direction>,
+            /// Direction of its x axis; of a direction that is not perpendicular to `axis`, the perpendicular part.
+            /// Required with `axis` if x and y differ in anything.
+            axis2: Option<DirectionDraft> => Option<Direction>,
             /// Stiffness along x.
             x: NumberDraft => Stiffness,
             /// Along y.
@@ -439,6 +449,8 @@ pub(crate) trait ForceProperties {
 pub struct Properties<'a> {
     /// Part of the model that it acts on.
     pub acts_on: ActsOn,
+    /// Directions of its z and x axes, which are fixed in its first body, if they are not the global ones.
+    pub axes: [Option<Direction>; 2],
     /// Dimension of its magnitude.
     pub dimension: Dimension,
     /// Forces or moments that the element defines.
@@ -451,9 +463,76 @@ pub struct Properties<'a> {
     /// branch.
     pub is_arithmetic: bool,
     /// Compliance under load.
-    pub compliance: Compliance,
+    pub compliance: Compliance<'a>,
     /// Coulomb friction.
     pub friction: Option<JointFriction>,
+}
+
+/// Symmetric stiffness matrix of the directions x, y, z, about_x, about_y and about_z.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CoupledStiffness {
+    /// Entries on the diagonal and above it; those that are always zero are left out.
+    pub entries: Vec<StiffnessEntry>,
+}
+
+/// Entry of a symmetric stiffness matrix, and of its transpose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StiffnessEntry {
+    /// Row.
+    pub row: usize,
+    /// Column, not before the row.
+    pub column: usize,
+    /// Value.
+    pub value: NumberId,
+}
+
+impl CoupledStiffness {
+    /// Unit of an entry.
+    pub fn unit(row: usize, column: usize) -> ElementUnit {
+        match (row < 3, column < 3) {
+            (true, true) => ElementUnit::Stiffness,
+            (false, false) => ElementUnit::TorsionalStiffness,
+            (true, false) | (false, true) => ElementUnit::Coupling,
+        }
+    }
+
+    /// Entry of a row and column, or of its transpose.
+    pub fn entry(&self, row: usize, column: usize) -> Option<NumberId> {
+        let at = (row.min(column), row.max(column));
+        self.entries.iter().find(|e| (e.row, e.column) == at).map(|e| e.value)
+    }
+}
+
+/// Elastic law along x, y and z and about them.
+#[derive(Clone, Copy, Debug)]
+pub struct ElasticLaw<'a> {
+    /// Laws of single directions.
+    pub directions: [Elasticity<'a>; 6],
+    /// Further stiffness that couples them.
+    pub coupled: Option<&'a CoupledStiffness>,
+}
+
+impl ElasticLaw<'_> {
+    /// Directions that give: those with a stiffness or a curve of their own.
+    pub fn gives(&self) -> [bool; 6] {
+        std::array::from_fn(|k| self.directions[k].gives() || self.in_matrix(k, k).is_some())
+    }
+
+    /// Entry of the matrix.
+    pub fn in_matrix(&self, row: usize, column: usize) -> Option<NumberId> {
+        self.coupled?.entry(row, column)
+    }
+
+    /// True if the force depends on positions by arithmetic alone.
+    pub fn is_arithmetic(&self) -> bool {
+        self.directions.iter().all(|of| of.curve.is_none())
+    }
+
+    /// Stiffness of a row and column in the design configuration without load, as far as numbers define it.
+    pub fn nominal(&self, row: usize, column: usize, value: impl Fn(NumberId) -> f64) -> f64 {
+        let own = self.directions[row].stiffness.filter(|_| row == column);
+        [own, self.in_matrix(row, column)].into_iter().flatten().map(value).sum()
+    }
 }
 
 /// Elastic law of one direction: `s(e) = k e + k_3 e^3 + C(e) - f_0`.
@@ -481,8 +560,8 @@ impl Elasticity<'_> {
     }
 }
 
-/// Elastic laws along x, y and z and about them, of an element with fields of these names.
-macro_rules! elasticities {
+/// Elastic law of an element with fields of these names.
+macro_rules! elastic_law {
     ($of:expr, $wrap:expr) => {{
         let (of, wrap) = ($of, $wrap);
         let law = |stiffness: Option<NumberId>, preload: Option<NumberId>| Elasticity {
@@ -491,7 +570,7 @@ macro_rules! elasticities {
             ..Elasticity::default()
         };
         let [x, y, z] = [wrap(of.x), wrap(of.y), wrap(of.z)];
-        [
+        let directions = [
             Elasticity {
                 cubic: of.cubic_x.map(|n| n.0),
                 curve: of.curve_x.as_ref(),
@@ -510,21 +589,22 @@ macro_rules! elasticities {
             law(of.about_x.map(|n| n.0), of.preload_about_x.map(|n| n.0)),
             law(of.about_y.map(|n| n.0), of.preload_about_y.map(|n| n.0)),
             law(of.about_z.map(|n| n.0), of.preload_about_z.map(|n| n.0)),
-        ]
+        ];
+        ElasticLaw { directions, coupled: of.matrix.as_ref() }
     }};
 }
 
 impl Bushing {
-    /// Elastic laws along x, y and z and about them.
-    pub fn elasticities(&self) -> [Elasticity<'_>; 6] {
-        elasticities!(self, |n: Stiffness| Some(n.0))
+    /// Elastic law along and about its axes.
+    pub fn law(&self) -> ElasticLaw<'_> {
+        elastic_law!(self, |n: Stiffness| Some(n.0))
     }
 }
 
 impl ElasticJoint {
-    /// Elastic laws along x, y and z and about them.
-    pub fn elasticities(&self) -> [Elasticity<'_>; 6] {
-        elasticities!(self, |n: Option<Stiffness>| n.map(|n| n.0))
+    /// Elastic law along and about the joint's axes.
+    pub fn law(&self) -> ElasticLaw<'_> {
+        elastic_law!(self, |n: Option<Stiffness>| n.map(|n| n.0))
     }
 }
 
@@ -574,20 +654,13 @@ impl ActsOn {
 
 /// Compliance of a force element.
 #[derive(Clone, Copy, Debug)]
-pub enum Compliance {
+pub enum Compliance<'a> {
     /// It does not deflect under load.
     None,
     /// It deflects: its force depends on the position.
     Element,
-    /// The joint deflects.
-    Joint {
-        /// The joint.
-        joint: JointId,
-        /// Stiffnesses along and about the joint's axes.
-        stiffnesses: [[Option<NumberId>; 3]; 2],
-        /// Directions that give, by a stiffness or a curve; the others are rigid.
-        gives: [bool; 6],
-    },
+    /// The joint deflects along and about its axes; directions that do not give are rigid.
+    Joint(&'a ElasticJoint),
 }
 
 /// Coulomb friction in a joint, and viscous friction besides.
@@ -712,11 +785,11 @@ impl ElementKind {
         }
     }
 
-    /// Elastic laws along and about three axes, of elements that have them.
-    pub(crate) fn elasticities(&self) -> Option<[Elasticity<'_>; 6]> {
+    /// Elastic law along and about three axes, of elements that have one.
+    pub(crate) fn elastic_law(&self) -> Option<ElasticLaw<'_>> {
         match self {
-            Self::Bushing(bushing) => Some(bushing.elasticities()),
-            Self::ElasticJoint(joint) => Some(joint.elasticities()),
+            Self::Bushing(bushing) => Some(bushing.law()),
+            Self::ElasticJoint(joint) => Some(joint.law()),
             Self::Rigid(_)
             | Self::Bar(_)
             | Self::Block(_)
@@ -769,8 +842,8 @@ impl Model {
         let of = |(e, element): (usize, &Element)| {
             let acts_on = element.kind.force(self).map(|force| force.acts_on);
             let is_rigid = matches!(acts_on, Some(ActsOn::Joint(_))) && self.equilibrium.is_none();
-            let laws = element.kind.elasticities().filter(|_| !is_rigid).unwrap_or_default();
-            let compliant = laws.map(|of| of.gives());
+            let law = element.kind.elastic_law().filter(|_| !is_rigid);
+            let compliant = law.map_or([false; 6], |law| law.gives());
             (0..6).filter(move |k| compliant[*k]).map(move |k| (ElementId(e), k))
         };
         self.elements.iter().enumerate().flat_map(of).collect()
@@ -788,6 +861,20 @@ impl Model {
         let mut values = self.times.iter().map(|t| law.at(*t).value());
         let first = values.next();
         values.any(|value| Some(value) != first)
+    }
+
+    /// Bodies of a force with axes of its own, these axes in the nominal design, and the directions that its z and x
+    /// axes follow.
+    pub(crate) fn axes_of(&self, e: ElementId) -> Option<([BodyId; 2], Mat3, [Option<Direction>; 2])> {
+        let Properties { acts_on, axes, .. } = self.elements[e.0].kind.force(self)?;
+        let along = |axis| match axis {
+            Direction::Along(u) => Some(u),
+            Direction::Through(a, b) => (self.position(b) - self.position(a)).unit(),
+        };
+        let z = along(axes[0]?)?;
+        let given = axes[1].and_then(along).and_then(|d| (d - z * z.dot(d)).unit());
+        let x = given.unwrap_or_else(|| z.any_perpendicular());
+        Some((acts_on.bodies(self), Mat3 { cols: [x, z.cross(x), z] }, axes))
     }
 
     /// The laws that forces depend on, in the order of the elements that have one.

@@ -27,9 +27,9 @@ pub use coupler::{Coupler, CouplerTerm, Transmission};
 pub(crate) use curve::Contact;
 pub use curve::{Curve, CurvePoint};
 pub use element::{
-    Angle, Axes, CubicStiffness, Damping, Density, ENDS_MEET, Element, ElementId, ElementKind, ElementNumber,
-    ElementUnit, Force, Inertia, Length, Mass, Moment, NumberId, Plain, Stiffness, TorsionalDamping,
-    TorsionalStiffness, WheelPoint,
+    Angle, Axes, CoupledStiffness, Coupling, CubicStiffness, Damping, Density, ENDS_MEET, Element, ElementId,
+    ElementKind, ElementNumber, ElementUnit, Force, Inertia, Length, Mass, Moment, NumberId, Plain,
+    Stiffness, TorsionalDamping, TorsionalStiffness, WheelPoint,
 };
 pub(crate) use element::{each_number, elements, if_mass};
 pub use formula::{Formula, NamedNumber, Source, Target};
@@ -339,14 +339,18 @@ impl Model {
         self.joints.iter().enumerate().filter(|(_, j)| !j.unnamed).map(|(k, j)| (JointId(k), j))
     }
 
-    /// The size of the mechanism, m: the diagonal of the box around its joints; around all hardpoints if that is 0, and
-    /// 1 if that is 0 as well.
+    /// The size of the mechanism, m: the diagonal of the box around its joints, and in an equilibrium the points of
+    /// application of its forces; around all hardpoints if that is 0, and 1 if that is 0 as well.
     ///
     /// Lengths are compared with it wherever a tolerance must not depend on the units of the model, nor on places that
     /// have nothing to do with its motion; within a loop the loop's own size counts.
     pub fn size(&self) -> f64 {
         let joints = self.joints.iter().flat_map(|j| j.at.map(|m| self.position(m)));
-        let size = Extent::of(joints).size_or_zero();
+        // Springs and bushings hold a mechanism in equilibrium, as joints do.
+        let forces = self.elements.iter().filter(|_| self.equilibrium.is_some());
+        let points = forces.filter_map(|e| e.kind.force(self)).flat_map(|force| force.acts_on.points(self));
+        let points = points.flatten().map(|p| self.position(self.points[p.0].at));
+        let size = Extent::of(joints.chain(points)).size_or_zero();
         if size > 0.0 { size } else { Extent::of(self.hardpoints.iter().map(|h| h.position)).size() }
     }
 

@@ -548,6 +548,26 @@ fn undetermined_normal_forces_are_reported() {
 }
 
 #[test]
+fn axes_of_a_bushing_follow_their_hardpoints() {
+    let mut draft = press().bushing(
+        "rubber",
+        ["rod", "ground"],
+        [[0.1, 0.02, 0.01], [0.11, 0.02, 0.0]],
+        [2000.0, 5000.0, 800.0],
+    );
+    let Some(ElementDraft {
+        kind: ElementKindDraft::Bushing { axis, axis2, about_x, preload_y, .. }, ..
+    }) = draft.forces.last_mut()
+    else {
+        unreachable!("it was added last")
+    };
+    *axis = Some(DirectionDraft::Through("B".into(), "C".into()));
+    *axis2 = Some(DirectionDraft::Along([0.2, 0.1, 1.0].into()));
+    (*about_x, *preload_y) = (Some(20.0.into()), Some(30.0.into()));
+    differentiated(&draft, &LOADS);
+}
+
+#[test]
 fn the_builder_adds_every_type_of_mass_and_force() {
     let no_wheel_forces = [0.0; 3].map(|f: f64| Some(f.into()));
     let mut draft = strut_on_its_wheel(no_wheel_forces);

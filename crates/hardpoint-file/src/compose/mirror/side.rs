@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use hardpoint::draft::{ElementType, FieldKind, MeasureType};
 use hardpoint::joint;
-use hardpoint::joint::{CoordinateAxis, CoordinateType, JointType, VectorKind};
+use hardpoint::joint::{CoordinateAxis, CoordinateType, DIRECTION_NAMES, JointType, VectorKind};
 use hardpoint::model::{ElementUnit, WheelMeasure};
 use hardpoint::space::Vec3;
 use toml::Spanned;
@@ -117,7 +117,10 @@ impl<'a> Side<'_, 'a> {
                     put(table, "mirror", Spanned::new(span, axis));
                 }
             }
-            "forces" => self.coordinate_values(name, table),
+            "forces" => {
+                self.coordinate_values(name, table);
+                self.elastic_law(name, table);
+            }
             "bodies" => {
                 let by_points = table.get("frame").is_some_and(|f| is_by_points(f.get_ref().as_table()));
                 self.mesh(table, by_points);
@@ -190,6 +193,55 @@ impl<'a> Side<'_, 'a> {
             if let FieldKind::Number(ElementUnit::Length | ElementUnit::Angle) = field.kind {
                 table.get_mut(field.key).into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
             }
+        }
+    }
+
+    /// Changes the signs of preloads, curves and couplings along the axes of a bushing or elastic joint that are
+    /// opposite in the mirror.
+    fn elastic_law(&mut self, name: &str, table: &mut DeTable<'a>) {
+        let Some(original) = self.entry("forces", name) else { return };
+        let mut own = [1_i8; 3];
+        own[self.rule.across] = -1;
+        let axes = match word(original, "type") {
+            // Its axes are mirrored as arrows: z and x become their images.
+            Some("bushing") if original.contains_key("axis") => [1, -1, 1],
+            Some("bushing") => own,
+            Some("elastic_joint") => {
+                let joint = word(original, "joint").and_then(|joint| self.entry("joints", joint));
+                match joint.filter(|joint| joint.contains_key("axis")).and_then(type_of) {
+                    Some(kind) => kind.axes_in_mirror(),
+                    None => own,
+                }
+            }
+            Some(_) | None => return,
+        };
+        // An angle keeps its sign about an axis that becomes the opposite of its image.
+        let signs: Vec<i8> = axes.into_iter().chain(axes.map(|sign| -sign)).collect();
+        for (direction, _) in DIRECTION_NAMES.iter().zip(&signs).filter(|(_, sign)| **sign < 0) {
+            let preload = format!("preload_{direction}");
+            table.get_mut(preload.as_str()).into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
+            let Some(curve) = table.get_mut(format!("curve_{direction}").as_str()) else { continue };
+            let at = curve.span();
+            let Some(points) = list_of(curve) else {
+                let other = self.rule.twin(name).unwrap_or_default();
+                let message =
+                    format!("the curve of `{name}` is in a file, and cannot be reversed for `{other}`");
+                let help = format!(
+                    "write the points in the model, or write `{other}` as well, with a file of its own"
+                );
+                self.refused.push((at, message, help));
+                continue;
+            };
+            let turned: Vec<_> = std::mem::replace(points, DeArray::new()).into_iter().collect();
+            *points = turned.into_iter().rev().collect();
+            for point in points.iter_mut() {
+                list_of(point).into_iter().for_each(|point| each(point, self.rule.numbers, |_| true));
+            }
+        }
+        let rows = table.get_mut("matrix").and_then(list_of);
+        for (row, sign) in rows.into_iter().flat_map(|rows| rows.iter_mut()).zip(&signs) {
+            let turned = |k: usize| signs.get(k).is_some_and(|other| other != sign);
+            list_of(row).into_iter().for_each(|row| each(row, self.rule.numbers, turned));
         }
     }
 

@@ -2,16 +2,16 @@
 
 use crate::draft::measure::Field;
 use crate::draft::{DraftError, ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
-use crate::joint::Quantity;
+use crate::joint::{DIRECTION_NAMES, Quantity};
 use crate::law::Law;
-use crate::model::element::JointFriction;
+use crate::model::element::{CoupledStiffness, JointFriction, StiffnessEntry};
 use crate::model::{
-    Angle, BodyId, CubicStiffness, Damping, Density, Element, ElementKind, ElementUnit, Force, GROUND,
-    Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId, SpringTable, Stiffness,
-    TorsionalDamping, TorsionalStiffness, each_number, elements,
+    Angle, BodyId, Coupling, CubicStiffness, Damping, Density, Direction, Element, ElementKind, ElementUnit,
+    Force, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId, SpringTable,
+    Stiffness, TorsionalDamping, TorsionalStiffness, each_number, elements,
 };
 
-use super::{Checker, Here, MeasureCheck};
+use super::{Checker, Here, MeasureCheck, PERPENDICULAR_TOLERANCE};
 
 impl Checker<'_> {
     pub(super) fn add_elements(&mut self) {
@@ -66,6 +66,35 @@ impl Checker<'_> {
                 .help("give at least two points `[deflection, force]`, with increasing deflections");
         }
         table.ok()
+    }
+
+    /// Returns the entries of a stiffness matrix on its diagonal and above. HP0252: a matrix that is not symmetric.
+    pub(super) fn coupled_stiffness(
+        &mut self,
+        rows: &[[NumberDraft; 6]; 6],
+        name: &str,
+        here: Here,
+        key: &'static str,
+    ) -> Option<CoupledStiffness> {
+        let mut entries = Vec::new();
+        for (row, numbers) in rows.iter().enumerate() {
+            for (column, number) in numbers.iter().enumerate().skip(row) {
+                let below = &rows[column][row];
+                if (number.value, &number.expression) != (below.value, &below.expression) {
+                    let [r, k] = [row, column].map(|k| DIRECTION_NAMES[k]);
+                    let message = format!("the matrix of `{name}` is not symmetric");
+                    self.fault("HP0252", here.key(key), message)
+                        .note(format!("the entry of row `{r}` and column `{k}` is not that of row `{k}` and column `{r}`"))
+                        .help(format!("give both entries of `{r}` and `{k}` the same number or expression"));
+                    return None;
+                }
+                if number.expression.is_some() || number.value != 0.0 {
+                    let value = self.element_number(number, name, key, here.key(key))?;
+                    entries.push(StiffnessEntry { row, column, value });
+                }
+            }
+        }
+        Some(CoupledStiffness { entries })
     }
 }
 
@@ -124,6 +153,29 @@ impl ElementCheck<'_, '_> {
     pub fn coincide(&self, a: PointId, b: PointId) -> bool {
         let [a, b] = [a, b].map(|p| self.model().points[p.0].at);
         self.check.separation(a, b) == Some(None)
+    }
+
+    /// HP0208, HP0209: a second axis without a first, or parallel to it.
+    pub fn check_axes(&mut self, [axis, axis2]: [Option<Direction>; 2]) {
+        let model = self.model();
+        let along = |axis| match axis {
+            Direction::Along(u) => Some(u),
+            Direction::Through(a, b) => (model.position(b) - model.position(a)).unit(),
+        };
+        match (axis, axis2) {
+            (None, Some(_)) => {
+                let message = format!("`{}` has `axis2`, but no `axis`", self.name);
+                self.fault("HP0208", "axis2", message).help("add `axis`, the direction of its z axis");
+            }
+            (Some(z), Some(x)) => {
+                let (Some(z), Some(x)) = (along(z), along(x)) else { return };
+                if z.cross(x).norm() <= PERPENDICULAR_TOLERANCE {
+                    let message = format!("the axes of `{}` are parallel to each other", self.name);
+                    self.fault("HP0209", "axis2", message).help("give two different directions");
+                }
+            }
+            (Some(_) | None, None) => {}
+        }
     }
 
     /// HP0251: mass on ground.

@@ -6,7 +6,7 @@ use crate::draft::{
     RayDraft, Section,
 };
 use crate::expression::Expression;
-use crate::model::element::Compliance;
+use crate::model::element::{Compliance, CoupledStiffness};
 use crate::model::{
     Axes, AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, Element, ElementId,
     JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle, OutputSource, PointId,
@@ -60,7 +60,7 @@ impl Checker<'_> {
             self.fault("HP0250", here.key("type"), message).help("add `[masses]`, `[gravity]` or `[forces]`");
         }
         let deflects = |e: &Element| match e.kind.force(&self.model).map(|force| force.compliance) {
-            Some(Compliance::Element | Compliance::Joint { .. }) => true,
+            Some(Compliance::Element | Compliance::Joint(..)) => true,
             Some(Compliance::None) | None => false,
         };
         let rigid = !self.model.elements.iter().any(deflects);
@@ -509,6 +509,10 @@ field!(Option<SpringTable>, Table, Table: Option<Vec<[f64; 2]>>, may |points, ke
     Some(points) => c.check.spring_table(points, c.owner, c.here, key).map(Some),
     None => Some(None),
 });
+field!(Option<CoupledStiffness>, Matrix, Matrix: Option<Box<[[NumberDraft; 6]; 6]>>, may |rows, key, c| match rows {
+    Some(rows) => c.check.coupled_stiffness(rows, c.owner, c.here, key).map(Some),
+    None => Some(None),
+});
 field!(Vec3, Direction, Direction: Vec3, |v, key, c| {
     Some(c.check.line(&DirectionDraft::Along(*v), c.owner, c.here, key)?.1)
 });
@@ -517,6 +521,10 @@ field!(Option<Vec3>, Direction, Direction: Option<Vec3>, may |v, key, c| match v
     None => Some(None),
 });
 field!(Direction, Line, Line: DirectionDraft, |line, key, c| Some(c.check.line(line, c.owner, c.here, key)?.0));
+field!(Option<Direction>, Line, Line: Option<DirectionDraft>, may |line, key, c| match line {
+    Some(line) => Direction::resolve(line, key, c).map(Some),
+    None => Some(None),
+});
 field!(Ray, Ray, Ray: RayDraft, |ray, key, c| c.check.ray(ray, c.owner, c.here, key));
 field!(OutputSource, Output, Name: String, |name, key, c| c.check.output(name, c.here.key(key)));
 field!(BodyId, Body, Name: String, |name, key, c| c.check.body(name, c.here.key(key)));
