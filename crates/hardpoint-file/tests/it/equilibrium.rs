@@ -428,7 +428,7 @@ fn sensitivities_are_those_of_solved_designs() {
     let analysis = Analysis::new(&model).unwrap();
     let here = analysis.run();
     for v in 0..model.variables.len() {
-        let step = 1e-3 * model.natural_step(hardpoint::model::VariableId(v));
+        let step = 5e-4 * model.natural_step(hardpoint::model::VariableId(v));
         let at = |h: f64| {
             let mut design = vec![0.0; model.variables.len()];
             design[v] = h;
