@@ -139,6 +139,20 @@ pub enum ForceOn {
     Coordinate(Coordinate),
     /// Two points, each on a body.
     Points([(usize, Vec3); 2]),
+    /// Two points, along and about axes that are fixed in the first body.
+    Bushing([(usize, Vec3); 2], Bushing),
+}
+
+/// Characteristic of a bushing besides its damping, along x, y, z and about them, per unit of length or angle of the
+/// mechanism, in N or N m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bushing {
+    /// Axes in the design configuration.
+    pub axes: Mat3,
+    /// Stiffnesses.
+    pub stiffness: [f64; 6],
+    /// Forces and moments on the second body in the design configuration.
+    pub preload: [f64; 6],
 }
 
 /// Named frame of the source.

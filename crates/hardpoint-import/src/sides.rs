@@ -5,7 +5,9 @@ use std::collections::HashSet;
 use hardpoint::space::{Mat3, Vec3};
 use hardpoint_file::side_names::{WORDS, exchanged, is_original, pieces};
 
-use crate::mechanism::{Body, Driver, Drives, Force, ForceOn, Joint, Law, Mass, Mechanism, Point, Wheel};
+use crate::mechanism::{
+    Body, Bushing, Driver, Drives, Force, ForceOn, Joint, Law, Mass, Mechanism, Point, Wheel,
+};
 use crate::write::SAME_PLACE;
 
 /// Sign of y and suffix of names, left and right.
@@ -195,9 +197,21 @@ impl Mirror<'_> {
     fn is_force(&self, left: &Force, right: &Force) -> bool {
         let ends = |on| match on {
             ForceOn::Points(ends) => Some(ends),
-            // The sign on the other side depends on the joint.
-            ForceOn::Coordinate(_) => None,
+            // The sign on the other side depends on the joint, or on the axes.
+            ForceOn::Coordinate(_) | ForceOn::Bushing(..) => None,
         };
+        // The mirror takes the x and z axes as arrows, so that y is the opposite of an image.
+        let is_image = |l: Bushing, r: Bushing| {
+            let signs = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
+            let is_axis = |k: usize| Self::is_direction(l.axes.cols[k], r.axes.cols[k]);
+            let preload = (0..6).all(|k| l.preload[k] * signs[k] == r.preload[k]);
+            is_axis(0) && is_axis(2) && l.stiffness == r.stiffness && preload
+        };
+        if let (ForceOn::Bushing(l, left_law), ForceOn::Bushing(r, right_law)) = (left.on, right.on) {
+            return self.are_at(Some(l), Some(r))
+                && left.spring == right.spring
+                && is_image(left_law, right_law);
+        }
         let (l, r) = (ends(left.on), ends(right.on));
         l.is_some() && self.are_at(l, r) && left.spring == right.spring
     }

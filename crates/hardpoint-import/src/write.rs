@@ -2,7 +2,8 @@
 
 use std::collections::HashSet;
 
-use hardpoint::space::{Quat, Vec3};
+use hardpoint::joint::DIRECTION_NAMES;
+use hardpoint::space::{Mat3, Quat, Vec3};
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value, value};
 
 use crate::mechanism::{Drives, ForceOn, GROUND, Law, Mechanism, valid_name};
@@ -352,6 +353,28 @@ impl<'m> Writer<'m> {
                     }
                     spring.free.into_iter().for_each(|x| t["free_length"] = value(x));
                     spring.preload.into_iter().for_each(|x| t["preload"] = value(x));
+                }
+                ForceOn::Bushing(ends, bushing) => {
+                    t["type"] = value("bushing");
+                    for (key, (body, at)) in ["from", "to"].into_iter().zip(ends) {
+                        t[key] = value(self.point(body, at));
+                    }
+                    let Mat3 { cols: [x, _, z] } = bushing.axes;
+                    if (z - Vec3::AXES[2]).norm() > ROUND_OFF || (x - Vec3::AXES[0]).norm() > ROUND_OFF {
+                        t["axis"] = direction(z);
+                        t["axis2"] = direction(x);
+                    }
+                    for (k, name) in DIRECTION_NAMES.iter().enumerate() {
+                        // Stiffnesses along the axes are required.
+                        if k < 3 || bushing.stiffness[k] != 0.0 {
+                            t[name] = value(bushing.stiffness[k]);
+                        }
+                    }
+                    for (name, preload) in DIRECTION_NAMES.iter().zip(bushing.preload) {
+                        if preload != 0.0 {
+                            t[&format!("preload_{name}")] = value(preload);
+                        }
+                    }
                 }
             }
             if spring.damping != 0.0 {

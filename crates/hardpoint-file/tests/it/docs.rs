@@ -44,6 +44,35 @@ fn examples_of_the_format_are_one_valid_model() {
 }
 
 #[test]
+fn the_anti_roll_bar_of_the_document_works() {
+    const ROUND_OFF: f64 = 1e-9;
+    let text = document("loads.md");
+    let [example] = examples(&text)[..] else { panic!("one example") };
+    let model = parse(example, "bar.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    let [heave, roll] = ["heave", "roll"].map(|case| {
+        let in_case = model.in_case(model.case(case).unwrap());
+        let solution = hardpoint::Analysis::new(&in_case).unwrap().run();
+        assert!(solution.stop.is_none(), "{case}");
+        solution
+    });
+    let of =
+        |s: &hardpoint::Solution, k: usize, name: &str| s.measured.value(k, s.measured.index(name).unwrap());
+    let stiffness = 12.0_f64.to_degrees();
+    for k in 0..roll.motion.len() {
+        assert!(
+            of(&heave, k, "twist")[0].abs() < ROUND_OFF && of(&heave, k, "left_load")[0].abs() < ROUND_OFF
+        );
+        let [left, right] = ["left_load", "right_load"].map(|name| of(&roll, k, name)[0]);
+        assert!((left + right).abs() < 0.1 * left.abs().max(1.0), "{left} {right}");
+        // Power of both wheels: k twist twist'
+        let power = of(&roll, k, "left_power")[0] + of(&roll, k, "right_power")[0];
+        let [twist, rate, _] = of(&roll, k, "twist");
+        assert!((power - stiffness * twist * rate).abs() < ROUND_OFF * (1.0 + power.abs()), "{power} at {k}");
+    }
+    assert!((0..roll.motion.len()).any(|k| of(&roll, k, "left_load")[0] > 100.0));
+}
+
+#[test]
 fn every_key_of_the_schema_is_documented() {
     let text = document("file-format.md");
     let schema: serde_json::Value = serde_json::from_str(&schema()).unwrap();

@@ -516,6 +516,45 @@ fn sensitivities_of_bushings_with_axes_are_verified() {
     assert!(found.passed() && found.checks.len() == model.variables.len(), "{worst:?}");
 }
 
+/// The double wishbone with a tie rod that is elastic along itself.
+fn wishbone_on_elastic_tie_rod(stiffness: f64) -> String {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    let text = wishbone(at, &AS_PUBLISHED);
+    let lines = text.lines().filter(|l| !l.starts_with("tie_rod = "));
+    let spring = "[forces]\ntie_rod = { type = \"spring\", from = { body = \"rack\", at = \"tie_inner\" }, to = { body = \
+         \"knuckle\", at = \"tie_outer\" }, stiffness = \"k_tie\" }\n";
+    lines
+        .collect::<Vec<_>>()
+        .join("\n")
+        .replace("[forces]", spring)
+        .replace("k_spring = 45000.0", &format!("k_spring = 45000.0\nk_tie = {stiffness:?}"))
+        .replace("[measures]", "[measures]\ntension = { type = \"spring_force\", force = \"tie_rod\" }")
+}
+
+#[test]
+fn a_spring_between_its_ends_is_a_rod_that_is_elastic_along_itself() {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    let measure = "[measures]\ntension = { type = \"reaction\", joint = \"tie_rod\", part = \"force\" }";
+    let rigid = solved(&wishbone(at, &AS_PUBLISHED).replace("[measures]", measure));
+    let toe = value(&rigid, 0, "left.toe");
+    let [soft, hard] = [8e6, 8e8].map(|k| solved(&wishbone_on_elastic_tie_rod(k)));
+    let [a, b] = [&soft, &hard].map(|s| value(s, 0, "left.toe") - toe);
+    // The deflection is the force over the stiffness, to first order.
+    assert!(a.abs() > 1e-4 && (a / b - 100.0).abs() < 1.0, "{a} {b}");
+    near(
+        value(&hard, 0, "tension").abs(),
+        value(&rigid, 0, "tension"),
+        1e-3 * value(&rigid, 0, "tension"),
+        "tension",
+    );
+    let model = file(&wishbone_on_elastic_tie_rod(8e6)).model;
+    let analysis = Analysis::new(&model).unwrap();
+    let found =
+        verify(&analysis, &analysis.run(), &Options::default(), |_| std::ops::ControlFlow::Continue(()));
+    let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
+    assert!(found.passed() && found.checks.len() == model.variables.len(), "{worst:?}");
+}
+
 #[test]
 fn without_loads_compliances_are_those_of_the_rigid_mechanism() {
     let at = State { bump: 0.02, road: [0.0; 2], align: 0.0, rack: 0.0 };
@@ -745,6 +784,10 @@ fn faults_are_reported() {
         lever(800.0).replace("[equilibrium]", "[equilibrium]\nreleased = [\"bump\"]"),
         lever(800.0).replace("[measures]", "[measures]\nspeed = { type = \"velocity\", point = \"tip\" }"),
         lever(800.0).replace("[equilibrium]", ""),
+        wishbone(State { bump: 0.0, road: [0.0; 2], align: 0.0, rack: 0.0 }, &AS_PUBLISHED).replace(
+            "[forces]",
+            "[forces]\nthrust = { type = \"elastic_joint\", joint = \"tie_rod\", x = 8e6 }",
+        ),
         lever(800.0).replace("force = \"load\"", "force = \"elastic\""),
         lever(800.0)
             + "[metrics]\nsoft = { of = \"soft\", take = \"max\" }\n[optimize]\nvariables = [\"length\"]\ngoals = { soft = {} }\n",

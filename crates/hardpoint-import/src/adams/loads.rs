@@ -1,4 +1,4 @@
-//! Loads of a dataset: masses of parts, gravity, springs and dampers between points.
+//! Loads of a dataset: masses of parts, gravity, springs and dampers between points, bushings.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 
 use super::{Reader, Statement};
 use crate::markers::ElementSource;
-use crate::mechanism::{Force, ForceOn, GROUND, Spring};
+use crate::mechanism::{Bushing, Force, ForceOn, GROUND, Spring};
 use crate::robot;
 
 /// Units of mass, in kg.
@@ -46,8 +46,11 @@ const SYSTEMS: [(&str, &str, &str); 5] = [
     ("FPS", "SLUG", "POUND_FORCE"),
 ];
 
+/// Difference of unit vectors above which markers have different orientations; typed angles agree to about this.
+const ALIGNED: f64 = 1e-6;
+
 impl Reader<'_> {
-    /// Reads masses, gravity and springs, and returns the statements that were read.
+    /// Reads masses, gravity, springs and bushings, and returns the statements that were read.
     pub(super) fn loads(&mut self, statements: &[Statement]) -> BTreeSet<(String, String)> {
         let mut done = BTreeSet::new();
         let units = statements.iter().find(|s| s.name == "UNITS");
@@ -88,6 +91,10 @@ impl Reader<'_> {
                 }
                 ("SPRINGDAMPER", _, Some(unit)) if !s.flag("ROTATION") => {
                     self.spring(s, unit);
+                    done.insert((s.name.clone(), s.id.clone()));
+                }
+                ("BUSHING", _, Some(unit)) => {
+                    self.bushing(s, unit, metre);
                     done.insert((s.name.clone(), s.id.clone()));
                 }
                 _ => {}
@@ -181,5 +188,54 @@ impl Reader<'_> {
             },
         });
         self.notes.taken("SPRINGDAMPER", &s.label, Some(s.at));
+    }
+
+    /// Reads a bushing between two markers: along and about the axes of marker J, on the part of marker I, the force is
+    /// `-K e - C e' + FORCE` and the moment `-KT a - CT a' + TORQUE`.
+    fn bushing(&mut self, s: &Statement, unit: f64, metre: f64) {
+        let Some([j, i]) = self.pair(s) else { return };
+        let mut three = |key: &str| {
+            let list = s.numbers(key, self.notes).unwrap_or_default();
+            [0, 1, 2].map(|k| list.get(k).copied().unwrap_or(0.0))
+        };
+        let [k, kt, c, ct, force, torque] = ["K", "KT", "C", "CT", "FORCE", "TORQUE"].map(&mut three);
+        let fits = [k, kt, c, ct, force, torque].iter().flatten().all(|x| x.is_finite());
+        if !fits || i.body == j.body {
+            let why = "a bushing requires finite numbers, and ends on two parts";
+            self.notes.refused("BUSHING", &s.label, Some(s.at), why);
+            return;
+        }
+        let (per_length, per_angle) = (unit / self.scale, unit * self.scale * metre);
+        let axes = j.pose.rot;
+        let mut lost = Vec::new();
+        let turned = (0..3).map(|n| (i.pose.rot.cols[n] - axes.cols[n]).norm()).fold(0.0, f64::max);
+        if turned > ALIGNED {
+            lost.push(
+                "its markers have different orientations, and its angles count from the design configuration",
+            );
+        }
+        // Its damping is the same along all axes.
+        let damping = if c[0] == c[1] && c[1] == c[2] { c[0] } else { 0.0 };
+        if damping != c[0] || ct.iter().any(|x| *x != 0.0) {
+            lost.push("its damping is not imported, unless it is the same along all axes");
+        }
+        let [stiffness, preload] = [(k, kt, per_length, per_angle), (force, torque, unit, per_angle)].map(
+            |([x, y, z], [a, b, c], slide, turn)| {
+                [x * slide, y * slide, z * slide, a * turn, b * turn, c * turn]
+            },
+        );
+        self.m.force(Force {
+            name: s.label.clone(),
+            note: s.source().note(self.notes),
+            on: ForceOn::Bushing(
+                [(j.body, j.pose.r), (i.body, i.pose.r)],
+                Bushing { axes, stiffness, preload },
+            ),
+            spring: Spring { damping: damping * per_length / self.per_second(), ..Spring::default() },
+        });
+        match lost.is_empty() {
+            true => self.notes.taken("BUSHING", &s.label, Some(s.at)),
+            false => self.notes.approximated("BUSHING", &s.label, Some(s.at), lost.join("; ")),
+        }
     }
 }

@@ -499,6 +499,35 @@ fn springs_of_tendons_pull() {
 }
 
 #[test]
+fn datasets_of_adams_bring_bushings() {
+    // Marker 1 has its z axis along the global y axis; the bushing is 100 mm from the hinge, and its second marker moves
+    // by 100 mm times the sine of the angle.
+    let text = "arm\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1, REULER=0D,-90D,0D\n\
+        MARKER/11, PART=1, QP=100,0,0, REULER=0D,-90D,0D\nPART/2\nMARKER/20, PART=2, QP=100,0,0, REULER=0D,-90D,0D\n\
+        MARKER/23, PART=2, REULER=0D,-90D,0D\nJOINT/1, REVOLUTE, I=23, J=1\nMOTION/1, ROTATIONAL, JOINT=1, FUNCTION=0.3\n\
+        BUSHING/7, I=20, J=11, K=30,40,50, KT=2E3,3E3,4E3, FORCE=1,2,3, TORQUE=0,0,100\nEND\n";
+    let (imported, _) = read("arm.adm", text);
+    assert_eq!(imported.report.of(ElementOutcome::Ignored).count(), 0, "{}", imported.report);
+    assert_eq!(imported.report.of(ElementOutcome::Approximated).count(), 0, "{}", imported.report);
+    let measured =
+        format!("{}\n[measures.torque]\ntype = \"driver_force\"\ndriver = \"MOTION_1\"\n", imported.text);
+    let file = hardpoint_file::parse(&measured, "m.toml").unwrap_or_else(|e| panic!("{e}\n{measured}"));
+    let run = Analysis::new(&file.model).unwrap().run();
+    let found = run.measured.value(0, run.measured.index("torque").unwrap())[0];
+    // In the axes of marker 11 the second marker moves by 0.1 (cos - 1) and 0.1 sin along x and y, and turns about z.
+    let turn = 0.3_f64;
+    let (s, c) = turn.sin_cos();
+    let (along, across) = (1.0 - 30.0 * 100.0 * (c - 1.0), 2.0 - 40.0 * 100.0 * s);
+    let moment = 0.1 - 4.0 * turn + 0.1 * (c * across - s * along);
+    assert!((found + moment).abs() < 1e-9, "{found} instead of {}\n{measured}", -moment);
+    // Markers that are not aligned, and damping that differs along the axes, are reported.
+    let other = text.replace("QP=100,0,0, REULER=0D,-90D,0D\nMARKER/23", "QP=100,0,0\nMARKER/23");
+    let other = other.replace("KT=", "C=1,2,3, KT=");
+    let (imported, _) = read("arm.adm", &other);
+    assert_eq!(imported.report.of(ElementOutcome::Approximated).count(), 1, "{}", imported.report);
+}
+
+#[test]
 fn datasets_of_adams_bring_masses_gravity_and_springs() {
     let text = "pendulum\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1, REULER=0D,-90D,0D\n\
         MARKER/10, PART=1, QP=0,0,400\nPART/2, MASS=2, CM=21, IM=20, IP=6E5,7E5,8E5,1E4,2E4,3E4\nMARKER/20, PART=2\n\

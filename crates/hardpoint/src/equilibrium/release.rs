@@ -1,6 +1,6 @@
 //! The mechanism with its elastic joints open.
 
-use crate::joint::{self, DIRECTIONS, elastic, free_directions};
+use crate::joint::{self, DIRECTIONS, elastic, free_directions, with_turns};
 use crate::law::Law;
 use crate::model::element::Compliance;
 use crate::model::{BodyId, Driver, DriverId, GROUND, HardpointId, Joint, JointId, LoadMode, Model};
@@ -72,7 +72,15 @@ pub(crate) fn release(
     }
     elastic_joints.retain(|(joint, ..)| !cut[joint.0]);
     drive_all(&mut open, &elastic_joints);
-    let depends = dependence(&open, own);
+    let mut depends = dependence(&open, own);
+    while !depends.free_balls.is_empty() {
+        // A free rotation of a ball is an opening about one of three axes.
+        for joint in &depends.free_balls {
+            let kind = &mut open.joints[joint.0].kind;
+            *kind = with_turns(kind);
+        }
+        depends = dependence(&open, own);
+    }
     for (joint, freedom) in depends.free {
         let coordinates = open.joints[joint.0].kind.coordinates;
         if let Some(coordinate) = coordinates.iter().position(|c| c.freedom == Some(freedom)) {

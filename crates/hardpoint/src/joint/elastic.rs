@@ -95,6 +95,38 @@ fn make(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<Ela
     Some(ElasticType { kind: Box::leak(Box::new(kind)), can_be_cut })
 }
 
+/// Returns the type with three turns in the place of the rotation of a ball, about x, y and z of its marker i, each a
+/// coordinate of its own after those of the type; the type itself if it has no ball.
+pub(crate) fn with_turns(kind: &'static JointType) -> &'static JointType {
+    static MADE: Mutex<Vec<(&'static JointType, &'static JointType)>> = Mutex::new(Vec::new());
+    let own = kind.freedoms.unwrap_or_default();
+    let Some(ball) = own.iter().position(|f| *f == Freedom::Ball) else { return kind };
+    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, known)) = made.iter().find(|(of, _)| std::ptr::eq(*of, kind)) {
+        return known;
+    }
+    let turns = [3, 4, 5].map(freedom_of);
+    let freedoms = [&own[..ball], &turns, &own[ball + 1..]].concat().leak();
+    let moved = |k: usize| if k > ball { k + 2 } else { k };
+    let coordinates =
+        kind.coordinates.iter().map(|c| CoordinateType { freedom: c.freedom.map(moved), ..*c }).chain(
+            (0..3).map(|k| CoordinateType {
+                name: DIRECTION_NAMES[3 + k],
+                quantity: Quantity::Angle,
+                freedom: Some(ball + k),
+                // Only tree joints are driven in these directions.
+                row: Row::Angle,
+            }),
+        );
+    let new: &JointType = Box::leak(Box::new(JointType {
+        coordinates: coordinates.collect::<Vec<_>>().leak(),
+        freedoms: Some(freedoms),
+        ..*kind
+    }));
+    made.push((kind, new));
+    new
+}
+
 /// Freedom of a direction.
 const fn freedom_of(direction: usize) -> Freedom {
     if direction < 3 { Freedom::Slide(direction) } else { Freedom::Turn(direction - 3) }
@@ -135,6 +167,21 @@ mod tests {
                 for c in kind.coordinates {
                     assert!(c.freedom.is_none_or(|f| f < freedoms), "{}", rigid.name);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn a_ball_with_turns_has_the_same_freedoms() {
+        for kind in ALL {
+            let turning = with_turns(kind);
+            let has_ball = kind.freedoms.is_some_and(|f| f.contains(&Freedom::Ball));
+            assert_eq!(std::ptr::eq(turning, *kind), !has_ball, "{}", kind.name);
+            assert_eq!(turning.freedom_count(), kind.freedom_count());
+            assert!(std::ptr::eq(turning, with_turns(kind)));
+            if has_ball {
+                let driven = turning.coordinates.iter().filter_map(|c| c.freedom).count();
+                assert_eq!(driven, kind.coordinates.iter().filter_map(|c| c.freedom).count() + 3);
             }
         }
     }

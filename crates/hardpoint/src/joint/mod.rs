@@ -54,7 +54,7 @@ mod universal;
 use crate::constraint::Row;
 pub(crate) use course::COURSE;
 pub use elastic::DIRECTION_NAMES;
-pub(crate) use elastic::{DIRECTIONS, elastic, free_directions};
+pub(crate) use elastic::{DIRECTIONS, elastic, free_directions, with_turns};
 
 /// Exports and lists the types.
 macro_rules! joints {

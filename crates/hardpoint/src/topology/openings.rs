@@ -24,6 +24,8 @@ pub(crate) struct Dependence {
     pub determined: Vec<DriverId>,
     /// Freedoms of joints that neither constraints nor drivers determine.
     pub free: Vec<(JointId, usize)>,
+    /// Joints with such a freedom that is part of the rotation of a ball, which no driver prescribes.
+    pub free_balls: Vec<JointId>,
 }
 
 /// Returns the tree of a mechanism in relative coordinates.
@@ -56,19 +58,24 @@ pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
     };
     let unknown: Vec<CoordinateId> = topology.unknown_coordinates().collect();
     let pivots = eliminate(&mut rows, |c| topology[c].is_unknown());
-    let free = unknown.iter().filter(|c| !pivots.contains(c));
-    let free = free.filter_map(|&c| {
-        let link = &topology[topology[c].link];
-        let step = link.steps.iter().position(|step| step.first == c && step.freedom.coordinates() == 1)?;
-        let freedom = if link.parent_end == 0 { step } else { link.steps.len() - 1 - step };
-        Some((link.joint?, freedom))
-    });
-    let free = free.collect();
+    let (mut free, mut free_balls) = (Vec::new(), Vec::new());
+    for c in unknown.iter().filter(|c| !pivots.contains(c)) {
+        let link = &topology[topology[*c].link];
+        let Some(joint) = link.joint else { continue };
+        let step = link.steps.iter().position(|step| step.first == *c && step.freedom.coordinates() == 1);
+        match step {
+            Some(step) => {
+                let freedom = if link.parent_end == 0 { step } else { link.steps.len() - 1 - step };
+                free.push((joint, freedom));
+            }
+            None => free_balls.push(joint),
+        }
+    }
     let determined = eliminate(&mut rows, is_opening).into_iter().filter_map(|c| match topology[c].set_by {
         SetBy::Driver(d) => Some(d),
         SetBy::Block { .. } => None,
     });
-    Dependence { determined: determined.collect(), free }
+    Dependence { determined: determined.collect(), free, free_balls }
 }
 
 /// Eliminates rows over the columns that count, by the largest pivot, and removes them. Returns the columns of the

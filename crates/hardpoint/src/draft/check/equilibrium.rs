@@ -1,7 +1,8 @@
 //! Checks of the equilibrium: its drivers, and what it cannot have.
 
 use crate::draft::Section;
-use crate::model::{DriverId, Equilibrium, MeasureKind};
+use crate::model::element::Compliance;
+use crate::model::{DriverId, Equilibrium, Joint, MeasureKind};
 
 use super::{Checker, Here};
 
@@ -32,6 +33,24 @@ impl Checker<'_> {
                 self.fault("HP0261", at, message)
                     .note("an equilibrium has no motion that friction could oppose")
                     .help("remove it, or remove `equilibrium`");
+            }
+        }
+        for index in 0..draft.forces.len() {
+            let found = self.model.elements.iter().find(|e| e.name == draft.forces[index].name);
+            let compliance = found.and_then(|e| e.kind.force(&self.model)).map(|force| force.compliance);
+            let Some(Compliance::Joint(elastic)) = compliance else { continue };
+            let Joint { name, kind, .. } = &self.model.joints[elastic.joint.0];
+            if kind.freedoms.is_none() {
+                let message = format!("joint `{name}` of `{}` cannot open", draft.forces[index].name);
+                let help = if kind.is_rod() {
+                    "for a rod that is elastic along itself, replace the joint by a force of `type = \"spring\"` between its ends"
+                } else {
+                    "name a joint of another type, or remove this force"
+                };
+                let note =
+                    format!("joints of type `{}` have no axes along which they open under load", kind.name);
+                let at = Here { section: Section::Forces, index }.key("joint");
+                self.fault("HP0261", at, message).note(note).help(help);
             }
         }
         for index in 0..draft.measures.len() {
