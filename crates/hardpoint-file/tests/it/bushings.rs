@@ -1,4 +1,4 @@
-//! Bodies held by bushings: a five-link suspension on its subframe without a single ideal joint, and a block on a bushing
+//! Bodies held by bushings: a five-link suspension on its subframe without any ideal joint, and a block on a bushing
 //! with a coupled stiffness matrix in closed form.
 
 use hardpoint::model::{Model, VariableId};
@@ -127,7 +127,7 @@ fn hardpoints() -> Vec<(String, Vec3)> {
         let [inner, outer] = [inner, outer].map(Vec3::from);
         all.push((format!("{rod}_inner"), inner));
         all.push((format!("{rod}_outer"), outer));
-        // Bolts of both ends point at a common point, so that their axes are neither parallel nor perpendicular to rods.
+        // Bolts of both ends point at a common point, so that their axes are neither parallel nor perpendicular to them.
         all.push((format!("{rod}_bolt"), (inner + outer) * 0.5 + Vec3::new(0.9, 0.1, 0.15)));
     }
     let others =

@@ -500,8 +500,8 @@ fn springs_of_tendons_pull() {
 
 #[test]
 fn datasets_of_adams_bring_bushings() {
-    // Marker 1 has its z axis along the global y axis; the bushing is 100 mm from the hinge, and its second marker moves
-    // by 100 mm times the sine of the angle.
+    // Marker 1 has its z axis along the global y axis; the bushing is 100 mm from the hinge, and its second marker
+    // moves by 100 mm times the sine of the angle.
     let text = "arm\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1, REULER=0D,-90D,0D\n\
         MARKER/11, PART=1, QP=100,0,0, REULER=0D,-90D,0D\nPART/2\nMARKER/20, PART=2, QP=100,0,0, REULER=0D,-90D,0D\n\
         MARKER/23, PART=2, REULER=0D,-90D,0D\nJOINT/1, REVOLUTE, I=23, J=1\nMOTION/1, ROTATIONAL, JOINT=1, FUNCTION=0.3\n\

@@ -42,8 +42,9 @@ const DIALECT: [&str; 26] = [
 /// Names of types that are participles. All others that end so are nouns.
 const PARTICIPLES: [&str; 10] =
     ["Drawn", "Found", "Given", "Held", "Kept", "Known", "Shown", "Taken", "Told", "Written"];
-const NOUNS: [&str; 13] = [
+const NOUNS: [&str; 14] = [
     "Bearing",
+    "Bushing",
     "Closing",
     "Drawing",
     "Gathering",
