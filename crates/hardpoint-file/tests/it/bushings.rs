@@ -127,7 +127,7 @@ fn hardpoints() -> Vec<(String, Vec3)> {
         let [inner, outer] = [inner, outer].map(Vec3::from);
         all.push((format!("{rod}_inner"), inner));
         all.push((format!("{rod}_outer"), outer));
-        // Bolts of both ends point at a common point, so that their axes are neither parallel nor perpendicular to them.
+        // Bolts of both ends point at a common point, so that their axes are not parallel to rods.
         all.push((format!("{rod}_bolt"), (inner + outer) * 0.5 + Vec3::new(0.9, 0.1, 0.15)));
     }
     let others =
