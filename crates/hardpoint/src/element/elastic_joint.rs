@@ -1,6 +1,7 @@
 //! Joint that gives along its own axes.
 
 use crate::draft::{CheckElement, ElementCheck};
+use crate::linalg::semidefinite::is_definite;
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Compliance, ElasticJoint, ForceProperties, Properties};
 use crate::model::{Dimension, ElementId, Model, NumberId};
@@ -31,6 +32,9 @@ impl CheckElement for ElasticJoint {
         // Curves may have any slope in the design configuration.
         let is_linear = |k: &usize| gives[*k] && law.directions[*k].curve.is_none();
         let linear: Vec<usize> = (0..6).filter(is_linear).collect();
+        let stiffness = |r: usize, k: usize| law.stiffnesses(r, k).map(value).sum();
+        let row = |r: &usize| linear.iter().map(|k| stiffness(*r, *k)).collect();
+        let matrix: Vec<Vec<f64>> = linear.iter().map(row).collect();
         let given = |k: &usize| law.directions[*k].stiffness.is_none_or(|n| value(n) > 0.0);
         if !gives.contains(&true) {
             let message = format!("`{}` is rigid in all directions", c.name);
@@ -40,7 +44,7 @@ impl CheckElement for ElasticJoint {
             let message = format!("a stiffness of `{}` is not positive", c.name);
             c.fault("HP0252", "joint", message)
                 .help("give a positive stiffness, or remove the key to make that direction rigid");
-        } else if self.matrix.is_some() && !is_positive(&linear, |r, k| law.nominal(r, k, value)) {
+        } else if self.matrix.is_some() && !is_definite(&matrix) {
             let message = format!("the stiffness matrix of `{}` is not positive definite", c.name);
             c.fault("HP0252", "matrix", message)
                 .note("it counts with the stiffnesses along and about single axes on its diagonal")
@@ -52,24 +56,6 @@ impl CheckElement for ElasticJoint {
             c.fault("HP0251", "joint", message).help("name a joint with a location");
         }
     }
-}
-
-/// True if a symmetric matrix is positive definite on these rows and columns.
-fn is_positive(rows: &[usize], entry: impl Fn(usize, usize) -> f64) -> bool {
-    let n = rows.len();
-    // L L^T, row by row
-    let mut l = vec![vec![0.0; n]; n];
-    for r in 0..n {
-        for k in 0..=r {
-            let done: f64 = l[r].iter().zip(&l[k]).take(k).map(|(a, b)| a * b).sum();
-            let rest = entry(rows[r], rows[k]) - done;
-            l[r][k] = if r == k { rest.sqrt() } else { rest / l[k][k] };
-        }
-        if !(l[r][r] > 0.0) {
-            return false;
-        }
-    }
-    true
 }
 
 impl ForceFormula for ElasticJoint {

@@ -1,6 +1,7 @@
 //! Equilibria of a mechanism at its output times, by Newton's method on the openings.
 
 use crate::design::{BodyFixed, DesignMap, DesignVelocity};
+use crate::linalg::semidefinite::is_definite;
 use crate::linalg::{Elimination, Factored};
 use crate::load::{ElementTurns, GivenLoads, OpeningLoads};
 use crate::measure::{DriverPoses, Instant, StepValues};
@@ -33,17 +34,6 @@ const HOLDS_NOTHING: f64 = 1e-12;
 /// Difference of symmetric entries of the scaled stiffness above which the forces have no potential; round-off is
 /// below.
 const UNSYMMETRIC: f64 = 1e-9;
-
-/// Stability of an equilibrium.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stability {
-    /// Every virtual motion needs work.
-    Stable,
-    /// A virtual motion releases work.
-    Unstable,
-    /// A virtual motion releases work, but the forces have no potential.
-    Uncertain,
-}
 
 /// Reason why an equilibrium was not found.
 enum Rejection {
@@ -258,14 +248,7 @@ impl<'a> EquilibriumSolver<'a> {
             }
             advance::shift_at_rest(one, &drivers).map_err(Rejection::of)?;
             if size <= QUADRATIC {
-                // The design configuration without loads is stable. Without a change of the sign an even number of
-                // directions may have become unstable.
-                return match self.stability() {
-                    _ if !positive => Err(Rejection::Unstable),
-                    Stability::Unstable => Err(Rejection::Unstable),
-                    Stability::Stable => Ok((drivers, true)),
-                    Stability::Uncertain => Ok((drivers, false)),
-                };
+                return Ok((drivers, self.is_certainly_stable(positive)?));
             }
             before = size;
         }
@@ -330,29 +313,21 @@ impl<'a> EquilibriumSolver<'a> {
         self.tangent.factor()
     }
 
-    /// Stability of the equilibrium whose stiffness was set last, by the definiteness of its symmetric part.
-    fn stability(&self) -> Stability {
+    /// True if every virtual motion from the equilibrium whose stiffness was set last needs work; false if one does
+    /// not, but the forces have no potential. `positive` is the sign of the determinant: the design configuration
+    /// without loads is stable, and without a change of the sign an even number of directions may have become unstable.
+    fn is_certainly_stable(&self, positive: bool) -> Result<bool, Rejection> {
         let n = self.openings.len();
         let scaled = |a: usize, b: usize| self.stiffness[a * n + b] * self.units[a] * self.units[b];
-        // L D L^T of the symmetric part, row by row: l_ab d_b, with d on the diagonal
-        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n);
-        for a in 0..n {
-            let mut row: Vec<f64> = (0..=a).map(|b| 0.5 * (scaled(a, b) + scaled(b, a))).collect();
-            for b in 0..a {
-                let reduced: f64 = (0..b).map(|c| row[c] * rows[b][c] / rows[c][c]).sum();
-                row[b] -= reduced;
-            }
-            let reduced: f64 = (0..a).map(|c| row[c] * row[c] / rows[c][c]).sum();
-            row[a] -= reduced;
-            if !(row[a] > 0.0) {
-                let pairs = (0..n).flat_map(|a| (0..a).map(move |b| (a, b)));
-                let has_potential =
-                    pairs.into_iter().all(|(a, b)| (scaled(a, b) - scaled(b, a)).abs() <= UNSYMMETRIC);
-                return if has_potential { Stability::Unstable } else { Stability::Uncertain };
-            }
-            rows.push(row);
+        let symmetric = |a: usize| (0..n).map(|b| 0.5 * (scaled(a, b) + scaled(b, a))).collect();
+        let all_need_work = || is_definite(&(0..n).map(symmetric).collect::<Vec<_>>());
+        let has_potential =
+            || (0..n).all(|a| (0..a).all(|b| (scaled(a, b) - scaled(b, a)).abs() <= UNSYMMETRIC));
+        match positive && all_need_work() {
+            true => Ok(true),
+            false if !positive || has_potential() => Err(Rejection::Unstable),
+            false => Ok(false),
         }
-        Stability::Stable
     }
 
     /// The opening that the least force resists: the largest component of the direction without stiffness.

@@ -30,6 +30,17 @@ pub fn root(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     Some(l)
 }
 
+/// True if A is positive definite, whatever the units of its rows: scaled to ones on its diagonal, its root has all its
+/// pivots.
+pub fn is_definite(a: &[Vec<f64>]) -> bool {
+    let unit = |k: usize| a[k][k].sqrt();
+    let scaled = |r: usize, k: usize| a[r][k] / (unit(r) * unit(k));
+    let n = a.len();
+    let scaled: Vec<Vec<f64>> = (0..n).map(|r| (0..n).map(|k| scaled(r, k)).collect()).collect();
+    // NaN is not positive.
+    (0..n).all(|k| a[k][k] > 0.0) && root(&scaled).is_some_and(|l| (0..n).all(|k| l[k][k] > 0.0))
+}
+
 /// Solves `A x = b` in place by the root of A, which must have all its pivots.
 pub fn solve(root: &[Vec<f64>], b: &mut [f64]) {
     let n = b.len();
@@ -66,6 +77,16 @@ mod tests {
         );
         assert!(root(&[vec![1.0, 1.01], vec![1.01, 1.0]]).is_none());
         assert!(root(&[vec![f64::NAN]]).is_none());
+    }
+
+    #[test]
+    fn definite_matrices_are_recognised_in_any_units() {
+        let definite = |a: f64, b: f64, c: f64| is_definite(&[vec![a, b], vec![b, c]]);
+        // Eigenvalues 3 and 1, 3 and -1, 2 and 0, -1 twice; then rows in other units.
+        assert!(definite(2.0, 1.0, 2.0));
+        assert!(!definite(1.0, 2.0, 1.0) && !definite(1.0, 1.0, 1.0) && !definite(-1.0, 0.0, -1.0));
+        assert!(definite(2e9, 1.0, 2e-9) && !definite(1e9, 2.0, 1e-9));
+        assert!(!definite(f64::NAN, 0.0, 1.0) && is_definite(&[]));
     }
 
     #[test]

@@ -335,22 +335,28 @@ impl<T: Real> AppliedLoads<'_, T> {
         [self.preload(of.preload) - push, slope]
     }
 
-    /// Elastic wrench of a law on body j of an opening; its opposite acts on body i.                            (51)
-    pub fn elastic_wrench(&self, opening: &Opening<T>, law: &ElasticLaw<'_>) -> Wrench<T> {
-        let mut sum = Wrench::zero();
+    /// Elastic forces and moments of a law on body j along the coordinates of an opening.
+    pub fn elastic_forces(&self, opening: &Opening<T>, law: &ElasticLaw<'_>) -> [T; 6] {
+        let mut forces = [T::zero(); 6];
+        for (k, of) in law.directions.iter().enumerate().filter(|(_, of)| of.acts()) {
+            [forces[k], _] = self.elastic_force(opening.coordinates[k], of);
+        }
         for entry in law.coupled.iter().flat_map(|matrix| &matrix.entries) {
-            let StiffnessEntry { row, column, value } = *entry;
-            let push = -self.number(value);
-            sum = opening.wrenches[row].times_plus(push * opening.coordinates[column], sum);
+            let (StiffnessEntry { row, column, value }, e) = (*entry, &opening.coordinates);
+            let stiffness = self.number(value);
+            forces[row] -= stiffness * e[column];
             if row != column {
-                sum = opening.wrenches[column].times_plus(push * opening.coordinates[row], sum);
+                forces[column] -= stiffness * e[row];
             }
         }
-        for (k, of) in law.directions.iter().enumerate().filter(|(_, of)| of.acts()) {
-            let [force, _] = self.elastic_force(opening.coordinates[k], of);
-            sum = opening.wrenches[k].times_plus(force, sum);
-        }
-        sum
+        forces
+    }
+
+    /// Elastic wrench of a law on body j of an opening; its opposite acts on body i.                            (51)
+    pub fn elastic_wrench(&self, opening: &Opening<T>, law: &ElasticLaw<'_>) -> Wrench<T> {
+        let forces = self.elastic_forces(opening, law).into_iter().zip(&opening.wrenches);
+        let acting = forces.filter(|(force, _)| !force.vanishes());
+        acting.fold(Wrench::zero(), |sum, (force, wrench)| wrench.times_plus(force, sum))
     }
 
     /// Unit wrench on body j that does work on a coordinate.

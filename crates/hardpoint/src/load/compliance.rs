@@ -8,8 +8,8 @@
 use crate::design::{BodyFixed, DesignMap, Geometry};
 use crate::linalg::Elimination;
 use crate::measure::{Instant, StepValues, bodies_asked_for};
-use crate::model::element::{Compliance, ElasticLaw};
-use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, NumberId, UnitForce, WheelId};
+use crate::model::element::Compliance;
+use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, UnitForce, WheelId};
 use crate::motion::mechanism::Mechanism;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{PairDirection, Seconds, pair_with_variables, values_along_variable};
@@ -25,8 +25,8 @@ type Number = Dual<Dual>;
 /// A direction of deflection.
 #[derive(Clone, Debug)]
 enum Deflection {
-    /// An elastic joint opens along a direction of this element, against a stiffness of its own besides the matrix.
-    Opening(ElementId, usize, Option<NumberId>),
+    /// An elastic joint opens along a direction of this element.
+    Opening(ElementId, usize),
     /// A driver is released: its load is zero.
     Released(DriverId),
 }
@@ -203,13 +203,12 @@ impl<'a> Compliances<'a> {
             for (c, &b) in chosen.iter().enumerate() {
                 // K_ab = K_a for a = b, + the entry of the matrix, + sum over springs k y_a y_b
                 let mut sum = Dual::zero();
-                if let (Deflection::Opening(e, row, own), Deflection::Opening(other, column, _)) =
+                if let (Deflection::Opening(e, row), Deflection::Opening(other, column)) =
                     (&self.ways[a], &self.ways[b])
                     && e == other
+                    && let Some(law) = self.model.elements[e.0].kind.elastic_law()
                 {
-                    let coupled = self.law(*e).and_then(|law| law.in_matrix(*row, *column));
-                    let numbers = [own.filter(|_| row == column), coupled];
-                    numbers.into_iter().flatten().for_each(|n| sum += geometry.numbers[n.0].v);
+                    law.stiffnesses(*row, *column).for_each(|n| sum += geometry.numbers[n.0].v);
                 }
                 for ((y_a, k), (y_b, _)) in deflections[a].iter().zip(&deflections[b]) {
                     sum += *k * *y_a * *y_b;
@@ -218,14 +217,6 @@ impl<'a> Compliances<'a> {
             }
         }
         stiffness
-    }
-
-    /// Law of an elastic joint.
-    fn law(&self, e: ElementId) -> Option<ElasticLaw<'_>> {
-        match self.model.elements[e.0].kind.force(self.model)?.compliance {
-            Compliance::Joint(joint) => Some(joint.law()),
-            Compliance::None | Compliance::Element => None,
-        }
     }
 
     /// Body point at the contact of a wheel, moved along a deflection. The road acts on this material point, while the
@@ -254,9 +245,8 @@ fn elastic_directions(model: &Model) -> (Vec<Deflection>, Vec<PairDirection>) {
         for (k, axis) in Vec3::AXES.into_iter().enumerate() {
             let twists = [Twist { w: Vec3::ZERO, v: axis }, Twist { w: axis, v: Vec3::ZERO }];
             for (direction, twist) in [k, 3 + k].into_iter().zip(twists) {
-                let own = law.directions[direction].stiffness;
-                if own.is_some() || law.in_matrix(direction, direction).is_some() {
-                    ways.push(Deflection::Opening(ElementId(e), direction, own));
+                if law.stiffnesses(direction, direction).next().is_some() {
+                    ways.push(Deflection::Opening(ElementId(e), direction));
                     directions.push(PairDirection::Opening(joint, twist));
                 }
             }

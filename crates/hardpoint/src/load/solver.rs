@@ -165,11 +165,10 @@ impl<'a> LoadSolver<'a> {
         let (Some(opening), Some(law)) = (applied.opening_at(element), kind.elastic_law()) else {
             return unknown;
         };
-        let displacement = opening.coordinates[direction];
-        let [own, _] = applied.elastic_force(displacement, &law.directions[direction]);
-        let coupled = (0..6)
-            .filter_map(|k| Some(applied.number(law.in_matrix(direction, k)?) * opening.coordinates[k]));
-        Deflection { displacement, force: own - coupled.sum::<f64>() }
+        Deflection {
+            displacement: opening.coordinates[direction],
+            force: applied.elastic_forces(&opening, &law)[direction],
+        }
     }
 
     /// Value of a given force or moment, with the sign of its law.

@@ -386,8 +386,7 @@ macro_rules! elements {
             to: PointRef => PointId,
             /// Direction of its z axis in the design configuration. Default: its axes are the global ones there.
             axis: Option<DirectionDraft> => Option<Direction>,
-            /// Direction of its x axis; of a direction that is not perpendicular to `axis`, the perpendicular part.
-            /// Required with `axis` if x and y differ in anything.
+            /// Direction of its x axis, or its part perpendicular to `axis`. Required with `axis` if x and y differ.
             axis2: Option<DirectionDraft> => Option<Direction>,
             /// Stiffness along x.
             x: NumberDraft => Stiffness,
@@ -528,10 +527,10 @@ impl ElasticLaw<'_> {
         self.directions.iter().all(|of| of.curve.is_none())
     }
 
-    /// Stiffness of a row and column in the design configuration without load, as far as numbers define it.
-    pub fn nominal(&self, row: usize, column: usize, value: impl Fn(NumberId) -> f64) -> f64 {
+    /// Numbers whose sum is the stiffness of a row and column in the design configuration without load.
+    pub fn stiffnesses(&self, row: usize, column: usize) -> impl Iterator<Item = NumberId> + use<> {
         let own = self.directions[row].stiffness.filter(|_| row == column);
-        [own, self.in_matrix(row, column)].into_iter().flatten().map(value).sum()
+        [own, self.in_matrix(row, column)].into_iter().flatten()
     }
 }
 
@@ -857,7 +856,11 @@ impl Model {
 
     /// True if the law of a given force has different values at the output times.
     pub fn varies(&self, force: ElementId) -> bool {
-        let Some(law) = self.elements[force.0].kind.law(self) else { return false };
+        self.elements[force.0].kind.law(self).is_some_and(|law| self.changes(law))
+    }
+
+    /// True if a law has different values at the output times.
+    pub fn changes(&self, law: &Law) -> bool {
         let mut values = self.times.iter().map(|t| law.at(*t).value());
         let first = values.next();
         values.any(|value| Some(value) != first)
@@ -867,12 +870,8 @@ impl Model {
     /// axes follow.
     pub(crate) fn axes_of(&self, e: ElementId) -> Option<([BodyId; 2], Mat3, [Option<Direction>; 2])> {
         let Properties { acts_on, axes, .. } = self.elements[e.0].kind.force(self)?;
-        let along = |axis| match axis {
-            Direction::Along(u) => Some(u),
-            Direction::Through(a, b) => (self.position(b) - self.position(a)).unit(),
-        };
-        let z = along(axes[0]?)?;
-        let given = axes[1].and_then(along).and_then(|d| (d - z * z.dot(d)).unit());
+        let z = self.vector(axes[0]?).unit()?;
+        let given = axes[1].and_then(|x| self.vector(x).unit()).and_then(|d| (d - z * z.dot(d)).unit());
         let x = given.unwrap_or_else(|| z.any_perpendicular());
         Some((acts_on.bodies(self), Mat3 { cols: [x, z.cross(x), z] }, axes))
     }

@@ -638,6 +638,31 @@ impl MeasureKind {
         }
     }
 
+    /// Direction in which it is positive, in words; empty if there is no fixed one.
+    pub fn positive(&self) -> &'static str {
+        match self {
+            Self::Wheel { what, .. } => what.positive(),
+            Self::Axle { what, .. } => what.positive(),
+            Self::Toe { .. } => WheelMeasure::Toe.positive(),
+            Self::Camber { .. } => WheelMeasure::Camber.positive(),
+            Self::Coordinate { .. }
+            | Self::Distance { .. }
+            | Self::Coordinates { .. }
+            | Self::Angle { .. }
+            | Self::Orientation { .. }
+            | Self::TransmissionAngle { .. }
+            | Self::Velocity { .. }
+            | Self::AngularVelocity { .. }
+            | Self::Acceleration { .. }
+            | Self::Curvature { .. }
+            | Self::Rate { .. }
+            | Self::Combination { .. }
+            | Self::Slope { .. }
+            | Self::Compliance { .. }
+            | loads!() => "",
+        }
+    }
+
     /// True if it is a compliance.
     pub fn is_compliance(&self) -> bool {
         self.compliance().is_some()
@@ -1003,11 +1028,15 @@ impl Model {
 
     /// The side of the vehicle that a spin axis points to in the design configuration.
     pub(crate) fn side_of_axis(&self, spin_axis: Direction) -> Side {
-        let e = match spin_axis {
-            Direction::Along(e) => e,
+        if self.vector(spin_axis).y < 0.0 { Side::Right } else { Side::Left }
+    }
+
+    /// A direction in the design configuration; of two hardpoints, as long as their distance.
+    pub(crate) fn vector(&self, direction: Direction) -> Vec3 {
+        match direction {
+            Direction::Along(u) => u,
             Direction::Through(a, b) => self.position(b) - self.position(a),
-        };
-        if e.y < 0.0 { Side::Right } else { Side::Left }
+        }
     }
 
     /// The directions fixed in bodies that a measure depends on.

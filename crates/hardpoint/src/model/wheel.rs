@@ -202,7 +202,7 @@ impl Side {
 }
 
 macro_rules! wheel_measures {
-    ($(#[$about:meta])* $name:ident, $need:ident: $of:ty; $(#[doc = $summary:literal] $variant:ident $text:literal $dimension:ident $what:expr;)*) => {
+    ($(#[$about:meta])* $name:ident, $need:ident: $of:ty; $(#[doc = $summary:literal] $variant:ident $text:literal $dimension:ident $what:expr, $positive:literal;)*) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum $name {
@@ -233,6 +233,11 @@ macro_rules! wheel_measures {
                 match self { $(Self::$variant => $what),* }
             }
 
+            /// Direction in which it is positive, in words; empty if there is no common one.
+            pub fn positive(self) -> &'static str {
+                match self { $(Self::$variant => $positive),* }
+            }
+
             /// The measure of that name.
             pub fn named(name: &str) -> Option<Self> {
                 Self::ALL.iter().copied().find(|m| m.name() == name)
@@ -250,124 +255,124 @@ wheel_measures! {
     /// Measures of a wheel. Formulas and signs are in `docs/measures.md`.
     WheelMeasure, needs: WheelRequirement;
     /// Heading of the wheel's plane; positive where its front is inboard.
-    Toe "toe" ANGLE WheelRequirement::Nothing;
+    Toe "toe" ANGLE WheelRequirement::Nothing, "toe-in";
     /// Lean of the wheel's plane; positive where its top is outboard.
-    Camber "camber" ANGLE WheelRequirement::Nothing;
+    Camber "camber" ANGLE WheelRequirement::Nothing, "top outboard";
     /// Lean of the wheel's plane as the vehicle's front view shows it; positive where its top is outboard.
-    CamberFront "camber_front" ANGLE WheelRequirement::Nothing;
+    CamberFront "camber_front" ANGLE WheelRequirement::Nothing, "top outboard";
     /// Heading of the wheel's plane since the design configuration; positive to the left.
-    SteerAngle "steer_angle" ANGLE WheelRequirement::Nothing;
+    SteerAngle "steer_angle" ANGLE WheelRequirement::Nothing, "to the left";
     /// Lean of the kingpin in side view; positive where its top is rearward.
-    Caster "caster" ANGLE WheelRequirement::Kingpin;
+    Caster "caster" ANGLE WheelRequirement::Kingpin, "top rearward";
     /// Lean of the kingpin in front view; positive where its top is inboard.
-    KingpinInclination "kingpin_inclination" ANGLE WheelRequirement::Kingpin;
+    KingpinInclination "kingpin_inclination" ANGLE WheelRequirement::Kingpin, "top inboard";
     /// Distance of the contact point outboard of the kingpin, on the ground.
-    ScrubRadius "scrub_radius" LENGTH WheelRequirement::Kingpin;
+    ScrubRadius "scrub_radius" LENGTH WheelRequirement::Kingpin, "";
     /// Distance of the wheel centre outboard of the kingpin, at the height of the centre.
-    SpindleOffset "spindle_offset" LENGTH WheelRequirement::Kingpin;
+    SpindleOffset "spindle_offset" LENGTH WheelRequirement::Kingpin, "";
     /// Distance of the contact point behind the kingpin, on the ground.
-    CasterTrail "caster_trail" LENGTH WheelRequirement::Kingpin;
+    CasterTrail "caster_trail" LENGTH WheelRequirement::Kingpin, "";
     /// The same perpendicular to the kingpin, in the wheel's side view.
-    MechanicalTrail "mechanical_trail" LENGTH WheelRequirement::Kingpin;
+    MechanicalTrail "mechanical_trail" LENGTH WheelRequirement::Kingpin, "";
     /// Distance of the wheel centre in front of the kingpin, at the height of the centre.
-    HubTrail "hub_trail" LENGTH WheelRequirement::Kingpin;
+    HubTrail "hub_trail" LENGTH WheelRequirement::Kingpin, "";
     /// Rise of the wheel centre since the design configuration.
-    WheelTravel "wheel_travel" LENGTH WheelRequirement::Nothing;
+    WheelTravel "wheel_travel" LENGTH WheelRequirement::Nothing, "bump";
     /// Way of the wheel centre rearward since the design configuration.
-    WheelRecession "wheel_recession" LENGTH WheelRequirement::Nothing;
+    WheelRecession "wheel_recession" LENGTH WheelRequirement::Nothing, "rearward";
     /// Distance of the contact point from the vehicle's plane of symmetry, outboard.
-    HalfTrack "half_track" LENGTH WheelRequirement::Nothing;
+    HalfTrack "half_track" LENGTH WheelRequirement::Nothing, "outboard";
     /// Growth of that since the design configuration.
-    HalfTrackChange "half_track_change" LENGTH WheelRequirement::Nothing;
+    HalfTrackChange "half_track_change" LENGTH WheelRequirement::Nothing, "outboard";
     /// Global x of the contact point.
-    ContactX "contact_x" LENGTH WheelRequirement::Nothing;
+    ContactX "contact_x" LENGTH WheelRequirement::Nothing, "forward";
     /// Global y of the contact point.
-    ContactY "contact_y" LENGTH WheelRequirement::Nothing;
+    ContactY "contact_y" LENGTH WheelRequirement::Nothing, "to the left";
     /// Global z of the contact point.
-    ContactZ "contact_z" LENGTH WheelRequirement::Nothing;
+    ContactZ "contact_z" LENGTH WheelRequirement::Nothing, "up";
     /// Growth of toe per wheel travel.
-    BumpSteer "bump_steer" ANGLE_PER_LENGTH WheelRequirement::Bump;
+    BumpSteer "bump_steer" ANGLE_PER_LENGTH WheelRequirement::Bump, "toe-in in bump";
     /// Growth of camber per wheel travel.
-    BumpCamber "bump_camber" ANGLE_PER_LENGTH WheelRequirement::Bump;
+    BumpCamber "bump_camber" ANGLE_PER_LENGTH WheelRequirement::Bump, "top outboard in bump";
     /// Growth of wheel recession per wheel travel.
-    BumpRecession "bump_recession" NUMBER WheelRequirement::Bump;
+    BumpRecession "bump_recession" NUMBER WheelRequirement::Bump, "rearward in bump";
     /// Growth of half track per wheel travel.
-    BumpScrub "bump_scrub" NUMBER WheelRequirement::Bump;
+    BumpScrub "bump_scrub" NUMBER WheelRequirement::Bump, "outboard in bump";
     /// Height of the roll centre above the ground, from the path of the contact point.
-    RollCentreHeight "roll_centre_height" LENGTH WheelRequirement::Bump;
+    RollCentreHeight "roll_centre_height" LENGTH WheelRequirement::Bump, "up";
     /// Height of the roll centre above the ground, from the instant centre of the wheel carrier in front view.
-    RollCentreHeightGeometric "roll_centre_height_geometric" LENGTH WheelRequirement::Bump;
+    RollCentreHeightGeometric "roll_centre_height_geometric" LENGTH WheelRequirement::Bump, "up";
     /// Global y of the instant centre in front view, at the contact point's x.
-    FrontCentreY "instant_centre_front_y" LENGTH WheelRequirement::Bump;
+    FrontCentreY "instant_centre_front_y" LENGTH WheelRequirement::Bump, "";
     /// Global z of the instant centre in front view, at the contact point's x.
-    FrontCentreZ "instant_centre_front_z" LENGTH WheelRequirement::Bump;
+    FrontCentreZ "instant_centre_front_z" LENGTH WheelRequirement::Bump, "";
     /// Global x of the instant centre in side view, at the contact point's y.
-    SideCentreX "instant_centre_side_x" LENGTH WheelRequirement::Bump;
+    SideCentreX "instant_centre_side_x" LENGTH WheelRequirement::Bump, "";
     /// Global z of the instant centre in side view, at the contact point's y.
-    SideCentreZ "instant_centre_side_z" LENGTH WheelRequirement::Bump;
+    SideCentreZ "instant_centre_side_z" LENGTH WheelRequirement::Bump, "";
     /// x component of the unit vector along the instant axis, about which a left wheel rises and a right one falls.
-    InstantAxisX "instant_axis_x" NUMBER WheelRequirement::Bump;
+    InstantAxisX "instant_axis_x" NUMBER WheelRequirement::Bump, "";
     /// y component of the unit vector along the instant axis, about which a left wheel rises and a right one falls.
-    InstantAxisY "instant_axis_y" NUMBER WheelRequirement::Bump;
+    InstantAxisY "instant_axis_y" NUMBER WheelRequirement::Bump, "";
     /// z component of the unit vector along the instant axis, about which a left wheel rises and a right one falls.
-    InstantAxisZ "instant_axis_z" NUMBER WheelRequirement::Bump;
+    InstantAxisZ "instant_axis_z" NUMBER WheelRequirement::Bump, "";
     /// Distance of the instant centre in front view inboard of the contact point.
-    SwingArmFront "swing_arm_front" LENGTH WheelRequirement::Bump;
+    SwingArmFront "swing_arm_front" LENGTH WheelRequirement::Bump, "";
     /// Distance of the instant centre in side view in front of the contact point.
-    SwingArmSide "swing_arm_side" LENGTH WheelRequirement::Bump;
+    SwingArmSide "swing_arm_side" LENGTH WheelRequirement::Bump, "";
     /// Shortening of the spring per wheel travel.
-    MotionRatio "motion_ratio" NUMBER WheelRequirement::Spring;
+    MotionRatio "motion_ratio" NUMBER WheelRequirement::Spring, "";
     /// Global y of where the planes of both arms meet in front view, at the contact point's x.
-    PlaneCentreFrontY "plane_centre_front_y" LENGTH WheelRequirement::Planes;
+    PlaneCentreFrontY "plane_centre_front_y" LENGTH WheelRequirement::Planes, "";
     /// Global z of where the planes of both arms meet in front view, at the contact point's x.
-    PlaneCentreFrontZ "plane_centre_front_z" LENGTH WheelRequirement::Planes;
+    PlaneCentreFrontZ "plane_centre_front_z" LENGTH WheelRequirement::Planes, "";
     /// Global x of where the planes of both arms meet in side view, at the contact point's y.
-    PlaneCentreSideX "plane_centre_side_x" LENGTH WheelRequirement::Planes;
+    PlaneCentreSideX "plane_centre_side_x" LENGTH WheelRequirement::Planes, "";
     /// Global z of where the planes of both arms meet in side view, at the contact point's y.
-    PlaneCentreSideZ "plane_centre_side_z" LENGTH WheelRequirement::Planes;
+    PlaneCentreSideZ "plane_centre_side_z" LENGTH WheelRequirement::Planes, "";
     /// Height of the roll centre above the ground, from where the planes of both arms meet in front view.
-    RollCentreHeightPlanes "roll_centre_height_planes" LENGTH WheelRequirement::Planes;
+    RollCentreHeightPlanes "roll_centre_height_planes" LENGTH WheelRequirement::Planes, "";
     /// Lean of the virtual steering axis in side view; positive where its top is rearward.
-    VirtualCaster "virtual_caster" ANGLE WheelRequirement::Steer;
+    VirtualCaster "virtual_caster" ANGLE WheelRequirement::Steer, "";
     /// Lean of the virtual steering axis in front view; positive where its top is inboard.
-    VirtualKingpinInclination "virtual_kingpin_inclination" ANGLE WheelRequirement::Steer;
+    VirtualKingpinInclination "virtual_kingpin_inclination" ANGLE WheelRequirement::Steer, "";
     /// Distance of the contact point outboard of the virtual steering axis, on the ground.
-    VirtualScrubRadius "virtual_scrub_radius" LENGTH WheelRequirement::Steer;
+    VirtualScrubRadius "virtual_scrub_radius" LENGTH WheelRequirement::Steer, "";
     /// Distance of the wheel centre outboard of the virtual steering axis, at the height of the centre.
-    VirtualSpindleOffset "virtual_spindle_offset" LENGTH WheelRequirement::Steer;
+    VirtualSpindleOffset "virtual_spindle_offset" LENGTH WheelRequirement::Steer, "";
     /// Distance of the contact point behind the virtual steering axis, on the ground.
-    VirtualCasterTrail "virtual_caster_trail" LENGTH WheelRequirement::Steer;
+    VirtualCasterTrail "virtual_caster_trail" LENGTH WheelRequirement::Steer, "";
     /// The same perpendicular to the virtual steering axis, in the wheel's side view.
-    VirtualMechanicalTrail "virtual_mechanical_trail" LENGTH WheelRequirement::Steer;
+    VirtualMechanicalTrail "virtual_mechanical_trail" LENGTH WheelRequirement::Steer, "";
     /// Distance of the wheel centre in front of the virtual steering axis, at the height of the centre.
-    VirtualHubTrail "virtual_hub_trail" LENGTH WheelRequirement::Steer;
+    VirtualHubTrail "virtual_hub_trail" LENGTH WheelRequirement::Steer, "";
     /// Part of the braking dive that the front suspension's geometry takes, 1 for all of it.
-    AntiDive "anti_dive" NUMBER WheelRequirement::Braking(VehicleEnd::Front);
+    AntiDive "anti_dive" NUMBER WheelRequirement::Braking(VehicleEnd::Front), "";
     /// Part of the braking lift that the rear suspension's geometry takes, 1 for all of it.
-    AntiLift "anti_lift" NUMBER WheelRequirement::Braking(VehicleEnd::Rear);
+    AntiLift "anti_lift" NUMBER WheelRequirement::Braking(VehicleEnd::Rear), "";
     /// Part of the driving squat that the rear suspension's geometry takes, 1 for all of it.
-    AntiSquat "anti_squat" NUMBER WheelRequirement::Driving(VehicleEnd::Rear);
+    AntiSquat "anti_squat" NUMBER WheelRequirement::Driving(VehicleEnd::Rear), "";
     /// Part of the driving lift that the front suspension's geometry takes, 1 for all of it.
-    AntiRise "anti_rise" NUMBER WheelRequirement::Driving(VehicleEnd::Front);
+    AntiRise "anti_rise" NUMBER WheelRequirement::Driving(VehicleEnd::Front), "";
 }
 
 wheel_measures! {
     /// Measures of an axle. Formulas and signs are in `docs/measures.md`.
     AxleMeasure, depends_on_driver: bool;
     /// Distance of the contact points across the vehicle.
-    Track "track" LENGTH false;
+    Track "track" LENGTH false, "";
     /// Sum of both toe angles.
-    TotalToe "total_toe" ANGLE false;
+    TotalToe "total_toe" ANGLE false, "toe-in";
     /// Steer angle of the outer wheel into the turn beyond what Ackermann's condition makes of the inner one's.
-    AckermannError "ackermann_error" ANGLE false;
+    AckermannError "ackermann_error" ANGLE false, "";
     /// Difference of both steer angles relative to Ackermann's, by the inner wheel; none below a mean of 1 degree.
-    Ackermann "ackermann" NUMBER false;
+    Ackermann "ackermann" NUMBER false, "";
     /// Radius of the path of the outer wheel's contact point, with the other axle straight ahead.
-    TurningRadius "turning_radius" LENGTH false;
+    TurningRadius "turning_radius" LENGTH false, "";
     /// Global y of the roll centre, from the paths of both contact points.
-    RollCentreY "axle_roll_centre_y" LENGTH true;
+    RollCentreY "axle_roll_centre_y" LENGTH true, "";
     /// Height of the roll centre above the ground, from the paths of both contact points.
-    RollCentreHeight "axle_roll_centre_height" LENGTH true;
+    RollCentreHeight "axle_roll_centre_height" LENGTH true, "";
 }
 
 impl WheelMeasure {

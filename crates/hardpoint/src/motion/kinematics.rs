@@ -612,13 +612,9 @@ impl<T: Real> State<T> {
         for (c, d) in topology.driven_coordinates() {
             [self.q[c.0], self.motion.speeds[0][c.0], self.motion.speeds[1][c.0]] = drivers[d.0];
         }
-        self.stand(topology, parts);
-        for r in RowId::all(0..topology.rows.len()) {
-            self.l[0][r.0] = self.wrench_of(topology, r);
-        }
+        self.stand_with_factors(topology, parts, drivers);
         self.rates_of_driven(topology);
         for b in topology.block_ids() {
-            self.linearise(topology, parts, drivers, b);
             let links = topology[b].link_ids();
             self.motion.follow::<0>(topology, links.clone(), &self.x);
             self.rates_of_twists::<1>(topology, links.clone());

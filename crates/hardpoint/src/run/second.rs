@@ -57,6 +57,15 @@ impl SecondDerivatives {
     }
 }
 
+impl SecondDerivatives {
+    /// Appends the derivatives of output m.
+    fn push(&mut self, m: usize, second: f64, first: f64) {
+        let is_known = self.outputs[m].known.by_position;
+        self.values.push(if is_known { second } else { f64::NAN });
+        self.firsts.push(if is_known { first } else { f64::NAN });
+    }
+}
+
 impl Analysis<'_> {
     /// Second derivatives at the design with variable k at `design[k]`, for pairs of directions, given by their
     /// indices.
@@ -104,7 +113,8 @@ impl Analysis<'_> {
     ) -> SecondDerivatives {
         let design = self.prepare(design, Scope::of_one(true, false));
         let (model, topology) = (self.model(), self.topology());
-        let seconds: BTreeSet<usize> = result.pairs.iter().map(|[_, w]| *w).collect();
+        let pairs = result.pairs.clone();
+        let seconds: BTreeSet<usize> = pairs.iter().map(|[_, w]| *w).collect();
         let of = |w: usize| {
             let along = (&design.values[..], &directions[w][..]);
             let direction = vec![Along::Design(directions[w].clone())];
@@ -120,8 +130,7 @@ impl Analysis<'_> {
             let mut found = Vec::new();
             for (w, curvatures) in &mut curvatures {
                 equilibrium.curve(one, t, curvatures, 0);
-                let mut first = Vec::new();
-                let mut by_variable = Vec::new();
+                let (mut first, mut by_variable) = (vec![0.0; count], Vec::new());
                 for v in 0..model.variables.len() {
                     let poses = curvatures.poses(v);
                     let instant = Instant::new(model, &curvatures.fixed[v], &poses);
@@ -137,15 +146,13 @@ impl Analysis<'_> {
             }
             result.times.push(t);
             let state = &one.mechanism.state;
-            for [u, w] in &result.pairs {
+            for [u, w] in &pairs {
                 let at = found.iter().position(|(of, ..)| of == w).expect("every second direction is solved");
                 let ((_, first, by_variable), (_, curvatures)) = (&found[at], &curvatures[at]);
                 let parts = || directions[*u].iter().enumerate().filter(|(_, rate)| **rate != 0.0);
-                for (m, output) in result.outputs.iter().enumerate() {
-                    let known = if output.known.by_position { 1.0 } else { f64::NAN };
-                    let second: f64 = parts().map(|(v, rate)| rate * by_variable[v][m]).sum();
-                    result.values.push(known * second);
-                    result.firsts.push(known * first[m]);
+                for m in 0..count {
+                    let second = parts().map(|(v, rate)| rate * by_variable[v][m]).sum();
+                    result.push(m, second, first[m]);
                 }
                 for body in 0..result.bodies {
                     let [along_u, curvature] = curvatures.twist_along(&directions[*u], body);
@@ -206,11 +213,10 @@ impl<'a> SecondDerivativeSolver<'a> {
                 self.poses[b] = self.seconds.pose(state, p, b);
             }
             let instant = Instant::new(model, &self.fixed[p], &self.poses);
-            let mut outputs = result.outputs.iter();
+            let mut m = 0;
             instant.all(|x| {
-                let known = if outputs.next().is_some_and(|o| o.known.by_position) { 1.0 } else { f64::NAN };
-                result.values.push(known * x.d.d);
-                result.firsts.push(known * x.v.d);
+                result.push(m, x.d.d, x.v.d);
+                m += 1;
             });
             let body = |b: usize| self.seconds.curvature(state, p, b);
             result.curvatures.extend((0..result.bodies).map(body));

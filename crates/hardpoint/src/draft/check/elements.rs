@@ -158,17 +158,13 @@ impl ElementCheck<'_, '_> {
     /// HP0208, HP0209: a second axis without a first, or parallel to it.
     pub fn check_axes(&mut self, [axis, axis2]: [Option<Direction>; 2]) {
         let model = self.model();
-        let along = |axis| match axis {
-            Direction::Along(u) => Some(u),
-            Direction::Through(a, b) => (model.position(b) - model.position(a)).unit(),
-        };
         match (axis, axis2) {
             (None, Some(_)) => {
                 let message = format!("`{}` has `axis2`, but no `axis`", self.name);
                 self.fault("HP0208", "axis2", message).help("add `axis`, the direction of its z axis");
             }
             (Some(z), Some(x)) => {
-                let (Some(z), Some(x)) = (along(z), along(x)) else { return };
+                let (Some(z), Some(x)) = (model.vector(z).unit(), model.vector(x).unit()) else { return };
                 if z.cross(x).norm() <= PERPENDICULAR_TOLERANCE {
                     let message = format!("the axes of `{}` are parallel to each other", self.name);
                     self.fault("HP0209", "axis2", message).help("give two different directions");

@@ -25,23 +25,23 @@ impl Checker<'_> {
             released.push(DriverId(d));
         }
         for index in 0..draft.forces.len() {
-            let found = self.model.elements.iter().find(|e| e.name == draft.forces[index].name);
-            if found.is_some_and(|e| e.kind.has_friction(&self.model)) {
-                let message =
-                    format!("`{}` is friction, which is not determined at rest", draft.forces[index].name);
-                let at = Here { section: Section::Forces, index }.key("type");
-                self.fault("HP0261", at, message)
+            let here = Here { section: Section::Forces, index };
+            let name = &draft.forces[index].name;
+            let Some(e) = self.model.elements.iter().find(|e| e.name == *name) else { continue };
+            if e.kind.has_friction(&self.model) {
+                let message = format!("`{name}` is friction, which is not determined at rest");
+                self.fault("HP0261", here.key("type"), message)
                     .note("an equilibrium has no motion that friction could oppose")
                     .help("remove it, or remove `equilibrium`");
+                continue;
             }
-        }
-        for index in 0..draft.forces.len() {
-            let found = self.model.elements.iter().find(|e| e.name == draft.forces[index].name);
-            let compliance = found.and_then(|e| e.kind.force(&self.model)).map(|force| force.compliance);
-            let Some(Compliance::Joint(elastic)) = compliance else { continue };
-            let Joint { name, kind, .. } = &self.model.joints[elastic.joint.0];
+            let Some(Compliance::Joint(elastic)) = e.kind.force(&self.model).map(|force| force.compliance)
+            else {
+                continue;
+            };
+            let Joint { name: joint, kind, .. } = &self.model.joints[elastic.joint.0];
             if kind.freedoms.is_none() {
-                let message = format!("joint `{name}` of `{}` cannot open", draft.forces[index].name);
+                let message = format!("joint `{joint}` of `{name}` cannot open");
                 let help = if kind.is_rod() {
                     "for a rod that is elastic along itself, replace the joint by a force of `type = \"spring\"` between its ends"
                 } else {
@@ -49,8 +49,7 @@ impl Checker<'_> {
                 };
                 let note =
                     format!("joints of type `{}` have no axes along which they open under load", kind.name);
-                let at = Here { section: Section::Forces, index }.key("joint");
-                self.fault("HP0261", at, message).note(note).help(help);
+                self.fault("HP0261", here.key("joint"), message).note(note).help(help);
             }
         }
         for index in 0..draft.measures.len() {
