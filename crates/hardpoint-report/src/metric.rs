@@ -240,43 +240,24 @@ impl MetricChange {
     }
 }
 
-/// Signs of measures: `docs/measures.md`.
-const POSITIVE: [(&[&str], &str); 13] = [
-    (&["toe", "total_toe"], "toe-in"),
-    (&["camber", "camber_front"], "top outboard"),
-    (&["steer_angle"], "to the left"),
-    (&["caster"], "top rearward"),
-    (&["kingpin_inclination"], "top inboard"),
-    (&["wheel_travel"], "bump"),
-    (&["wheel_recession"], "rearward"),
-    (&["half_track", "half_track_change"], "outboard"),
-    (&["bump_steer"], "toe-in in bump"),
-    (&["bump_camber"], "top outboard in bump"),
-    (&["bump_recession"], "rearward in bump"),
-    (&["bump_scrub"], "outboard in bump"),
-    (&["roll_centre_height", "roll_centre_height_geometric"], "up"),
-];
-
 /// Direction in which a metric is positive; of a slope that of its measure, and none of a size.
 fn positive(model: &Model, metric: &Metric) -> &'static str {
     match metric.take {
         Reduction::Range | Reduction::Rms(_) | Reduction::RmsAtPoints(_) => return "",
-        _ => {}
+        Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Change
+        | Reduction::Mean
+        | Reduction::Integral
+        | Reduction::Value(_)
+        | Reduction::Slope(_) => {}
     }
-    let kind = model.type_of(metric.of);
-    if let Some((_, positive)) = POSITIVE.iter().find(|(kinds, _)| kinds.contains(&kind)) {
-        return positive;
+    match metric.of {
+        OutputSource::Measure(k) => model.measures[k].kind.positive(),
+        // A model with wheels has vehicle axes, those of ISO 8855.
+        OutputSource::Point(_, axis) if model.wheels.is_empty() => ["along +x", "along +y", "along +z"][axis],
+        OutputSource::Point(_, axis) => ["forward", "to the left", "up"][axis],
     }
-    let axis = match metric.of {
-        OutputSource::Point(_, axis) => Some(axis),
-        OutputSource::Measure(_) => ["contact_x", "contact_y", "contact_z"].iter().position(|k| *k == kind),
-    };
-    // A model with wheels has vehicle axes, those of ISO 8855.
-    let axes = match model.wheels.is_empty() {
-        true => ["along +x", "along +y", "along +z"],
-        false => ["forward", "to the left", "up"],
-    };
-    axis.map_or("", |axis| axes[axis])
 }
 
 /// Description of a metric: `slope of toe over wheel_travel at 0 mm`.

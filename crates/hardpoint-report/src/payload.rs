@@ -115,8 +115,6 @@ pub fn report(
 /// Finished payload with the highest detail that fits into a page, packed already if its size had to be measured.
 fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payload, Option<Vec<u8>>) {
     let (model, solution) = (&request.file.model, &request.course.kept);
-    let times = &solution.motion.times;
-    let rigid = crate::rigid::solve(request.file, request.analysis.topology().formulation, times);
     let size = Size {
         steps: solution.motion.len(),
         bodies: model.bodies.len() - 1,
@@ -124,10 +122,11 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         outputs: solution.measured.outputs.len(),
         loads: loads::count(model) + model.elastic_directions().len() + model.given_forces().len(),
         compared: request.differences.iter().any(Option::is_some),
-        designs: request.changed.as_ref().map_or(0, ChangedDesign::designs) + usize::from(rigid.is_some()),
+        designs: request.changed.as_ref().map_or(0, ChangedDesign::designs)
+            + usize::from(request.summary.rigid.is_some()),
     };
     let alone = driver_rates(request);
-    let compose = |detail: Detail| finish(composed(request, alone.as_ref(), rigid.as_ref(), detail));
+    let compose = |detail: Detail| finish(composed(request, alone.as_ref(), detail));
     let levels = Detail::levels(size, Bodies::of(request.course));
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
@@ -166,12 +165,7 @@ fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
 }
 
 /// Payload with a given detail.
-fn composed(
-    request: &Request<'_>,
-    alone: Option<&DriverRates>,
-    rigid: Option<&Result<Solution, String>>,
-    detail: Detail,
-) -> Payload {
+fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) -> Payload {
     let &Request { file, course, summary, differences, ref changed, .. } = request;
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let compose = Compose::new(request, alone, detail);
@@ -182,7 +176,7 @@ fn composed(
     let loads = compose.solved_loads(&[]);
     let deflections = DeflectionFact::all(model, units, &loads);
     let mut notes = summary.model.all_notes();
-    match rigid {
+    match &summary.rigid {
         Some(Ok(solved)) => designs.push(compose.rigid(solved, &loads, &bodies, &values)),
         Some(Err(why)) => notes.push(why.clone()),
         None => {}

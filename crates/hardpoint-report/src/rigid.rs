@@ -37,11 +37,9 @@ fn rigid(model: &Model, times: &[f64]) -> Model {
 }
 
 /// Values of the metrics of the rigid mechanism, SI; `None` where there is none.
-pub(crate) fn metrics(file: &ModelFile, formulation: Formulation, times: &[f64]) -> Vec<Option<f64>> {
-    let model = &file.model;
-    let solved = if model.metrics.is_empty() { None } else { solve(file, formulation, times) };
-    let Some(Ok(solved)) = solved else { return vec![None; model.metrics.len()] };
-    let values = hardpoint::run::metrics(&rigid(model, times), &solved);
+pub(crate) fn metrics(model: &Model, solved: Option<&Solution>) -> Vec<Option<f64>> {
+    let Some(solved) = solved else { return vec![None; model.metrics.len()] };
+    let values = hardpoint::run::metrics(&rigid(model, &solved.motion.times), solved);
     let known = |(metric, found): (&Metric, hardpoint::run::MetricValue)| {
         found.value.filter(|_| has_metric(model, metric))
     };
@@ -51,11 +49,7 @@ pub(crate) fn metrics(file: &ModelFile, formulation: Formulation, times: &[f64])
 /// True if a metric has a meaning for the rigid mechanism: where no driver moves, nothing changes.
 pub(crate) fn has_metric(model: &Model, metric: &Metric) -> bool {
     let outputs = std::iter::once(metric.of).chain(metric.over);
-    let moves = model.drivers.iter().any(|driver| {
-        let mut values = model.times.iter().map(|t| driver.law.at(*t).value());
-        let first = values.next();
-        values.any(|value| Some(value) != first)
-    });
+    let moves = model.drivers.iter().any(|driver| model.changes(&driver.law));
     moves && outputs.into_iter().all(|output| is_kinematic(model, output))
 }
 

@@ -54,6 +54,9 @@ pub struct Summary {
     pub left_out: Vec<String>,
     /// Warnings and errors, including those shown on the terminal.
     pub diagnostics: Vec<Diagnostic>,
+    /// Rigid mechanism at the stored output times, for the page.
+    #[serde(skip)]
+    pub(crate) rigid: Option<Result<Solution, String>>,
 }
 
 /// Status at the end of a run.
@@ -224,7 +227,8 @@ impl Summary {
     /// Summary of a run, without files.
     pub fn new(file: &ModelFile, topology: &Topology, course: &Course) -> Self {
         let (model, solution) = (&file.model, &course.kept);
-        let rigid = rigid::metrics(file, topology.formulation, &solution.motion.times);
+        let rigid = rigid::solve(file, topology.formulation, &solution.motion.times);
+        let rigid_metrics = rigid::metrics(model, rigid.as_ref().and_then(|solved| solved.as_ref().ok()));
         let effort = solution.motion.effort;
         Self {
             generator: crate::GENERATOR,
@@ -258,7 +262,8 @@ impl Summary {
             stop: StopFact::of(file, solution),
             validity: Vec::new(),
             maps: Vec::new(),
-            metrics: MetricFact::all(model, file.units, course.curves(), &rigid),
+            metrics: MetricFact::all(model, file.units, course.curves(), &rigid_metrics),
+            rigid,
             sensitivities: rankings(model, file.units, course),
             timings: Timings::default(),
             files: Vec::new(),
