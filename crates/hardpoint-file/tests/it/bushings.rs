@@ -6,7 +6,8 @@ use hardpoint::space::{Mat3, Vec3};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::parse;
-use hardpoint_study::verify::{Options, verify};
+
+use crate::equilibrium::{Beside, verify_all};
 
 /// Round-off of elastic forces, relative to the largest.
 const EQUILIBRIUM: f64 = 1e-11;
@@ -336,15 +337,12 @@ fn sensitivities_of_a_suspension_on_bushings_are_those_of_solved_designs() {
             "push" => 2.0,
             _ => 1e-4,
         };
-        let at = |h: f64| {
-            let mut design = vec![0.0; model.variables.len()];
-            design[v] = h;
-            analysis.solve(Run::new().at(&design).without_sensitivities())
-        };
-        let [a, b, c, d] = [-2.0 * step, -step, step, 2.0 * step].map(at);
+        let designs = Beside::new(VariableId(v), step, |design| {
+            analysis.solve(Run::new().at(design).without_sensitivities())
+        });
         for (m, output) in here.measured.outputs.iter().enumerate() {
             let of = |s: &Solution| s.measured.value(0, m)[0];
-            let difference = (8.0 * (of(&c) - of(&b)) - (of(&d) - of(&a))) / (12.0 * step);
+            let difference = designs.difference(of);
             let exact = here.measured.d(0, VariableId(v), m)[0];
             let round_off = 1e-12 * of(&here).abs() / step;
             assert!(
@@ -355,9 +353,7 @@ fn sensitivities_of_a_suspension_on_bushings_are_those_of_solved_designs() {
             );
         }
     }
-    let found = verify(&analysis, &here, &Options::default(), |_| std::ops::ControlFlow::Continue(()));
-    let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
-    assert!(found.passed(), "{worst:?}");
+    verify_all(&model);
 }
 
 #[test]
@@ -493,11 +489,8 @@ fn a_coupled_stiffness_matrix_has_its_closed_form() {
                 );
             }
         }
-        let analysis = Analysis::new(&model).unwrap();
-        let here = analysis.run();
-        let found = verify(&analysis, &here, &Options::default(), |_| std::ops::ControlFlow::Continue(()));
-        let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
-        assert!(found.passed() && found.checks.len() == 2, "{worst:?}");
+        assert_eq!(model.variables.len(), 2);
+        verify_all(&model);
     }
 }
 

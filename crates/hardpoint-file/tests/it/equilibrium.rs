@@ -1,7 +1,7 @@
 //! Equilibria of mechanisms with elastic joints: published data of a double wishbone on four bushings and of a lever in
 //! closed form, limits, identities, and what must not matter.
 
-use hardpoint::model::Model;
+use hardpoint::model::{Model, VariableId};
 use hardpoint::motion::StopKind;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
@@ -396,7 +396,7 @@ fn the_answer_does_not_depend_on_the_cut_joints() {
             let (a, b) = (first.measured.value(0, m)[0], other.measured.value(0, m)[0]);
             near(b, a, 1e-10 * (1.0 + a.abs()), &format!("{} with {cut} cut", output.name));
             for v in 0..first.measured.variables {
-                let v = hardpoint::model::VariableId(v);
+                let v = VariableId(v);
                 let (a, b) = (first.measured.d(0, v, m)[0], other.measured.d(0, v, m)[0]);
                 if a.is_finite() {
                     near(b, a, 1e-8 * (1.0 + a.abs()), &format!("d {} with {cut} cut", output.name));
@@ -428,19 +428,15 @@ fn sensitivities_are_those_of_solved_designs() {
     let analysis = Analysis::new(&model).unwrap();
     let here = analysis.run();
     for v in 0..model.variables.len() {
-        let step = 5e-4 * model.natural_step(hardpoint::model::VariableId(v));
-        let at = |h: f64| {
-            let mut design = vec![0.0; model.variables.len()];
-            design[v] = h;
-            analysis.solve(Run::new().at(&design).without_sensitivities())
-        };
-        let designs = [step, -step, 2.0 * step, -2.0 * step].map(at);
+        let v = VariableId(v);
+        let step = 5e-4 * model.natural_step(v);
+        let designs =
+            Beside::new(v, step, |design| analysis.solve(Run::new().at(design).without_sensitivities()));
         for (m, output) in here.measured.outputs.iter().enumerate() {
-            let [a, b, c, d] = designs.each_ref().map(|run| run.measured.value(0, m)[0]);
-            // The error is of the fourth order in the step.
-            let difference = (8.0 * (a - b) - (c - d)) / (12.0 * step);
-            let exact = here.measured.d(0, hardpoint::model::VariableId(v), m)[0];
-            let what = format!("d {} / d {}", output.name, model.variables[v].name);
+            let a = here.measured.value(0, m)[0];
+            let difference = designs.difference(|run| run.measured.value(0, m)[0]);
+            let exact = here.measured.d(0, v, m)[0];
+            let what = format!("d {} / d {}", output.name, model.variables[v.0].name);
             // Round-off of the values over the step; that of positions is in proportion to the mechanism's size, 1 m.
             let size = if output.name.contains("_per_") { 1e-12 * a.abs() } else { 1e-14 * (1.0 + a.abs()) };
             near(exact, difference, 1e-7 * difference.abs() + size / step, &what);
@@ -448,15 +444,44 @@ fn sensitivities_are_those_of_solved_designs() {
     }
 }
 
-#[test]
-fn sensitivities_are_verified() {
-    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
-    let model = file(&wishbone(at, &AS_PUBLISHED)).model;
-    let analysis = Analysis::new(&model).unwrap();
+/// Asserts that all sensitivities of a model agree with differences of re-solved designs.
+pub(crate) fn verify_all(model: &Model) {
+    let analysis = Analysis::new(model).unwrap();
     let options = Options::default();
     let found = verify(&analysis, &analysis.run(), &options, |_| std::ops::ControlFlow::Continue(()));
     let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
     assert!(found.passed() && found.checks.len() == model.variables.len(), "{worst:?}");
+}
+
+/// Solutions beside a design, for differences whose error is of the fourth order in the step.
+pub(crate) struct Beside {
+    /// At one step forward and back, and at two.
+    pub runs: [Solution; 4],
+    step: f64,
+}
+
+impl Beside {
+    /// Solutions at steps of a variable.
+    pub fn new(variable: VariableId, step: f64, solve: impl Fn(&[f64]) -> Solution) -> Self {
+        let at = |h: f64| {
+            let mut design = vec![0.0; variable.0 + 1];
+            design[variable.0] = h;
+            solve(&design)
+        };
+        Self { runs: [step, -step, 2.0 * step, -2.0 * step].map(at), step }
+    }
+
+    /// Derivative of a value by the variable.
+    pub fn difference(&self, of: impl Fn(&Solution) -> f64) -> f64 {
+        let [a, b, c, d] = self.runs.each_ref().map(of);
+        (8.0 * (a - b) - (c - d)) / (12.0 * self.step)
+    }
+}
+
+#[test]
+fn sensitivities_are_verified() {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    verify_all(&file(&wishbone(at, &AS_PUBLISHED)).model);
 }
 
 /// The double wishbone with axes of its arms through hardpoints; as joints, or with bushings in the place of those that
@@ -497,7 +522,7 @@ fn a_bushing_with_axes_is_the_elastic_joint_that_closes_a_loop() {
         let same = bushings.measured.index(&output.name).unwrap();
         let (a, b) = (joints.measured.value(0, m)[0], bushings.measured.value(0, same)[0]);
         near(b, a, 1e-10 * (1.0 + a.abs()), &output.name);
-        for v in (0..joints.measured.variables).map(hardpoint::model::VariableId) {
+        for v in (0..joints.measured.variables).map(VariableId) {
             let (a, b) = (joints.measured.d(0, v, m)[0], bushings.measured.d(0, v, same)[0]);
             if a.is_finite() {
                 near(b, a, 1e-8 * (1.0 + a.abs()), &format!("d {}", output.name));
@@ -508,12 +533,7 @@ fn a_bushing_with_axes_is_the_elastic_joint_that_closes_a_loop() {
 
 #[test]
 fn sensitivities_of_bushings_with_axes_are_verified() {
-    let model = file(&wishbone_on_axes_through_hardpoints(true)).model;
-    let analysis = Analysis::new(&model).unwrap();
-    let options = Options::default();
-    let found = verify(&analysis, &analysis.run(), &options, |_| std::ops::ControlFlow::Continue(()));
-    let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
-    assert!(found.passed() && found.checks.len() == model.variables.len(), "{worst:?}");
+    verify_all(&file(&wishbone_on_axes_through_hardpoints(true)).model);
 }
 
 /// The double wishbone with a tie rod that is elastic along itself.
@@ -808,7 +828,7 @@ fn second_derivatives_are_symmetric_and_those_of_solved_designs() {
     let model = file(&text).model;
     let analysis = Analysis::new(&model).unwrap();
     let count = model.variables.len();
-    let natural = |v: usize| model.natural_step(hardpoint::model::VariableId(v));
+    let natural = |v: usize| model.natural_step(VariableId(v));
     let unit = |v: usize| -> Vec<f64> { (0..count).map(|k| if k == v { natural(v) } else { 0.0 }).collect() };
     let directions: Vec<Vec<f64>> = (0..count).map(unit).collect();
     let pairs: Vec<[usize; 2]> = (0..count).flat_map(|u| (0..count).map(move |w| [u, w])).collect();
@@ -816,10 +836,11 @@ fn second_derivatives_are_symmetric_and_those_of_solved_designs() {
     assert!(second.stop.is_none(), "{:?}", second.stop);
     let step = 6e-4;
     for w in 0..count {
-        let designs = [step, -step, 2.0 * step, -2.0 * step].map(|h| {
-            let design: Vec<f64> = unit(w).iter().map(|x| h * x).collect();
+        let of = |design: &[f64]| {
+            let design: Vec<f64> = design.iter().map(|x| x * natural(w)).collect();
             analysis.solve(Run::new().at(&design))
-        });
+        };
+        let designs = Beside::new(VariableId(w), step, of);
         for u in 0..count {
             for (m, output) in second.outputs.iter().enumerate() {
                 let here = second.value(0, u * count + w, m);
@@ -829,11 +850,9 @@ fn second_derivatives_are_symmetric_and_those_of_solved_designs() {
                 }
                 let [of_u, of_w] = [u, w].map(|v| &model.variables[v].name);
                 let what = format!("d2 {} / d {of_u} d {of_w}", output.name);
-                let first =
-                    |run: &Solution| run.measured.d(0, hardpoint::model::VariableId(u), m)[0] * natural(u);
-                let [a, b, c, d] = designs.each_ref().map(first);
+                let first = |run: &Solution| run.measured.d(0, VariableId(u), m)[0] * natural(u);
                 // The error is of the fourth order in the step, and round-off over it.
-                let difference = (8.0 * (a - b) - (c - d)) / (12.0 * step);
+                let (difference, a) = (designs.difference(first), first(&designs.runs[0]));
                 near(here, difference, 1e-6 * difference.abs() + 1e-9 * a.abs() + 1e-12, &what);
                 near(here, second.value(0, w * count + u, m), 1e-9 * here.abs() + 1e-14, &what);
             }
