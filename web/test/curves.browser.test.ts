@@ -24,22 +24,22 @@ const change = (name: string, by: number) => slide(page, `[data-testid=variable-
 const numberOf = (text: string) => Number(text.replaceAll('−', '-'))
 
 describe('after a change', () => {
-  test('the checks have the numbers of the cards, or the heading of the design that theirs belong to', async () => {
+  test('the metrics have the numbers of the cards, or the heading of the design that theirs belong to', async () => {
     await open('front_axle')
     const card = async () => numberOf(await page.getByTestId('card-bump_steer').getByTestId('card-value').innerText())
     const fact = () =>
       page
-        .getByTestId('checks')
+        .getByTestId('metrics')
         .locator('tr', { hasText: /^bump_steer/ })
         .first()
         .innerText()
     const before = await card()
-    await page.getByTestId('tab-checks').click()
-    const heading = page.getByTestId('checks').getByTestId('of-design')
+    await page.getByTestId('tab-metrics').click()
+    const heading = page.getByTestId('metrics').getByTestId('of-design')
     expect(await heading.isVisible()).toBe(false)
     await page.getByTestId('tab-variables').click()
     await change('upper_ball_x', 10)
-    await page.getByTestId('tab-checks').click()
+    await page.getByTestId('tab-metrics').click()
     await page.waitForFunction(
       (before) => document.querySelector('[data-testid=card-bump_steer] .figure-now')!.textContent !== before,
       String(before),
