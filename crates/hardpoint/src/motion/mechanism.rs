@@ -348,8 +348,9 @@ impl<'m> Mechanism<'m> {
 
     /// Values of the tree coordinates; 0 for those of balls.
     pub fn coordinates(&self) -> impl Iterator<Item = f64> + '_ {
-        let ball = self.topology.links.iter().flat_map(|l| &l.steps).filter(|s| s.freedom == Freedom::Ball);
-        assert!(ball.map(|s| self.state.q[s.first.0]).all(|q| q == 0.0));
+        for step in self.topology.links.iter().flat_map(|l| &l.steps) {
+            assert!(step.freedom != Freedom::Ball || self.state.q[step.first.0] == 0.0);
+        }
         self.state.q.iter().copied()
     }
 }
