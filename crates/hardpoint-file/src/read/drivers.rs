@@ -112,6 +112,16 @@ static FORMS: &[(Table, Read)] = &[
     ),
     (
         driven! {
+            "The way over time, in the length unit", ", counted from the design configuration.";
+            /// The height of the contact point of a wheel, which the pad of a test rig prescribes.
+            "DrivenContact":
+            /// The wheel's name.
+            must "wheel": Shape::Name("a wheel"), "\"front_left\"";
+        },
+        |r, fields, _| r.name_of(fields, "wheel").map(DrivenDraft::Contact),
+    ),
+    (
+        driven! {
             "The measure's value over time, in its unit", ".";
             /// The value of a measure: `coordinate`, `position`, `distance`, `toe`, `angle` with `about`; of a wheel
             /// `toe`, `steer_angle`, `wheel_travel` or `wheel_recession`.

@@ -398,6 +398,7 @@ fn the_planar_shorthand_of_every_driver_equals_its_long_form() {
                     "own = { type = \"angle\", from = { body = \"ground\", axis = <1 0> }, to = { body = \"c\", axis = <1 0> }<about> }\n",
                 ),
             ],
+            "DrivenContact" => continue, // wheels are in space
             other => panic!("no planar mechanism for `{other}`"),
         };
         for (keys, measure) in cases {

@@ -308,6 +308,9 @@ pub(crate) fn forms_of_drivers(hold: Hold<'_>) {
             "DrivenOrientation" => {
                 vec![("body = \"left_b\", about = [0.2, 0.1, 1]".into(), none(""), false, &[])]
             }
+            "DrivenContact" => {
+                vec![("wheel = \"left\"".into(), wheel.to_owned(), false, &["steer_angle"])]
+            }
             "DrivenMeasure" => {
                 let mut all: Vec<(String, String, bool, &[&str])> = Vec::new();
                 for m in measured {

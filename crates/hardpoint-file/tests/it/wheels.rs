@@ -6,6 +6,7 @@ use std::path::Path;
 
 use hardpoint::model::{VariableId, VehicleEnd, WheelMeasure, WheelRequirement};
 use hardpoint::space::Vec3;
+use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::{ModelFile, parse};
 use hardpoint_study::verify::{self, verify};
@@ -741,4 +742,82 @@ fn the_other_wheel_in_a_mirror_has_the_same_planes_spring_and_steering_axis() {
             assert!((x - y).abs() < 1e-9 * (1.0 + x.abs()), "{name}: {x} {y}");
         }
     }
+}
+
+/// The front axle on the pads of a test rig, with a wheel load.
+fn on_pads() -> String {
+    let text = text("front_axle");
+    let pad = text.replace(
+        "left_bump = { point = \"left_wheel_centre\", along = \"z\",",
+        "left_bump = { wheel = \"left\",",
+    );
+    assert_ne!(pad, text);
+    pad.replace("[measures]", "[measures]\nleft_load = { type = \"driver_force\", driver = \"left_bump\" }\nright_load = { type = \"driver_force\", driver = \"right_bump\" }")
+        + "\n[forces]\nleft_up = { type = \"wheel_force\", wheel = \"left\", up = 3000 }\n"
+}
+
+#[test]
+fn a_pad_prescribes_the_height_of_the_contact_point() {
+    const SAME: f64 = 1e-11;
+    let model = parsed(&on_pads()).model;
+    let [relative, absolute] = [Formulation::Relative, Formulation::Absolute].map(|formulation| {
+        let solution = Analysis::with(&model, formulation).unwrap().run();
+        assert!(solution.stop.is_none(), "{:?}", solution.stop);
+        solution
+    });
+    let of = |s: &Solution, k: usize, name: &str| s.measured.value(k, s.measured.index(name).unwrap());
+    let (amplitude, speed) = (0.06, 4.0 * std::f64::consts::PI);
+    let start = of(&relative, 0, "left.contact_z")[0];
+    for k in 0..relative.motion.len() {
+        let t = relative.motion.times[k];
+        let (s, c) = (speed * t).sin_cos();
+        // The law, its rate and its acceleration.
+        let law = [start + amplitude * s, amplitude * speed * c, -amplitude * speed * speed * s];
+        let found = of(&relative, k, "left.contact_z");
+        for (n, (found, law)) in found.iter().zip(law).enumerate() {
+            assert!((found - law).abs() <= SAME * speed.powi(n as i32), "{n} at {t}: {found} {law}");
+        }
+        // The wheel centre does not move as far.
+        let travel = of(&relative, k, "left.wheel_travel")[0];
+        assert!((travel - (law[0] - start)).abs() < 3e-3);
+        // A vertical force at the contact is that of the pad; the mirror has given the right wheel the same.
+        let [left, right] = ["left_load", "right_load"].map(|name| of(&relative, k, name)[0]);
+        assert!((left + 3000.0).abs() < 1e-7 && (right + 3000.0).abs() < 1e-7, "{left} {right} at {t}");
+        for name in ["left.toe", "left.camber", "right.toe", "right.wheel_travel", "left.bump_steer"] {
+            let (a, b) = (of(&relative, k, name)[0], of(&absolute, k, name)[0]);
+            assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()), "{name} {a} {b}");
+        }
+    }
+    let farthest = (0..relative.motion.len())
+        .map(|k| of(&relative, k, "left.wheel_travel")[0] - of(&relative, k, "left.contact_z")[0] + start)
+        .fold(0.0_f64, |most, x| most.max(x.abs()));
+    assert!(farthest > 1e-5, "pad and wheel centre move alike: {farthest}");
+}
+
+#[test]
+fn sensitivities_on_a_pad_are_those_of_solved_designs() {
+    let model = parsed(&on_pads()).model;
+    let analysis = Analysis::new(&model).unwrap();
+    let found =
+        verify(&analysis, &analysis.run(), &verify::Options::default(), |_| ControlFlow::Continue(()));
+    let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
+    assert!(found.passed(), "{worst:?}");
+}
+
+#[test]
+fn a_pad_requires_a_wheel_with_a_contact_point() {
+    let text = on_pads();
+    let faults = [
+        text.replace("left_bump = { wheel = \"left\",", "left_bump = { wheel = \"lefft\","),
+        text.replace(
+            "spin_axis = { through = [\"left_spindle\", \"left_wheel_centre\"] }",
+            "spin_axis = [0, 0, 1]",
+        ),
+        text.replace(
+            "left_bump = { wheel = \"left\",",
+            "left_bump = { wheel = \"left\", counted_from = \"zero\",",
+        ),
+    ];
+    let codes = faults.map(|text| parse(&text, "pad.toml").unwrap_err().list()[0].code);
+    assert_eq!(codes, ["HP0204", "HP0231", "HP0213"]);
 }

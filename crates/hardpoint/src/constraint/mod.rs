@@ -17,6 +17,7 @@ mod convel;
 mod distance;
 mod dot1;
 mod dot2;
+mod lowest_point;
 mod spherical;
 
 use crate::number::{Jet, Rates};
@@ -53,6 +54,24 @@ pub enum Row {
     Contact,
     /// No relative rotation of the markers about the bisector of z_i and z_j.
     ConstantVelocity,
+    /// Height along z_i of the lowest point of a disc about z_j equals its design value plus f.
+    LowestPoint(Radius),
+}
+
+/// Radius of a wheel, which is constant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Radius(u64);
+
+impl Radius {
+    /// Radius, m.
+    pub const fn of(metres: f64) -> Self {
+        Self(metres.to_bits())
+    }
+
+    /// Returns the radius, m.
+    pub const fn metres(self) -> f64 {
+        f64::from_bits(self.0)
+    }
 }
 
 /// d = 0.
@@ -111,7 +130,15 @@ impl<T: Real> MarkerPair<T> {
 impl Row {
     /// True if the constrained quantity has its design value as a target, rather than zero.
     pub fn keeps_design_value(self) -> bool {
-        matches!(self, Self::Distance | Self::Course | Self::Cosine | Self::Offset | Self::Contact)
+        matches!(
+            self,
+            Self::Distance
+                | Self::Course
+                | Self::Cosine
+                | Self::Offset
+                | Self::Contact
+                | Self::LowestPoint(_)
+        )
     }
 
     /// Value of the row for a target of zero; angles are unwrapped to within half a turn of `near`.
@@ -162,6 +189,7 @@ impl Row {
             Self::Heading => angle::heading_residual(ends, target),
             Self::Course => angle::course_residual(ends, target),
             Self::ConstantVelocity => convel::residual(ends, target),
+            Self::LowestPoint(radius) => lowest_point::residual(radius, ends, target),
             _ => unreachable!("a common row"),
         }
     }
@@ -187,6 +215,7 @@ impl Row {
             Self::Heading => angle::heading_wrench(ends),
             Self::Course => angle::course_wrench(ends),
             Self::ConstantVelocity => convel::wrench(ends),
+            Self::LowestPoint(radius) => lowest_point::wrench(radius, ends),
             _ => unreachable!("a common row"),
         }
     }
@@ -236,6 +265,7 @@ impl Row {
                 | Self::Distance
                 | Self::Offset
                 | Self::Contact
+                | Self::LowestPoint(_)
         )
     }
 
@@ -256,6 +286,7 @@ impl Row {
             Self::Offset => "Dot-2: displacement along z_i".into(),
             Self::Contact => "distance from the curve".into(),
             Self::ConstantVelocity => "constant velocity: no turn about the halving line".into(),
+            Self::LowestPoint(_) => "height of the lowest point along z_i".into(),
         }
     }
 }
@@ -303,7 +334,7 @@ mod tests {
     use super::*;
 
     /// All kinds of rows; add new constraints here.
-    const BATTERY: [Row; 22] = [
+    const BATTERY: [Row; 23] = [
         Row::Point(0),
         Row::Point(1),
         Row::Point(2),
@@ -323,6 +354,7 @@ mod tests {
         Row::Offset,
         Row::Contact,
         Row::ConstantVelocity,
+        Row::LowestPoint(Radius::of(0.3)),
         Row::PointOnBase(0),
         Row::PointOnBase(1),
         Row::PointOnBase(2),

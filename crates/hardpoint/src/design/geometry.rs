@@ -70,6 +70,8 @@ pub struct JointConstants<T = f64> {
     pub course: T,
     /// Distance of marker j from the curve of marker i, positive on its left, m.
     pub contact: T,
+    /// Height of the lowest point of a wheel above marker i, m.
+    pub height: T,
 }
 
 impl<T: Real> JointConstants<T> {
@@ -81,6 +83,7 @@ impl<T: Real> JointConstants<T> {
             Row::Cosine => self.cosine,
             Row::Course => self.course,
             Row::Contact => self.contact,
+            Row::LowestPoint(_) => self.height,
             _ => T::zero(),
         }
     }
@@ -92,6 +95,7 @@ impl<T: Real> JointConstants<T> {
             cosine: f(self.cosine),
             course: f(self.course),
             contact: f(self.contact),
+            height: f(self.height),
         }
     }
 
@@ -100,8 +104,8 @@ impl<T: Real> JointConstants<T> {
     }
 
     /// Returns all constants.
-    pub(crate) fn numbers(&self) -> [T; 5] {
-        [self.distance, self.offset, self.cosine, self.contact, self.course]
+    pub(crate) fn numbers(&self) -> [T; 6] {
+        [self.distance, self.offset, self.cosine, self.contact, self.course, self.height]
     }
 
     /// Returns the largest magnitude of the constants.

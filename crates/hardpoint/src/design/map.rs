@@ -14,7 +14,7 @@
 //! | `u` of a change | `U_theta` (3.3) | the same as rates of the 3-1-3 Euler angles, rad per unit |
 //! | [`DesignMap::field_along`] | `dD/dtau` (5.5) | `d/db` of all of it, by duals `b + eps` |
 
-use crate::constraint::Row;
+use crate::constraint::{MarkerPair, Row};
 use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity};
 use crate::law::Law;
 use crate::model::{
@@ -472,7 +472,12 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
         let has_course = joint.kind.coordinates.iter().any(|c| c.row == Row::Course);
         let [x_i, y_i] = [0, 1].map(|k| m_i.rot.cols[k]);
         let course = if has_course { y_i.dot(z_j).atan2(x_i.dot(z_j)) } else { zero };
-        JointConstants { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), course, contact }
+        let lowest = joint.kind.coordinates.iter().find(|c| matches!(c.row, Row::LowestPoint(_)));
+        let height = lowest.map_or(zero, |c| {
+            let axes = Mat3::IDENTITY.spread();
+            c.row.residual(&MarkerPair { i: m_i, j: m_j, axes }, zero)
+        });
+        JointConstants { distance, offset: z_i.dot(d), cosine: z_i.dot(z_j), course, contact, height }
     }
 
     /// Returns the axes of a force in the frames of its bodies, if it has axes of its own.

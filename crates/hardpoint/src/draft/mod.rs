@@ -354,6 +354,8 @@ pub enum DrivenDraft {
     },
     /// Value of a measure, such as wheel travel or a steer angle.
     Measure(String),
+    /// Height of the contact point of a wheel, by its name.
+    Contact(String),
 }
 
 /// Quantity of a wheel measure, if a driver can prescribe it.
@@ -378,6 +380,7 @@ impl DrivenDraft {
             Self::Position { .. } => joint::TRAVEL.quantity_of(None),
             Self::Distance { .. } => joint::LEG.quantity_of(None),
             Self::Orientation { .. } => joint::HEADING.quantity_of(None),
+            Self::Contact(_) => Some(Quantity::Length),
             Self::Measure(name) => match measures.iter().find(|m| m.name == *name).map(|m| &m.kind) {
                 // Measures listed by a wheel, such as `WHEEL.toe`, may be added after the drivers. Their names imply
                 // the quantity.

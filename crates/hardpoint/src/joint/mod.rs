@@ -39,6 +39,7 @@ mod inline;
 mod inplane;
 mod leg;
 mod orientation;
+mod pad;
 mod parallel;
 mod pin_in_slot;
 mod planar;
@@ -55,6 +56,7 @@ use crate::constraint::Row;
 pub(crate) use course::COURSE;
 pub use elastic::DIRECTION_NAMES;
 pub(crate) use elastic::{DIRECTIONS, elastic, free_directions, with_turns};
+pub(crate) use pad::pad;
 
 /// Exports and lists the types.
 macro_rules! joints {
@@ -235,7 +237,8 @@ impl CoordinateType {
             | Row::Cosine
             | Row::Offset
             | Row::Contact
-            | Row::ConstantVelocity => CoordinateAxis::Scalar,
+            | Row::ConstantVelocity
+            | Row::LowestPoint(_) => CoordinateAxis::Scalar,
         }
     }
 }

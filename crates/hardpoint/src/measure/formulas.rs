@@ -272,7 +272,8 @@ impl<'a, T: Real> Instant<'a, T> {
             | Row::Cosine
             | Row::Offset
             | Row::Contact
-            | Row::ConstantVelocity => (origin(1) - origin(0)).norm(),
+            | Row::ConstantVelocity
+            | Row::LowestPoint(_) => (origin(1) - origin(0)).norm(),
         }
     }
 }

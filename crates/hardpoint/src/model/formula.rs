@@ -111,7 +111,8 @@ impl Model {
             | Row::Cosine
             | Row::Offset
             | Row::Contact
-            | Row::ConstantVelocity => 0.0,
+            | Row::ConstantVelocity
+            | Row::LowestPoint(_) => 0.0,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Checks of driven quantities: a coordinate of a joint, or of an unnamed joint made for the driver.
 
-use crate::constraint::Row;
+use crate::constraint::{Radius, Row};
 use crate::draft::measure::not_drivable;
 use crate::draft::{
     DirectionDraft, DraftLocation, DrivenDraft, DriverDraft, MeasureKindDraft, PointRef, RayDraft, Section,
@@ -100,6 +100,7 @@ impl Checker<'_> {
                 self.driven_joint(d, &joint::HEADING, [base, body], [at, at], Some(axes), Zero::None)
             }
             DrivenDraft::Measure(name) => self.driven_measure(d, name, here),
+            DrivenDraft::Contact(wheel) => self.driven_contact(d, wheel, here),
         }
     }
 
@@ -135,6 +136,27 @@ impl Checker<'_> {
         let BodyPoint { body, at, .. } = self.model.points[point.0];
         let axes = Axes { axis, axis2: None, frames: [frame_along(z, z.any_perpendicular()); 2] };
         self.driven_joint(d, &joint::TRAVEL, [GROUND, body], [at, at], Some(axes), Zero::Position)
+    }
+
+    /// Drives the height of the contact point of a wheel, from the design configuration.
+    fn driven_contact(&mut self, d: &DriverDraft, wheel: &str, here: Here) -> Option<Driven> {
+        let draft = self.draft;
+        let names = draft.wheels.iter().map(|w| w.name.as_str());
+        let number = self.find("wheel", wheel, here.key("wheel"), names)?;
+        let written = &draft.wheels[number];
+        // The check of wheels reports the errors of the wheel itself.
+        let faults = self.faults.len();
+        let nominal = self.nominal_wheel(written, number);
+        self.faults.truncate(faults);
+        let (body, centre, _, spin_axis) = nominal?;
+        let (up, spin) = (Vec3::AXES[2], self.vector(spin_axis)?.unit()?);
+        if !(written.radius > 0.0 && written.radius.is_finite()) || up.cross(spin).norm() < MIN_SINE {
+            return None;
+        }
+        let frames = [up, spin].map(|z| frame_along(z, z.any_perpendicular()));
+        let axes = Axes { axis: Direction::Along(up), axis2: Some(spin_axis), frames };
+        let kind = joint::pad(Radius::of(written.radius));
+        self.driven_joint(d, kind, [GROUND, body], [centre, centre], Some(axes), Zero::None)
     }
 
     fn driven_distance(
@@ -317,9 +339,12 @@ impl Checker<'_> {
         }
     }
 
-    /// Returns a hardpoint of a joint of a body.
+    /// Returns a hardpoint of a joint of a body; of a body without joints that of a point on it, or any.
     fn hardpoint_on(&self, body: BodyId) -> Option<HardpointId> {
-        self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0])
+        let of_joint = self.model.joints.iter().find(|j| j.bodies.contains(&body)).map(|j| j.at[0]);
+        let of_point = || self.model.points.iter().find(|p| p.body == body).map(|p| p.at);
+        let any = || (!self.model.hardpoints.is_empty()).then_some(HardpointId(0));
+        of_joint.or_else(of_point).or_else(any)
     }
 
     /// Returns the nominal value of a driver's coordinate, if it is not zero. HP0213 if the law is absolute and the

@@ -704,7 +704,9 @@ impl<'r> Drawing<'r> {
             }
             DrivenDraft::Position { .. } | DrivenDraft::Distance { .. } => true,
             DrivenDraft::Orientation { .. } => false,
-            DrivenDraft::Measure(_) | DrivenDraft::Unread => unreachable!("none is drawn here"),
+            DrivenDraft::Measure(_) | DrivenDraft::Contact(_) | DrivenDraft::Unread => {
+                unreachable!("none is drawn here")
+            }
         };
         let (low, high) = if length { (0.01 * self.size, 0.08 * self.size) } else { (0.05, 0.4) };
         let law = self.law_of(low, high);

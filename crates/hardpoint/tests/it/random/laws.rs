@@ -720,7 +720,10 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
     d.points.iter_mut().for_each(|p| place(&mut p.at));
     for driver in &mut d.drivers {
         match &mut driver.drives {
-            DrivenDraft::Coordinate { .. } | DrivenDraft::Measure(_) | DrivenDraft::Unread => {}
+            DrivenDraft::Coordinate { .. }
+            | DrivenDraft::Measure(_)
+            | DrivenDraft::Contact(_)
+            | DrivenDraft::Unread => {}
             DrivenDraft::Position { point: p, along } => {
                 point(p);
                 line(along);
@@ -812,6 +815,7 @@ pub fn describe(d: &Draft) -> String {
             format!("{} orientation {body} {relative_to:?}", x.name)
         }
         DrivenDraft::Measure(measure) => format!("{} measure {measure}", x.name),
+        DrivenDraft::Contact(wheel) => format!("{} contact {wheel}", x.name),
         DrivenDraft::Unread => format!("{} unread", x.name),
     });
     let changes = d.design.iter().map(|v| {
