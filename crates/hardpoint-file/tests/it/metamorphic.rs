@@ -307,7 +307,7 @@ fn place_and_motion_of_the_base_do_not_matter() {
     for_each_model(sides::masses_and_forces, |_, what, text| {
         // These act along global directions, on the spherical joint, or on wheels, which have the directions of a
         // vehicle.
-        if ["axes = \"global\"", "left_ball", "wheel_force"].iter().any(|w| what.contains(w)) {
+        if ["axes = \"global\"", "left_ball", "wheel_force", "tyre"].iter().any(|w| what.contains(w)) {
             return;
         }
         // The body on the spherical joint, which drivers turn about global directions, is fixed.

@@ -464,7 +464,7 @@ fn the_planar_shorthand_of_every_mass_and_force_equals_its_long_form() {
                 "at = {}, force = 50, along = <0.4 0.8>, axes = \"body\", law = \"1 + t\"",
                 point("c", "<90 450>")
             ),
-            "wheel_force" => continue, // wheels are in space
+            "wheel_force" | "tyre" => continue, // wheels are in space
             "moment" => "body = \"c\", moment = 5, law = \"1 + t\"<about>".into(),
             "bushing" => format!(
                 "from = {}, to = {}, x = 100, y = 200, z = 300, about_x = 0.5, about_y = 0.7, about_z = 0.9",

@@ -602,6 +602,7 @@ pub(crate) fn masses_and_forces(hold: Hold<'_>) {
             "force" => ["global", "body"].map(|axes| format!("at = {}, force = 50, along = [0.4, 0.3, 0.8], axes = \"{axes}\", law = \"1 + t\"", point("left_b", "\"left_P\""))).into(),
             "wheel_force" => vec!["wheel = \"left\", outboard = 300, forward = -200, up = 2000, law = \"1 - 0.3*t\"".into()],
             "moment" => ["global", "body"].map(|axes| format!("body = \"left_b\", moment = 5, about = [0.4, 0.3, 0.8], axes = \"{axes}\", law = \"1 + t\"")).into(),
+            "tyre" => vec!["wheel = \"left\", stiffness = 200, preload = 3000, height = 20, law = \"1 - 0.3*t\"".into()],
             "bushing" => vec![format!("from = {}, to = {}, x = 100, y = 200, z = 300, about_x = 0.5, about_y = 0.7, about_z = 0.9, damping = 0.1", point("left_a", "[60, 420, 10]"), point("left_c", "[60, 420, 10]"))]
                 .into_iter()
                 .chain(["", "axis = [0.3, 1, 0.2], axis2 = [1, 0.2, 0.1],", "axis = { through = [\"left_O\", \"left_P\"] }, axis2 = [1, 0, 0.1],"].map(|axes| {
@@ -614,7 +615,7 @@ pub(crate) fn masses_and_forces(hold: Hold<'_>) {
         };
         for keys in keys {
             for across in 0..3 {
-                if element.name == "wheel_force" && across != 1 {
+                if ["wheel_force", "tyre"].contains(&element.name) && across != 1 {
                     continue;
                 }
                 let mass = "left_mass = { type = \"rigid\", centre = { body = \"left_b\", at = [10, 440, 10] }, mass = 4, ixx = 0.02, iyy = 0.03, izz = 0.04 }\n\

@@ -804,6 +804,41 @@ fn sensitivities_on_a_pad_are_those_of_solved_designs() {
     assert!(found.passed(), "{worst:?}");
 }
 
+/// The front axle in equilibrium on tyres: springs hold the arms, and roads lift the wheels.
+fn on_tyres() -> String {
+    let forces = "\n[forces]\nleft_tyre = { type = \"tyre\", wheel = \"left\", stiffness = \"k_tyre\", preload = 3000, height = 30, law = \"sin(2*pi*t)\" }\n\
+        left_spring = { type = \"spring\", from = { body = \"ground\", at = \"left_damper_top\" }, to = { body = \"left_lca\", at = \"left_damper_foot\" }, stiffness = 60, preload = -5000 }\n\
+        [equilibrium]\nreleased = [\"left_bump\", \"right_bump\"]\n";
+    let text = text("front_axle");
+    // Rates are not known at rest, and the mirror brings the other side.
+    let lines = text.lines().filter(|l| !l.starts_with("left_hop") && !l.starts_with("right_hop"));
+    let text = lines.collect::<Vec<_>>().join("\n");
+    let measures = "[measures]\nleft_load = { type = \"spring_force\", force = \"left_tyre\" }\nright_load = { type = \"spring_force\", force = \"right_tyre\" }";
+    text.replacen("[measures]", measures, 1).replacen("[design]", "[parameters]\nk_tyre = 250\n[design]", 1)
+        + forces
+}
+
+#[test]
+fn a_wheel_on_its_tyre_is_in_equilibrium_with_its_spring() {
+    let model = parsed(&on_tyres()).model;
+    let analysis = Analysis::new(&model).unwrap();
+    let solution = analysis.run();
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    let of = |k: usize, name: &str| solution.measured.value(k, solution.measured.index(name).unwrap())[0];
+    for k in 0..solution.motion.len() {
+        let road = 0.03 * (2.0 * std::f64::consts::PI * solution.motion.times[k]).sin();
+        let [contact, load] = ["left.contact_z", "left_load"].map(|name| of(k, name));
+        // C_z - C_z0 = road - (F - F_0) / k, so that C_z0 is the same at all times.
+        let drawn = contact - (load - 3000.0) / -250e3 - road;
+        let first = of(0, "left.contact_z") - (of(0, "left_load") - 3000.0) / -250e3;
+        assert!((drawn - first).abs() < 1e-12, "{drawn} {first}");
+        assert!(load > 1000.0 && load < 6000.0, "{load}");
+    }
+    let found = verify(&analysis, &solution, &verify::Options::default(), |_| ControlFlow::Continue(()));
+    let worst: Vec<_> = found.checks.iter().map(|check| check.worst().cloned()).collect();
+    assert!(found.passed(), "{worst:?}");
+}
+
 #[test]
 fn a_pad_requires_a_wheel_with_a_contact_point() {
     let text = on_pads();

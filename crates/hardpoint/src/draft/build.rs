@@ -364,6 +364,18 @@ impl Draft {
         self.element(name, ElementKindDraft::WheelForce { wheel, at, outboard, forward, up, about_up, law })
     }
 
+    /// Adds a tyre under a wheel, with its vertical stiffness, N/m. It has no load in the design configuration.
+    pub fn tyre(
+        self,
+        name: impl Into<String>,
+        wheel: impl Into<String>,
+        stiffness: impl Into<NumberDraft>,
+    ) -> Self {
+        let (wheel, stiffness) = (wheel.into(), stiffness.into());
+        let (preload, height, law) = (None, None, None);
+        self.element(name, ElementKindDraft::Tyre { wheel, stiffness, preload, height, law })
+    }
+
     /// Adds a bushing between locations on two bodies, with its stiffnesses along the global axes, N/m.
     pub fn bushing(
         self,

@@ -24,4 +24,5 @@ mod mesh;
 mod point_force;
 mod rigid;
 mod spring;
+mod tyre;
 mod wheel_force;

@@ -375,11 +375,24 @@ impl<T: Real> AppliedLoads<'_, T> {
 
     /// A wheel at the current pose.
     pub fn wheel(&self, wheel: WheelId) -> WheelAt<T> {
-        let Wheel { body, centre, radius, side, .. } = &self.model.wheels[wheel.0];
+        let Wheel { body, centre, .. } = &self.model.wheels[wheel.0];
+        // e = A e', e' fixed in the knuckle
+        let spin_axis = self.bodies[body.0].pose.rot * self.geometry.spin_axes[wheel.0];
+        self.wheel_at(wheel, self.point(*centre), spin_axis)
+    }
+
+    /// A wheel in the design configuration of this design.
+    pub fn design_wheel(&self, wheel: WheelId) -> WheelAt<T> {
+        let Wheel { body, centre, .. } = &self.model.wheels[wheel.0];
+        let frame: Mat3<T> = self.model.bodies[body.0].frame.rot.spread();
+        self.wheel_at(wheel, self.design_position(*centre), frame * self.geometry.spin_axes[wheel.0])
+    }
+
+    fn wheel_at(&self, wheel: WheelId, centre: Vec3<T>, spin_axis: Vec3<T>) -> WheelAt<T> {
+        let Wheel { radius, side, .. } = &self.model.wheels[wheel.0];
         WheelAt {
-            centre: self.point(*centre),
-            // e = A e', e' fixed in the knuckle
-            spin_axis: self.bodies[body.0].pose.rot * self.geometry.spin_axes[wheel.0],
+            centre,
+            spin_axis,
             radius: T::constant(*radius),
             side: T::constant(side.sign()),
             kingpin: None,

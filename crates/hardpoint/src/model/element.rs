@@ -378,6 +378,20 @@ macro_rules! elements {
             law: Option<Law> => Option<Law>,
         }
 
+        /// A tyre: a vertical spring between the road and the contact point of a wheel.
+        Tyre "tyre" forces {
+            /// The wheel's name.
+            wheel: String => WheelId,
+            /// Vertical stiffness.
+            stiffness: NumberDraft => Stiffness,
+            /// The vertical load in the design configuration. Default: 0.
+            preload: Option<NumberDraft> => Option<Force>,
+            /// Height of the road over its place in the design configuration. Default: 0.
+            height: Option<NumberDraft> => Option<Length>,
+            /// Factor of that height over time.
+            law: Option<Law> => Option<Law>,
+        }
+
         /// A bushing: springs and dampers between two bodies at a place, along axes that are fixed in the first.
         Bushing "bushing" forces {
             /// Place on the first body.
@@ -770,6 +784,7 @@ impl ElementKind {
             Self::PointForce(force) => Some(&mut force.law),
             Self::WheelForce(force) => Some(&mut force.law),
             Self::BodyMoment(moment) => Some(&mut moment.law),
+            Self::Tyre(tyre) => Some(&mut tyre.law),
             Self::Rigid(_)
             | Self::Bar(_)
             | Self::Block(_)
@@ -800,7 +815,8 @@ impl ElementKind {
             | Self::SlideFriction(_)
             | Self::PointForce(_)
             | Self::WheelForce(_)
-            | Self::BodyMoment(_) => None,
+            | Self::BodyMoment(_)
+            | Self::Tyre(_) => None,
         }
     }
 

@@ -80,7 +80,7 @@ impl Checker<'_> {
         if self.model.elements[e].kind.law_mut().is_none() {
             let message = format!("`{name}` has no law that case `{case_name}` could replace");
             self.fault("HP0262", at, message)
-                .help("name a driver, or a force of type `force`, `wheel_force` or `moment`");
+                .help("name a driver, or a force of type `force`, `wheel_force`, `moment` or `tyre`");
             return;
         }
         if let Some(t) = times.iter().find(|t| !law.at(**t).value().is_finite()) {

@@ -90,7 +90,13 @@ impl Checker<'_> {
                 self.fault("HP0251", here.key("along"), format!("`{}` has no direction", m.name))
                     .help("give the direction of the force, like `along = \"y\"`");
             }
-            let is_given = |e: &ElementId| self.model.elements[e.0].kind.clone().law_mut().is_some();
+            let is_given = |e: &ElementId| {
+                let kind = &self.model.elements[e.0].kind;
+                // The law of a tyre is that of the road.
+                let deflects =
+                    kind.force(&self.model).is_none_or(|f| !matches!(f.compliance, Compliance::None));
+                !deflects && kind.clone().law_mut().is_some()
+            };
             if let Some(e) = force
                 && !is_given(e)
             {
