@@ -330,6 +330,8 @@ uca = { type = "block", centre = { body = "uca", at = "upper_ball" }, x = 60, y 
 road = { type = "wheel_force", wheel = "front_left", up = 4000, outboard = 900, forward = -300, law = "1 + 0.3*sin(3*t)" }
 coil = { type = "spring", from = { body = "ground", at = [0, 330, 330] }, to = { body = "lca", at = [0, 450, -20] }, stiffness = 40, cubic = 0.002, preload = -3000, damping = 2 }
 rubber = { type = "bushing", from = { body = "lca", at = [0, 400, 80] }, to = { body = "uca", at = [0, 400, 80] }, x = 5, y = 7, z = 2, damping = 0.1 }
+sleeve = { type = "bushing", from = { body = "lca", at = [0, 380, 70] }, to = { body = "uca", at = [0, 390, 80] }, axis = { through = ["lca_front", "lower_ball"] }, axis2 = "x", x = 5, y = 7, z = 2, about_z = 0.3, cubic_x = 0.001, preload_about_y = 4, matrix = [[1, 0.2, 0, 0, 3, 0], [0.2, 2, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [3, 0, 0, 0, 0.5, 0], [0, 0, 0, 0, 0, 0]] }
+tyre = { type = "tyre", wheel = "front_left", stiffness = 200, preload = 3000, height = 12, law = "sin(4*t)" }
 stiff = { type = "torsion_spring", joint = "lca_pivot", stiffness = 2, damping = 0.1 }
 slip = { type = "joint_spring", joint = "rack_slide", stiffness = 1, damping = 0.2 }
 push = { type = "force", at = { body = "knuckle", at = "tie_rod_outer" }, force = 100, along = [1, 2, 0], axes = "body" }
@@ -343,6 +345,8 @@ bush = { type = "reaction", joint = "lca_pivot", part = "bending", on = "ground"
 rod = { type = "reaction", joint = "tie_rod", part = "force_y", axes = "body" }
 coil = { type = "spring_force", force = "coil" }
 rubber = { type = "spring_force", force = "rubber" }
+sleeve = { type = "spring_force", force = "sleeve" }
+tyre = { type = "spring_force", force = "tyre" }
 road = { type = "spring_force", force = "road" }
 energy = { type = "kinetic_energy" }
 rocking = { type = "shaking_moment", about = { body = "ground", at = "rack_centre" }, along = "x" }
@@ -351,10 +355,17 @@ rocking = { type = "shaking_moment", about = { body = "ground", at = "rack_centr
 end = 1.0
 steps = 200
 "#;
-    let file = hardpoint_file::parse(&text, "wishbone.toml").unwrap_or_else(|e| panic!("{e}"));
-    for execution in [Execution::Interpreted, Execution::Compiled] {
-        let (worst, steps) = loads_apart(&file.model, execution);
-        println!("{execution:?}: {worst:e}, {steps} of {} by program", file.model.times.len());
-        assert!(worst < CARRIED && steps > 150, "{execution:?}: {worst:e}, {steps} steps");
+    // Also on the pad of a test rig, where the force of the tyre does not depend on the design.
+    let on_pad = text
+        .replace("point = \"wheel_centre\"\nalong = \"z\"\nlaw", "wheel = \"front_left\"\nlaw")
+        .replace("tyre = { type = \"spring_force\", force = \"tyre\" }\n", "");
+    assert!(on_pad.contains("wheel = \"front_left\"\nlaw"));
+    for text in [text, on_pad] {
+        let file = hardpoint_file::parse(&text, "wishbone.toml").unwrap_or_else(|e| panic!("{e}"));
+        for execution in [Execution::Interpreted, Execution::Compiled] {
+            let (worst, steps) = loads_apart(&file.model, execution);
+            println!("{execution:?}: {worst:e}, {steps} of {} by program", file.model.times.len());
+            assert!(worst < CARRIED && steps > 150, "{execution:?}: {worst:e}, {steps} steps");
+        }
     }
 }
