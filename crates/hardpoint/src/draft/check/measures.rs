@@ -63,7 +63,9 @@ impl Checker<'_> {
             Some(Compliance::Element | Compliance::Joint(..)) => true,
             Some(Compliance::None) | None => false,
         };
-        let rigid = !self.model.elements.iter().any(deflects);
+        // A faulty force may be the one that deflects.
+        let forces = self.model.elements.iter().filter(|e| !e.kind.has_mass()).count();
+        let rigid = forces == draft.forces.len() && !self.model.elements.iter().any(deflects);
         if matches!(kind, MeasureKind::Compliance { .. })
             && rigid
             && !self.draft.unread.any_of(Section::Forces)
