@@ -67,15 +67,20 @@ impl Analysis<'_> {
             if !model.metrics.iter().any(|m| is_between_outputs(m, &model.times)) {
                 return model.times.clone();
             }
-            let units = driver_units(model, self.topology());
-            let laws: Vec<(&Law, f64)> = model.drivers.iter().map(|d| &d.law).zip(units).collect();
-            // The stored results must fit into memory, however long the motion is.
-            let most = Footprint::of(model, true).rows(BYTES);
-            (0..6)
-                .map(|k| f64::from(1 << k))
-                .find_map(|coarser| times_of(model, &laws, coarser, most))
-                .unwrap_or_else(|| model.times.clone())
+            self.times_within()
         })
+    }
+
+    /// Output times, and times between them that are so close that no driver moves far between two of them.
+    pub(super) fn times_within(&self) -> Vec<f64> {
+        let model = self.model();
+        let units = driver_units(model, self.topology());
+        let laws: Vec<(&Law, f64)> = model.drivers.iter().map(|d| &d.law).zip(units).collect();
+        let most = Footprint::of(model, true).rows(BYTES);
+        (0..6)
+            .map(|k| f64::from(1 << k))
+            .find_map(|coarser| times_of(model, &laws, coarser, most))
+            .unwrap_or_else(|| model.times.clone())
     }
 
     /// Solves the motion of a design between its output times, if metrics need it. `solution` has the results at all
