@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::law::Law;
 use crate::linalg::{hermite, segment_at};
-use crate::model::{Metric, Model, Reduction};
+use crate::model::{MeasureKind, Metric, Model, OutputSource, Reduction};
 use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
@@ -52,6 +52,13 @@ fn is_between_outputs(metric: &Metric, times: &[f64]) -> bool {
             metric.over.is_some() || !window_times(metric).iter().all(|t| times.contains(t))
         }
     }
+}
+
+/// Returns true if a metric is taken at a time of its own whatever the output times resolve: a distance of shapes may
+/// change its features between them, and its least value is a promise.
+fn is_exact(model: &Model, metric: &Metric) -> bool {
+    let OutputSource::Measure(k) = metric.of else { return false };
+    matches!(model.measures[k].kind, MeasureKind::Clearance { .. })
 }
 
 impl Analysis<'_> {
@@ -128,8 +135,9 @@ impl Analysis<'_> {
             }
             let now = found.as_ref().unwrap_or(solution);
             let metrics = model.metrics.iter().filter(|m| is_between_outputs(m, &model.times));
-            let add: Vec<f64> =
-                metrics.flat_map(|metric| unresolved_times(now, metric, found.is_some())).collect();
+            let add: Vec<f64> = metrics
+                .flat_map(|m| unresolved_times(now, m, found.is_some() || is_exact(model, m)))
+                .collect();
             if add.is_empty() {
                 break;
             }
