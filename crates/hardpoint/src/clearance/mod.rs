@@ -11,5 +11,7 @@ mod core;
 mod feature;
 mod nearest;
 mod placed;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use placed::PlacedShapes;
