@@ -8,6 +8,8 @@ use serde_json::Value;
 
 /// Round-off of distances in mm, and of times in s, at values of 10 to 100.
 const EXACT: f64 = 1e-10;
+/// Tolerance of the limits of an optimisation, m.
+const LIMIT: f64 = 1e-8;
 
 fn model_of(text: &str) -> Model {
     parse(text, "clearance.toml").unwrap_or_else(|e| panic!("{e}\n{text}")).model
@@ -99,4 +101,66 @@ fn the_least_of_several_pairs_is_a_metric() {
     assert_near(of("c2.min"), 1.794967044519548, "c2");
     assert_near(of("r1.min"), 2.541030034433604, "r1");
     assert_near(of("all.min"), -0.2064275563667836, "all");
+}
+
+/// A knee whose coupler hits a screw, with the limits of the gallery's model.
+const GALLERY: &str = include_str!("../../../../models/knee.toml");
+
+#[test]
+fn a_limit_of_a_clearance_brings_shapes_apart() {
+    let file = parse(GALLERY, "knee.toml").unwrap_or_else(|e| panic!("{e}"));
+    let model = &file.model;
+    let limits = &model.optimization.as_ref().unwrap().limits;
+    assert_eq!((limits[0].least, limits[0].most), (Some(1.5e-3), None));
+    let analysis = Analysis::new(model).unwrap();
+    let touching = |c: &Clearances| c.pairs.iter().any(|pair| pair.least().unwrap().at.distance[0] < 0.0);
+    assert!(touching(&analysis.clearances(&[])));
+    let found = crate::searches::searched(&file, model.optimization.as_ref().unwrap());
+    let best = crate::searches::best(&found).found.as_ref().unwrap();
+    for pair in &analysis.clearances(&best.design).pairs {
+        let least = pair.least().unwrap().at.distance[0];
+        assert!(least > 1.5e-3 - LIMIT, "{:?}: {least}", pair.shapes);
+    }
+}
+
+/// Distances of the same model that is described in other words.
+#[test]
+fn what_must_not_matter_does_not() {
+    let reference = Analysis::new(&model_of(KNEE)).unwrap().clearances(&[]);
+    let coarse = KNEE.replace("steps = 20", "steps = 3");
+    let fine = KNEE.replace("steps = 20", "steps = 157");
+    let metres = KNEE
+        .replace("length = \"mm\"", "length = \"cm\"")
+        .replace("[0, 0]", "[0, 0]")
+        .replace("[14, 25]", "[1.4, 2.5]")
+        .replace("[78, 52]", "[7.8, 5.2]")
+        .replace("[66, -6]", "[6.6, -0.6]")
+        .replace("[22, 47.5, -2]", "[2.2, 4.75, -0.2]")
+        .replace("[-2, 40, -2]", "[-0.2, 4.0, -0.2]")
+        .replace(".y\", 7]", ".y\", 0.7]")
+        .replace("value = 4,", "value = 0.4,")
+        .replace("value = 3.5,", "value = 0.35,")
+        .replace("min = 1.5", "min = 0.15");
+    let swapped = KNEE.replace("[\"coupler_rod\", \"screw1\"]", "[\"screw1\", \"coupler_rod\"]");
+    let reversed = KNEE.replace("capsule = [\"B\", \"C\"]", "capsule = [\"C\", \"B\"]");
+    for (what, text) in
+        [("coarse", coarse), ("fine", fine), ("cm", metres), ("swapped", swapped), ("reversed", reversed)]
+    {
+        let model = model_of(&text);
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        for (a, b) in reference.pairs.iter().zip(&found.pairs) {
+            assert_eq!(a.minima.len(), b.minima.len(), "{what}");
+            for (m, n) in a.minima.iter().zip(&b.minima) {
+                assert_near(n.at.time, m.at.time, what);
+                assert!((n.at.distance[0] - m.at.distance[0]).abs() < 1e-13, "{what}");
+                for (x, y) in n.d.iter().zip(&m.d) {
+                    assert_near(*x, *y, what);
+                }
+            }
+            assert_eq!(a.contacts.len(), b.contacts.len(), "{what}");
+            for (m, n) in a.contacts.iter().zip(&b.contacts) {
+                assert_near(n.at.time, m.at.time, what);
+            }
+        }
+    }
 }
