@@ -164,3 +164,102 @@ fn what_must_not_matter_does_not() {
         }
     }
 }
+
+/// A cube of 12 triangles, sides of 40.
+const CUBE: &str = "
+v -20 -20 -20
+v 20 -20 -20
+v 20 20 -20
+v -20 20 -20
+v -20 -20 20
+v 20 -20 20
+v 20 20 20
+v -20 20 20
+f 1 3 2
+f 1 4 3
+f 5 6 7
+f 5 7 8
+f 1 2 6
+f 1 6 5
+f 2 3 7
+f 2 7 6
+f 3 4 8
+f 3 8 7
+f 4 1 5
+f 4 5 8
+";
+
+/// A cube that turns about an axis through its centre, and a ball beside it.
+fn cube(axis: &Value, design: &Value, shape: &str) -> String {
+    let [x, y, z, r] = ["c_x", "c_y", "c_z", "r"].map(|key| number(&design[key]));
+    format!(
+        r#"
+name = "cube"
+units = {{ length = "mm", angle = "deg" }}
+bodies = {{ cube = {{ frame = {{ position = [0, 0, 0] }} }} }}
+parameters.r = {{ value = {r}, unit = "length" }}
+hardpoints = {{ O = [0, 0, 0], c = [{x}, {y}, {z}] }}
+joints.pivot = {{ type = "revolute", bodies = ["ground", "cube"], at = "O", axis = {axis} }}
+drivers.motor = {{ joint = "pivot", law = "360*t" }}
+shapes.ball = {{ body = "ground", sphere = "c", radius = "r" }}
+shapes.cube = {{ body = "cube", {shape} }}
+clearances.gap = {{ between = ["ball", "cube"] }}
+design.c = {{ move = "c", along = "xyz" }}
+time = {{ end = 1, steps = 40 }}
+"#
+    )
+}
+
+#[test]
+fn a_ball_against_a_closed_mesh_a_box_and_a_hull_is_that_of_the_published_data() {
+    let data: Value = serde_json::from_str(include_str!("cube.json")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
+    let corners: Vec<String> =
+        (0..8).map(|k| format!("{:?}", [k & 1, k >> 1 & 1, k >> 2 & 1].map(|side| 40 * side - 20))).collect();
+    let hull = format!("hull = [{}]", corners.join(", "));
+    for (name, case) in data["cases"].as_object().unwrap() {
+        for shape in ["mesh = \"cube.obj\"", "box = [40, 40, 40]", &hull] {
+            let path = folder.path().join("cube.toml");
+            std::fs::write(&path, cube(&case["axis"], &case["design"], shape)).unwrap();
+            let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+            let found = Analysis::new(&model).unwrap().clearances(&[]);
+            let pair = pair(&model, &found, "gap");
+            let what = format!("{name}, {shape}");
+            for row in case["curve"].as_array().unwrap() {
+                let at = &pair.curve[row[0].as_u64().unwrap() as usize];
+                assert_near(at.distance[0] * 1e3, number(&row[1]), &what);
+            }
+            let inside: Vec<_> = pair.minima.iter().filter(|m| m.place == MinimumPlace::Inside).collect();
+            // Minima of the key are those within its band; all local minima are found.
+            for expected in case["minima"].as_array().unwrap() {
+                let time = number(&expected["t"]);
+                let minimum = inside
+                    .iter()
+                    .min_by(|a, b| (a.at.time - time).abs().total_cmp(&(b.at.time - time).abs()))
+                    .unwrap();
+                assert_near(minimum.at.time, time, &what);
+                assert_near(minimum.at.distance[0] * 1e3, number(&expected["value"]), &what);
+                assert_eq!(minimum.is_kink, expected["kink"] == true, "{what}");
+                for variable in ["c_x", "c_y", "c_z", "r"] {
+                    let k = model.variable(variable).unwrap().0;
+                    assert_near(
+                        minimum.d[k],
+                        number(&expected["by"][variable]),
+                        &format!("{what} by {variable}"),
+                    );
+                }
+            }
+            let contacts = case["contacts"].as_array().unwrap();
+            assert_eq!(pair.contacts.len(), contacts.len(), "{what}");
+            for (contact, expected) in pair.contacts.iter().zip(contacts) {
+                assert_near(contact.at.time, number(&expected["t"]), &what);
+                for variable in ["c_x", "c_y", "c_z", "r"] {
+                    let k = model.variable(variable).unwrap().0;
+                    let expected = number(&expected["by"][variable]);
+                    assert_near(contact.d[k] * 1e-3, expected, &format!("{what} by {variable}"));
+                }
+            }
+        }
+    }
+}

@@ -11,6 +11,7 @@ mod core;
 mod feature;
 mod nearest;
 mod placed;
+mod surface;
 #[cfg(test)]
 mod tests;
 
