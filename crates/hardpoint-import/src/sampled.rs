@@ -22,6 +22,25 @@ pub struct SampledForce {
     pub deviation: [f64; 2],
 }
 
+impl SampledForce {
+    /// Explanation for the report of an import: the largest length, and its unit.
+    pub fn report(&self, to: f64, unit: &str) -> String {
+        let [off, part] = self.deviation;
+        format!(
+            "a curve through {} points; up to a length of {to:.4} {unit} it deviates by up to {off:.3} N plus {:.3} % of the force",
+            self.points.len(),
+            100.0 * part
+        )
+    }
+
+    /// The same function with its forces times a factor.
+    pub fn times(mut self, factor: f64) -> Self {
+        self.deviation[0] *= factor.abs();
+        self.points.iter_mut().for_each(|p| p[1] *= factor);
+        self
+    }
+}
+
 /// Samples a function over a range of lengths; corners, where its slope jumps, are points of the table.
 ///
 /// # Errors

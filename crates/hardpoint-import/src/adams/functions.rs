@@ -164,17 +164,13 @@ impl Reader<'_> {
             None => {
                 let table = sampled::sample(|x| function.at(x), range, &corners)
                     .map_err(|x| format!("its function has no value at a distance of {x}"))?;
+                // Tension is positive in the model.
+                let table = table.times(-units.force);
                 let free = corners.first().copied().unwrap_or(nominal);
                 spring.free = Some(free * self.scale);
-                let point = |[x, force]: &[f64; 2]| [(x - free) * self.scale, 0.0 - force * units.force];
+                let point = |[x, force]: &[f64; 2]| [(x - free) * self.scale, force + 0.0];
                 spring.extension = table.points.iter().map(point).collect();
-                let [off, part] = [table.deviation[0] * units.force, 100.0 * table.deviation[1]];
-                lost.push(format!(
-                    "a curve through {} points; up to a distance of {:.4} {} it deviates by up to {off:.3} N plus {part:.3} % of the force",
-                    table.points.len(),
-                    range[1] * self.scale,
-                    self.m.length
-                ));
+                lost.push(table.report(range[1] * self.scale, self.m.length));
             }
         }
         let ends = [(i.body, i.pose.r), (j.body, j.pose.r)];

@@ -499,6 +499,72 @@ fn springs_of_tendons_pull() {
 }
 
 #[test]
+fn tendons_of_constant_further_parts_or_with_slack_are_springs() {
+    let model = |defaults: &str, joint: &str, tendon: &str| {
+        format!(
+            r#"<mujoco><option gravity="0 0 0"/><default>{defaults}</default><worldbody><site name="top" pos="0.5 0 1"/><site name="far" pos="0.5 0 3"/>
+            <geom name="drum" type="sphere" size="0.1"/><body name="a"><joint name="j" axis="0 1 0" {joint}/><inertial pos="0.5 0 0" mass="2"/>
+            <site name="end" pos="0.5 0 0"/><site name="middle" pos="0.25 0 0"/><body name="b" pos="0 1 0"><site name="other"/></body></body></worldbody>
+            <tendon>{tendon}</tendon></mujoco>"#
+        )
+    };
+    let path = r#"<site site="end"/><site site="top"/>"#;
+    let spatial = |law: &str, path: &str| format!(r#"<spatial name="s" {law}>{path}</spatial>"#);
+    let long = r#"<site site="middle"/><site site="end"/><site site="top"/><site site="far"/>"#;
+    let fixed = |law: &str| format!(r#"<fixed name="s" {law}><joint joint="j" coef="0.5"/></fixed>"#);
+    // At t = 0 the end is 1 m below the top and at rest; the moment about y is minus the force upwards times 0.5 m.
+    for (defaults, joint, tendon, moment, is_exact) in [
+        // From a class: 40 N/m over 0.25 m
+        (r#"<tendon stiffness="40"/>"#, "", spatial(r#"springlength="0.75""#, path), -0.5 * 10.0, true),
+        // 0.25 m and 2 m of it are constant.
+        ("", "", spatial(r#"stiffness="40" springlength="3""#, long), -0.5 * 10.0, true),
+        // Longer than its constant parts alone: without a positive free length
+        ("", "", spatial(r#"stiffness="40" springlength="2""#, long), -0.5 * 50.0, true),
+        // Slack between 0.5 and 0.9 m, and between 1.2 and 1.5 m
+        ("", "", spatial(r#"stiffness="40" springlength="0.5 0.9""#, path), -0.5 * 4.0, false),
+        ("", "", spatial(r#"stiffness="40" springlength="1.2 1.5""#, path), 0.5 * 8.0, false),
+        ("", "", spatial(r#"stiffness="40" springlength="0.8 1.2""#, path), 0.0, false),
+        // A multiple of the angle: 40 x 0.25 N m/rad over 0.3 / 0.5 rad, or over the reference of the spring
+        ("", "", fixed(r#"stiffness="40" springlength="0.3""#), 10.0 * 0.6, true),
+        ("", r#"ref="0.2" springref="0.5""#, fixed(r#"stiffness="40" springlength="0.3""#), 10.0 * 0.4, true),
+        ("", r#"ref="0.2" springref="0.5""#, fixed(r#"stiffness="40""#), 10.0 * 0.3, true),
+    ] {
+        let text =
+            model(defaults, joint, &tendon).replace("<mujoco>", r#"<mujoco><compiler angle="radian"/>"#);
+        let (imported, _) = read("m.xml", &text);
+        let approximated =
+            imported.report.of(ElementOutcome::Approximated).filter(|e| e.kind == "spatial").count();
+        assert_eq!(approximated, usize::from(!is_exact), "{tendon}: {}", imported.report);
+        let refused: Vec<_> = imported.report.of(ElementOutcome::Refused).collect();
+        assert!(refused.is_empty(), "{tendon}: {}", imported.report);
+        let (found, measured) = driver_torque(&imported.text);
+        let accepted = if is_exact { 1e-9 } else { 1e-3 * (f64::abs(moment) + 0.5) };
+        assert!((found + moment).abs() < accepted, "{tendon}: {found} instead of {}\n{measured}", -moment);
+    }
+    for (tendon, reason) in [
+        (spatial(r#"stiffness="40""#, &format!(r#"{path}<site site="other"/>"#)), "more than two bodies"),
+        (spatial(r#"stiffness="40""#, r#"<site site="end"/><geom geom="drum"/><site site="top"/>"#), "wrap"),
+        (
+            spatial(r#"stiffness="40""#, r#"<site site="end"/><pulley divisor="2"/><site site="top"/>"#),
+            "pulley",
+        ),
+        (spatial(r#"stiffness="40""#, r#"<site site="end"/><site site="middle"/>"#), "same body"),
+        (spatial(r#"stiffness="-40""#, path), "negative"),
+        (spatial(r#"stiffness="40 3""#, path), "depends on the length"),
+        (fixed(r#"stiffness="40" springlength="0.1 0.2""#), "between two lengths"),
+        (
+            r#"<fixed name="s" stiffness="4"><joint joint="j" coef="1"/><joint joint="j" coef="2"/></fixed>"#
+                .to_owned(),
+            "several joints",
+        ),
+    ] {
+        let (imported, _) = read("m.xml", &model("", "", &tendon));
+        let refused: Vec<_> = imported.report.of(ElementOutcome::Refused).collect();
+        assert!(refused.len() == 1 && refused[0].why.contains(reason), "{tendon}: {}", imported.report);
+    }
+}
+
+#[test]
 fn datasets_of_adams_bring_bushings() {
     // Marker 1 has its z axis along the global y axis; the bushing is 100 mm from the hinge, and its second marker
     // moves by 100 mm times the sine of the angle.
