@@ -263,3 +263,148 @@ fn a_ball_against_a_closed_mesh_a_box_and_a_hull_is_that_of_the_published_data()
         }
     }
 }
+
+/// Shapes of every kind on a body (`m_`), and of every kind on ground (`g_`).
+const SHAPES: [(&str, &str, &str); 9] = [
+    ("sphere", "sphere = \"p\", radius = \"r\"", "sphere = \"q\", radius = \"s\""),
+    (
+        "capsule",
+        "capsule = [\"p\", \"p2\"], radius = \"r\"",
+        "capsule = [\"q\", [70, 180, 95]], radius = \"s\"",
+    ),
+    (
+        "ring",
+        "ring = \"p\", axis = [1, 2, 3], radius = 30, round = \"r\"",
+        "ring = \"q\", axis = [1, -2, 1], radius = \"w\", round = 3",
+    ),
+    (
+        "cylinder",
+        "cylinder = [\"p\", \"p2\"], radius = 25, round = 2",
+        "cylinder = [\"q\", [70, 180, 95]], radius = \"w\", round = \"s\"",
+    ),
+    ("wheel", "wheel = \"m\", width = 24, round = \"r\"", "wheel = \"g\", width = \"w\", round = \"s\""),
+    ("plane", "plane = \"p\", normal = [0.1, 1, 0.2]", "plane = [100, 400, 0], normal = [0.2, -1, 0.1]"),
+    (
+        "box",
+        "box = [30, 20, 14], frame = { position = [100, 10, 5], cardan = [20, 30, 40] }",
+        "box = [20, 40, 30], frame = { position = [93, 200, 50] }, round = \"s\"",
+    ),
+    (
+        "hull",
+        "hull = [\"p\", \"p2\", [90, -20, 10], [120, 15, -12]], round = 1",
+        "hull = [\"q\", [70, 180, 95], [90, 230, 10], [120, 215, 32]]",
+    ),
+    (
+        "mesh",
+        "mesh = { file = \"cube.obj\", frame = \"body\", scale = 0.5 }",
+        "mesh = { file = \"far.obj\" }, round = \"s\"",
+    ),
+];
+
+/// A body that turns about two axes, with shapes of all kinds against those of ground.
+fn battery() -> String {
+    let mut text = String::from(
+        r#"
+name = "battery of shapes"
+units = { length = "mm", angle = "deg" }
+bodies = { mid = {}, arm = { frame = { position = [100, 0, 0] } } }
+parameters.r = { value = 4, unit = "length" }
+parameters.s = { value = 2.5, unit = "length" }
+parameters.w = { value = 21, unit = "length" }
+hardpoints = { O = [0, 0, 0], M = [40, 5, 3], p = [100, 10, -4], p2 = [125, 22, 17], q = [85, 190, 40] }
+joints.one = { type = "revolute", bodies = ["ground", "mid"], at = "O", axis = [0.1, 0.2, 1] }
+joints.two = { type = "revolute", bodies = ["mid", "arm"], at = "M", axis = [1, 0.3, -0.1] }
+drivers.one = { joint = "one", law = "20*sin(2*t)" }
+drivers.two = { joint = "two", law = "15*t + 10*t^2" }
+wheels.m = { body = "arm", centre = "p", spin_axis = [0.3, 1, 0.2], radius = 33, side = "left" }
+wheels.g = { body = "ground", centre = "q", spin_axis = [0.2, 1, -0.3], radius = 35, side = "left" }
+design.O_x = { move = "O", along = "x" }
+design.M_z = { move = "M", along = "z" }
+design.p = { move = "p", along = "xyz" }
+design.p2_y = { move = "p2", along = "y" }
+design.q = { move = "q", along = "xyz" }
+time = { end = 1, steps = 6 }
+"#,
+    );
+    for (name, moving, fixed) in SHAPES {
+        let body = |body: &str| if name == "wheel" { String::new() } else { format!("body = \"{body}\", ") };
+        text += &format!("shapes.m_{name} = {{ {}{moving} }}\n", body("arm"));
+        text += &format!("shapes.g_{name} = {{ {}{fixed} }}\n", body("ground"));
+    }
+    for (moving, ..) in SHAPES {
+        for (fixed, ..) in SHAPES {
+            if moving != "plane" || fixed != "plane" {
+                text += &format!(
+                    "clearances.{moving}_{fixed} = {{ between = [\"m_{moving}\", \"g_{fixed}\"] }}\n"
+                );
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn sensitivities_of_every_pair_of_shapes_are_verified() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
+    let far = CUBE.replace("v -20", "v 70").replace("v 20", "v 105");
+    let far: String = far
+        .lines()
+        .map(|line| match line.strip_prefix("v ") {
+            Some(at) => {
+                let at: Vec<f64> = at.split(' ').map(|x| x.parse().unwrap()).collect();
+                // A skewed block beside the arm.
+                format!(
+                    "v {} {} {}\n",
+                    at[0] + 0.2 * at[1],
+                    190.0 + at[1] + 0.1 * at[2],
+                    40.0 + at[2] - 0.3 * at[1]
+                )
+            }
+            None => format!("{line}\n"),
+        })
+        .collect();
+    std::fs::write(folder.path().join("far.obj"), far).unwrap();
+    let path = folder.path().join("battery.toml");
+    std::fs::write(&path, battery()).unwrap();
+    let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+    let solution = Analysis::new(&model).unwrap().run();
+    for (m, measure) in model.measures.iter().enumerate() {
+        for k in 0..solution.measured.len() {
+            let [value, rate, _] = solution.measured.value(k, m);
+            assert!(value > 0.02 && rate.is_finite(), "{}: {value} {rate} at {k}", measure.name);
+        }
+    }
+    crate::equilibrium::verify_all(&model);
+}
+
+/// Distances by formulas and those of an image in a mirror, moved and turned, agree.
+#[test]
+fn a_mirror_has_the_same_clearances() {
+    let text = r#"
+name = "both sides"
+units = { length = "mm", angle = "deg" }
+bodies = { left_arm = {} }
+hardpoints = { left_O = [0, 300, 0], left_p = [0, 500, 20], left_q = [50, 450, 200] }
+joints.left_pivot = { type = "revolute", bodies = ["ground", "left_arm"], at = "left_O", axis = [1, 0.2, 0] }
+drivers.left_motor = { joint = "left_pivot", law = "60*t" }
+shapes.left_rod = { body = "left_arm", capsule = ["left_O", "left_p"], radius = 10 }
+shapes.left_stop = { body = "ground", ring = "left_q", axis = [1, 0.3, 0.2], radius = 40, round = 4 }
+shapes.left_block = { body = "ground", box = [30, 20, 60], frame = { position = [60, 430, 150], cardan = [10, 20, 30] } }
+clearances.left_gap = { between = ["left_rod", "left_stop"], min = 2 }
+clearances.left_room = { between = ["left_rod", "left_block"] }
+mirror = { across = "y", names = { left = "right" } }
+design.left_q = { move = "left_q", along = "y" }
+time = { end = 1, steps = 20 }
+"#;
+    let model = model_of(text);
+    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    for [left, right] in [["left_gap", "right_gap"], ["left_room", "right_room"]] {
+        let [left, right] = [left, right].map(|name| pair(&model, &found, name));
+        assert!(left.least().unwrap().at.distance[0].is_finite());
+        for (a, b) in left.curve.iter().zip(&right.curve) {
+            assert_near(a.distance[0] * 1e3, b.distance[0] * 1e3, "left and right");
+        }
+        assert_near(left.least().unwrap().at.time, right.least().unwrap().at.time, "left and right");
+    }
+}
