@@ -1,9 +1,11 @@
-//! The paper's two examples: motion only, motion with all sensitivities, eight designs in lanes.
+//! The paper's two examples: motion only, motion with all sensitivities, eight designs in lanes; and a double wishbone
+//! with rigid joints and in equilibrium on four bushings.
 //!
 //! Figures are per run; `docs/performance.md` has them per step, as ratios within one run.
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use hardpoint::motion::Execution;
 use hardpoint::{Analysis, Run, Solution};
 
 const MODELS: [&str; 2] = ["slider_crank", "macpherson"];
@@ -41,6 +43,15 @@ fn all_sensitivities_and_measures(bencher: Bencher, name: &str) {
     let model = hardpoint_bench::model(name);
     let analysis = Analysis::new(&model).unwrap();
     bencher.counter(ItemsCount::new(model.times.len())).bench(|| analysis.run());
+}
+
+/// All sensitivities of all bodies by 24 coordinates: the kernel with rigid joints, and equilibria on four bushings with
+/// six directions each under load, which the kernel solves as well.
+#[divan::bench(args = ["rigid", "elastic"])]
+fn equilibrium(bencher: Bencher, name: &str) {
+    let model = hardpoint_bench::model(name);
+    let analysis = Analysis::new(&model).unwrap().executed(Execution::Kernel);
+    bencher.counter(ItemsCount::new(model.times.len())).bench(|| analysis.solve(bodies()));
 }
 
 /// Motions of eight designs side by side in SIMD lanes.

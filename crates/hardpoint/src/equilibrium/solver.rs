@@ -18,6 +18,11 @@ use super::second::{Along, Curvatures, SolvedEquilibrium};
 
 /// Correction of the openings, rad or sizes, whose square is round-off: after it they are solved.
 const QUADRATIC: f64 = 1e-9;
+/// Part of a correction to which the next one shrinks, at most, if the same stiffness serves for both; a new one is
+/// computed otherwise.
+const SAME_STIFFNESS: f64 = 1e-2;
+/// Error of the openings that an unchanged stiffness leaves, rad or sizes: round-off.
+const ROUND_OFF: f64 = 1e-15;
 /// Maximum number of iterations of an attempt; from a good prediction two to four are enough, and eight from the rigid
 /// position under full load. What takes longer may have found another equilibrium.
 const MOST_ITERATIONS: usize = 12;
@@ -224,16 +229,17 @@ impl<'a> EquilibriumSolver<'a> {
         for pass in 0..MOST_ITERATIONS {
             self.iterations += 1;
             self.set_forces(one, given);
-            self.set_tangent(one, t);
-            let positive = self.factor()?;
-            // K dp = -r                                                                                       (52)
-            let mut correction: Vec<f64> = self.forces.iter().map(|r| -r).collect();
-            self.respond(&mut correction);
-            let mut size = 0.0_f64;
-            for (dp, d) in correction.iter().zip(self.openings) {
-                let scaled = (dp / one.mechanism.driver_units[d.0]).abs();
-                // NaN is larger than anything.
-                size = if scaled <= size { size } else { scaled };
+            // The stiffness of the first position serves as long as the corrections shrink fast.
+            let mut correction = Vec::new();
+            let mut size = f64::NAN;
+            if pass > 0 {
+                (correction, size) = self.correction(one);
+            }
+            let is_new = !(size <= SAME_STIFFNESS * before);
+            if is_new {
+                self.set_tangent(one, t);
+                self.factor()?;
+                (correction, size) = self.correction(one);
             }
             let limit = match pass {
                 0 => LONGEST,
@@ -247,12 +253,38 @@ impl<'a> EquilibriumSolver<'a> {
                 drivers[d.0] += dp;
             }
             advance::shift_at_rest(one, &drivers).map_err(Rejection::of)?;
-            if size <= QUADRATIC {
-                return Ok((drivers, self.is_certainly_stable(positive)?));
+            // The error that remains is the square of the correction, or what an unchanged stiffness leaves of it.
+            let is_solved = if is_new { size <= QUADRATIC } else { size * (size / before) <= ROUND_OFF };
+            if is_solved {
+                let positive = self.prepare_with(one, t, given)?;
+                let is_stable = self.is_certainly_stable(positive)?;
+                self.is_prepared = true;
+                return Ok((drivers, is_stable));
             }
             before = size;
         }
         Err(Rejection::NoConvergence)
+    }
+
+    /// Correction of the openings by the stiffness that was factored last, `K dp = -r` (52), and its size.
+    fn correction(&mut self, one: &Stepper<'_>) -> (Vec<f64>, f64) {
+        let mut correction: Vec<f64> = self.forces.iter().map(|r| -r).collect();
+        self.respond(&mut correction);
+        let mut size = 0.0_f64;
+        for (dp, d) in correction.iter().zip(self.openings) {
+            let scaled = (dp / one.mechanism.driver_units[d.0]).abs();
+            // NaN is larger than anything.
+            size = if scaled <= size { size } else { scaled };
+        }
+        (correction, size)
+    }
+
+    /// Sets the derivatives at the position of the stepper under these loads. Returns the sign of the determinant of
+    /// the stiffness.
+    fn prepare_with(&mut self, one: &mut Stepper<'_>, t: f64, given: &GivenLoads) -> Result<bool, Rejection> {
+        self.set_forces(one, given);
+        self.set_tangent(one, t);
+        self.factor()
     }
 
     /// Sets the forces of the openings at the position of the stepper, under these loads.
@@ -348,10 +380,8 @@ impl<'a> EquilibriumSolver<'a> {
     fn prepare(&mut self, one: &mut Stepper<'_>, t: f64) {
         if !std::mem::replace(&mut self.is_prepared, true) {
             let given = self.last.loads.clone();
-            self.set_forces(one, &given);
-            self.set_tangent(one, t);
             // A singular stiffness gives derivatives that are not known.
-            let _ = self.factor();
+            let _ = self.prepare_with(one, t, &given);
         }
     }
 

@@ -103,6 +103,10 @@ pub(super) struct LoadDerivatives<'a, T> {
     /// Required wrenches along the direction, and the bodies on which they may change.
     required: Vec<Wrench<Dual<T>>>,
     forced: Vec<usize>,
+    /// Per body: the forces that act on it.
+    forces_on: Vec<Vec<ElementId>>,
+    /// Per load: its derivatives by the unit twists W of a body.
+    slopes: Vec<[T; 6]>,
     /// Derivatives of the friction equations along the direction, at constant reactions.
     residuals: Vec<T>,
     /// Transmitted loads at constant wrenches: only the speeds of drivers change.
@@ -140,6 +144,8 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         Self {
             model,
             forced: forced_bodies(model, &changed),
+            forces_on: forces_on_bodies(model),
+            slopes: vec![[T::zero(); 6]; loads.len()],
             changed,
             constant,
             position: LoadedPosition::new(model),
@@ -247,7 +253,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
     /// the masses that depend on it. The other masses are part of the coefficients.
     pub fn require_of(&mut self, friction: &Friction, variable: usize) {
         let Self { model, changed, position, nominal, required, residuals, transmitted, .. } = self;
-        let ChangedGeometry { geometry, masses } = &changed[variable];
+        let ChangedGeometry { geometry, masses, .. } = &changed[variable];
         required.fill(Wrench::zero());
         let applied = position.loads(model, geometry);
         let forces = (0..model.elements.len()).filter(|e| !model.elements[*e].kind.has_mass());
@@ -257,6 +263,58 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         let at_rest = AppliedLoads { bodies: nominal, ..applied };
         masses.iter().for_each(|e| at_rest.add(*e, required));
         set_residuals(residuals, friction, &applied, transmitted);
+    }
+
+    /// Adds the derivatives of all forces by the twists W of the bodies to the coefficients of the loads. This is for
+    /// positions at rest, at which forces depend on nothing else that moves, and for loads of drivers.
+    pub fn add_force_coefficients(&mut self, at: &Equilibrium<'_, T>) {
+        for b in 1..self.forces_on.len() {
+            if self.forces_on[b].is_empty() && !self.forced.contains(&b) {
+                continue;
+            }
+            for (unit, twist) in Twist::UNITS.iter().enumerate() {
+                let w = Twist { w: twist.w.spread(), v: twist.v.spread() };
+                self.position.bodies[b] = at.position.bodies[b].along([w, Twist::zero(), Twist::zero()]);
+                self.required.fill(Wrench::zero());
+                let applied = self.position.loads(self.model, &self.constant);
+                self.forces_on[b].iter().for_each(|e| applied.add(*e, &mut self.required));
+                applied.add_further(&mut self.required);
+                for (n, load) in self.loads.iter().enumerate() {
+                    self.slopes[n][unit] = self.work_of_forces(load);
+                }
+            }
+            self.position.bodies[b] = self.nominal[b];
+            for (load, slopes) in self.loads.iter_mut().zip(&self.slopes) {
+                load.by_twists[b][0] += Wrench::from_work(*slopes);
+            }
+        }
+    }
+
+    /// Sum of F' . Y with the required wrenches that were computed last.
+    fn work_of_forces(&self, load: &LoadAdjoint<'_, T>) -> T {
+        let work = |b: &usize| self.required[*b].derivative().on(load.virtual_twists[*b]);
+        self.forced.iter().fold(T::zero(), |sum, b| sum + work(b))
+    }
+
+    /// Derivatives of the loads of drivers at rest by a variable whose sensitivities have been solved, with the
+    /// coefficients of the forces; calls `each` with the number of the load and its derivative.
+    pub fn differentiate_at_rest(&mut self, by: &Differentiated<'_, T>, mut each: impl FnMut(usize, T)) {
+        let Differentiated { variable, topology, state, field, flow } = by;
+        let ChangedGeometry { geometry, masses, forces } = &self.changed[variable.0];
+        let is_explicit = !masses.is_empty() || !forces.is_empty() || self.position.further.is_some();
+        if is_explicit {
+            self.required.fill(Wrench::zero());
+            let applied = self.position.loads(self.model, geometry);
+            masses.iter().chain(forces).for_each(|e| applied.add(*e, &mut self.required));
+            applied.add_further(&mut self.required);
+        }
+        self.sums.fill(T::zero());
+        let loads = self.loads.iter().map(|load| (&load.by_twists[..], &load.turning));
+        field.add_work((topology, state), flow, loads, &mut self.sums);
+        for (n, load) in self.loads.iter().enumerate() {
+            let explicit = if is_explicit { self.work_of_forces(load) } else { T::zero() };
+            each(n, self.sums[n] + explicit);
+        }
     }
 
     /// Takes into account that a further force acts on this body.
@@ -312,6 +370,20 @@ fn set_residuals<T: Real>(
     transmitted: &TransmittedLoads<Dual<T>>,
 ) {
     to.iter_mut().enumerate().for_each(|(k, to)| *to = friction.residual(k, applied, transmitted).d);
+}
+
+/// Per body: the forces that act on it.
+pub(super) fn forces_on_bodies(model: &Model) -> Vec<Vec<ElementId>> {
+    let mut forces_on = vec![Vec::new(); model.bodies.len()];
+    for (e, element) in model.elements.iter().enumerate() {
+        let Some(force) = element.kind.force(model) else { continue };
+        let [i, j] = force.acts_on.bodies(model);
+        forces_on[i.0].push(ElementId(e));
+        if i != j {
+            forces_on[j.0].push(ElementId(e));
+        }
+    }
+    forces_on
 }
 
 /// Bodies with forces, or with masses that a variable changes.

@@ -12,6 +12,7 @@ use crate::sensitivity::{Adjoint, Load, Support};
 use crate::space::{Pose, Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
+use super::derivatives::forces_on_bodies;
 use super::solver::LoadSolver;
 
 /// Gradients of the loads of a solver. Without friction and redundant constraints a step allocates no memory.
@@ -35,20 +36,11 @@ impl<'a> LoadGradients<'a> {
     /// Gradients by the variables of an adjoint. `solver` has derivatives.
     pub fn new(solver: LoadSolver<'a>, topology: &Topology, adjoint: &Adjoint) -> Self {
         let model = solver.equilibrium.model;
-        let mut forces_on = vec![Vec::new(); model.bodies.len()];
-        for (e, element) in model.elements.iter().enumerate() {
-            let Some(force) = element.kind.force(model) else { continue };
-            let [i, j] = force.acts_on.bodies(model);
-            forces_on[i.0].push(ElementId(e));
-            if i != j {
-                forces_on[j.0].push(ElementId(e));
-            }
-        }
         let (variables, loads) = (model.variables.len(), solver.measures.len());
         let moving: Vec<usize> = (1..model.bodies.len()).collect();
         let changed = solver.derivatives.iter().flat_map(|d| &d.changed);
         Self {
-            forces_on,
+            forces_on: forces_on_bodies(model),
             is_explicit: changed.map(|c| is_explicit(model, &c.geometry)).collect(),
             slopes: vec![[[0.0; 6]; 2]; loads],
             loads: vec![moving.iter().map(|b| (*b, [Wrench::zero(); 3])).collect(); loads],

@@ -5,7 +5,8 @@
 //! body (49), independent of the number of masses.
 
 use crate::design::Geometry;
-use crate::model::{ElementId, LoadMode, Model};
+use crate::model::element::ActsOn;
+use crate::model::{ElementId, JointId, LoadMode, Model};
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Twist, Vec3, Wrench};
 
@@ -112,6 +113,31 @@ pub(super) struct ChangedGeometry<T> {
     pub geometry: Geometry<Dual<T>>,
     /// Masses that depend on the variable, or move within their bodies.
     pub masses: Vec<ElementId>,
+    /// Forces that depend on the variable while all bodies stay in place.
+    pub forces: Vec<ElementId>,
+}
+
+/// True if the body-fixed data of a force depend on the variable.
+fn is_explicit<T: Real>(model: &Model, e: ElementId, changed: &Geometry<Dual<T>>) -> bool {
+    let element = &model.elements[e.0];
+    let Some(force) = element.kind.force(model) else { return false };
+    let moves = |v: &Vec3<Dual<T>>| [v.x, v.y, v.z].iter().any(|x| !x.d.vanishes());
+    let turns = |rot: &Mat3<Dual<T>>| rot.cols.iter().any(moves);
+    let in_joint = |joint: JointId| {
+        changed.markers[joint.0].iter().any(|marker| moves(&marker.r) || turns(&marker.rot))
+            || changed.kept[joint.0].numbers().iter().any(|x| !x.d.vanishes())
+    };
+    let at_points = force.acts_on.points(model).into_iter().flatten().any(|p| moves(&changed.points[p.0]));
+    let elsewhere = match force.acts_on {
+        ActsOn::Joint(joint) | ActsOn::Coordinate(joint, _) => in_joint(joint),
+        ActsOn::Wheel(wheel) => moves(&changed.spin_axes[wheel.0]),
+        ActsOn::Line(_) | ActsOn::Points(_) | ActsOn::Point(_) | ActsOn::Body(_) => false,
+    };
+    let numbers = model.numbers.iter().zip(&changed.numbers);
+    at_points
+        || elsewhere
+        || changed.axes[e.0].iter().flatten().any(turns)
+        || numbers.filter(|(of, _)| of.owner == element.name).any(|(_, x)| !x.d.vanishes())
 }
 
 impl<T: Real> ChangedGeometry<T> {
@@ -138,7 +164,9 @@ impl<T: Real> ChangedGeometry<T> {
                 !vectors.chain([mass]).all(|x| x.d.vanishes())
             })
         };
-        let masses = (0..model.elements.len()).map(ElementId).filter(moves).collect();
-        Self { geometry, masses }
+        let all = (0..model.elements.len()).map(ElementId);
+        let masses = all.clone().filter(moves).collect();
+        let forces = all.filter(|e| is_explicit(model, *e, &geometry)).collect();
+        Self { geometry, masses, forces }
     }
 }

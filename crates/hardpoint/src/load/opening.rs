@@ -4,7 +4,7 @@
 //! displacement along the axes of marker i, then Cardan angles. A force that works on them has a potential if its
 //! stiffnesses are symmetric. Turns of any size are possible about z alone; alpha and beta stay below 90 deg.
 
-use crate::space::{Pose, Real, Wrench};
+use crate::space::{Pose, Real, Vec3, Wrench};
 
 /// Coordinates of marker j relative to marker i: x, y, z, m; alpha, beta, gamma, rad.
 pub(crate) struct Opening<T> {
@@ -31,9 +31,17 @@ impl<T: Real> Opening<T> {
         // l_alpha = a2 x a3 / D, l_beta = a3 x a1 / D, l_gamma = a1 x a2 / D, of the axes a1 = x_i,
         // a2 = y_i cos(alpha) + z_i sin(alpha), a3 = z_j, with D = a1 . (a2 x a3) = cos(beta)
         let a2 = y_i * (m33 * per) - z_i * (m23 * per);
-        let turns = [a2.cross(z_j), z_j.cross(x_i), x_i.cross(a2)].map(|l| Wrench::moment(l * per));
-        let slides = [x_i, y_i, z_i].map(|axis| Wrench::force(axis, j.r));
-        let ([x, y, z], [a, b, c]) = (slides, turns);
-        Self { coordinates: [d.x, d.y, d.z, alpha, beta, gamma], wrenches: [x, y, z, a, b, c] }
+        let turn = |l: Vec3<T>| Wrench::moment(l * per);
+        let slide = |axis: Vec3<T>| Wrench::force(axis, j.r);
+        // Without `map`, which the compiler does not inline for arrays of this size.
+        let wrenches = [
+            slide(x_i),
+            slide(y_i),
+            slide(z_i),
+            turn(a2.cross(z_j)),
+            turn(z_j.cross(x_i)),
+            turn(x_i.cross(a2)),
+        ];
+        Self { coordinates: [d.x, d.y, d.z, alpha, beta, gamma], wrenches }
     }
 }

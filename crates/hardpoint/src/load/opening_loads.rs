@@ -142,6 +142,7 @@ impl<'a, T: Real> OpeningLoads<'a, T> {
     /// Prepares derivatives of the forces that were solved last.
     pub fn prepare(&mut self, topology: &Topology, state: &mut State<T>) {
         self.derivatives.set_equilibrium(&self.statics, topology, state, |_| ());
+        self.derivatives.add_force_coefficients(&self.statics);
     }
 
     /// Derivatives of the forces by opening k, or along another direction while all openings stand. `set_time` sets the
@@ -154,13 +155,13 @@ impl<'a, T: Real> OpeningLoads<'a, T> {
         out: &mut [T],
         moved: impl FnOnce(&[Twist<T>]),
     ) {
-        let Self { statics, derivatives, columns, direct, .. } = self;
+        let Self { derivatives, columns, direct, .. } = self;
         let field = &mut columns[k];
         set_time(field);
         direct.solve_position(topology, state, field);
         moved(&direct.flow.twists[0]);
         let by = Differentiated { variable: VariableId(k), topology, state, field, flow: &direct.flow };
-        derivatives.differentiate(statics, &by, |n, slope| out[n] = slope);
+        derivatives.differentiate_at_rest(&by, |n, slope| out[n] = slope);
     }
 
     /// Wrenches of a unit force on the bodies, at the position that was solved last.
