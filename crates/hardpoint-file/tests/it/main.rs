@@ -41,4 +41,5 @@ mod sweeps;
 mod synthesis;
 mod tape;
 mod tolerances;
+mod tube;
 mod wheels;

@@ -12,6 +12,7 @@ mod jerk;
 mod loads;
 mod metric;
 mod nearest;
+mod proof;
 mod quadrature;
 mod request;
 mod second;
