@@ -18,6 +18,7 @@ Examples:
   hardpoint import four_bar.asmt -o four_bar.toml
   hardpoint run models/macpherson.toml -o results/macpherson
   hardpoint verify models/macpherson.toml --sweep
+  hardpoint clearance models/knee.toml
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --measure toe
   hardpoint optimize models/four_bar_inverse.toml --save found.toml
   hardpoint tolerance models/studies/strut_tolerances.toml -o results/strut
@@ -29,6 +30,7 @@ Examples:
 Exit codes:
     0  done; for verify: every variable passed
     1  verify: a sensitivity and its re-solved designs disagree;
+       clearance: shapes are nearer than asked for;
        optimize: the search did not converge, or limits are violated
     2  invalid command line
     3  the model file cannot be read, or has errors
@@ -63,6 +65,8 @@ pub enum Command {
     Run(Run),
     /// Check a model: mobility, loops, redundant constraints, margins, admissibility of the design variables
     Check(Check),
+    /// Find the least distances of shapes over the motion, when they touch, and how both change with the design
+    Clearance(Clearance),
     /// Export a model to a file of another program, and list its unsupported features
     Export(Export),
     /// Import a mechanism of another program as a model file, and check it
@@ -303,6 +307,32 @@ pub struct Check {
     pub common: Common,
     #[command(flatten)]
     pub motions: Motions,
+}
+
+const AFTER_CLEARANCE: &str = "\
+The model has `[shapes]` of its bodies, and `[clearances.NAME]` with the pairs of shapes. Least
+distances are located exactly, between output times too, with their derivatives by all design
+variables; so are the times at which shapes touch and part. Distances are negative where shapes
+overlap.
+
+The exit code is 1 if a pair is nearer than the `min` of its clearance.
+
+Examples:
+  hardpoint clearance models/knee.toml
+  hardpoint clearance models/knee.toml -o results/knee
+  hardpoint clearance models/knee.toml --json | jq '.pairs[] | [.shapes, .least]'";
+
+/// `hardpoint clearance`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_CLEARANCE)]
+pub struct Clearance {
+    #[command(flatten)]
+    pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
+    /// Write clearances.csv into this folder: distances, rates, accelerations and nearest points
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
 }
 
 const AFTER_VERIFY: &str = "\

@@ -3,6 +3,7 @@
 mod args;
 mod calibrate;
 mod check;
+mod clearance;
 mod compare;
 mod export;
 mod folder;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Command::New(options) => new::run(&options),
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
+        Command::Clearance(options) => clearance::run(&options),
         Command::Export(options) => export::export(&options),
         Command::Import(options) => import::import(&options),
         Command::Verify(options) => verify::verify(&options),

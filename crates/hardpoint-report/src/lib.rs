@@ -25,6 +25,7 @@
 pub mod assembly;
 pub mod calibrate;
 pub mod cells;
+pub mod clearance;
 pub mod compare;
 pub mod course;
 pub mod deflection;

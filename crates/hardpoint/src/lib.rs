@@ -205,6 +205,7 @@
 //! files are read by the crate `hardpoint-file`.
 
 mod blocks;
+mod clearance;
 pub mod constraint;
 pub mod design;
 pub mod draft;

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use crate::values::{Shape, Value, table_of};
 
 /// Sections whose entries are mirrored; parameters and design variables only if each side has its own.
-pub(crate) const SECTIONS: [&str; 14] = [
+pub(crate) const SECTIONS: [&str; 16] = [
     "parameters",
     "hardpoints",
     "bodies",
@@ -20,6 +20,8 @@ pub(crate) const SECTIONS: [&str; 14] = [
     "points",
     "wheels",
     "axles",
+    "shapes",
+    "clearances",
     "masses",
     "forces",
     "measures",

@@ -84,6 +84,7 @@ pub(super) fn key(field: &MeasureField) -> Key {
         FieldKind::Number(_) => (NUMBER, "2.5"),
         FieldKind::Law => (LAW, "\"sin(2*pi*t)\""),
         FieldKind::Wheel => (Shape::Name("a wheel"), "\"front_left\""),
+        FieldKind::Clearance => (Shape::Name("a clearance"), "\"rod_to_screws\""),
         FieldKind::Table => (FORCE_TABLE, "[[0, 0], [20, 400], [35, 1500]]"),
         FieldKind::Matrix => (
             MATRIX,
@@ -136,6 +137,7 @@ pub(super) fn own_field(
         | FieldKind::Driver
         | FieldKind::Force
         | FieldKind::Wheel
+        | FieldKind::Clearance
         | FieldKind::Body => r.name_of(fields, key).map(FieldDraft::Name),
         FieldKind::OrientationAngle => {
             r.word_of(fields, key).map(|k| FieldDraft::Angle(OrientationAngle::at(k)))
@@ -227,7 +229,7 @@ fn matrix(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<Box<[
 }
 
 /// A number of a mass or force: by itself, or by an expression that the core evaluates.
-fn element_number(
+pub(super) fn element_number(
     r: &mut Reader<'_>,
     fields: &Fields<'_>,
     f: Field<'_>,

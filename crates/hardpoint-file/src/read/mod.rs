@@ -26,6 +26,7 @@ mod parse;
 mod points;
 mod raw;
 mod readings;
+mod shapes;
 mod sweep;
 mod times;
 mod tolerance;

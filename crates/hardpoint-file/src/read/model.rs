@@ -14,7 +14,7 @@ use super::elements::{LOAD_MODES, LOADS};
 use super::raw::Raw;
 use super::{
     bodies, cases, couplers, design, drivers, elements, equilibrium, hardpoints, joints, measures, metrics,
-    optimize, page, parameters, points, sweep, times, tolerance, wheels,
+    optimize, page, parameters, points, shapes, sweep, times, tolerance, wheels,
 };
 
 /// The file as a whole.
@@ -51,6 +51,10 @@ pub(crate) const MODEL: Table = table! {
     may "wheels": Shape::Entries("a wheel", &Shape::Table(&wheels::WHEEL)), "{}";
     /// Pairs of wheels, for their measures.
     may "axles": Shape::Entries("an axle", &Shape::Table(&wheels::AXLE)), "{}";
+    /// Shapes of bodies, for clearances.
+    may "shapes": Shape::Entries("a shape", &Shape::Kinds(&shapes::SHAPE)), "{}";
+    /// Distances between shapes over the motion.
+    may "clearances": Shape::Entries("a clearance", &Shape::Table(&shapes::CLEARANCE)), "{}";
     /// Direction and acceleration of gravity.
     may "gravity": Shape::Table(&elements::GRAVITY), "{ along = \"-z\" }";
     /// Loads with or without the inertia of the masses.
@@ -147,6 +151,8 @@ pub(crate) fn tables() -> [(&'static str, Shape); 42] {
         ("wheels", Shape::Table(&wheels::WHEEL)),
         ("axles", Shape::Table(&wheels::AXLE)),
         ("gravity", Shape::Table(&elements::GRAVITY)),
+        ("shapes", Shape::Kinds(&shapes::SHAPE)),
+        ("clearances", Shape::Table(&shapes::CLEARANCE)),
         ("masses", Shape::Kinds(&elements::MASS)),
         ("forces", Shape::Kinds(&elements::FORCE)),
         ("equilibrium", Shape::Table(&equilibrium::EQUILIBRIUM)),
@@ -198,12 +204,15 @@ pub(crate) fn model<'a>(
     wheels::vehicle(r, &fields, &mut raw);
     wheels::wheels(r, &fields, &mut raw);
     wheels::axles(r, &fields, &mut raw);
+    shapes::shapes(r, &fields, &mut raw);
+    shapes::clearances(r, &fields, &mut raw);
     elements::gravity(r, &fields, &mut raw);
     raw.draft.load_mode = r.word_of(&fields, "loads").map_or(LoadMode::default(), |k| LOAD_MODES[k]);
     elements::masses(r, &fields, &mut raw);
     elements::forces(r, &fields, &mut raw);
     equilibrium::equilibrium(r, &fields, &mut raw);
     metrics::metrics(r, &fields, &mut raw);
+    shapes::least(r, &mut raw);
     times::time(r, &fields, &mut raw);
     let word = r.word_of(&fields, "at_change_points");
     raw.draft.at_change_points = word.map_or(ChangePointPolicy::default(), |k| ChangePointPolicy::WORDS[k].1);

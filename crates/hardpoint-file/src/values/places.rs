@@ -68,52 +68,20 @@ impl EntryPlace {
     }
 }
 
-const SECTIONS: [Section; 31] = [
-    Section::Model,
-    Section::Parameters,
-    Section::Hardpoints,
-    Section::Bodies,
-    Section::Joints,
-    Section::Couplers,
-    Section::Drivers,
-    Section::Design,
-    Section::Points,
-    Section::Vehicle,
-    Section::Wheels,
-    Section::Axles,
-    Section::Masses,
-    Section::Forces,
-    Section::Equilibrium,
-    Section::Measures,
-    Section::Metrics,
-    Section::Time,
-    Section::Cases,
-    Section::Grids,
-    Section::Optimize,
-    Section::Goals,
-    Section::Limits,
-    Section::Tolerance,
-    Section::Tolerances,
-    Section::Correlations,
-    Section::ToleranceLimits,
-    Section::Sweep,
-    Section::SweepRanges,
-    Section::Plots,
-    Section::Designs,
-];
-
 /// Locations of all entries, by section and index in the draft's list.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Places([Vec<EntryPlace>; SECTIONS.len()]);
+pub(crate) struct Places(Vec<Vec<EntryPlace>>);
 
 impl Places {
     pub fn list(&self, section: Section) -> &[EntryPlace] {
-        let k = SECTIONS.iter().position(|s| *s == section).expect("all sections are listed");
-        &self.0[k]
+        self.0.get(section as usize).map_or(&[], Vec::as_slice)
     }
 
     pub fn push(&mut self, section: Section, place: EntryPlace) {
-        let k = SECTIONS.iter().position(|s| *s == section).expect("all sections are listed");
+        let k = section as usize;
+        if self.0.len() <= k {
+            self.0.resize_with(k + 1, Vec::new);
+        }
         self.0[k].push(place);
     }
 

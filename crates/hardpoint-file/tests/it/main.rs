@@ -3,6 +3,7 @@
 mod bushings;
 mod calibrations;
 mod cases;
+mod clearance;
 mod couplers;
 mod diagnostics;
 mod docs;

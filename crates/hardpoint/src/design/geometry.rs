@@ -40,8 +40,28 @@ pub(crate) struct BodyFixed<T> {
     pub directions: Vec<[Option<Vec3<T>>; 2]>,
     /// Per measure of a joint's coordinate: marker i in body i and marker j in body j.
     pub markers: Vec<Option<[Pose<T>; 2]>>,
+    /// Per shape of the model: the numbers that no point gives.
+    pub shapes: Vec<ShapeGeometry<T>>,
     /// Size of the mechanism, m, as in [`Geometry`].
     pub size: f64,
+}
+
+/// The numbers of a shape that no point gives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShapeGeometry<T> {
+    /// Its axis or normal, a unit vector in the frame of its body, if it has one that points do not give.
+    pub axis: Option<Vec3<T>>,
+    /// Radius of a ring or cylinder, width of a tyre, m; otherwise 0.
+    pub size: T,
+    /// Radius around the core, m.
+    pub round: T,
+}
+
+impl<T: Copy> ShapeGeometry<T> {
+    /// Applies a function to every number.
+    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> ShapeGeometry<U> {
+        ShapeGeometry { axis: self.axis.map(|a| a.map(f)), size: f(self.size), round: f(self.round) }
+    }
 }
 
 impl<T: Copy> BodyFixed<T> {
@@ -52,6 +72,7 @@ impl<T: Copy> BodyFixed<T> {
             points: self.points.iter().map(|p| p.map(f)).collect(),
             directions: self.directions.iter().map(|d| d.map(|d| d.map(|d| d.map(f)))).collect(),
             markers: self.markers.iter().map(|m| m.map(|m| m.map(pose))).collect(),
+            shapes: self.shapes.iter().map(|s| s.map(f)).collect(),
             size: self.size,
         }
     }

@@ -15,11 +15,12 @@
 //! | [`DesignMap::field_along`] | `dD/dtau` (5.5) | `d/db` of all of it, by duals `b + eps` |
 
 use crate::constraint::{MarkerPair, Row};
-use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity};
+use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity, ShapeGeometry};
 use crate::law::Law;
 use crate::model::{
-    BodyId, Change, DesignVariable, Direction, DriverId, ElementId, HardpointId, Joint, JointId, Measure,
-    MeasureKind, Model, NumberId, PointId, SharedModel, Source, Target, VariableId,
+    BodyId, Change, DesignVariable, Direction, DriverId, ElementId, HardpointId, Joint, JointId, Length,
+    Measure, MeasureKind, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target,
+    VariableId,
 };
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
@@ -115,6 +116,7 @@ impl<'m> DesignMap<'m> {
             points: (0..model.points.len()).map(|k| design.point(k)).collect(),
             directions: model.measures.iter().map(|m| design.directions(m)).collect(),
             markers: model.measures.iter().map(markers).collect(),
+            shapes: model.shapes.iter().map(|shape| design.shape(shape)).collect(),
             size: model.size(),
         }
     }
@@ -499,6 +501,19 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
     fn point(&self, k: usize) -> Vec3<T> {
         let point = &self.design_map.model().points[k];
         self.frame(point.body).inverse().point(self.place(point.at, &self.values))
+    }
+
+    /// Returns the numbers of a shape that no point gives.
+    fn shape(&self, shape: &Shape) -> ShapeGeometry<T> {
+        let number = |n: Option<Length>| n.map_or(T::zero(), |n| self.number(n.0.0));
+        let size = match shape.kind {
+            ShapeKind::Ring { radius: size, .. }
+            | ShapeKind::Cylinder { radius: size, .. }
+            | ShapeKind::Tyre { width: size, .. } => Some(size),
+            ShapeKind::Sphere { .. } | ShapeKind::Capsule { .. } | ShapeKind::Plane { .. } => None,
+        };
+        let axis = shape.axis(self.design_map.model()).map(|(body, axis)| self.in_body(body, axis));
+        ShapeGeometry { axis, size: number(size), round: number(shape.round) }
     }
 
     /// Returns the directions that a measure depends on, in their bodies' frames.

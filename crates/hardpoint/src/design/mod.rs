@@ -18,7 +18,7 @@ mod shape;
 
 pub(crate) use change::Effect;
 pub use field::{DesignVelocity, MarkerVelocity};
-pub(crate) use geometry::BodyFixed;
+pub(crate) use geometry::{BodyFixed, ShapeGeometry};
 pub use geometry::{Geometry, JointConstants};
 pub use map::DesignMap;
 pub(crate) use shape::{Interpolation, ShapeField};

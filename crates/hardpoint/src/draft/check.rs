@@ -12,6 +12,7 @@ mod measures;
 mod motion;
 mod optimization;
 mod page;
+mod shapes;
 mod sweeping;
 mod tolerancing;
 mod wheels;
@@ -29,8 +30,8 @@ use crate::draft::{
 use crate::expression::Expression;
 use crate::model::element::Compliance;
 use crate::model::{
-    AxleId, Body, BodyId, BodyPoint, Direction, DriverId, Extent, GROUND, Hardpoint, HardpointId, JointId,
-    Model, PointId, Source, WheelId,
+    AxleId, Body, BodyId, BodyPoint, ClearanceId, Direction, DriverId, Extent, GROUND, Hardpoint,
+    HardpointId, JointId, Model, PointId, ShapeId, Source, WheelId,
 };
 use crate::space::{Mat3, Pose, Vec3};
 
@@ -74,6 +75,8 @@ impl Model {
         c.add_wheels();
         c.add_axles();
         c.add_elements();
+        c.add_shapes();
+        c.add_clearances();
         c.check_unconnected_bodies();
         c.add_cases();
         c.add_grids();
@@ -123,6 +126,9 @@ struct Checker<'a> {
     /// Model wheel of each wheel of the draft, and model axle of each axle.
     wheel_ids: Vec<Option<WheelId>>,
     axle_ids: Vec<Option<AxleId>>,
+    /// Model shape of each shape of the draft, and model clearance of each clearance.
+    shape_ids: Vec<Option<ShapeId>>,
+    clearance_ids: Vec<Option<ClearanceId>>,
     /// Model metric of each metric of the draft; `None` for faulty ones.
     metric_ids: Vec<Option<usize>>,
     /// Hardpoints that curves pass through.
@@ -149,7 +155,7 @@ struct Checker<'a> {
 }
 
 /// Table of each kind of entry.
-const TABLES: [(&str, &str); 15] = [
+const TABLES: [(&str, &str); 17] = [
     ("parameter", "parameters"),
     ("hardpoint", "hardpoints"),
     ("body", "bodies"),
@@ -158,6 +164,8 @@ const TABLES: [(&str, &str); 15] = [
     ("point", "points"),
     ("wheel", "wheels"),
     ("axle", "axles"),
+    ("shape", "shapes"),
+    ("clearance", "clearances"),
     ("mass", "masses"),
     ("force", "forces"),
     ("measure", "measures"),
@@ -208,6 +216,8 @@ impl<'a> Checker<'a> {
             vehicle: draft.vehicle.clone(),
             wheels: Vec::new(),
             axles: Vec::new(),
+            shapes: Vec::new(),
+            clearances: Vec::new(),
             elements: Vec::new(),
             numbers: Vec::new(),
             gravity: draft.gravity,
@@ -234,6 +244,8 @@ impl<'a> Checker<'a> {
             ("joint", numbered(draft.joints.iter().map(|j| j.name.as_str()))),
             ("point", numbered(draft.points.iter().map(|p| p.name.as_str()))),
             ("driver", numbered(draft.drivers.iter().map(|d| d.name.as_str()))),
+            ("shape", numbered(draft.shapes.iter().map(|s| s.name.as_str()))),
+            ("clearance", numbered(draft.clearances.iter().map(|c| c.name.as_str()))),
             ("mass", numbered(draft.masses.iter().map(|m| m.name.as_str()))),
             ("force", numbered(draft.forces.iter().map(|f| f.name.as_str()))),
             ("measure", numbered(draft.measures.iter().map(|m| m.name.as_str()))),
@@ -266,6 +278,8 @@ impl<'a> Checker<'a> {
             joint_ids,
             wheel_ids: Vec::new(),
             axle_ids: Vec::new(),
+            shape_ids: Vec::new(),
+            clearance_ids: Vec::new(),
             metric_ids: Vec::new(),
             curve_points: Vec::new(),
             written: Vec::new(),
@@ -294,7 +308,7 @@ impl<'a> Checker<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn check_names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 22] = [
+        let lists: [(Section, &str, Vec<&str>); 24] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -305,6 +319,8 @@ impl<'a> Checker<'a> {
             (Section::Points, "point", d.points.iter().map(|x| x.name.as_str()).collect()),
             (Section::Wheels, "wheel", d.wheels.iter().map(|x| x.name.as_str()).collect()),
             (Section::Axles, "axle", d.axles.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Shapes, "shape", d.shapes.iter().map(|x| x.name.as_str()).collect()),
+            (Section::Clearances, "clearance", d.clearances.iter().map(|x| x.name.as_str()).collect()),
             (Section::Masses, "mass", d.masses.iter().map(|x| x.name.as_str()).collect()),
             (Section::Forces, "force", d.forces.iter().map(|x| x.name.as_str()).collect()),
             (Section::Measures, "measure", d.measures.iter().map(|x| x.name.as_str()).collect()),

@@ -57,6 +57,10 @@ pub enum Section {
     Wheels,
     /// [`super::Draft::axles`].
     Axles,
+    /// [`super::Draft::shapes`].
+    Shapes,
+    /// [`super::Draft::clearances`].
+    Clearances,
     /// [`super::Draft::masses`].
     Masses,
     /// [`super::Draft::forces`].
@@ -125,6 +129,8 @@ impl fmt::Display for Section {
             Self::Vehicle => "vehicle",
             Self::Wheels => "wheels",
             Self::Axles => "axles",
+            Self::Shapes => "shapes",
+            Self::Clearances => "clearances",
             Self::Masses => "masses",
             Self::Forces => "forces",
             Self::Equilibrium => "equilibrium",

@@ -5,9 +5,9 @@ use crate::expression::Expression;
 use crate::joint::VectorKind;
 use crate::law::Law;
 use crate::model::{
-    Axes, AxleMeasure, BodyId, Combination, Direction, DriverId, ElementId, ElementUnit, JointId,
-    MeasureKind, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid, WheelId, WheelMeasure,
-    measures,
+    Axes, AxleMeasure, BodyId, ClearanceId, Combination, Direction, DriverId, ElementId, ElementUnit,
+    JointId, MeasureKind, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid, WheelId,
+    WheelMeasure, measures,
 };
 use crate::space::Vec3;
 
@@ -74,6 +74,8 @@ pub enum FieldKind {
     Force,
     /// The name of a wheel.
     Wheel,
+    /// The name of a clearance.
+    Clearance,
     /// Force over deflection, as points of a table.
     Table,
     /// A symmetric matrix of stiffnesses.
@@ -226,6 +228,7 @@ macro_rules! not_drivable {
             | MeasureKindDraft::Curvature { .. }
             | MeasureKindDraft::Rate { .. }
             | MeasureKindDraft::Slope { .. }
+            | MeasureKindDraft::Clearance { .. }
             | MeasureKindDraft::Combination { .. }
             | MeasureKindDraft::Camber { .. }
             | MeasureKindDraft::DriverForce { .. }

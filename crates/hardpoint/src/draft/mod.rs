@@ -10,6 +10,7 @@ mod element;
 mod error;
 mod idle;
 mod measure;
+mod shape;
 
 pub use change::{ChangeDraft, ShapeDraft};
 pub(crate) use check::{CheckElement, ElementCheck};
@@ -18,6 +19,7 @@ pub use element::{ElementDraft, ElementKindDraft, ElementType, NumberDraft};
 pub use error::{DraftError, DraftLocation, Section, did_you_mean, some_of};
 use measure::not_drivable;
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
+pub use shape::{BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, EndsDraft, MinimumDraft};
 
 use std::collections::BTreeMap;
 
@@ -60,6 +62,10 @@ pub struct Draft {
     pub vehicle: Vehicle,
     /// Pairs of wheels.
     pub axles: Vec<AxleDraft>,
+    /// Shapes of bodies.
+    pub shapes: Vec<BodyShapeDraft>,
+    /// Clearances between shapes.
+    pub clearances: Vec<ClearanceDraft>,
     /// Masses.
     pub masses: Vec<ElementDraft>,
     /// Forces.

@@ -24,7 +24,7 @@ pub(super) fn moving<T: Real>([r, x, y, z, v, omega, a, alpha]: [Vec3<T>; 8]) ->
 }
 
 /// The same, with the derivatives of all of it by one design variable.
-pub(super) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Dual<Rates>> {
+pub(crate) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Dual<Rates>> {
     let Pose { rot, r } = with_rates(s);
     let column = |k: usize| {
         // With b = d/db:  e_b = pi' x e,    (e.)_b = omega_b x e + omega x e_b,

@@ -1,5 +1,6 @@
 //! Formulas of measures, over any number type. Signs are in `docs/measures.md`; loads are in `load/measures.rs`.
 
+use crate::clearance::PlacedShapes;
 use crate::constraint::Row;
 use crate::design::BodyFixed;
 use crate::model::{
@@ -118,6 +119,10 @@ impl<'a, T: Real> Instant<'a, T> {
                 let (way, far) = (speed * speed, a.norm() * T::constant(RESTS * self.fixed.size));
                 let way = if way.exceeds(far) { way } else { unknown() };
                 turn / (way * speed)
+            }
+            MeasureKind::Clearance { of } => {
+                let Self { model, fixed, poses, .. } = *self;
+                PlacedShapes { model, fixed, poses }.clearance(*of)
             }
             MeasureKind::Rate { of } => self.output(*of).rate(),
             MeasureKind::Combination { expression } => expression.at(|source| self.output(source)),

@@ -3,8 +3,8 @@
 use crate::expression::Expression;
 use crate::joint::Quantity;
 use crate::model::{
-    Axes, AxleId, AxleMeasure, BodyId, Direction, Driver, DriverId, ElementId, HardpointId, JointId, Model,
-    PointId, Side, WheelId, WheelMeasure, WheelRequirement,
+    Axes, AxleId, AxleMeasure, BodyId, ClearanceId, Direction, Driver, DriverId, ElementId, HardpointId,
+    JointId, Model, PointId, Side, WheelId, WheelMeasure, WheelRequirement,
 };
 use crate::space::{Angles, Real, Vec3};
 
@@ -177,6 +177,12 @@ macro_rules! measures {
             ..all
         }),
         expression.text().into();
+
+    /// Least distance of the pairs of a clearance, negative where shapes overlap.
+    Clearance "clearance" [Polar, normal: false] {
+        /// The clearance's name.
+        of: String => ClearanceId,
+    } |_, w| Dimension::LENGTH, POSITIONS, format!("least distance of clearance `{}`", w.model.clearances[of.0].name);
 
     /// Toe of a wheel, positive for toe-in. It is a left wheel where its spin axis points to +y in the design
     /// configuration, else a right one.
@@ -408,6 +414,7 @@ macro_rules! of_bodies {
             | MeasureKind::Combination { .. }
             | MeasureKind::Toe { .. }
             | MeasureKind::Camber { .. }
+            | MeasureKind::Clearance { .. }
     };
 }
 pub(crate) use of_bodies;
@@ -466,6 +473,13 @@ impl OnBodies for Option<PointId> {
 impl OnBodies for Option<WheelId> {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         self.map_or_else(Vec::new, |w| w.bodies(model))
+    }
+}
+
+impl OnBodies for ClearanceId {
+    fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        let pairs = &model.clearances[self.0].pairs;
+        pairs.iter().flat_map(|pair| pair.shapes).flat_map(|s| model.shapes[s.0].bodies(model)).collect()
     }
 }
 
@@ -625,6 +639,7 @@ impl MeasureKind {
             | Self::Rate { .. }
             | Self::Slope { .. }
             | Self::Combination { .. }
+            | Self::Clearance { .. }
             | Self::Toe { .. }
             | Self::Camber { .. }
             | Self::DriverForce { .. }
@@ -657,6 +672,7 @@ impl MeasureKind {
             | Self::Curvature { .. }
             | Self::Rate { .. }
             | Self::Combination { .. }
+            | Self::Clearance { .. }
             | Self::Slope { .. }
             | Self::Compliance { .. }
             | loads!() => "",
@@ -700,6 +716,7 @@ impl MeasureKind {
             | Self::AngularVelocity { .. }
             | Self::Acceleration { .. }
             | Self::Curvature { .. }
+            | Self::Clearance { .. }
             | Self::Toe { .. }
             | Self::Camber { .. }
             | Self::Wheel { .. }
@@ -1066,6 +1083,7 @@ impl Model {
             | MeasureKind::Curvature { .. }
             | MeasureKind::Rate { .. }
             | MeasureKind::Slope { .. }
+            | MeasureKind::Clearance { .. }
             | MeasureKind::Combination { .. }
             | MeasureKind::Compliance { .. }
             | loads!() => [None; 2],

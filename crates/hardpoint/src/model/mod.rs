@@ -14,6 +14,7 @@ mod measured;
 mod metric;
 mod optimization;
 mod page;
+mod shape;
 mod shared;
 mod solid;
 mod spring_table;
@@ -43,6 +44,7 @@ pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, LimitTarget, OptimizationSettings};
 pub use page::{NamedDesign, Plot};
+pub use shape::{Clearance, ClearanceId, Shape, ShapeId, ShapeKind, ShapePair};
 pub use shared::SharedModel;
 pub(crate) use solid::about_centre;
 pub use solid::{OpenSurface, Solid};
@@ -126,9 +128,13 @@ pub struct Model {
     pub wheels: Vec<Wheel>,
     /// Pairs of them, in the order of the file.
     pub axles: Vec<Axle>,
+    /// Shapes of bodies, in the order of the file.
+    pub shapes: Vec<Shape>,
+    /// Clearances between them, in the order of the file.
+    pub clearances: Vec<Clearance>,
     /// Masses, then forces, in the order of the file.
     pub elements: Vec<Element>,
-    /// The numbers that these are given.
+    /// The numbers that shapes, masses and forces are given.
     pub numbers: Vec<ElementNumber>,
     /// Acceleration of gravity, m/s^2, global.
     pub gravity: Vec3,

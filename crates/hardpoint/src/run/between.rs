@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::law::Law;
 use crate::linalg::{hermite, segment_at};
-use crate::model::{Metric, Model, Reduction};
+use crate::model::{MeasureKind, Metric, Model, OutputSource, Reduction};
 use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
@@ -54,6 +54,13 @@ fn is_between_outputs(metric: &Metric, times: &[f64]) -> bool {
     }
 }
 
+/// Returns true if a metric is taken at a time of its own whatever the output times resolve: a distance of shapes may
+/// change its features between them, and its least value is a promise.
+fn is_exact(model: &Model, metric: &Metric) -> bool {
+    let OutputSource::Measure(k) = metric.of else { return false };
+    matches!(model.measures[k].kind, MeasureKind::Clearance { .. })
+}
+
 impl Analysis<'_> {
     /// Returns true if metrics need more times than the output times.
     pub(super) fn has_times_between(&self) -> bool {
@@ -67,15 +74,20 @@ impl Analysis<'_> {
             if !model.metrics.iter().any(|m| is_between_outputs(m, &model.times)) {
                 return model.times.clone();
             }
-            let units = driver_units(model, self.topology());
-            let laws: Vec<(&Law, f64)> = model.drivers.iter().map(|d| &d.law).zip(units).collect();
-            // The stored results must fit into memory, however long the motion is.
-            let most = Footprint::of(model, true).rows(BYTES);
-            (0..6)
-                .map(|k| f64::from(1 << k))
-                .find_map(|coarser| times_of(model, &laws, coarser, most))
-                .unwrap_or_else(|| model.times.clone())
+            self.times_within()
         })
+    }
+
+    /// Output times, and times between them that are so close that no driver moves far between two of them.
+    pub(super) fn times_within(&self) -> Vec<f64> {
+        let model = self.model();
+        let units = driver_units(model, self.topology());
+        let laws: Vec<(&Law, f64)> = model.drivers.iter().map(|d| &d.law).zip(units).collect();
+        let most = Footprint::of(model, true).rows(BYTES);
+        (0..6)
+            .map(|k| f64::from(1 << k))
+            .find_map(|coarser| times_of(model, &laws, coarser, most))
+            .unwrap_or_else(|| model.times.clone())
     }
 
     /// Solves the motion of a design between its output times, if metrics need it. `solution` has the results at all
@@ -123,8 +135,9 @@ impl Analysis<'_> {
             }
             let now = found.as_ref().unwrap_or(solution);
             let metrics = model.metrics.iter().filter(|m| is_between_outputs(m, &model.times));
-            let add: Vec<f64> =
-                metrics.flat_map(|metric| unresolved_times(now, metric, found.is_some())).collect();
+            let add: Vec<f64> = metrics
+                .flat_map(|m| unresolved_times(now, m, found.is_some() || is_exact(model, m)))
+                .collect();
             if add.is_empty() {
                 break;
             }

@@ -4,6 +4,7 @@
 
 mod analysis;
 mod between;
+mod clearance;
 mod curve;
 mod designs;
 mod driver_rates;
@@ -22,6 +23,7 @@ mod walk;
 mod window;
 
 pub use analysis::Analysis;
+pub use clearance::{ClearanceMinimum, Clearances, Contact, MinimumPlace, PairClearance, ShapeDistance};
 pub use driver_rates::DriverRates;
 pub use gradient::{GradientMethod, Gradients};
 pub use jerk::Jerks;

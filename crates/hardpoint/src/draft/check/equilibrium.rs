@@ -70,6 +70,7 @@ impl Checker<'_> {
                 | MeasureKind::Angle { .. }
                 | MeasureKind::Orientation { .. }
                 | MeasureKind::TransmissionAngle { .. }
+                | MeasureKind::Clearance { .. }
                 | MeasureKind::Combination { .. }
                 | MeasureKind::Camber { .. }
                 | MeasureKind::Toe { .. }

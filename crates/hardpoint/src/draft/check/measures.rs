@@ -8,9 +8,9 @@ use crate::draft::{
 use crate::expression::Expression;
 use crate::model::element::{Compliance, CoupledStiffness};
 use crate::model::{
-    Axes, AxleMeasure, BodyId, CaseId, Combination, Dimension, Direction, DriverId, Element, ElementId,
-    JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle, OutputSource, PointId,
-    Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure, WheelPoint,
+    Axes, AxleMeasure, BodyId, CaseId, ClearanceId, Combination, Dimension, Direction, DriverId, Element,
+    ElementId, JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle, OutputSource,
+    PointId, Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure, WheelPoint,
 };
 use crate::space::Vec3;
 
@@ -135,7 +135,7 @@ impl Checker<'_> {
     }
 
     /// Returns the wheel with this name.
-    fn wheel_named(&mut self, name: &str, at: DraftLocation) -> Option<WheelId> {
+    pub(super) fn wheel_named(&mut self, name: &str, at: DraftLocation) -> Option<WheelId> {
         let draft = self.draft;
         let k = self.find("wheel", name, at, draft.wheels.iter().map(|w| w.name.as_str()))?;
         self.wheel_ids[k]
@@ -512,6 +512,7 @@ field!(Option<WheelId>, Wheel, Name: Option<String>, may |name, key, c| match na
     Some(name) => WheelId::resolve(name, key, c).map(Some),
     None => Some(None),
 });
+field!(ClearanceId, Clearance, Name: String, |name, key, c| c.check.clearance_named(name, c.here.key(key)));
 field!(Solid, Mesh, Solid: Solid, |solid, _key, _c| Some(*solid));
 field!(Option<SpringTable>, Table, Table: Option<Vec<[f64; 2]>>, may |points, key, c| match points {
     Some(points) => c.check.spring_table(points, c.owner, c.here, key).map(Some),

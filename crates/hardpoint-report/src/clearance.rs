@@ -1,0 +1,327 @@
+//! Clearances over a motion: sentences, tables, and the rows of `clearances.csv`.
+
+use std::io::Write;
+
+use hardpoint::model::{Clearance, Dimension, Model, ShapePair};
+use hardpoint::run::{ClearanceMinimum, Clearances, Contact, MinimumPlace, PairClearance, ShapeDistance};
+use hardpoint_file::Units;
+
+use crate::figures::{number, per, rounded, unit, variable_unit, with_unit};
+use crate::page::Table;
+use crate::record::{Column, record, write_rows};
+
+/// Digits of distances and times in sentences.
+const DIGITS: usize = 7;
+/// Number of the strongest variables in a sentence.
+const NAMED: usize = 5;
+/// A distance below that asked for by less than this fraction of the mechanism's size is kept: an optimum lies on its
+/// limit, and positions are solved to 1e-12 of the size.
+const KEPT: f64 = 1e-9;
+/// Derivatives below this fraction of the largest are zero but for round-off.
+const NEGLIGIBLE: f64 = 1e-9;
+
+record! {
+    /// Derivative by a design variable.
+    ClearanceSensitivity::of(model: &Model, units: Units, of: Dimension, v: usize, d: f64) {
+        let variable = &model.variables[v];
+        let by = variable_unit(model, units, variable);
+    }
+    /// Name of the variable.
+    variable: String = variable.name.clone();
+    /// Derivative.
+    value: f64 = units.derivative_from_si(of, variable.quantity, d);
+    /// Unit of the derivative.
+    unit: String = per(&unit(units, of), &by);
+}
+
+/// Derivatives by all variables that the mechanism follows, the strongest first.
+fn sensitivities(model: &Model, units: Units, of: Dimension, d: &[f64]) -> Vec<ClearanceSensitivity> {
+    let mut all: Vec<_> = (0..d.len())
+        .filter(|v| d[*v].is_finite())
+        .map(|v| ClearanceSensitivity::of(model, units, of, v, d[v]))
+        .collect();
+    all.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
+    all
+}
+
+record! {
+    /// A least distance of a pair of shapes.
+    MinimumFact::of(model: &Model, units: Units, found: &ClearanceMinimum) {
+        let length = |x: f64| units.from_si(Dimension::LENGTH, x);
+    }
+    /// Time, s.
+    time: f64 = found.at.time;
+    /// Values of the drivers there, in words.
+    drivers: String = drivers(model, units, found.at.time);
+    /// Distance; negative where the shapes overlap.
+    distance: f64 = length(found.at.distance[0]);
+    /// Second derivative of the distance by time; `null` at an equilibrium.
+    second_rate: Option<f64> = Some(length(found.at.distance[2])).filter(|x| x.is_finite());
+    /// Place in the motion: `start`, `inside` or `end`.
+    place: &'static str = match found.place {
+        MinimumPlace::Start => "start",
+        MinimumPlace::Inside => "inside",
+        MinimumPlace::End => "end",
+    };
+    /// Nearest points of the shapes' cores, global.
+    points: [[f64; 3]; 2] = found.at.points.map(|p| p.map(length).to_array());
+    /// True if more than one pair of points is nearest, since lines or faces are parallel.
+    parallel: bool = found.at.is_parallel;
+    /// True if the cores meet: the distance does not say how deep the shapes are in each other, and has no derivative.
+    cores_meet: bool = found.at.cores_meet;
+    /// Derivatives of the distance by the design variables, the strongest first.
+    sensitivities: Vec<ClearanceSensitivity> = sensitivities(model, units, Dimension::LENGTH, &found.d);
+}
+
+record! {
+    /// A time at which two shapes touch or part.
+    ContactFact::of(model: &Model, units: Units, found: &Contact) {}
+    /// Time, s.
+    time: f64 = found.at.time;
+    /// Values of the drivers there, in words.
+    drivers: String = drivers(model, units, found.at.time);
+    /// True if they touch there, false if they part.
+    begins: bool = found.begins;
+    /// Derivatives of the time by the design variables, the strongest first; empty at a grazing contact.
+    sensitivities: Vec<ClearanceSensitivity> =
+        sensitivities(model, units, Dimension::NUMBER.rate(-1), &found.d);
+}
+
+record! {
+    /// Distance of a pair of shapes over a motion.
+    ClearanceFact::of(model: &Model, units: Units, clearance: &Clearance, pair: &ShapePair, found: &PairClearance) {
+        let [a, b] = model.pair_names(pair);
+        let length = |x: f64| units.from_si(Dimension::LENGTH, x);
+        let least = found.least().map(|m| m.at.distance[0]);
+        let below = |min: f64| least.is_some_and(|x| x < min - KEPT * model.size());
+    }
+    /// Name of the clearance.
+    clearance: String = clearance.name.clone();
+    /// Names of the shapes.
+    shapes: [String; 2] = [a.to_owned(), b.to_owned()];
+    /// Unit of all distances.
+    unit: String = unit(units, Dimension::LENGTH);
+    /// Least distance; `null` if no output time was solved.
+    least: Option<f64> = least.map(length);
+    /// Distance that is asked for.
+    min: Option<f64> = pair.min.map(length);
+    /// False if the least distance is below the one that is asked for.
+    kept: bool = !pair.min.is_some_and(below);
+    /// True if the distance is the same at all times.
+    constant: bool = found.is_constant;
+    /// All local minima, in order of time.
+    minima: Vec<MinimumFact> = found.minima.iter().map(|m| MinimumFact::of(model, units, m)).collect();
+    /// Intervals in which the shapes touch, s.
+    touching: Vec<[f64; 2]> = found.intervals();
+    /// Times at which they touch or part.
+    contacts: Vec<ContactFact> = found.contacts.iter().map(|c| ContactFact::of(model, units, c)).collect();
+    /// True if the pair is always farther apart than the clearance lists.
+    beyond: bool = clearance.beyond.is_some_and(|beyond| least.is_some_and(|x| x > beyond));
+}
+
+/// Values of the drivers that move, in words.
+fn drivers(model: &Model, units: Units, time: f64) -> String {
+    let moves = |law: &hardpoint::law::Law| {
+        let ends = [model.times.first(), model.times.last()].map(|t| t.copied().unwrap_or_default());
+        law.over(ends[0], ends[1]).value.reach_from(law.at(ends[0]).value()) > 0.0
+    };
+    let shown = model.drivers.iter().filter(|d| moves(&d.law)).map(|driver| {
+        let dimension = Dimension::from(model.driven(driver).quantity);
+        let value = units.from_si(dimension, driver.law.at(time).value());
+        format!("{} {}", driver.name, with_unit(value, &unit(units, dimension)))
+    });
+    shown.collect::<Vec<_>>().join(", ")
+}
+
+impl ClearanceFact {
+    /// All pairs of all clearances.
+    pub fn all(model: &Model, units: Units, found: &Clearances) -> Vec<Self> {
+        let of = |clearance| {
+            found.of(clearance).map(move |(pair, found)| Self::of(model, units, clearance, pair, found))
+        };
+        model.clearances.iter().flat_map(of).collect()
+    }
+
+    /// The lowest of its minima.
+    fn lowest(&self) -> Option<&MinimumFact> {
+        self.minima.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+
+    /// The result in sentences: of each clearance its nearest pair, and all pairs that touch or are nearer than asked
+    /// for.
+    pub fn sentences(facts: &[Self]) -> Vec<String> {
+        let mut lines = Vec::new();
+        for of in facts.chunk_by(|a, b| a.clearance == b.clearance) {
+            let least = |fact: &Self| fact.least.unwrap_or(f64::INFINITY);
+            let nearest = of.iter().min_by(|a, b| least(a).total_cmp(&least(b)));
+            for fact in of
+                .iter()
+                .filter(|fact| nearest.is_some_and(|n| std::ptr::eq(n, *fact)) || fact.is_remarkable())
+            {
+                lines.extend(fact.lines());
+            }
+        }
+        lines
+    }
+
+    fn is_remarkable(&self) -> bool {
+        !self.touching.is_empty() || !self.kept
+    }
+
+    fn lines(&self) -> Vec<String> {
+        let Self { clearance, shapes: [a, b], unit, .. } = self;
+        let Some(lowest) = self.lowest() else {
+            return vec![format!("{clearance}: no output time was solved")];
+        };
+        let at = |time: f64, drivers: &str| {
+            let drivers = if drivers.is_empty() { String::new() } else { format!(" ({drivers})") };
+            format!("t = {} s{drivers}", rounded(time, DIGITS))
+        };
+        let distance = format!("{} {unit}", rounded(lowest.distance, DIGITS));
+        let mut lines = Vec::new();
+        if self.touching.is_empty() {
+            let when = if self.constant {
+                "at all times".into()
+            } else {
+                format!("at {}", at(lowest.time, &lowest.drivers))
+            };
+            lines.push(format!("{clearance}: {distance} at least, {a} against {b}, {when}"));
+        } else {
+            let spans: Vec<String> = (self.touching.iter())
+                .map(|[from, to]| format!("from {} to {} s", rounded(*from, DIGITS), rounded(*to, DIGITS)))
+                .collect();
+            let depth = if lowest.cores_meet {
+                format!("their cores meet at {}", at(lowest.time, &lowest.drivers))
+            } else {
+                let deep = rounded(-lowest.distance, DIGITS);
+                format!("{deep} {unit} deep at {}", at(lowest.time, &lowest.drivers))
+            };
+            lines.push(format!("{clearance}: {a} touches {b} {}; {depth}", spans.join(", ")));
+        }
+        let strongest = |all: &[ClearanceSensitivity]| {
+            let largest = all.first().map_or(0.0, |s| s.value.abs());
+            let named = all.iter().filter(|s| s.value.abs() > NEGLIGIBLE * largest).take(NAMED);
+            named
+                .map(|s| format!("{} {} {}", s.variable, number(s.value), s.unit))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let by = strongest(&lowest.sensitivities);
+        if !by.is_empty() && !lowest.cores_meet {
+            lines.push(format!("  the distance changes by {by}"));
+        }
+        for contact in &self.contacts {
+            let by = strongest(&contact.sensitivities);
+            if !by.is_empty() {
+                let what = if contact.begins { "beginning" } else { "end" };
+                lines.push(format!("  its {what} at {} s changes by {by}", rounded(contact.time, DIGITS)));
+            }
+        }
+        if let Some(min) = self.min.filter(|_| !self.kept) {
+            let asked = with_unit(min, unit);
+            let change =
+                lowest.sensitivities.first().filter(|s| s.value != 0.0 && !lowest.cores_meet).map(|s| {
+                    let by = (min - lowest.distance) / s.value;
+                    let sign = if by < 0.0 { "" } else { "+" };
+                    format!("; {} {sign}{} would keep it, to first order", s.variable, number(by))
+                });
+            lines.push(format!("  NEARER than the {asked} asked for{}", change.unwrap_or_default()));
+        }
+        let others = self.minima.iter().filter(|m| !std::ptr::eq(*m, lowest)).count();
+        if others > 0 && !self.constant {
+            lines.push(format!("  other minima: {others}, listed with --json"));
+        }
+        lines
+    }
+
+    /// Table of all pairs, the nearest first within each clearance.
+    pub fn table(facts: &[Self]) -> Option<Table> {
+        let mut rows: Vec<&Self> = facts.iter().filter(|f| !f.beyond).collect();
+        let least = |fact: &Self| fact.least.unwrap_or(f64::INFINITY);
+        rows.sort_by(|a, b| a.clearance.cmp(&b.clearance).then(least(a).total_cmp(&least(b))));
+        let shown = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
+        let columns: [Column<'_, &&Self>; 7] = [
+            ("clearance", &|f| f.clearance.clone()),
+            ("shapes", &|f| format!("{} - {}", f.shapes[0], f.shapes[1])),
+            ("least", &|f| shown(f.least, &f.unit)),
+            ("at t", &|f| match f.lowest() {
+                Some(_) if f.constant => "always".into(),
+                Some(m) => format!("{} s", number(m.time)),
+                None => "-".into(),
+            }),
+            ("asked for", &|f| shown(f.min, &f.unit)),
+            ("kept", &|f| {
+                if f.min.is_none() { "-".into() } else { (if f.kept { "yes" } else { "NO" }).into() }
+            }),
+            ("touching", &|f| {
+                let spans =
+                    f.touching.iter().map(|[from, to]| format!("{} to {} s", number(*from), number(*to)));
+                let spans: Vec<String> = spans.collect();
+                if spans.is_empty() { "-".into() } else { spans.join(", ") }
+            }),
+        ];
+        let note = "Least distances of shapes over the motion, located exactly; negative where they overlap.";
+        Table::of("Clearances", note, &columns, &rows).if_any()
+    }
+}
+
+/// A row of `clearances.csv`.
+struct Row<'a> {
+    clearance: &'a str,
+    shapes: [&'a str; 2],
+    event: &'static str,
+    at: &'a ShapeDistance,
+}
+
+/// Writes `clearances.csv`: the distance of every pair at all output times, and at its minima and contacts.
+///
+/// # Errors
+/// If `out` cannot be written.
+pub fn write(model: &Model, units: Units, found: &Clearances, out: impl Write) -> csv::Result<()> {
+    let mut rows = Vec::new();
+    for clearance in &model.clearances {
+        for (pair, of) in found.of(clearance) {
+            if clearance.beyond.is_some_and(|beyond| of.least().is_some_and(|m| m.at.distance[0] > beyond)) {
+                continue;
+            }
+            let row =
+                |event, at| Row { clearance: &clearance.name, shapes: model.pair_names(pair), event, at };
+            let mut own: Vec<Row<'_>> = of.curve.iter().map(|at| row("", at)).collect();
+            own.extend(of.minima.iter().map(|m| row("minimum", &m.at)));
+            own.extend(of.contacts.iter().map(|c| row(if c.begins { "touches" } else { "parts" }, &c.at)));
+            own.sort_by(|a, b| a.at.time.total_cmp(&b.at.time));
+            rows.extend(own);
+        }
+    }
+    let length = |x: f64| units.from_si(Dimension::LENGTH, x);
+    let shown = |x: f64| if x.is_finite() { x.to_string() } else { String::new() };
+    let symbol = units.length.symbol();
+    let headings: Vec<String> = ["distance", "rate", "acceleration"]
+        .iter()
+        .zip(["", "/s", "/s^2"])
+        .map(|(what, per)| format!("{what} [{symbol}{per}]"))
+        .chain(
+            ["first", "second"]
+                .iter()
+                .flat_map(|which| ["x", "y", "z"].map(|axis| format!("{which} {axis} [{symbol}]"))),
+        )
+        .collect();
+    let cell = |k: usize| {
+        move |row: &Row<'_>| match k {
+            0..=2 => shown(length(row.at.distance[k])),
+            _ => shown(length(row.at.points[(k - 3) / 3][(k - 3) % 3])),
+        }
+    };
+    let cells: Vec<_> = (0..headings.len()).map(cell).collect();
+    let mut columns: Vec<Column<'_, Row<'_>>> = vec![
+        ("t [s]", &|row| row.at.time.to_string()),
+        ("clearance", &|row| row.clearance.to_owned()),
+        ("first", &|row| row.shapes[0].to_owned()),
+        ("second", &|row| row.shapes[1].to_owned()),
+        ("event", &|row| row.event.to_owned()),
+    ];
+    columns.extend(
+        headings.iter().zip(&cells).map(|(heading, cell)| -> Column<'_, Row<'_>> { (heading, cell) }),
+    );
+    write_rows(out, &columns, rows)
+}

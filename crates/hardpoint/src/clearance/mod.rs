@@ -1,0 +1,15 @@
+//! Distances between shapes: how near bodies come to each other.
+//!
+//! A shape is a core with a radius: all points within the radius of the core (`shape.rs`). The distance of two shapes
+//! is that of their cores minus both radii. The nearest points lie on one feature of each core: a point, a line, a
+//! circle or a face. `nearest.rs` selects the features for plain numbers; `feature.rs` evaluates the distance between
+//! them over any number type, so that a clearance is a measure like all others.
+//!
+//! `docs/theory.md`, section 14.
+
+mod core;
+mod feature;
+mod nearest;
+mod placed;
+
+pub(crate) use placed::PlacedShapes;

@@ -1,0 +1,430 @@
+//! Nearest points of two cores, for plain numbers, and the features that hold them.
+
+use std::f64::consts::TAU;
+
+use crate::space::{Real, Vec3};
+
+use super::core::{Circle, Core};
+use super::feature::{Feature, PARALLEL, distance};
+
+/// Where two cores are nearest.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearest {
+    /// The features of both cores.
+    pub features: [Feature; 2],
+    /// The nearest points of both cores.
+    pub points: [Vec3; 2],
+    /// Distance of the cores; negative where they overlap and the way out is known.
+    pub distance: f64,
+    /// -1 where segments cross in a plane, and the distance is the way out of each other; otherwise 1.
+    pub(super) sign: f64,
+    /// True if more than one pair of points is nearest, since lines or faces are parallel.
+    pub is_parallel: bool,
+}
+
+impl Nearest {
+    /// The distance of the cores by the formula of these features.
+    pub fn distance_of<T: Real>(&self, cores: [&Core<T>; 2]) -> T {
+        let [(a, less), (b, as_well)] = [0, 1].map(|k| cores[k].feature(self.features[k]));
+        distance(&a, &b, self.points) * self.sign - less - as_well
+    }
+
+    /// True if the cores meet, so that their distance does not say how deep they are in each other.
+    pub fn cores_meet(&self, within: f64) -> bool {
+        self.sign > 0.0 && (self.points[1] - self.points[0]).norm() <= within
+    }
+
+    fn reversed(self) -> Self {
+        let ([a, b], [p, q]) = (self.features, self.points);
+        Self { features: [b, a], points: [q, p], ..self }
+    }
+}
+
+/// Places at which a function along a circle, or of a segment's distance from one, is sampled before its least value is
+/// refined: the distance from a circle has up to four stationary points along a line.
+const SAMPLES: usize = 48;
+/// Halvings of an interval until it is below the resolution of its ends.
+const HALVINGS: usize = 60;
+/// Distance of two lines below which they lie in one plane, as a fraction of their size: round-off.
+const COPLANAR: f64 = 1e-11;
+
+/// The nearest points of two cores.
+pub(crate) fn nearest(a: &Core, b: &Core) -> Nearest {
+    match (a, b) {
+        (Core::HalfSpace { point, normal }, other) => above_plane(other, *point, *normal).reversed(),
+        (other, Core::HalfSpace { point, normal }) => above_plane(other, *point, *normal),
+        (Core::Point(p), other) => from_point(*p, other),
+        (other, Core::Point(p)) => from_point(*p, other).reversed(),
+        (Core::Segment(a), Core::Segment(b)) => segments(*a, *b),
+        (Core::Segment(ends), Core::Circle(circle)) => segment_and_circle(*ends, circle),
+        (Core::Circle(circle), Core::Segment(ends)) => segment_and_circle(*ends, circle).reversed(),
+        (Core::Segment(ends), Core::Cylinder { middle, half_width }) => {
+            segment_and_cylinder(*ends, &Drum { middle: *middle, half_width: *half_width })
+        }
+        (Core::Cylinder { middle, half_width }, Core::Segment(ends)) => {
+            segment_and_cylinder(*ends, &Drum { middle: *middle, half_width: *half_width }).reversed()
+        }
+        (Core::Circle(circle), Core::Circle(other)) => {
+            circle_and(circle, Feature::Circle(0.0), &Core::Circle(*other))
+        }
+        (Core::Circle(circle), Core::Cylinder { .. }) => circle_and(circle, Feature::Circle(0.0), b),
+        (Core::Cylinder { .. }, Core::Circle(circle)) => {
+            circle_and(circle, Feature::Circle(0.0), a).reversed()
+        }
+        (Core::Cylinder { middle: p, half_width: w }, Core::Cylinder { middle: q, half_width: v }) => {
+            cylinders([&Drum { middle: *p, half_width: *w }, &Drum { middle: *q, half_width: *v }])
+        }
+    }
+}
+
+fn found(features: [Feature; 2], points: [Vec3; 2], distance: f64) -> Nearest {
+    Nearest { features, points, distance, sign: 1.0, is_parallel: false }
+}
+
+/// The least of a function over [0, 1] that has one minimum.
+fn least_within(f: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
+    // Golden section.
+    const RATIO: f64 = 0.618_033_988_749_894_9;
+    let mut inner = [high - RATIO * (high - low), low + RATIO * (high - low)];
+    let mut values = inner.map(&f);
+    for _ in 0..HALVINGS {
+        if values[0] <= values[1] {
+            high = inner[1];
+            inner = [high - RATIO * (high - low), inner[0]];
+            values = [f(inner[0]), values[0]];
+        } else {
+            low = inner[0];
+            inner = [inner[1], low + RATIO * (high - low)];
+            values = [values[1], f(inner[1])];
+        }
+        if high - low <= 4.0 * f64::EPSILON * high.abs().max(low.abs()) {
+            break;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Where the core is nearest to a plane: at the point that is farthest against its normal.
+fn above_plane(core: &Core, point: Vec3, normal: Vec3) -> Nearest {
+    let height = |p: Vec3| normal.dot(p - point);
+    let face = Feature::Face(1.0);
+    let at = |feature, p: Vec3| found([feature, face], [p, p - normal * height(p)], height(p));
+    match core {
+        Core::Point(p) => at(Feature::Point(0.0), *p),
+        Core::Segment([a, b]) => {
+            let (lower, upper) = (height(*a), height(*b));
+            let is_parallel = (upper - lower).abs() <= PARALLEL * (*b - *a).norm();
+            let near = if is_parallel {
+                at(Feature::Point(0.5), (*a + *b) * 0.5)
+            } else if lower < upper {
+                at(Feature::Point(0.0), *a)
+            } else {
+                at(Feature::Point(1.0), *b)
+            };
+            Nearest { is_parallel, ..near }
+        }
+        Core::Circle(circle) => {
+            lowest_of_circle(circle, normal, Feature::Circle(0.0), Feature::Point(0.0), at)
+        }
+        Core::Cylinder { middle, half_width } => {
+            let side = if normal.dot(middle.axis) > 0.0 { -1.0 } else { 1.0 };
+            let rim = middle.moved(half_width * side);
+            lowest_of_circle(&rim, normal, Feature::Circle(side), Feature::Point(side), at)
+        }
+        Core::HalfSpace { .. } => {
+            Nearest { is_parallel: true, ..found([face, face], [point, point], f64::NAN) }
+        }
+    }
+}
+
+/// The same for a circle; where all of it is at one height, its centre instead.
+fn lowest_of_circle(
+    circle: &Circle,
+    normal: Vec3,
+    itself: Feature,
+    centre: Feature,
+    at: impl Fn(Feature, Vec3) -> Nearest,
+) -> Nearest {
+    // The part of the normal in the circle's plane.
+    let down = circle.axis * normal.dot(circle.axis) - normal;
+    let slope = down.norm();
+    if slope <= PARALLEL {
+        return Nearest { is_parallel: true, ..at(centre, circle.centre) };
+    }
+    at(itself, circle.centre + down * (circle.radius / slope))
+}
+
+/// The nearest point of a core to a point.
+fn from_point(p: Vec3, core: &Core) -> Nearest {
+    let own = Feature::Point(0.0);
+    match core {
+        Core::Point(q) => found([own, own], [p, *q], (*q - p).norm()),
+        Core::Segment([a, b]) => {
+            let e = *b - *a;
+            let t = (e.dot(p - *a) / e.dot(e)).clamp(0.0, 1.0);
+            let q = *a + e * t;
+            let feature = if t > 0.0 && t < 1.0 { Feature::Line } else { Feature::Point(t) };
+            found([own, feature], [p, q], (q - p).norm())
+        }
+        Core::Circle(circle) => {
+            let q = of_circle(circle, p);
+            found([own, Feature::Circle(0.0)], [p, q], (q - p).norm())
+        }
+        Core::Cylinder { middle, half_width } => {
+            let drum = Drum { middle: *middle, half_width: *half_width };
+            let (feature, q, distance) = drum.nearest(p);
+            found([own, feature], [p, q], distance)
+        }
+        Core::HalfSpace { point, normal } => {
+            let height = normal.dot(p - *point);
+            found([own, Feature::Face(1.0)], [p, p - *normal * height], height)
+        }
+    }
+}
+
+/// The point of a circle that is nearest to a point; any of them for a point of the axis.
+fn of_circle(circle: &Circle, p: Vec3) -> Vec3 {
+    let v = p - circle.centre;
+    let out = v - circle.axis * circle.axis.dot(v);
+    let rho = out.norm();
+    let out = if rho > 0.0 { out * (1.0 / rho) } else { circle.axis.any_perpendicular() };
+    circle.centre + out * circle.radius
+}
+
+/// The nearest points of two segments.
+fn segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Nearest {
+    let (e, f, from) = (b - a, d - c, c - a);
+    let (ee, ff) = (e.dot(e), f.dot(f));
+    let across = e.cross(f);
+    let det = across.dot(across);
+    if det > PARALLEL * PARALLEL * ee * ff {
+        // Along e and along f, from the ends of the common perpendicular of the lines.
+        let s = from.cross(f).dot(across) / det;
+        let t = from.cross(e).dot(across) / det;
+        if 0.0 < s && s < 1.0 && 0.0 < t && t < 1.0 {
+            let points = [a + e * s, c + f * t];
+            let apart = (points[1] - points[0]).norm();
+            if apart <= COPLANAR * (e.norm() + f.norm()) {
+                return crossing([a, b], [c, d], points);
+            }
+            return found([Feature::Line; 2], points, apart);
+        }
+    } else if let Some(near) = parallel_segments([a, b], [c, d]) {
+        return near;
+    }
+    let own = |t: f64, near: Nearest| Nearest { features: [Feature::Point(t), near.features[1]], ..near };
+    let (first, second) = (Core::Segment([a, b]), Core::Segment([c, d]));
+    let ends = [
+        own(0.0, from_point(a, &second)),
+        own(1.0, from_point(b, &second)),
+        own(0.0, from_point(c, &first)).reversed(),
+        own(1.0, from_point(d, &first)).reversed(),
+    ];
+    nearer(ends)
+}
+
+/// The nearest of several.
+fn nearer<const N: usize>(all: [Nearest; N]) -> Nearest {
+    all.into_iter().reduce(|a, b| if b.distance < a.distance { b } else { a }).expect("there is one")
+}
+
+/// Segments in one plane that cross there: how far they must be moved within the plane until an end of one is on the
+/// line of the other.
+fn crossing([a, b]: [Vec3; 2], [c, d]: [Vec3; 2], points: [Vec3; 2]) -> Nearest {
+    let (e, f) = (b - a, d - c);
+    let from_first = |p: Vec3| (p - a).cross(e).norm() / e.norm();
+    let from_second = |p: Vec3| (p - c).cross(f).norm() / f.norm();
+    let ends = [
+        ([Feature::Point(0.0), Feature::Line], from_second(a)),
+        ([Feature::Point(1.0), Feature::Line], from_second(b)),
+        ([Feature::Line, Feature::Point(0.0)], from_first(c)),
+        ([Feature::Line, Feature::Point(1.0)], from_first(d)),
+    ];
+    let (features, depth) = ends.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a }).expect("four ends");
+    Nearest { sign: -1.0, ..found(features, points, -depth) }
+}
+
+/// Parallel segments that are beside each other: the middle of what they have in common.
+fn parallel_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Option<Nearest> {
+    let e = b - a;
+    let along = |p: Vec3| e.dot(p - a) / e.dot(e);
+    let (from, to) = (along(c).min(along(d)).max(0.0), along(c).max(along(d)).min(1.0));
+    if from >= to {
+        return None;
+    }
+    let middle = 0.5 * (from + to);
+    let p = a + e * middle;
+    let near = from_point(p, &Core::Segment([c, d]));
+    Some(Nearest { features: [Feature::Point(middle), near.features[1]], is_parallel: true, ..near })
+}
+
+/// The nearest points of a segment and a circle.
+fn segment_and_circle([a, b]: [Vec3; 2], circle: &Circle) -> Nearest {
+    let at = |t: f64| a + (b - a) * t;
+    let apart = |t: f64| (of_circle(circle, at(t)) - at(t)).norm();
+    let t = least_sampled(apart, false);
+    let feature = if t > 0.0 && t < 1.0 { Feature::Line } else { Feature::Point(t) };
+    let points = [at(t), of_circle(circle, at(t))];
+    found([feature, Feature::Circle(0.0)], points, (points[1] - points[0]).norm())
+}
+
+/// Place in [0, 1] of the least value of a function that is sampled first; 0 and 1 are the same place of a periodic one.
+fn least_sampled(f: impl Fn(f64) -> f64, is_periodic: bool) -> f64 {
+    let place = |k: usize| k as f64 / SAMPLES as f64;
+    let samples: [f64; SAMPLES + 1] = std::array::from_fn(|k| f(place(k)));
+    let around = |k: usize| {
+        let before = if k > 0 {
+            k - 1
+        } else if is_periodic {
+            SAMPLES - 1
+        } else {
+            k
+        };
+        let after = if k < SAMPLES {
+            k + 1
+        } else if is_periodic {
+            1
+        } else {
+            k
+        };
+        [before, after]
+    };
+    let is_low = |k: &usize| around(*k).iter().all(|n| samples[*k] <= samples[*n]);
+    let refined = (0..=SAMPLES).filter(is_low).map(|k| {
+        let step = 1.0 / SAMPLES as f64;
+        let ends = [place(k) - step, place(k) + step];
+        let t = least_within(&f, if is_periodic { ends } else { ends.map(|t| t.clamp(0.0, 1.0)) });
+        // An end itself, if the function decreases up to it.
+        let t = if !is_periodic && f(0.0) <= f(t) && k <= 1 { 0.0 } else { t };
+        let t = if !is_periodic && f(1.0) <= f(t) && k + 1 >= SAMPLES { 1.0 } else { t };
+        (f(t), t)
+    });
+    refined.reduce(|a, b| if b.0 < a.0 { b } else { a }).map_or(0.0, |(_, t)| t)
+}
+
+/// A solid cylinder.
+struct Drum {
+    middle: Circle,
+    half_width: f64,
+}
+
+impl Drum {
+    /// Height above the plane halfway between the caps, and distance from the axis.
+    fn cylindrical(&self, p: Vec3) -> (f64, f64, Vec3) {
+        let v = p - self.middle.centre;
+        let z = self.middle.axis.dot(v);
+        let out = v - self.middle.axis * z;
+        (z, out.norm(), out)
+    }
+
+    /// Distance of a point, negative inside: a convex function of the point.
+    fn distance(&self, p: Vec3) -> f64 {
+        let (z, rho, _) = self.cylindrical(p);
+        let (above, beyond) = (z.abs() - self.half_width, rho - self.middle.radius);
+        if above > 0.0 && beyond > 0.0 { above.hypot(beyond) } else { above.max(beyond) }
+    }
+
+    /// The feature that a point is nearest to, the nearest point there, and the distance.
+    fn nearest(&self, p: Vec3) -> (Feature, Vec3, f64) {
+        let (z, rho, out) = self.cylindrical(p);
+        let Self { middle, half_width } = self;
+        let side = if z < 0.0 { -1.0 } else { 1.0 };
+        let (above, beyond) = (z.abs() - half_width, rho - middle.radius);
+        let out = if rho > 0.0 { out * (1.0 / rho) } else { middle.axis.any_perpendicular() };
+        let (feature, q) = if above > 0.0 && beyond > 0.0 {
+            (Feature::Circle(side), middle.moved(half_width * side).centre + out * middle.radius)
+        } else if above >= beyond {
+            (Feature::Face(side), p - middle.axis * (side * above))
+        } else {
+            (Feature::Line, p - out * beyond)
+        };
+        (feature, q, self.distance(p))
+    }
+}
+
+/// The nearest points of a segment and a solid cylinder; of overlapping ones, the deepest point of the segment.
+fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
+    let at = |t: f64| a + (b - a) * t;
+    let depth = |t: f64| drum.distance(at(t));
+    let mut t = least_within(depth, [0.0, 1.0]);
+    t = [0.0, 1.0].into_iter().fold(t, |best, end| if depth(end) <= depth(best) { end } else { best });
+    // Over a cap, and along a side, all points of a parallel segment are nearest: the middle of them.
+    let is_parallel = [0.0, 0.25, 0.75, 1.0]
+        .into_iter()
+        .all(|t| (depth(t) - depth(0.5)).abs() <= PARALLEL * (b - a).norm());
+    if is_parallel {
+        t = 0.5;
+    }
+    let (feature, q, distance) = drum.nearest(at(t));
+    let is_inside = t > 0.0 && t < 1.0 && !is_parallel;
+    // Over a cap, beside a parallel side, and at the edge between both within the cylinder, the point stays where it is.
+    let slides = is_inside
+        && match feature {
+            Feature::Line => is_stationary([a, b], drum, t),
+            Feature::Circle(_) => true,
+            Feature::Face(_) | Feature::Point(_) => false,
+        };
+    let own = if slides { Feature::Line } else { Feature::Point(t) };
+    Nearest { is_parallel, ..found([own, feature], [at(t), q], distance) }
+}
+
+/// True if the distance from the axis has its minimum at a place along a segment.
+fn is_stationary([a, b]: [Vec3; 2], drum: &Drum, t: f64) -> bool {
+    let e = b - a;
+    let (_, rho, out) = drum.cylindrical(a + e * t);
+    // Golden section finds the place of a minimum to the square root of the resolution of its values.
+    let is_parallel = drum.middle.axis.cross(e).norm() <= PARALLEL * e.norm();
+    !is_parallel && out.dot(e).abs() <= f64::EPSILON.sqrt() * 10.0 * rho.max(e.norm()) * e.norm()
+}
+
+/// The nearest points of a circle and a convex core or another circle.
+fn circle_and(circle: &Circle, itself: Feature, other: &Core) -> Nearest {
+    let x = circle.axis.any_perpendicular();
+    let y = circle.axis.cross(x);
+    let at = |turn: f64| {
+        let (sin, cos) = (turn * TAU).sin_cos();
+        circle.centre + (x * cos + y * sin) * circle.radius
+    };
+    let apart = |turn: f64| match other {
+        Core::Circle(other) => (of_circle(other, at(turn)) - at(turn)).norm(),
+        Core::Cylinder { middle, half_width } => {
+            Drum { middle: *middle, half_width: *half_width }.distance(at(turn))
+        }
+        Core::Point(_) | Core::Segment(_) | Core::HalfSpace { .. } => from_point(at(turn), other).distance,
+    };
+    let turn = least_sampled(apart, true);
+    let near = from_point(at(turn), other);
+    // Parallel circles and faces: all points of the circle are nearest.
+    let is_parallel =
+        (0..4).all(|k| (apart(f64::from(k) * 0.25) - near.distance).abs() <= PARALLEL * circle.radius);
+    Nearest { features: [itself, near.features[1]], is_parallel, ..near }
+}
+
+/// The nearest points of two solid cylinders: of a rim of one and the other, or of both sides.
+fn cylinders(drums: [&Drum; 2]) -> Nearest {
+    let rims = |of: usize| {
+        let other = drums[1 - of];
+        let core = Core::Cylinder { middle: other.middle, half_width: other.half_width };
+        [-1.0, 1.0].map(|side| {
+            let rim = drums[of].middle.moved(drums[of].half_width * side);
+            circle_and(&rim, Feature::Circle(side), &core)
+        })
+    };
+    let ([a, b], [c, d]) = (rims(0), rims(1));
+    let near = nearer([a, b, c.reversed(), d.reversed()]);
+    let axis = |drum: &Drum| [-1.0, 1.0].map(|side| drum.middle.moved(drum.half_width * side).centre);
+    let sides = segments(axis(drums[0]), axis(drums[1]));
+    let apart = sides.distance - drums[0].middle.radius - drums[1].middle.radius;
+    // The sides are nearest where the common perpendicular of the axes meets both within their widths.
+    if sides.features == [Feature::Line; 2]
+        && !sides.is_parallel
+        && sides.distance > 0.0
+        && apart < near.distance
+    {
+        let n = (sides.points[1] - sides.points[0]) * (1.0 / sides.distance);
+        let [p, q] = sides.points;
+        let points = [p + n * drums[0].middle.radius, q - n * drums[1].middle.radius];
+        return found([Feature::Line; 2], points, apart);
+    }
+    near
+}

@@ -1,0 +1,141 @@
+//! Shapes of bodies, and the clearances between them.
+
+use super::{BodyId, Direction, Length, Model, PointId, WheelId};
+
+/// A shape's place in [`Model::shapes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ShapeId(pub usize);
+
+/// A clearance's place in [`Model::clearances`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ClearanceId(pub usize);
+
+/// A shape: all points within a radius of a core.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// Name.
+    pub name: String,
+    /// Group that clearances may name, if it is in one.
+    pub group: Option<String>,
+    /// Its core.
+    pub kind: ShapeKind,
+    /// The radius of a sphere or capsule, the radius of a ring's bar, the rounding of edges; 0 where there is none.
+    pub round: Option<Length>,
+}
+
+/// Kind of a shape, with the numbers of its core.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShapeKind {
+    /// A ball.
+    Sphere {
+        /// Its centre.
+        centre: PointId,
+    },
+    /// A rod with round ends.
+    Capsule {
+        /// Centres of its ends.
+        ends: [PointId; 2],
+    },
+    /// A bar that is bent to a circle: the lip of a rim.
+    Ring {
+        /// Its centre.
+        centre: PointId,
+        /// Direction perpendicular to its plane.
+        axis: Direction,
+        /// Radius of the circle in the middle of the bar.
+        radius: Length,
+    },
+    /// A solid cylinder.
+    Cylinder {
+        /// Centres of its caps.
+        ends: [PointId; 2],
+        /// Radius, to the outside.
+        radius: Length,
+    },
+    /// The tyre of a wheel: a cylinder of the wheel's radius.
+    Tyre {
+        /// The wheel.
+        wheel: WheelId,
+        /// Width, to the outside.
+        width: Length,
+    },
+    /// The half-space behind a plane.
+    Plane {
+        /// A point of the plane.
+        point: PointId,
+        /// Normal, which points out of the half-space.
+        normal: Direction,
+    },
+}
+
+impl Shape {
+    /// The shape's kind, as model files name it.
+    pub fn kind_name(&self) -> &'static str {
+        match self.kind {
+            ShapeKind::Sphere { .. } => "sphere",
+            ShapeKind::Capsule { .. } => "capsule",
+            ShapeKind::Ring { .. } => "ring",
+            ShapeKind::Cylinder { .. } => "cylinder",
+            ShapeKind::Tyre { .. } => "tyre",
+            ShapeKind::Plane { .. } => "plane",
+        }
+    }
+
+    /// The bodies that its points are fixed in: one, or of a rod that is only a joint those of both ends.
+    pub fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        let body = |p: PointId| model.points[p.0].body;
+        match self.kind {
+            ShapeKind::Sphere { centre: p }
+            | ShapeKind::Ring { centre: p, .. }
+            | ShapeKind::Plane { point: p, .. } => {
+                vec![body(p)]
+            }
+            ShapeKind::Tyre { wheel, .. } => vec![model.wheels[wheel.0].body],
+            ShapeKind::Capsule { ends } | ShapeKind::Cylinder { ends, .. } => {
+                let [a, b] = ends.map(body);
+                if a == b { vec![a] } else { vec![a, b] }
+            }
+        }
+    }
+
+    /// The direction of its axis or normal, and the body that carries it, if it has one that points do not give.
+    pub(crate) fn axis(&self, model: &Model) -> Option<(BodyId, Direction)> {
+        match self.kind {
+            ShapeKind::Ring { centre: point, axis, .. } | ShapeKind::Plane { point, normal: axis } => {
+                Some((model.points[point.0].body, axis))
+            }
+            ShapeKind::Tyre { wheel, .. } => {
+                let wheel = &model.wheels[wheel.0];
+                Some((wheel.body, wheel.spin_axis))
+            }
+            ShapeKind::Sphere { .. } | ShapeKind::Capsule { .. } | ShapeKind::Cylinder { .. } => None,
+        }
+    }
+}
+
+/// Distances between shapes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clearance {
+    /// Name.
+    pub name: String,
+    /// Pairs of shapes that are measured.
+    pub pairs: Vec<ShapePair>,
+    /// Distance above which pairs are not listed in results, m.
+    pub beyond: Option<f64>,
+}
+
+/// A pair of shapes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapePair {
+    /// The shapes.
+    pub shapes: [ShapeId; 2],
+    /// The least distance that is asked for, m.
+    pub min: Option<f64>,
+}
+
+impl Model {
+    /// Names of the shapes of a pair.
+    pub fn pair_names(&self, pair: &ShapePair) -> [&str; 2] {
+        pair.shapes.map(|s| self.shapes[s.0].name.as_str())
+    }
+}

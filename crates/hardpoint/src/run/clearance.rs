@@ -1,0 +1,442 @@
+//! Clearances over a motion: curves of all pairs of shapes, their minima and contacts, located exactly.
+//!
+//! Times are found on motions that are solved anew at them, never on polynomials between output times: a distance may
+//! change its features there, where its acceleration jumps.
+
+use crate::clearance::PlacedShapes;
+use crate::design::BodyFixed;
+use crate::measure::{with_rates, with_sensitivity};
+use crate::model::{Clearance, Model, ShapeId, ShapePair};
+use crate::motion::{Motion, Stop};
+use crate::number::{Dual, Jet, Rates};
+use crate::space::{Pose, Vec3};
+
+use super::curve::SampledCurve;
+use super::{Analysis, Run, Solution};
+
+/// A minimum or contact is located if a step of Newton's method is below this fraction of the motion: positions are
+/// solved to 1e-12 of the mechanism's size.
+const LOCATED: f64 = 1e-11;
+/// Candidates nearer to a located time than this fraction of the motion are the same one.
+const SAME_TIME: f64 = 1e-8;
+/// Maximum number of times that the motion is solved again; each pass is nearer to the times by several digits, or
+/// halves an interval in which the acceleration jumps.
+const MOST_PASSES: usize = 40;
+/// Rate of a distance below which a contact is grazing, as a fraction of the largest rate: its time has no derivative.
+const GRAZING: f64 = 1e-6;
+/// Pieces of an interval of a motion without rates, in which a minimum is looked for.
+const PIECES: usize = 4;
+
+/// Distance of two shapes at one time.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeDistance {
+    /// Time, s.
+    pub time: f64,
+    /// Distance, its rate and acceleration: m, m/s, m/s^2; negative where the shapes overlap.
+    pub distance: [f64; 3],
+    /// The nearest points of the shapes' cores, global, m.
+    pub points: [Vec3; 2],
+    /// True if more than one pair of points is nearest, since lines or faces are parallel.
+    pub is_parallel: bool,
+    /// True if the cores of the shapes meet: the distance does not say how deep the shapes are in each other.
+    pub cores_meet: bool,
+}
+
+/// Place of a minimum in the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MinimumPlace {
+    /// At the first output time.
+    Start,
+    /// Between two times, where the rate is zero.
+    Inside,
+    /// At the last output time that was solved.
+    End,
+}
+
+/// A least distance of two shapes.
+#[derive(Clone, Debug)]
+pub struct ClearanceMinimum {
+    /// Where the shapes are.
+    pub at: ShapeDistance,
+    /// Place in the motion.
+    pub place: MinimumPlace,
+    /// Derivative of the distance by every design variable; NaN for those that are not admissible.
+    pub d: Vec<f64>,
+}
+
+/// A time at which two shapes touch or part.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// Where the shapes are.
+    pub at: ShapeDistance,
+    /// True if they touch there, false if they part.
+    pub begins: bool,
+    /// Derivative of the time by every design variable, s per m, rad or plain; NaN where the contact is grazing, and
+    /// for variables that are not admissible.
+    pub d: Vec<f64>,
+}
+
+/// Distance of two shapes over a motion.
+#[derive(Clone, Debug)]
+pub struct PairClearance {
+    /// The shapes.
+    pub shapes: [ShapeId; 2],
+    /// At the output times that were solved.
+    pub curve: Vec<ShapeDistance>,
+    /// All local minima, in order of time.
+    pub minima: Vec<ClearanceMinimum>,
+    /// All contacts, in order of time.
+    pub contacts: Vec<Contact>,
+    /// True if the distance is the same at all times.
+    pub is_constant: bool,
+}
+
+impl PairClearance {
+    /// The least of the minima.
+    pub fn least(&self) -> Option<&ClearanceMinimum> {
+        self.minima.iter().min_by(|a, b| a.at.distance[0].total_cmp(&b.at.distance[0]))
+    }
+
+    /// Intervals in which the shapes touch, s; one that begins before the motion or ends after it has its first or last
+    /// time.
+    pub fn intervals(&self) -> Vec<[f64; 2]> {
+        let (Some(first), Some(last)) = (self.curve.first(), self.curve.last()) else { return Vec::new() };
+        let mut from = (first.distance[0] < 0.0).then_some(first.time);
+        let mut found = Vec::new();
+        for contact in &self.contacts {
+            if contact.begins {
+                from = Some(contact.at.time);
+            } else if let Some(from) = from.take() {
+                found.push([from, contact.at.time]);
+            }
+        }
+        found.extend(from.map(|from| [from, last.time]));
+        found
+    }
+}
+
+/// Clearances over a motion.
+#[derive(Clone, Debug)]
+pub struct Clearances {
+    /// All pairs of all clearances, each once.
+    pub pairs: Vec<PairClearance>,
+    /// Reason why the motion ended before its last output time, if it did.
+    pub stop: Option<Stop>,
+}
+
+impl Clearances {
+    /// The results of the pairs of a clearance, in its order.
+    pub fn of<'a>(
+        &'a self,
+        clearance: &'a Clearance,
+    ) -> impl Iterator<Item = (&'a ShapePair, &'a PairClearance)> {
+        clearance.pairs.iter().filter_map(|pair| {
+            self.pairs.iter().find(|found| found.shapes == pair.shapes).map(|found| (pair, found))
+        })
+    }
+}
+
+impl Analysis<'_> {
+    /// Solves the motion of a design, and locates all minima and contacts of the pairs of all clearances, with their
+    /// derivatives by the design variables.
+    pub fn clearances(&self, design: &[f64]) -> Clearances {
+        let model = self.model();
+        let mut pairs: Vec<[ShapeId; 2]> = Vec::new();
+        for pair in model.clearances.iter().flat_map(|c| &c.pairs) {
+            if !pairs.contains(&pair.shapes) {
+                pairs.push(pair.shapes);
+            }
+        }
+        let mut times = self.times_within();
+        let own = model.times.clone();
+        let mut located = Located::default();
+        for _ in 0..MOST_PASSES {
+            let solution = self.motion_at(&times, design, false);
+            let curves = Curves::of(self, design, &pairs, &solution.motion);
+            located = curves.locate(&pairs);
+            if located.add.is_empty() {
+                break;
+            }
+            times.extend(&located.add);
+            times.sort_by(f64::total_cmp);
+            times.dedup();
+        }
+        let mut events: Vec<f64> = located.events.iter().map(|e| e.time).chain(own.iter().copied()).collect();
+        events.sort_by(f64::total_cmp);
+        events.dedup();
+        let solution = self.motion_at(&events, design, true);
+        self.results(design, &pairs, &located, &solution)
+    }
+
+    fn motion_at(&self, times: &[f64], design: &[f64], sensitivities: bool) -> Solution {
+        let run = Run::new().at(design).without_measures();
+        let run = if sensitivities { run } else { run.without_sensitivities() };
+        self.at_times(times.to_vec()).solve(run)
+    }
+
+    fn results(
+        &self,
+        design: &[f64],
+        pairs: &[[ShapeId; 2]],
+        located: &Located,
+        solution: &Solution,
+    ) -> Clearances {
+        let model = self.model();
+        let motion = &solution.motion;
+        let curves = Curves::of(self, design, pairs, motion);
+        let place = |time: f64| motion.times.iter().position(|t| *t == time);
+        let pair_of = |(p, shapes): (usize, &[ShapeId; 2])| {
+            let samples = &curves.samples[p];
+            let at_outputs = |s: &&ShapeDistance| model.times.contains(&s.time);
+            let slopes: Vec<f64> = samples.iter().map(|s| s.distance[1].abs()).collect();
+            let fastest = slopes.iter().copied().fold(0.0, f64::max);
+            let (mut minima, mut contacts) = (Vec::new(), Vec::new());
+            for event in located.events.iter().filter(|e| e.pair == p) {
+                let Some(k) = place(event.time) else { continue };
+                let at = samples[k];
+                let d = self.derivatives(design, *shapes, solution, k);
+                match event.kind {
+                    EventKind::Minimum(place) => minima.push(ClearanceMinimum { at, place, d }),
+                    EventKind::Contact(begins) => {
+                        let rate = at.distance[1];
+                        let rate = if rate.abs() > GRAZING * fastest { rate } else { f64::NAN };
+                        // dt/db = -d_b / d.                                                              (C13)
+                        contacts.push(Contact { at, begins, d: d.iter().map(|d| -d / rate).collect() });
+                    }
+                }
+            }
+            PairClearance {
+                shapes: *shapes,
+                curve: samples.iter().filter(at_outputs).copied().collect(),
+                minima,
+                contacts,
+                is_constant: located.constant[p],
+            }
+        };
+        Clearances { pairs: pairs.iter().enumerate().map(pair_of).collect(), stop: solution.stop.clone() }
+    }
+
+    /// Derivatives of a distance at time k by all design variables.
+    fn derivatives(&self, design: &[f64], shapes: [ShapeId; 2], solution: &Solution, k: usize) -> Vec<f64> {
+        let (model, map) = (self.model(), self.design_map());
+        let values = model.whole(design);
+        let states = solution.motion.at(k);
+        let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
+        let bodies: Vec<usize> =
+            shapes.iter().flat_map(|s| model.shapes[s.0].bodies(model)).map(|b| b.0).collect();
+        (0..model.variables.len())
+            .map(|b| {
+                let Some(d) =
+                    solution.sensitivities.at(k, b).filter(|_| b < solution.sensitivities.variables)
+                else {
+                    return f64::NAN;
+                };
+                let mut duals: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
+                duals[b] = Dual::variable(values[b]);
+                let fixed = map.fixed(&duals).map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
+                bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
+                let placed = PlacedShapes { model, fixed: &fixed, poses: &poses };
+                let near = placed.nearest(shapes);
+                let distance: Dual<Rates> = placed.distance(shapes, &near);
+                distance.d.0[0]
+            })
+            .collect()
+    }
+}
+
+/// Distances of all pairs at all times of a motion.
+struct Curves<'m> {
+    motion: &'m Motion,
+    /// Size of the mechanism, m.
+    size: f64,
+    /// Per pair and time.
+    samples: Vec<Vec<ShapeDistance>>,
+}
+
+impl<'m> Curves<'m> {
+    fn of(analysis: &Analysis<'_>, design: &[f64], pairs: &[[ShapeId; 2]], motion: &'m Motion) -> Self {
+        let model = analysis.model();
+        let fixed: BodyFixed<Rates> = analysis.design_map().fixed(&model.whole(design)).map(Jet::constant);
+        let bodies = bodies_of(model, pairs);
+        let mut poses: Vec<Pose<Rates>> = vec![Pose::IDENTITY.spread(); model.bodies.len()];
+        let mut samples: Vec<Vec<ShapeDistance>> = vec![Vec::with_capacity(motion.len()); pairs.len()];
+        for (k, &time) in motion.times.iter().enumerate() {
+            let states = motion.at(k);
+            bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
+            let placed = PlacedShapes { model, fixed: &fixed, poses: &poses };
+            for (p, shapes) in pairs.iter().enumerate() {
+                let near = placed.nearest(*shapes);
+                let Jet([value, rate, acceleration]) = placed.distance(*shapes, &near);
+                // An equilibrium is at rest at each time, so that nothing has a rate.
+                let rates = if model.equilibrium.is_some() { [f64::NAN; 2] } else { [rate, acceleration] };
+                samples[p].push(ShapeDistance {
+                    time,
+                    distance: [value, rates[0], rates[1]],
+                    points: near.points,
+                    is_parallel: near.is_parallel,
+                    cores_meet: near.cores_meet(CONSTANT * model.size()),
+                });
+            }
+        }
+        Self { motion, size: model.size(), samples }
+    }
+
+    /// The minima and contacts that are located, and the times at which the motion must be solved for the others.
+    fn locate(&self, pairs: &[[ShapeId; 2]]) -> Located {
+        let mut located = Located { constant: vec![false; pairs.len()], ..Located::default() };
+        for p in 0..pairs.len() {
+            self.locate_pair(p, &mut located);
+        }
+        located
+    }
+
+    fn locate_pair(&self, p: usize, located: &mut Located) {
+        let (times, samples) = (&self.motion.times, &self.samples[p]);
+        let Some(last) = samples.len().checked_sub(1) else { return };
+        let span = times[last] - times[0];
+        let value = |k: usize| samples[k].distance[0];
+        let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| {
+            (low.min(s.distance[0]), high.max(s.distance[0]))
+        });
+        let mut event = |time: f64, kind: EventKind| located.events.push(Event { pair: p, time, kind });
+        if high - low <= CONSTANT * self.size {
+            located.constant[p] = true;
+            event(times[0], EventKind::Minimum(MinimumPlace::Start));
+            return;
+        }
+        let rates_known = samples.iter().all(|s| s.distance[1].is_finite());
+        let mut add = Vec::new();
+        // Ends.
+        if last > 0 && value(0) <= value(1) && !(samples[0].distance[1] < 0.0) {
+            event(times[0], EventKind::Minimum(MinimumPlace::Start));
+        }
+        if last > 0 && value(last) <= value(last - 1) && !(samples[last].distance[1] > 0.0) {
+            event(times[last], EventKind::Minimum(MinimumPlace::End));
+        }
+        let curve = SampledCurve {
+            times,
+            orders: if rates_known { 3 } else { 1 },
+            values: samples.iter().map(|s| s.distance).collect(),
+        };
+        if rates_known {
+            // Per time: the step of Newton's method to the nearest stationary time.
+            let is_minimum = |k: usize| {
+                let [_, rate, acceleration] = samples[k].distance;
+                k > 0 && k < last && acceleration > 0.0 && rate.abs() <= LOCATED * span * acceleration
+            };
+            let mut found: Vec<f64> = Vec::new();
+            for k in (1..last).filter(|k| is_minimum(*k)) {
+                if found.last().is_none_or(|t| times[k] - t > SAME_TIME * span) {
+                    found.push(times[k]);
+                }
+            }
+            for k in 0..last {
+                let [from, to] = [k, k + 1].map(|k| samples[k].distance[1]);
+                let changes = from < 0.0 && to > 0.0;
+                let at = |t: f64| curve.at(k, t)[0];
+                let inner = curve.turns(k).into_iter().filter(|t| {
+                    let h = SAME_TIME * span;
+                    at(t - h) >= at(*t) && at(t + h) >= at(*t)
+                });
+                let mut candidates: Vec<f64> = inner.collect();
+                if changes && candidates.is_empty() {
+                    candidates.push(0.5 * (times[k] + times[k + 1]));
+                }
+                for t in candidates {
+                    let is_found = found.iter().any(|f| (f - t).abs() <= SAME_TIME * span);
+                    let narrow = times[k + 1] - times[k] <= LOCATED * span;
+                    if is_found {
+                        continue;
+                    }
+                    if narrow {
+                        // The acceleration jumps there: nothing is gained by further times.
+                        let nearest = if value(k) <= value(k + 1) { times[k] } else { times[k + 1] };
+                        found.push(nearest);
+                        continue;
+                    }
+                    add.push(t);
+                    if changes {
+                        add.push(0.5 * (times[k] + times[k + 1]));
+                    }
+                }
+            }
+            found.into_iter().for_each(|t| event(t, EventKind::Minimum(MinimumPlace::Inside)));
+        } else {
+            for k in 1..last {
+                if value(k) > value(k - 1) || value(k) > value(k + 1) {
+                    continue;
+                }
+                if times[k + 1] - times[k - 1] <= AT_REST * span {
+                    event(times[k], EventKind::Minimum(MinimumPlace::Inside));
+                } else {
+                    for [a, b] in [[times[k - 1], times[k]], [times[k], times[k + 1]]] {
+                        add.extend((1..PIECES).map(|n| a + (b - a) * n as f64 / PIECES as f64));
+                    }
+                }
+            }
+        }
+        // Contacts: from a time at which the sign changes, Newton's method or the polynomial.
+        for k in 0..last {
+            let [a, b] = [value(k), value(k + 1)];
+            if !((a > 0.0) != (b > 0.0)) {
+                continue;
+            }
+            let begins = b <= 0.0;
+            let near = if a.abs() <= b.abs() { k } else { k + 1 };
+            let [d, rate, _] = samples[near].distance;
+            let there = d.abs() <= LOCATED * span * rate.abs() || d == 0.0;
+            if there || times[k + 1] - times[k] <= LOCATED * span {
+                event(times[near], EventKind::Contact(begins));
+                continue;
+            }
+            let polynomial = |t: f64| curve.at(k, t)[0];
+            let [mut low, mut high] = [times[k], times[k + 1]];
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if (polynomial(middle) > 0.0) == (a > 0.0) { low = middle } else { high = middle }
+            }
+            add.push(0.5 * (low + high));
+            if times[k + 1] - times[k] > SAME_TIME * span {
+                add.push(0.5 * (times[k] + times[k + 1]));
+            }
+        }
+        located.add.extend(add);
+    }
+}
+
+/// A distance that changes less than this fraction of the mechanism's size over a motion is constant: round-off of
+/// solved positions.
+const CONSTANT: f64 = 1e-10;
+/// Interval in which the minimum of a curve without rates is located, as a fraction of the motion: the value is then
+/// known to round-off.
+const AT_REST: f64 = 1e-6;
+
+/// Events of a motion, and times at which it must be solved to locate others.
+#[derive(Default)]
+struct Located {
+    events: Vec<Event>,
+    add: Vec<f64>,
+    /// Per pair: true if its distance does not change.
+    constant: Vec<bool>,
+}
+
+struct Event {
+    pair: usize,
+    time: f64,
+    kind: EventKind,
+}
+
+#[derive(Clone, Copy)]
+enum EventKind {
+    Minimum(MinimumPlace),
+    /// True if the shapes touch from there on.
+    Contact(bool),
+}
+
+fn bodies_of(model: &Model, pairs: &[[ShapeId; 2]]) -> Vec<usize> {
+    let mut bodies: Vec<usize> =
+        pairs.iter().flatten().flat_map(|s| model.shapes[s.0].bodies(model)).map(|b| b.0).collect();
+    bodies.sort_unstable();
+    bodies.dedup();
+    bodies
+}
