@@ -29,6 +29,7 @@ mod parameters;
 mod path;
 mod planar;
 mod prescribed;
+mod proof;
 mod published;
 mod requests;
 mod robustness;

@@ -11,5 +11,8 @@ mod core;
 mod feature;
 mod nearest;
 mod placed;
+mod separation;
 
+pub(crate) use nearest::nearest;
 pub(crate) use placed::PlacedShapes;
+pub(crate) use separation::{Direction, EnclosedCore, lower_bound, separations};

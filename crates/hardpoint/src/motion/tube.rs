@@ -589,6 +589,13 @@ pub(crate) struct Instant {
     pub enclosure: Enclosure,
 }
 
+impl Instant {
+    /// Its time, s.
+    pub fn time(&self) -> f64 {
+        self.enclosure.middle
+    }
+}
+
 /// Part of a motion.
 pub(crate) struct Slab {
     /// Bounds over the whole part.
@@ -663,6 +670,12 @@ impl<'m> ProvenMotion<'m> {
         let found = self.solve_instant(plan, t);
         self.instants.insert(key, found.clone());
         found
+    }
+
+    /// Narrow bounds at a time within the part of the motion that starts at another time.
+    pub(crate) fn instant_within(&mut self, from: f64, t: f64) -> Result<Rc<Instant>, TubeFailure> {
+        let plan = self.plan_after(from);
+        self.instant(plan, t)
     }
 
     fn solve_instant(&mut self, plan: usize, t: f64) -> Result<Rc<Instant>, TubeFailure> {

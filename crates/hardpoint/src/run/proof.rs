@@ -1,9 +1,23 @@
-//! Proven bounds of the motion of a design.
+//! Proven bounds of the motion of a design, and of its clearances between the output times.
+//!
+//! The motion is divided at its output times, and where rates of laws jump. A part passes if a proven lower bound of the
+//! distance over it is not below the claim (`clearance/separation.rs`), else it is halved. The bounds have no slack where
+//! the distance falls, rises or is convex over a part: the least distance itself can be proved, but for round-off.
 
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use crate::clearance::{
+    Direction, EnclosedCore, PlacedShapes, lower_bound, nearest, separations,
+};
+use crate::design::BodyFixed;
+use crate::model::{Model, ShapeId, ShapeKind};
 use crate::motion::parts::PlanGeometry;
 use crate::motion::stepper::Stepper;
-use crate::motion::tube::OutputPosition;
-use crate::motion::{ProvenMotion, Stop, advance};
+use crate::motion::tube::{Enclosure, Instant, OutputPosition, Slab};
+use crate::motion::{ProvenMotion, Stop, TubeFailure, advance};
+use crate::number::{Interval, Jet, Rates};
+use crate::space::{Mat3, Pose, Real, Vec3};
 
 use super::analysis::Analysis;
 use super::walk::PreparedDesign;
@@ -48,5 +62,316 @@ impl Analysis<'_> {
             outputs.push(OutputPosition { at: one.mechanism.saved.clone(), plan: plans.len() - 1 });
         }
         Some((ProvenMotion::new(one.mechanism, outputs, plans), stop))
+    }
+}
+
+/// Length of a part of the motion, as a fraction of it, that is not halved again.
+const SHORTEST: f64 = 1e-9;
+/// A distance below the claim by more than this fraction of the mechanism's size refutes it: far above round-off.
+const BELOW: f64 = 1e-10;
+/// Steps of Newton's method to the time at which a distance is stationary.
+const STEPS: usize = 6;
+/// A step of Newton's method below this part of the interval leaves an error of its square.
+const STATIONARY: f64 = 1e-7;
+
+/// Result of the proof that a distance is never below a claim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ClearanceProof {
+    /// It never is, over all of the motion that was solved.
+    Proved {
+        /// Parts of the motion that passed.
+        slabs: usize,
+        /// Bounds that were computed: parts that passed, and those that were halved.
+        bounds: usize,
+    },
+    /// Nothing is proved over a part of the motion.
+    NotProved {
+        /// Start of that part, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+        /// Proven lower bound of the distance over it, m; minus infinity if there is none.
+        bound: f64,
+        /// Reason.
+        reason: ProofFailure,
+    },
+}
+
+/// Reason why a distance is not proved to be at least a claim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ProofFailure {
+    /// The distance at a time is less.
+    Nearer {
+        /// The time, s.
+        time: f64,
+        /// The distance, m.
+        distance: f64,
+    },
+    /// No bound reaches the claim, in however short a part: the claim is the least distance itself up to round-off, or
+    /// the rates of a law jump where the distance is least, or the shapes are in each other.
+    Unresolved,
+    /// A ring is nearest from the inside, where only points have a bound.
+    WithinRing,
+    /// The motion has no proven bounds there.
+    Motion(TubeFailure),
+}
+
+/// Proves clearances of one motion: the bounds of the motion are computed once for all pairs of shapes.
+pub struct ClearanceProver<'a> {
+    model: &'a Model,
+    motion: ProvenMotion<'a>,
+    fixed: BodyFixed<f64>,
+    constants: BodyFixed<Rates<Interval>>,
+    /// Reason why the motion ends before its last output time, if it does: proofs are for the part before.
+    pub stop: Option<Stop>,
+}
+
+impl Analysis<'_> {
+    /// Prover of the clearances of a design; `None` with equilibrium, as for [`proven_motion`](Self::proven_motion).
+    pub fn clearance_prover(&self, design: &[f64]) -> Option<ClearanceProver<'_>> {
+        let (motion, stop) = self.proven_motion(design)?;
+        let model = self.model();
+        let fixed: BodyFixed<f64> = self.design_map().fixed(&model.whole(design));
+        let constants = fixed.map(|x| Jet::constant(Interval::constant(x)));
+        Some(ClearanceProver { model, motion, fixed, constants, stop })
+    }
+}
+
+/// Two shapes at one time.
+struct Place {
+    instant: Rc<Instant>,
+    cores: [EnclosedCore; 2],
+    /// Unit vector along the nearest points of the cores, and their distance, for plain numbers.
+    direction: Option<Vec3>,
+    distance: f64,
+    of_features: Option<Direction>,
+}
+
+/// A part of the motion with two shapes.
+struct Part<'p> {
+    slab: &'p Slab,
+    cores: [EnclosedCore; 2],
+    /// Start, middle and end.
+    places: [Rc<Place>; 3],
+    length: Interval,
+}
+
+impl Part<'_> {
+    /// Bound by a direction, with a time inside at which the parabola is anchored. Also: true if the functions that are
+    /// below the claim are convex.
+    fn bound(&self, direction: Direction, anchor: &Place, claim: f64) -> Option<(f64, bool)> {
+        let over = self.slab.enclosure.over;
+        let all = separations(self.cores.each_ref(), direction, over)?;
+        let at = |place: &Place| separations(place.cores.each_ref(), direction, place.instant.enclosure.over);
+        let (start, inside, end) = (at(&self.places[0])?, at(anchor)?, at(&self.places[2])?);
+        let since = over - anchor.instant.enclosure.over;
+        let (mut least, mut convex) = (f64::INFINITY, true);
+        for (k, gap) in all.iter().enumerate() {
+            let ends = [start[k].value(), end[k].value()];
+            let bound = lower_bound(*gap, ends, (inside[k], since), self.length);
+            convex &= bound >= claim || gap.dd().low > 0.0;
+            least = least.min(bound);
+        }
+        Some((least, convex))
+    }
+}
+
+impl<'a> ClearanceProver<'a> {
+    /// Number of enclosures of the motion over intervals that were computed so far.
+    pub fn enclosures(&self) -> usize {
+        self.motion.computed()
+    }
+
+    /// Proves that two shapes are never nearer than the claim, m, over the whole motion.
+    ///
+    /// The least distance of [`clearances`](Analysis::clearances) less an allowance for round-off, 1e-12 of the
+    /// mechanism's size, is proved wherever it is isolated; a greater claim never is.
+    pub fn prove(&mut self, shapes: [ShapeId; 2], claim: f64) -> ClearanceProof {
+        let times: Vec<f64> = self.motion.times().collect();
+        let (Some(&start), Some(&end)) = (times.first(), times.last()) else {
+            return ClearanceProof::Proved { slabs: 0, bounds: 0 };
+        };
+        self.prove_between(shapes, claim, [start, end])
+    }
+
+    /// Proves that two shapes are never nearer than the claim, m, between two times.
+    pub fn prove_between(&mut self, shapes: [ShapeId; 2], claim: f64, [start, end]: [f64; 2]) -> ClearanceProof {
+        let mut ends: Vec<f64> = self.motion.times().filter(|t| start < *t && *t < end).collect();
+        ends.extend(self.motion.cuts(start, end));
+        ends.extend([start, end]);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        let mut pair = PairProof { prover: self, shapes, claim: 0.0, places: HashMap::new() };
+        // Distance of the cores, rounded up.
+        pair.claim = (Interval::constant(claim) + pair.rounds()).high;
+        let (mut slabs, mut bounds) = (0, 0);
+        // The next part is the last one.
+        let mut parts: Vec<[f64; 2]> = ends.windows(2).rev().map(|pair| [pair[0], pair[1]]).collect();
+        if parts.is_empty() {
+            parts.push([start, end]);
+        }
+        while let Some([from, to]) = parts.pop() {
+            bounds += 1;
+            let failed = match pair.bound([from, to]) {
+                Ok(bound) if bound >= pair.claim => {
+                    slabs += 1;
+                    continue;
+                }
+                Ok(bound) => (bound, ProofFailure::Unresolved),
+                Err(reason) => (f64::NEG_INFINITY, reason),
+            };
+            let middle = Interval::between(from, to).middle();
+            let halves = from < middle && middle < to && to - from > SHORTEST * (end - start);
+            let may_pass = match failed.1 {
+                ProofFailure::Nearer { .. } | ProofFailure::WithinRing => false,
+                ProofFailure::Unresolved => true,
+                ProofFailure::Motion(reason) => reason.may_be_halved(),
+            };
+            if !(halves && may_pass) {
+                let (bound, reason) = failed;
+                let within = bound == f64::NEG_INFINITY && reason == ProofFailure::Unresolved && pair.has_ring();
+                let reason = if within { ProofFailure::WithinRing } else { reason };
+                let bound = (Interval::constant(bound) - pair.rounds()).low;
+                return ClearanceProof::NotProved { from, to, bound, reason };
+            }
+            parts.extend([[middle, to], [from, middle]]);
+        }
+        ClearanceProof::Proved { slabs, bounds }
+    }
+}
+
+/// Proof of one claim.
+struct PairProof<'p, 'a> {
+    prover: &'p mut ClearanceProver<'a>,
+    shapes: [ShapeId; 2],
+    /// Least distance of the cores, m.
+    claim: f64,
+    places: HashMap<*const Instant, Rc<Place>>,
+}
+
+impl PairProof<'_, '_> {
+    /// Sum of the radii around both cores.
+    fn rounds(&self) -> Interval {
+        let ClearanceProver { model, constants, .. } = &*self.prover;
+        let poses: &[Pose<Rates<Interval>>] = &[];
+        PlacedShapes { model, fixed: constants, poses }.rounds(self.shapes).value()
+    }
+
+    fn cores(&self, enclosure: &Enclosure) -> [EnclosedCore; 2] {
+        let ClearanceProver { model, constants, .. } = &*self.prover;
+        let placed = PlacedShapes { model, fixed: constants, poses: &enclosure.poses };
+        self.shapes.map(|shape| placed.core(shape))
+    }
+
+    /// The shapes at one time.
+    fn place(&mut self, instant: &Rc<Instant>) -> Rc<Place> {
+        if let Some(place) = self.places.get(&Rc::as_ptr(instant)) {
+            return place.clone();
+        }
+        let cores = self.cores(&instant.enclosure);
+        let middle = |x: Rates<Interval>| x.value().middle();
+        let plain: Vec<Pose> = instant
+            .enclosure
+            .poses
+            .iter()
+            .map(|pose| Pose {
+                rot: Mat3 { cols: pose.rot.cols.map(|c| c.map(middle)) },
+                r: pose.r.map(middle),
+            })
+            .collect();
+        let ClearanceProver { model, fixed, .. } = &*self.prover;
+        let placed = PlacedShapes { model, fixed, poses: &plain };
+        let [a, b] = self.shapes.map(|shape| placed.core(shape));
+        let near = nearest(&a, &b);
+        let [p, q] = near.points;
+        let place = Rc::new(Place {
+            instant: instant.clone(),
+            cores,
+            direction: (q - p).unit(),
+            distance: near.distance,
+            of_features: Direction::of_features([&a, &b], &near),
+        });
+        self.places.insert(Rc::as_ptr(instant), place.clone());
+        place
+    }
+
+    /// Proven lower bound of the distance of the cores over a part of the motion.
+    fn bound(&mut self, [from, to]: [f64; 2]) -> Result<f64, ProofFailure> {
+        let slab = self.prover.motion.slab(from, to).map_err(ProofFailure::Motion)?;
+        let places = slab.instants.each_ref().map(|instant| self.place(instant));
+        for place in &places {
+            if place.distance < self.claim - BELOW * self.prover.fixed.size {
+                let distance = place.distance - self.rounds().middle();
+                return Err(ProofFailure::Nearer { time: place.instant.time(), distance });
+            }
+        }
+        let length = Interval::constant(to) - Interval::constant(from);
+        let part = Part { cores: self.cores(&slab.enclosure), slab: &slab, places, length };
+        let [start, middle, end] = part.places.each_ref();
+        let mut best = f64::NEG_INFINITY;
+        if let Some(direction) = middle.of_features {
+            let found = part.bound(direction, middle, self.claim);
+            // A plane has a distance on both sides; otherwise cores that meet have none.
+            best = self.better(best, found, true);
+        }
+        if best >= self.claim {
+            return Ok(best);
+        }
+        if let Some(n) = middle.direction {
+            let found = part.bound(Direction::fixed(n), middle, self.claim);
+            best = self.better(best, found, false);
+        }
+        if best >= self.claim {
+            return Ok(best);
+        }
+        if let (Some(n), Some(m)) = (start.direction, end.direction) {
+            // Along the nearest points at both ends, so that nothing is lost where the distance falls or rises.
+            let rate = (m - n) * (1.0 / (to - from));
+            let direction = Direction::Turning { start: n, rate, time: from };
+            let found = part.bound(direction, middle, self.claim);
+            best = self.better(best, found, false);
+            if best < self.claim && found.is_some_and(|(_, convex)| convex) {
+                let found = self.least_of_convex(&part, rate);
+                best = self.better(best, found, false);
+            }
+        }
+        Ok(best)
+    }
+
+    /// The greater of two bounds. Cores that meet have no distance: a bound by separation is positive.
+    fn better(&self, best: f64, found: Option<(f64, bool)>, any_sign: bool) -> f64 {
+        match found {
+            Some((bound, _)) if bound > 0.0 || any_sign && self.has_plane() => best.max(bound),
+            Some(_) | None => best,
+        }
+    }
+
+    fn has_plane(&self) -> bool {
+        self.shapes.iter().any(|s| matches!(self.prover.model.shapes[s.0].kind, ShapeKind::Plane { .. }))
+    }
+
+    fn has_ring(&self) -> bool {
+        self.shapes.iter().any(|s| matches!(self.prover.model.shapes[s.0].kind, ShapeKind::Ring { .. }))
+    }
+
+    /// Bound by the parabola at the time at which a convex distance is stationary.
+    fn least_of_convex(&mut self, part: &Part<'_>, rate: Vec3) -> Option<(f64, bool)> {
+        let Interval { low: from, high: to } = part.slab.enclosure.over;
+        let mut place = part.places[1].clone();
+        for _ in 0..STEPS {
+            let time = place.instant.time();
+            // Along the nearest points there, so that nothing is lost.
+            let direction = Direction::Turning { start: place.direction?, rate, time };
+            let gaps = separations(place.cores.each_ref(), direction, place.instant.enclosure.over)?;
+            let nearest = gaps.iter().min_by(|a, b| a.value().low.total_cmp(&b.value().low))?;
+            let step = -nearest.d().middle() / nearest.dd().middle();
+            let next = (time + step).clamp(from, to);
+            if !((next - time).abs() > STATIONARY * (to - from)) {
+                return part.bound(direction, &place, self.claim);
+            }
+            let instant = self.prover.motion.instant_within(from, next).ok()?;
+            place = self.place(&instant);
+        }
+        None
     }
 }
