@@ -4,7 +4,8 @@ use std::path::Path;
 
 use hardpoint::model::Model;
 use hardpoint::motion::{BodyState, TubeFailure};
-use hardpoint::number::{Interval, Rates};
+use hardpoint::law::TimeJet;
+use hardpoint::number::Interval;
 use hardpoint::space::{Pose, Vec3};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run};
@@ -32,7 +33,7 @@ fn numbers(state: &BodyState) -> Vec<[f64; 3]> {
     out
 }
 
-fn bounds(pose: &Pose<Rates<Interval>>) -> Vec<[Interval; 3]> {
+fn bounds(pose: &Pose<TimeJet<Interval>>) -> Vec<[Interval; 4]> {
     let [f, g, h] = pose.rot.cols;
     [pose.r, f, g, h].into_iter().flat_map(|v| [v.x, v.y, v.z]).map(|x| x.0).collect()
 }

@@ -15,4 +15,4 @@ mod separation;
 
 pub(crate) use nearest::nearest;
 pub(crate) use placed::PlacedShapes;
-pub(crate) use separation::{Direction, EnclosedCore, lower_bound, separations};
+pub(crate) use separation::{Direction, EnclosedCore, direction_of, lower_bound, separations};

@@ -8,12 +8,13 @@
 //! | direction | n(t) | no slack |
 //! |---|---|---|
 //! | fixed | constant | at one time, to first order |
-//! | turning | along a vector that is linear in time | to second order |
+//! | turning | along a vector that is a polynomial in time | at an instant and its rates, or at both ends |
 //! | normal | of a plane, or of the cap of a cylinder | while that is nearest |
 //!
 //! A circle has the bound of its disc, and from a point its own: the distance by the formula of `feature.rs`, always.
 
-use crate::number::{Interval, Jet, Rates};
+use crate::law::TimeJet;
+use crate::number::{Dual, Interval, Jet, Rates};
 use crate::space::{Real, Vec3};
 
 use super::core::{Circle, Core};
@@ -21,13 +22,13 @@ use super::feature::Feature;
 use super::nearest::Nearest;
 
 /// A core with bounds of its place and rates.
-pub(crate) type EnclosedCore = Core<Rates<Interval>>;
+pub(crate) type EnclosedCore = Core<TimeJet<Interval>>;
 
 /// Unit vector from the first core to the second one, over time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Direction {
-    /// Along a vector that changes linearly: `start` at a time, and its rate, per s.
-    Turning { start: Vec3, rate: Vec3, time: f64 },
+    /// Along a cubic polynomial: its coefficients by the time since an instant.
+    Turning { coefficients: [Vec3; 4], since: f64 },
     /// Normal of the plane or cap of core k, on this side.
     Normal { of: usize, side: f64 },
     /// From a point to the nearest point of a circle.
@@ -37,7 +38,22 @@ pub(crate) enum Direction {
 impl Direction {
     /// A fixed direction.
     pub fn fixed(n: Vec3) -> Self {
-        Self::Turning { start: n, rate: Vec3::ZERO, time: 0.0 }
+        Self::Turning { coefficients: [n, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO], since: 0.0 }
+    }
+
+    /// The direction that has this value and these rates at an instant.
+    pub fn through([n, d, dd]: [Vec3; 3], since: f64) -> Self {
+        Self::Turning { coefficients: [n, d, dd * 0.5, Vec3::ZERO], since }
+    }
+
+    /// The direction that has these values and rates at two times.
+    pub fn between([[n, d, _], [m, e, _]]: [[Vec3; 3]; 2], [from, to]: [f64; 2]) -> Self {
+        let per = 1.0 / (to - from);
+        let rise = (m - n) * per;
+        // Hermite's cubic.
+        let square = (rise * 3.0 - d * 2.0 - e) * per;
+        let cube = (d + e - rise * 2.0) * (per * per);
+        Self::Turning { coefficients: [n, d, square, cube], since: from }
     }
 
     /// The direction that goes with the features that are nearest, if one of them has it.
@@ -54,24 +70,66 @@ impl Direction {
     }
 }
 
+/// Unit vector along the nearest points of two cores that are apart, from the first to the second, with its first two
+/// rates: the derivatives of the distance by a translation of the second core.
+pub(crate) fn direction_of(cores: [&Core<Rates>; 2], near: &Nearest) -> Option<[Vec3; 3]> {
+    if !(near.distance > 0.0) {
+        return None;
+    }
+    let still = |v: Vec3<Rates>, _: usize| v.map(Dual::constant);
+    let moved = |v: Vec3<Rates>, axis: usize| v.with_derivative(Vec3::AXES[axis].spread());
+    let by = [0, 1, 2].map(|axis| {
+        let pair = [placed(cores[0], |v| still(v, axis)), placed(cores[1], |v| moved(v, axis))];
+        near.distance_of(pair.each_ref()).d
+    });
+    let [x, y, z] = by;
+    let rates = [0, 1, 2].map(|n| Vec3::new(x.0[n], y.0[n], z.0[n]));
+    let length = rates[0].norm();
+    ((length - 1.0).abs() < UNIT && rates.iter().all(|v| v.is_finite())).then_some(rates)
+}
+
+/// Deviation from one of the length of a direction above which it is not that of the nearest points.
+const UNIT: f64 = 1e-6;
+
+/// A core over dual numbers, with these positions.
+fn placed(core: &Core<Rates>, point: impl Fn(Vec3<Rates>) -> Vec3<Dual<Rates>>) -> Core<Dual<Rates>> {
+    let constant = |v: Vec3<Rates>| v.map(Dual::constant);
+    let circle = |c: &Circle<Rates>| Circle {
+        centre: point(c.centre),
+        axis: constant(c.axis),
+        radius: Dual::constant(c.radius),
+    };
+    match core {
+        Core::Point(p) => Core::Point(point(*p)),
+        Core::Segment(ends) => Core::Segment(ends.map(&point)),
+        Core::Circle(c) => Core::Circle(circle(c)),
+        Core::Cylinder { middle, half_width } => {
+            Core::Cylinder { middle: circle(middle), half_width: Dual::constant(*half_width) }
+        }
+        Core::HalfSpace { point: p, normal } => {
+            Core::HalfSpace { point: point(*p), normal: constant(*normal) }
+        }
+    }
+}
+
 /// Bounds, over an interval of time, of functions of which the least is at most the distance of two cores; `None` if a
 /// direction bounds nothing. Their number and order depend on the direction and the kinds of the cores only.
 pub(crate) fn separations(
     cores: [&EnclosedCore; 2],
     direction: Direction,
     over: Interval,
-) -> Option<Vec<Rates<Interval>>> {
+) -> Option<Vec<TimeJet<Interval>>> {
     let n = match direction {
-        Direction::Turning { start, rate, time } => {
-            let since = over - Interval::constant(time);
-            let component = |start: f64, rate: f64| {
-                let rate = Interval::constant(rate);
-                Jet([Interval::constant(start) + rate * since, rate, Interval::zero()])
+        Direction::Turning { coefficients: [a, b, c, d], since } => {
+            let time = Jet::time(over - Interval::constant(since));
+            let component = |of: [f64; 4]| {
+                let [a, b, c, d] = of.map(|x| Jet::constant(Interval::constant(x)));
+                a + time * (b + time * (c + time * d))
             };
             Vec3::new(
-                component(start.x, rate.x),
-                component(start.y, rate.y),
-                component(start.z, rate.z),
+                component([a.x, b.x, c.x, d.x]),
+                component([a.y, b.y, c.y, d.y]),
+                component([a.z, b.z, c.z, d.z]),
             )
         }
         Direction::Normal { of, side } => {
@@ -105,12 +163,12 @@ pub(crate) fn separations(
 }
 
 /// A point, and how far the core extends beyond it along a direction.
-type Support = (Vec3<Rates<Interval>>, Rates<Interval>);
+type Support = (Vec3<TimeJet<Interval>>, TimeJet<Interval>);
 
 /// The points of a core one of which is the farthest along n or against it. `side` is that of its own plane or cap, if n
 /// is its normal.
-fn supports(core: &EnclosedCore, n: Vec3<Rates<Interval>>, side: Option<f64>) -> Option<Vec<Support>> {
-    let zero = Rates::zero();
+fn supports(core: &EnclosedCore, n: Vec3<TimeJet<Interval>>, side: Option<f64>) -> Option<Vec<Support>> {
+    let zero = TimeJet::zero();
     Some(match (core, side) {
         (Core::Point(p), _) => vec![(*p, zero)],
         (Core::Segment(ends), _) => ends.iter().map(|p| (*p, zero)).collect(),
@@ -129,20 +187,21 @@ fn supports(core: &EnclosedCore, n: Vec3<Rates<Interval>>, side: Option<f64>) ->
 }
 
 /// How far a circle extends from its centre along n: `R abs(n x e)`.
-fn rim(circle: &Circle<Rates<Interval>>, n: Vec3<Rates<Interval>>) -> Rates<Interval> {
+fn rim(circle: &Circle<TimeJet<Interval>>, n: Vec3<TimeJet<Interval>>) -> TimeJet<Interval> {
     let across = n.cross(circle.axis);
     let length = across.norm();
     if length.value().is_bounded() {
         return circle.radius * length;
     }
     // Where n is along the axis the length has no rates.
-    let square = |x: Rates<Interval>| x.value().square();
+    let square = |x: TimeJet<Interval>| x.value().square();
     let size = (square(across.x) + square(across.y) + square(across.z)).sqrt();
-    Jet([circle.radius.value() * size, Interval::ENTIRE, Interval::ENTIRE])
+    let unknown = Interval::ENTIRE;
+    Jet([circle.radius.value() * size, unknown, unknown, unknown])
 }
 
 /// `sqrt(z z + (rho - R)^2)`
-fn to_circle(p: Vec3<Rates<Interval>>, circle: &Circle<Rates<Interval>>) -> Rates<Interval> {
+fn to_circle(p: Vec3<TimeJet<Interval>>, circle: &Circle<TimeJet<Interval>>) -> TimeJet<Interval> {
     let v = p - circle.centre;
     let (z, rho) = (circle.axis.dot(v), circle.axis.cross(v).norm());
     Real::hypot(z, rho - circle.radius)
@@ -155,12 +214,12 @@ fn to_circle(p: Vec3<Rates<Interval>>, circle: &Circle<Rates<Interval>>) -> Rate
 /// parabola of that curvature through value and rate at a time inside; and where the rate does not change its sign, the
 /// value at an end.
 pub(crate) fn lower_bound(
-    over: Rates<Interval>,
+    over: TimeJet<Interval>,
     ends: [Interval; 2],
-    inside: (Rates<Interval>, Interval),
+    inside: (TimeJet<Interval>, Interval),
     length: Interval,
 ) -> f64 {
-    let Jet([value, rate, second]) = over;
+    let Jet([value, rate, second, _]) = over;
     let mut best = value.low;
     let [start, end] = ends;
     // Up to the kink of a law the rate is bounded on either side, but not inside.
@@ -186,7 +245,7 @@ pub(crate) fn lower_bound(
             curve.low.max((Interval::constant(lowest) - sag).low)
         });
     }
-    let (Jet([at, slope, _]), since) = inside;
+    let (Jet([at, slope, ..]), since) = inside;
     if second.low.is_finite() && at.is_bounded() && slope.is_bounded() {
         let bend = Interval::constant(second.low);
         best = best.max(if second.low > 0.0 {
@@ -214,6 +273,7 @@ mod tests {
             ("cubic", |t| [t * t * t - t, 3.0 * t * t - 1.0, 6.0 * t]),
         ];
         let exact = |x: f64| Interval::between(x - 1e-15 * x.abs(), x + 1e-15 * x.abs());
+        let with_rates = |[f, d, dd]: [f64; 3]| Jet([exact(f), exact(d), exact(dd), Interval::ENTIRE]);
         for (name, f) in curves {
             for (from, to) in [(-1.0, 1.0), (-0.3, 0.5), (0.2, 0.25), (0.5, 0.6), (-0.02, 0.01)] {
                 let samples: Vec<[f64; 3]> =
@@ -224,12 +284,12 @@ mod tests {
                     let hair = 30.0 * (to - from) * (to - from) * 1e-6;
                     hull + Interval::symmetric(hair)
                 };
-                let over = Jet([range(0) + Interval::symmetric(10.0), range(1), range(2)]);
+                let over = Jet([range(0) + Interval::symmetric(10.0), range(1), range(2), Interval::ENTIRE]);
                 let least = samples.iter().map(|s| s[0]).fold(f64::INFINITY, f64::min);
                 let ends = [from, to].map(|t| exact(f(t)[0]));
                 for s in [0.0, 0.31, 0.5, 1.0] {
                     let t = from + s * (to - from);
-                    let inside = (Jet(f(t).map(exact)), Interval::between(from, to) - Interval::constant(t));
+                    let inside = (with_rates(f(t)), Interval::between(from, to) - Interval::constant(t));
                     let length = Interval::constant(to) - Interval::constant(from);
                     let bound = lower_bound(over, ends, inside, length);
                     assert!(bound <= least + 1e-15, "{name} from {from} to {to}: {bound} > {least}");
@@ -241,7 +301,7 @@ mod tests {
                 }
                 // At the minimum of a convex function nothing is left.
                 if name == "convex" && from < 0.0 {
-                    let inside = (Jet(f(0.0).map(exact)), Interval::between(from, to));
+                    let inside = (with_rates(f(0.0)), Interval::between(from, to));
                     let bound = lower_bound(over, ends, inside, Interval::constant(to) - Interval::constant(from));
                     assert!(bound >= -1e-300 && bound <= 0.0, "{bound}");
                 }

@@ -1,7 +1,7 @@
-//! Bounds of an expression and of its first two rates over an interval of time, with outward rounding.
+//! Bounds of an expression and of its first three rates over an interval of time, with outward rounding.
 //!
-//! [`Stretch`](super::range::Stretch) bounds value and rate up to rounding, for the steps of a motion. Proofs need the
-//! second rate as well, and bounds that hold in spite of rounding. Where an operation changes its branch within the
+//! [`Stretch`](super::range::Stretch) bounds value and rate up to rounding, for the steps of a motion. Proofs need
+//! further rates as well, and bounds that hold in spite of rounding. Where an operation changes its branch within the
 //! interval, the rates may jump: they are unbounded then, and the value alone is bounded.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -11,9 +11,9 @@ use crate::number::{Function, Interval, Jet, Real};
 use super::range::Range;
 use super::term::{ExpressionValue, Relation};
 
-/// Bounds of a value and of its first two rates, all over the same interval of time.
+/// Bounds of a value and of its first three rates, all over the same interval of time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Enclosure(pub Jet<Interval, 3>);
+pub(crate) struct Enclosure(pub Jet<Interval, 4>);
 
 impl Enclosure {
     /// The time itself.
@@ -23,7 +23,7 @@ impl Enclosure {
 
     /// Unknown value and rates.
     pub(crate) fn unbounded() -> Self {
-        Self(Jet([Interval::ENTIRE; 3]))
+        Self(Jet([Interval::ENTIRE; 4]))
     }
 
     fn value(self) -> Interval {
@@ -32,7 +32,7 @@ impl Enclosure {
 
     /// A continuous quantity with a kink: its value is bounded, its rates are not.
     fn with_kink(value: Interval) -> Self {
-        Self(Jet([value, Interval::ENTIRE, Interval::ENTIRE]))
+        Self(Jet([value, Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE]))
     }
 }
 
@@ -59,10 +59,10 @@ impl ExpressionValue for Enclosure {
         }
         let power =
             |lowered: f64| self.value().pow(Interval::constant(exponent) - Interval::constant(lowered));
-        // x^p, p x^(p-1), p (p-1) x^(p-2)
+        // x^p, p x^(p-1), p (p-1) x^(p-2), p (p-1) (p-2) x^(p-3)
         let p = Interval::constant(exponent);
-        let slopes = [p * power(1.0), p * (p + -1.0) * power(2.0)];
-        Self(self.0.compose([power(0.0), slopes[0], slopes[1], Interval::ENTIRE]))
+        let (q, r) = (p * (p + -1.0), p * (p + -1.0) * (p + -2.0));
+        Self(self.0.compose([power(0.0), p * power(1.0), q * power(2.0), r * power(3.0)]))
     }
 
     /// Power with a positive base. With other bases it is undefined for all but integer exponents, which are constant.
@@ -109,17 +109,18 @@ impl ExpressionValue for Enclosure {
         // adds to the bounds.
         let u = ((self - x0) / (x1 - x0)).0;
         let inside = Interval { low: 0.0, high: 1.0 };
-        let kept = Jet([u.value().and(inside), u.d(), u.dd()]);
+        let kept = Jet([u.value().and(inside), u.d(), u.dd(), u.ddd()]);
         let constant = |x: f64| Interval::constant(x);
         let v = kept.value();
         let s = v.square() * (constant(3.0) - v * 2.0);
         // s' = 6 u (1 - u), at most 3/2
         let slope = (v * (constant(1.0) - v) * 6.0).and(Interval { low: 0.0, high: 1.5 });
         let bend = constant(6.0) - v * 12.0;
-        let mut rise = kept.compose([s.and(inside), slope, bend, Interval::ENTIRE]);
+        let mut rise = kept.compose([s.and(inside), slope, bend, constant(-12.0)]);
         if x.low < start.high || x.high > end.low {
-            let still = [inside, constant(0.0), constant(0.0)];
-            rise = Jet([rise.0[0], rise.0[1].or(still[1]), rise.0[2].or(still[2])]);
+            // The second rate jumps there.
+            let still = constant(0.0);
+            rise = Jet([rise.0[0], rise.0[1].or(still), rise.0[2].or(still), Interval::ENTIRE]);
         }
         h0 + (h1 - h0) * Self(rise)
     }

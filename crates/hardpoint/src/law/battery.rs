@@ -282,7 +282,7 @@ fn enclosures_contain_value_and_rates_at_all_times_and_converge() {
     laws.push(Law::parse("2 + 0.4*t").unwrap().from_zero(2.0));
     laws.push(Law::parse("t^2.3 + hypot(t, 1) + tanh(t)/(1 + t) + asin(t/9) - log10(1 + t)").unwrap());
     for law in laws {
-        let mut widths: Vec<[f64; 3]> = Vec::new();
+        let mut widths: Vec<[f64; 4]> = Vec::new();
         for (from, to) in [(0.05, 2.15), (0.4, 0.9), (0.9, 1.1), (1.2, 1.25), (1.9, 1.9001), (0.7, 0.7)] {
             let bounds = law.enclosure(Interval::between(from, to));
             widths.push(bounds.0.map(Interval::width));
@@ -314,7 +314,7 @@ fn rates_are_unbounded_where_the_speed_jumps_inside_and_bounded_up_to_there() {
     for (law, kink) in kinked() {
         let cuts = law.cuts(0.1, 2.0);
         assert!(cuts.iter().any(|cut| (cut - kink).abs() < 1e-9), "{law}: {cuts:?}");
-        let [value, rate, second] = law.enclosure(Interval::between(kink - 1e-3, kink + 1e-3)).derivatives();
+        let [value, rate, second, _] = law.enclosure(Interval::between(kink - 1e-3, kink + 1e-3)).derivatives();
         assert!(value.width() < 0.02 && !rate.is_bounded() && !second.is_bounded(), "{law}");
         let [before, after] = [cuts[0], cuts[cuts.len() - 1]];
         for over in [Interval::between(before - 1e-3, before), Interval::between(after, after + 1e-3)] {
@@ -334,7 +334,7 @@ fn rates_are_unbounded_where_the_speed_jumps_inside_and_bounded_up_to_there() {
 #[test]
 fn a_jump_of_the_value_is_enclosed() {
     let law = Law::parse("if(t < 1, 2, 5)").unwrap();
-    let [value, rate, _] = law.enclosure(Interval::between(0.9, 1.1)).derivatives();
+    let [value, rate, ..] = law.enclosure(Interval::between(0.9, 1.1)).derivatives();
     assert!(value.encloses(Interval::between(2.0, 5.0)) && value.width() < 3.0 + 1e-14 && !rate.is_bounded());
     assert!(!law.enclosure(Interval::between(0.9, f64::INFINITY)).d().is_bounded());
     let late = Law::table(&Table {

@@ -52,7 +52,7 @@ impl LawKind for ExpressionLaw {
         self.program.at(Stretch::time(from, to), |_| Stretch::UNBOUNDED)
     }
 
-    fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
         self.program.at(Enclosure::time(over), |_| Enclosure::unbounded()).0
     }
 

@@ -63,7 +63,7 @@ impl LawKind for Harmonic {
             + of(self.offset)
     }
 
-    fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
         // Smooth everywhere.
         self.at(Jet::time(over), None)
     }

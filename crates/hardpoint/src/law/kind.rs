@@ -32,9 +32,9 @@ pub(super) trait LawKind: fmt::Display {
     /// anywhere in it.
     fn over(&self, from: f64, to: f64) -> Stretch;
 
-    /// Bounds of f and of its first two rates over an interval of time, with outward rounding. Rates are unbounded if the
-    /// speed jumps anywhere inside it, and all are if f is undefined.
-    fn enclosure(&self, over: Interval) -> Jet<Interval, 3>;
+    /// Bounds of f and of its first three rates over an interval of time, with outward rounding. A rate is unbounded if
+    /// one of a lower order jumps anywhere inside it, and all are if f is undefined.
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4>;
 
     /// Appends the breaks between `from` and `to` at which the value or the first two derivatives may jump.
     fn find_breaks(&self, _from: f64, _to: f64, _breaks: &mut Vec<Break>) {}
@@ -83,7 +83,7 @@ macro_rules! kinds {
                 match self { $(Self::$kind(law) => law.over(from, to)),* }
             }
 
-            fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
+            fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
                 match self { $(Self::$kind(law) => law.enclosure(over)),* }
             }
 
@@ -146,9 +146,11 @@ pub(super) fn one_way(law: &impl LawKind, middle: f64, from: f64, to: f64) -> St
     Stretch { value: Range::between(start.value(), end.value()), rate }
 }
 
-/// Smallest bounds that contain those of both.
-pub(super) fn either(a: Jet<Interval, 3>, b: Jet<Interval, 3>) -> Jet<Interval, 3> {
-    Jet(std::array::from_fn(|n| a.0[n].or(b.0[n])))
+/// Smallest bounds that contain those of two pieces that follow each other. The second rate may jump between them, so
+/// that the third is unbounded.
+pub(super) fn either(a: Jet<Interval, 4>, b: Jet<Interval, 4>) -> Jet<Interval, 4> {
+    let [f, d, dd, _] = std::array::from_fn(|n| a.0[n].or(b.0[n]));
+    Jet([f, d, dd, Interval::ENTIRE])
 }
 
 /// Bounds over an interval of time of a law in pieces, whose speed is continuous. Piece k ends where piece k + 1 begins,
@@ -157,9 +159,9 @@ pub(super) fn either(a: Jet<Interval, 3>, b: Jet<Interval, 3>) -> Jet<Interval, 
 pub(super) fn in_pieces(
     over: Interval,
     ends: &[f64],
-    piece: impl Fn(usize, Interval) -> Jet<Interval, 3>,
-) -> Jet<Interval, 3> {
-    let mut all: Option<Jet<Interval, 3>> = None;
+    piece: impl Fn(usize, Interval) -> Jet<Interval, 4>,
+) -> Jet<Interval, 4> {
+    let mut all: Option<Jet<Interval, 4>> = None;
     for k in 0..=ends.len() {
         let start = k.checked_sub(1).map_or(f64::NEG_INFINITY, |before| ends[before]);
         let end = ends.get(k).copied().unwrap_or(f64::INFINITY);
@@ -169,7 +171,7 @@ pub(super) fn in_pieces(
             all = Some(all.map_or(bounds, |all| either(all, bounds)));
         }
     }
-    all.unwrap_or(Jet([Interval::ENTIRE; 3]))
+    all.unwrap_or(Jet([Interval::ENTIRE; 4]))
 }
 
 /// Writes a sum in the usual notation: signs between the terms, zero terms omitted, `0` if none is left.

@@ -300,20 +300,20 @@ impl Law {
         over.settled(self.at(0.5 * (from + to)).value(), to - from)
     }
 
-    /// Bounds of f and of its first two rates over an interval of time, with outward rounding: in the driver's unit per
-    /// s to the order. Rates are unbounded if the speed jumps inside of the interval; all are if the law is undefined
-    /// anywhere in it. Rates at the ends are those of the side inside.
+    /// Bounds of f and of its first three rates over an interval of time, with outward rounding: in the driver's unit per
+    /// s to the order. A rate is unbounded if one of a lower order jumps inside of the interval; all are if the law is
+    /// undefined anywhere in it. Rates at the ends are those of the side inside.
     ///
     /// ```
     /// use hardpoint::{law::Law, number::Interval};
     ///
     /// let law = Law::parse("abs(t - 1)*t")?;
-    /// let [value, rate, _] = law.enclosure(Interval::between(1.0, 1.5)).derivatives();
+    /// let [value, rate, ..] = law.enclosure(Interval::between(1.0, 1.5)).derivatives();
     /// assert!(value.contains(0.75) && rate.contains(2.0) && rate.is_bounded());
     /// assert!(!law.enclosure(Interval::between(0.5, 1.5)).d().is_bounded()); // the rate jumps at 1
     /// # Ok::<(), hardpoint::expression::ExpressionError>(())
     /// ```
-    pub fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
+    pub fn enclosure(&self, over: Interval) -> TimeJet<Interval> {
         let value = self.kind.enclosure(over) * self.factor;
         value - Jet::constant(Interval::constant(self.design_value.unwrap_or(0.0)))
     }

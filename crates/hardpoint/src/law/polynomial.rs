@@ -61,7 +61,7 @@ impl LawKind for Polynomial {
         Stretch::of_polynomial(&self.coefficients, from, to)
     }
 
-    fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
         // Smooth everywhere.
         self.at(Jet::time(over), None)
     }

@@ -220,10 +220,10 @@ impl LawKind for Sequence {
         })
     }
 
-    fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
         // At a start, the piece before and the one after have different rates; an interval has the one inside of it.
         let (first, last) = (self.piece_at(over.low, false), self.piece_at(over.high, !over.is_point()));
-        let (Some(first), Some(last)) = (first, last) else { return Jet([Interval::ENTIRE; 3]) };
+        let (Some(first), Some(last)) = (first, last) else { return Jet([Interval::ENTIRE; 4]) };
         let value = |k: usize| {
             let start = self.starts[k];
             let end = self.pieces[k].duration.map_or(f64::INFINITY, |_| self.starts[k + 1]);
@@ -237,7 +237,7 @@ impl LawKind for Sequence {
         }
         // Rates may jump from one piece to the next.
         let values = (first + 1..=last).fold(bounds.value(), |all, k| all.or(value(k).value()));
-        Jet([values, Interval::ENTIRE, Interval::ENTIRE])
+        Jet([values, Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE])
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -116,10 +116,10 @@ impl LawKind for SmoothStep {
         one_way(self, 0.5 * (self.start + self.end), from, to)
     }
 
-    fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
         let [from, to, start, end] = [self.from, self.to, self.start, self.end].map(Interval::constant);
         if !(self.start < self.end) {
-            return Jet([Interval::ENTIRE; 3]);
+            return Jet([Interval::ENTIRE; 4]);
         }
         in_pieces(over, &[self.start, self.end], |k, part| match k {
             0 => Jet::constant(from),

@@ -55,7 +55,7 @@ impl LawKind for ConstantSpeed {
         Stretch { value: Range::between(at(from), at(to)), rate: Range::exactly(self.speed) }
     }
 
-    fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
         // Smooth everywhere.
         self.at(Jet::time(over), None)
     }

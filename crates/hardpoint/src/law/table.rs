@@ -295,8 +295,8 @@ impl LawKind for Spline {
         over.unwrap_or(Stretch::UNBOUNDED)
     }
 
-    fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
-        let unbounded = Jet([Interval::ENTIRE; 3]);
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+        let unbounded = Jet([Interval::ENTIRE; 4]);
         let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
         // Segment k, repeated after a time.
         let part = |k: usize, from: f64, to: f64, shift: f64| {
@@ -305,7 +305,7 @@ impl LawKind for Spline {
                 (Interval { low, high } - Interval::constant(shift)) - Interval::constant(self.times[k]);
             self.curve(&self.segments[k], Jet::time(since))
         };
-        let mut all: Option<Jet<Interval, 3>> = None;
+        let mut all: Option<Jet<Interval, 4>> = None;
         let (mut shift, mut from) = (self.periods_before(over.low, false), over.low);
         if !self.is_periodic && !(self.reaches(over.low) && self.reaches(over.high)) {
             return unbounded;

@@ -107,11 +107,11 @@ impl LawKind for Trapezoid {
         one_way(self, 0.5 * (self.start + self.end), from, to)
     }
 
-    fn enclosure(&self, over: Interval) -> Jet<Interval, 3> {
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
         let [from, to, start, end, ramp] =
             [self.from, self.to, self.start, self.end, self.ramp].map(Interval::constant);
         if !self.has_room() {
-            return Jet([Interval::ENTIRE; 3]);
+            return Jet([Interval::ENTIRE; 4]);
         }
         // As in `at`.
         let speed = (to - from) / (end - start - ramp);

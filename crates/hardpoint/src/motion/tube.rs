@@ -14,12 +14,13 @@
 //! J(X) q. in -phi_t(X, T):    |q.| <= |Y phi_t| / (1 - k),    then    q. := -Y phi_t + (I - Y J(X)) q.
 //! ```
 //!
-//! and q.. likewise. No equation is written for this: residuals and poses are those of `kinematics.rs`, over intervals,
+//! and q.. and q... likewise. No equation is written for this: residuals and poses are those of `kinematics.rs`, over intervals,
 //! over duals of them (a column of J for each unknown), and over jets of them (phi_t, and the rates of all bodies). The
 //! coordinates of a ball are those of its correction in Newton's method, from its rotation at the middle of T.
 //!
-//! Bounds are of first order in the length of T; by the mean value theorem, `f(T) in f(t) + f.(T) (T - t)` with the
-//! narrow bounds at the middle t of T, their excess is of second order.
+//! The excess of these bounds is of first order in the length of T. By Taylor's theorem, `f(T) in f(t) + f.(t) (T - t)
+//! + f..(T) (T - t)^2 / 2` with the narrow bounds at the middle t of T, that of positions is of third order, and with
+//! the jerk, likewise, that of speeds and accelerations is of third and second.
 //!
 //! What is proved holds for the mechanism whose geometry is that of the solver, to the last bit, and whose laws are the
 //! formulas of their numbers. Rows that are redundant and not selected have no part in it.
@@ -27,9 +28,10 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
+use crate::law::TimeJet;
 use crate::linalg::{Factors, LARGEST_DENSE};
 use crate::model::{DriverId, JointId, Model};
-use crate::number::{Dual, Interval, Jet, Rates};
+use crate::number::{Dual, Interval, Jet};
 use crate::space::{Pose, Quat, Real, Vec3};
 use crate::topology::{BlockId, CoordinateId, Topology};
 
@@ -51,8 +53,12 @@ const LEAST_BOX: f64 = 1e-11;
 const LARGEST_BOX: f64 = 1.0;
 /// Largest `|I - Y J(X)|` for which bounds of rates are useful.
 const CONTRACTION: f64 = 0.9;
-/// Number of passes that narrow boxes and rates with each other.
+/// Number of passes of a linear system over its bounds.
 const PASSES: usize = 2;
+/// Number of passes that narrow boxes and rates with each other, at most.
+const MOST_PASSES: usize = 8;
+/// A pass that leaves more than this part of the width of the accelerations is the last one.
+const WORTHWHILE: f64 = 0.7;
 
 /// Reason why nothing is proved of a motion over an interval of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,8 +113,8 @@ impl TubeFailure {
 pub(crate) struct Enclosure {
     /// The interval of time.
     pub over: Interval,
-    /// Per body: bounds of its pose, of its rate and of its second rate. Rates are unbounded if those of a law are.
-    pub poses: Vec<Pose<Rates<Interval>>>,
+    /// Per body: bounds of its pose and of its first three rates. Rates are unbounded if those of a law are.
+    pub poses: Vec<Pose<TimeJet<Interval>>>,
     /// The time at which the coordinates of balls are zero.
     pub middle: f64,
     /// Per coordinate that begins a ball: its rotation at that time, nearly.
@@ -118,7 +124,7 @@ pub(crate) struct Enclosure {
     /// Per block: its residuals at the middle of its coordinates.
     residuals: Vec<Vec<Interval>>,
     /// Per coordinate: bounds with rates.
-    coordinates: Vec<Rates<Interval>>,
+    coordinates: Vec<TimeJet<Interval>>,
 }
 
 /// Computes enclosures of one mechanism.
@@ -126,13 +132,13 @@ pub(crate) struct TubeSolver {
     /// The same state over intervals, over duals of them, and over jets of them.
     values: State<Interval>,
     columns: State<Dual<Interval>>,
-    rates: State<Rates<Interval>>,
+    rates: State<TimeJet<Interval>>,
     parts: PlanGeometry<Interval>,
     parts_of_columns: PlanGeometry<Dual<Interval>>,
-    parts_of_rates: PlanGeometry<Rates<Interval>>,
+    parts_of_rates: PlanGeometry<TimeJet<Interval>>,
     drivers: Vec<[Interval; 3]>,
     drivers_of_columns: Vec<[Dual<Interval>; 3]>,
-    drivers_of_rates: Vec<[Rates<Interval>; 3]>,
+    drivers_of_rates: Vec<[TimeJet<Interval>; 3]>,
 }
 
 /// Preconditioned equations of a block over a box.
@@ -199,7 +205,7 @@ impl TubeSolver {
             parts_of_rates: parts.spread(),
             drivers: vec![[Interval::zero(); 3]; drivers],
             drivers_of_columns: vec![[Dual::zero(); 3]; drivers],
-            drivers_of_rates: vec![[Rates::zero(); 3]; drivers],
+            drivers_of_rates: vec![[TimeJet::zero(); 3]; drivers],
         }
     }
 
@@ -208,7 +214,7 @@ impl TubeSolver {
     pub fn enclose(
         &mut self,
         topology: &Topology,
-        laws: impl Fn(usize) -> Rates<Interval>,
+        laws: impl Fn(usize) -> TimeJet<Interval>,
         over: Interval,
         at: &AcceptedPosition,
         narrow: Option<&Enclosure>,
@@ -222,8 +228,8 @@ impl TubeSolver {
             if !law.value().is_bounded() {
                 return Err(TubeFailure::Law { driver: DriverId(d) });
             }
-            self.drivers[d] = law.0;
-            self.drivers_of_columns[d] = law.0.map(Dual::constant);
+            self.drivers[d] = [law.value(), zero, zero];
+            self.drivers_of_columns[d] = self.drivers[d].map(Dual::constant);
             self.drivers_of_rates[d] = [law, Jet::constant(zero), Jet::constant(zero)];
         }
         for r in topology.coupler_terms() {
@@ -241,7 +247,7 @@ impl TubeSolver {
             centres,
             unique: vec![zero; o],
             residuals: Vec::new(),
-            coordinates: vec![Rates::zero(); o],
+            coordinates: vec![TimeJet::zero(); o],
         };
         for (c, d) in topology.driven_coordinates() {
             let law = self.drivers_of_rates[d.0][0];
@@ -333,7 +339,7 @@ impl TubeSolver {
             if away.iter().zip(&image).all(|(x, k)| x.strictly_encloses(*k)) {
                 for (k, c) in unknowns.iter().enumerate() {
                     found.unique[c.0] = boxed[k];
-                    found.coordinates[c.0] = Jet([points[k] + image[k], Interval::ENTIRE, Interval::ENTIRE]);
+                    found.coordinates[c.0] = Jet([points[k] + image[k], Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE]);
                 }
                 contraction = Some(step);
                 break;
@@ -349,7 +355,8 @@ impl TubeSolver {
         let contraction = contraction.filter(|step| step.norm() <= CONTRACTION).ok_or(failed)?;
         found.residuals.push(residual);
         let mut inverse = contraction.inverse;
-        for pass in 0..=PASSES {
+        let mut width = f64::INFINITY;
+        for pass in 0..MOST_PASSES {
             let boxed: Vec<Interval> = unknowns.iter().map(|c| found.coordinates[c.0].value()).collect();
             let jacobian = self.jacobian(topology, b, &boxed, &found.centres);
             if pass == 0 {
@@ -359,7 +366,7 @@ impl TubeSolver {
             if !(step.norm() <= CONTRACTION) {
                 return Err(failed);
             }
-            for order in 1..3 {
+            for order in 1..4 {
                 // The rates of the rows as if the rate of this order were zero.
                 let demand = self.rates_of_rows(topology, b, order, found);
                 let known: Vec<Interval> = unknowns.iter().map(|c| found.coordinates[c.0].0[order]).collect();
@@ -371,11 +378,17 @@ impl TubeSolver {
             let Some(narrow) = narrow else { break };
             for c in unknowns {
                 let x = &mut found.coordinates[c.0];
-                *x = narrowed(*x, narrow.coordinates[c.0], since);
+                *x = x.narrowed(narrow.coordinates[c.0], since);
             }
+            let widths = unknowns.iter().map(|c| found.coordinates[c.0].dd().width() / unit(c));
+            let now = widths.fold(0.0, f64::max);
+            if !(now < WORTHWHILE * width) {
+                break;
+            }
+            width = now;
         }
         // The bodies of the block, for those that depend on it, and as results.
-        let all: Vec<Rates<Interval>> = unknowns.iter().map(|c| found.coordinates[c.0]).collect();
+        let all: Vec<TimeJet<Interval>> = unknowns.iter().map(|c| found.coordinates[c.0]).collect();
         let links = topology[b].link_ids();
         set(&mut self.values, topology, b, |k| all[k].value(), &found.centres);
         self.values.place(topology, &self.parts, links.clone());
@@ -514,27 +527,12 @@ fn rows<T: Real>(
     topology[b].selected.iter().map(|&r| state.residual_of(topology, parts, drivers, r)).collect()
 }
 
-/// Bounds of a quantity with rates over an interval of time that contains the instant of the narrow bounds, `since`
-/// after it: `f in f_0 + f. (t - t_0)` and `f. in f._0 + f.. (t - t_0)`.
-fn narrowed(x: Rates<Interval>, narrow: Rates<Interval>, since: Interval) -> Rates<Interval> {
-    let Jet([mut f, mut d, dd]) = x;
-    let taylor = |at: Interval, rate: Interval| at + rate * since;
-    // Where a rate is not known, nothing follows from it.
-    if dd.is_bounded() && narrow.d().is_bounded() {
-        d = d.and(taylor(narrow.d(), dd));
-    }
-    if d.is_bounded() {
-        f = f.and(taylor(narrow.value(), d));
-    }
-    Jet([f, d, dd])
-}
-
 fn narrowed_vector(
-    x: Vec3<Rates<Interval>>,
-    narrow: Vec3<Rates<Interval>>,
+    x: Vec3<TimeJet<Interval>>,
+    narrow: Vec3<TimeJet<Interval>>,
     since: Interval,
-) -> Vec3<Rates<Interval>> {
-    Vec3::new(narrowed(x.x, narrow.x, since), narrowed(x.y, narrow.y, since), narrowed(x.z, narrow.z, since))
+) -> Vec3<TimeJet<Interval>> {
+    Vec3::new(x.x.narrowed(narrow.x, since), x.y.narrowed(narrow.y, since), x.z.narrowed(narrow.z, since))
 }
 
 /// True if the unknowns of a narrow enclosure are in the box in which those of another one are unique.
@@ -627,20 +625,20 @@ impl<'m> ProvenMotion<'m> {
         self.computed
     }
 
-    /// Bounds of the pose of every body, and of its first two rates, over the part of the motion between two times, which
+    /// Bounds of the pose of every body, and of its first three rates, over the part of the motion between two times, which
     /// are output times or between two that follow each other.
     ///
     /// # Errors
     /// The reason why nothing is proved over this interval. A shorter one may be, if [`TubeFailure::may_be_halved`].
-    pub fn over(&mut self, from: f64, to: f64) -> Result<Vec<Pose<Rates<Interval>>>, TubeFailure> {
+    pub fn over(&mut self, from: f64, to: f64) -> Result<Vec<Pose<TimeJet<Interval>>>, TubeFailure> {
         self.slab(from, to).map(|slab| slab.enclosure.poses.clone())
     }
 
-    /// Bounds of the pose of every body at a time, and of its first two rates.
+    /// Bounds of the pose of every body at a time, and of its first three rates.
     ///
     /// # Errors
     /// The reason why nothing is proved at this time.
-    pub fn at(&mut self, t: f64) -> Result<Vec<Pose<Rates<Interval>>>, TubeFailure> {
+    pub fn at(&mut self, t: f64) -> Result<Vec<Pose<TimeJet<Interval>>>, TubeFailure> {
         let plan = self.plan_after(t);
         self.instant(plan, t).map(|instant| instant.enclosure.poses.clone())
     }

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::{Function, Real};
+use super::{Function, Jet, Real};
 
 /// All numbers from `low` to `high`.
 ///
@@ -276,6 +276,24 @@ impl Interval {
     }
 }
 
+impl Jet<Interval, 4> {
+    /// These bounds of a quantity and its rates over an interval of time, with those that follow from narrow ones at a
+    /// time within it, since when the time is `since`: by Taylor's theorem
+    ///
+    /// `f in f_0 + f._0 s + f.. s^2 / 2`, `f. in f._0 + f.._0 s + f... s^2 / 2`, `f.. in f.._0 + f... s`.
+    #[must_use]
+    pub fn narrowed(self, narrow: Self, since: Interval) -> Self {
+        let (Jet([mut f, mut d, mut dd, ddd]), Jet([f0, d0, dd0, _])) = (self, narrow);
+        let half_square = since.square() * 0.5;
+        // Where a rate is not known, nothing follows from it.
+        let and = |x: Interval, y: Interval| if y.is_bounded() { x.and(y) } else { x };
+        dd = and(dd, dd0 + ddd * since);
+        d = and(and(d, d0 + dd0 * since + ddd * half_square), d0 + dd * since);
+        f = and(and(f, f0 + d0 * since + dd * half_square), f0 + d * since);
+        Jet([f, d, dd, ddd])
+    }
+}
+
 /// A number certainly below the exact value that the library rounded to `x`.
 #[inline(always)]
 fn below(x: f64) -> f64 {
@@ -539,7 +557,7 @@ impl Real for Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::{Dual, Jet};
+    use crate::number::Dual;
 
     /// Deterministic generator of numbers in (-1, 1).
     fn numbers(seed: u64) -> impl FnMut() -> f64 {

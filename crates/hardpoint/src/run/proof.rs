@@ -8,9 +8,10 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::clearance::{
-    Direction, EnclosedCore, PlacedShapes, lower_bound, nearest, separations,
+    Direction, EnclosedCore, PlacedShapes, direction_of, lower_bound, nearest, separations,
 };
 use crate::design::BodyFixed;
+use crate::law::TimeJet;
 use crate::model::{Model, ShapeId, ShapeKind};
 use crate::motion::parts::PlanGeometry;
 use crate::motion::stepper::Stepper;
@@ -120,8 +121,10 @@ pub enum ProofFailure {
 pub struct ClearanceProver<'a> {
     model: &'a Model,
     motion: ProvenMotion<'a>,
-    fixed: BodyFixed<f64>,
-    constants: BodyFixed<Rates<Interval>>,
+    /// Size of the mechanism, m.
+    size: f64,
+    moving: BodyFixed<Rates>,
+    constants: BodyFixed<TimeJet<Interval>>,
     /// Reason why the motion ends before its last output time, if it does: proofs are for the part before.
     pub stop: Option<Stop>,
 }
@@ -133,7 +136,8 @@ impl Analysis<'_> {
         let model = self.model();
         let fixed: BodyFixed<f64> = self.design_map().fixed(&model.whole(design));
         let constants = fixed.map(|x| Jet::constant(Interval::constant(x)));
-        Some(ClearanceProver { model, motion, fixed, constants, stop })
+        let moving = fixed.map(Jet::constant);
+        Some(ClearanceProver { model, motion, size: fixed.size, moving, constants, stop })
     }
 }
 
@@ -141,8 +145,10 @@ impl Analysis<'_> {
 struct Place {
     instant: Rc<Instant>,
     cores: [EnclosedCore; 2],
-    /// Unit vector along the nearest points of the cores, and their distance, for plain numbers.
-    direction: Option<Vec3>,
+    /// Unit vector along the nearest points of the cores, with its first two rates, for plain numbers; `None` where they
+    /// meet.
+    direction: Option<[Vec3; 3]>,
+    /// Distance of the cores, for plain numbers.
     distance: f64,
     of_features: Option<Direction>,
 }
@@ -167,8 +173,9 @@ impl Part<'_> {
         let since = over - anchor.instant.enclosure.over;
         let (mut least, mut convex) = (f64::INFINITY, true);
         for (k, gap) in all.iter().enumerate() {
+            let gap = gap.narrowed(inside[k], since);
             let ends = [start[k].value(), end[k].value()];
-            let bound = lower_bound(*gap, ends, (inside[k], since), self.length);
+            let bound = lower_bound(gap, ends, (inside[k], since), self.length);
             convex &= bound >= claim || gap.dd().low > 0.0;
             least = least.min(bound);
         }
@@ -253,7 +260,7 @@ impl PairProof<'_, '_> {
     /// Sum of the radii around both cores.
     fn rounds(&self) -> Interval {
         let ClearanceProver { model, constants, .. } = &*self.prover;
-        let poses: &[Pose<Rates<Interval>>] = &[];
+        let poses: &[Pose<TimeJet<Interval>>] = &[];
         PlacedShapes { model, fixed: constants, poses }.rounds(self.shapes).value()
     }
 
@@ -269,8 +276,8 @@ impl PairProof<'_, '_> {
             return place.clone();
         }
         let cores = self.cores(&instant.enclosure);
-        let middle = |x: Rates<Interval>| x.value().middle();
-        let plain: Vec<Pose> = instant
+        let middle = |x: TimeJet<Interval>| Jet([x.0[0], x.0[1], x.0[2]].map(Interval::middle));
+        let plain: Vec<Pose<Rates>> = instant
             .enclosure
             .poses
             .iter()
@@ -279,17 +286,17 @@ impl PairProof<'_, '_> {
                 r: pose.r.map(middle),
             })
             .collect();
-        let ClearanceProver { model, fixed, .. } = &*self.prover;
-        let placed = PlacedShapes { model, fixed, poses: &plain };
-        let [a, b] = self.shapes.map(|shape| placed.core(shape));
-        let near = nearest(&a, &b);
-        let [p, q] = near.points;
+        let ClearanceProver { model, moving, .. } = &*self.prover;
+        let placed = PlacedShapes { model, fixed: moving, poses: &plain };
+        let cores_at = self.shapes.map(|shape| placed.core(shape));
+        let values = cores_at.each_ref().map(|core| core.value());
+        let near = nearest(&values[0], &values[1]);
         let place = Rc::new(Place {
             instant: instant.clone(),
             cores,
-            direction: (q - p).unit(),
+            direction: direction_of(cores_at.each_ref(), &near),
             distance: near.distance,
-            of_features: Direction::of_features([&a, &b], &near),
+            of_features: Direction::of_features(values.each_ref(), &near),
         });
         self.places.insert(Rc::as_ptr(instant), place.clone());
         place
@@ -300,7 +307,7 @@ impl PairProof<'_, '_> {
         let slab = self.prover.motion.slab(from, to).map_err(ProofFailure::Motion)?;
         let places = slab.instants.each_ref().map(|instant| self.place(instant));
         for place in &places {
-            if place.distance < self.claim - BELOW * self.prover.fixed.size {
+            if place.distance < self.claim - BELOW * self.prover.size {
                 let distance = place.distance - self.rounds().middle();
                 return Err(ProofFailure::Nearer { time: place.instant.time(), distance });
             }
@@ -317,21 +324,20 @@ impl PairProof<'_, '_> {
         if best >= self.claim {
             return Ok(best);
         }
-        if let Some(n) = middle.direction {
+        if let Some([n, ..]) = middle.direction {
             let found = part.bound(Direction::fixed(n), middle, self.claim);
             best = self.better(best, found, false);
         }
         if best >= self.claim {
             return Ok(best);
         }
-        if let (Some(n), Some(m)) = (start.direction, end.direction) {
+        if let (Some(at_start), Some(at_end)) = (start.direction, end.direction) {
             // Along the nearest points at both ends, so that nothing is lost where the distance falls or rises.
-            let rate = (m - n) * (1.0 / (to - from));
-            let direction = Direction::Turning { start: n, rate, time: from };
+            let direction = Direction::between([at_start, at_end], [from, to]);
             let found = part.bound(direction, middle, self.claim);
             best = self.better(best, found, false);
             if best < self.claim && found.is_some_and(|(_, convex)| convex) {
-                let found = self.least_of_convex(&part, rate);
+                let found = self.least_of_convex(&part);
                 best = self.better(best, found, false);
             }
         }
@@ -355,13 +361,13 @@ impl PairProof<'_, '_> {
     }
 
     /// Bound by the parabola at the time at which a convex distance is stationary.
-    fn least_of_convex(&mut self, part: &Part<'_>, rate: Vec3) -> Option<(f64, bool)> {
+    fn least_of_convex(&mut self, part: &Part<'_>) -> Option<(f64, bool)> {
         let Interval { low: from, high: to } = part.slab.enclosure.over;
         let mut place = part.places[1].clone();
         for _ in 0..STEPS {
-            let time = place.instant.time();
             // Along the nearest points there, so that nothing is lost.
-            let direction = Direction::Turning { start: place.direction?, rate, time };
+            let time = place.instant.time();
+            let direction = Direction::through(place.direction?, time);
             let gaps = separations(place.cores.each_ref(), direction, place.instant.enclosure.over)?;
             let nearest = gaps.iter().min_by(|a, b| a.value().low.total_cmp(&b.value().low))?;
             let step = -nearest.d().middle() / nearest.dd().middle();
