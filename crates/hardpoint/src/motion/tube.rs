@@ -32,7 +32,7 @@ use crate::law::TimeJet;
 use crate::linalg::{Factors, LARGEST_DENSE};
 use crate::model::{DriverId, JointId, Model};
 use crate::number::{Dual, Interval, Jet};
-use crate::space::{Pose, Quat, Real, Vec3};
+use crate::space::{Mat3, Pose, Quat, Real, Vec3};
 use crate::topology::{BlockId, CoordinateId, Topology};
 
 use crate::joint::Freedom;
@@ -53,6 +53,9 @@ const LEAST_BOX: f64 = 1e-11;
 const LARGEST_BOX: f64 = 1.0;
 /// Largest `|I - Y J(X)|` for which bounds of rates are useful.
 const CONTRACTION: f64 = 0.9;
+/// Number of times that an interval is halved, and the bounds of its parts are joined, where it is too long for one box:
+/// eight parts cost as much as eight intervals, but their bounds serve as those of one.
+const MOST_HALVINGS: usize = 3;
 /// Number of passes of a linear system over its bounds.
 const PASSES: usize = 2;
 /// Number of passes that narrow boxes and rates with each other, at most.
@@ -596,8 +599,10 @@ impl Instant {
 
 /// Part of a motion.
 pub(crate) struct Slab {
-    /// Bounds over the whole part.
-    pub enclosure: Enclosure,
+    /// The interval of time.
+    pub over: Interval,
+    /// Per body: bounds over the whole part.
+    pub poses: Vec<Pose<TimeJet<Interval>>>,
     /// Its start, middle and end.
     pub instants: [Rc<Instant>; 3],
 }
@@ -631,7 +636,7 @@ impl<'m> ProvenMotion<'m> {
     /// # Errors
     /// The reason why nothing is proved over this interval. A shorter one may be, if [`TubeFailure::may_be_halved`].
     pub fn over(&mut self, from: f64, to: f64) -> Result<Vec<Pose<TimeJet<Interval>>>, TubeFailure> {
-        self.slab(from, to).map(|slab| slab.enclosure.poses.clone())
+        self.slab(from, to).map(|slab| slab.poses.clone())
     }
 
     /// Bounds of the pose of every body at a time, and of its first three rates.
@@ -715,12 +720,23 @@ impl<'m> ProvenMotion<'m> {
 
     /// Bounds over the part of the motion between two times.
     pub(crate) fn slab(&mut self, from: f64, to: f64) -> Result<Rc<Slab>, TubeFailure> {
+        self.slab_in_parts(from, to, MOST_HALVINGS)
+    }
+
+    /// Bounds over the part of the motion between two times; if the box does not contract, those of its halves together.
+    fn slab_in_parts(&mut self, from: f64, to: f64, halvings: usize) -> Result<Rc<Slab>, TubeFailure> {
         let key = [from, to].map(f64::to_bits);
         if let Some(known) = self.slabs.get(&key) {
             return known.clone();
         }
-        let found = self.solve_slab(from, to);
-        self.slabs.insert(key, found.clone());
+        let found = match self.solve_slab(from, to) {
+            Err(TubeFailure::NoContraction { .. }) if halvings > 0 => self.join_halves(from, to, halvings - 1),
+            found => found,
+        };
+        // With more halvings, a failure may be none.
+        if found.is_ok() || halvings == MOST_HALVINGS {
+            self.slabs.insert(key, found.clone());
+        }
         found
     }
 
@@ -738,6 +754,37 @@ impl<'m> ProvenMotion<'m> {
                 return Err(TubeFailure::OtherBranch { time });
             }
         }
-        Ok(Rc::new(Slab { enclosure, instants: [start, middle, end] }))
+        Ok(Rc::new(Slab { poses: enclosure.poses, over, instants: [start, middle, end] }))
+    }
+
+    /// Bounds that contain those of both halves.
+    fn join_halves(&mut self, from: f64, to: f64, halvings: usize) -> Result<Rc<Slab>, TubeFailure> {
+        let over = Interval::between(from, to);
+        let time = over.middle();
+        let first = self.slab_in_parts(from, time, halvings)?;
+        let second = self.slab_in_parts(time, to, halvings)?;
+        let [start, _, middle] = first.instants.clone();
+        let end = second.instants[2].clone();
+        // A rate that jumps from one half to the other has no bounds over both.
+        let laws = (0..self.mechanism.model.drivers.len()).map(|d| self.mechanism.parts.law_of(d).enclosure(over));
+        let mut is_bounded = [true; 4];
+        for law in laws {
+            for (known, rate) in is_bounded.iter_mut().zip(law.0) {
+                *known &= rate.is_bounded();
+            }
+        }
+        let since = over - Interval::constant(time);
+        let either = |a: TimeJet<Interval>, b: TimeJet<Interval>, narrow: TimeJet<Interval>| {
+            let hull = |n: usize| if is_bounded[n] { a.0[n].or(b.0[n]) } else { Interval::ENTIRE };
+            Jet(std::array::from_fn(hull)).narrowed(narrow, since)
+        };
+        let vector = |a: Vec3<TimeJet<Interval>>, b: Vec3<TimeJet<Interval>>, c: Vec3<TimeJet<Interval>>| {
+            Vec3::new(either(a.x, b.x, c.x), either(a.y, b.y, c.y), either(a.z, b.z, c.z))
+        };
+        let poses = first.poses.iter().zip(&second.poses).zip(&middle.enclosure.poses).map(|((a, b), c)| Pose {
+            rot: Mat3 { cols: [0, 1, 2].map(|k| vector(a.rot.cols[k], b.rot.cols[k], c.rot.cols[k])) },
+            r: vector(a.r, b.r, c.r),
+        });
+        Ok(Rc::new(Slab { poses: poses.collect(), over, instants: [start, middle, end] }))
     }
 }

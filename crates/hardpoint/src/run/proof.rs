@@ -15,7 +15,7 @@ use crate::law::TimeJet;
 use crate::model::{Model, ShapeId, ShapeKind};
 use crate::motion::parts::PlanGeometry;
 use crate::motion::stepper::Stepper;
-use crate::motion::tube::{Enclosure, Instant, OutputPosition, Slab};
+use crate::motion::tube::{Instant, OutputPosition, Slab};
 use crate::motion::{ProvenMotion, Stop, TubeFailure, advance};
 use crate::number::{Interval, Jet, Rates};
 use crate::space::{Mat3, Pose, Real, Vec3};
@@ -166,7 +166,7 @@ impl Part<'_> {
     /// Bound by a direction, with a time inside at which the parabola is anchored. Also: true if the functions that are
     /// below the claim are convex.
     fn bound(&self, direction: Direction, anchor: &Place, claim: f64) -> Option<(f64, bool)> {
-        let over = self.slab.enclosure.over;
+        let over = self.slab.over;
         let all = separations(self.cores.each_ref(), direction, over)?;
         let at = |place: &Place| separations(place.cores.each_ref(), direction, place.instant.enclosure.over);
         let (start, inside, end) = (at(&self.places[0])?, at(anchor)?, at(&self.places[2])?);
@@ -264,9 +264,9 @@ impl PairProof<'_, '_> {
         PlacedShapes { model, fixed: constants, poses }.rounds(self.shapes).value()
     }
 
-    fn cores(&self, enclosure: &Enclosure) -> [EnclosedCore; 2] {
+    fn cores(&self, poses: &[Pose<TimeJet<Interval>>]) -> [EnclosedCore; 2] {
         let ClearanceProver { model, constants, .. } = &*self.prover;
-        let placed = PlacedShapes { model, fixed: constants, poses: &enclosure.poses };
+        let placed = PlacedShapes { model, fixed: constants, poses };
         self.shapes.map(|shape| placed.core(shape))
     }
 
@@ -275,7 +275,7 @@ impl PairProof<'_, '_> {
         if let Some(place) = self.places.get(&Rc::as_ptr(instant)) {
             return place.clone();
         }
-        let cores = self.cores(&instant.enclosure);
+        let cores = self.cores(&instant.enclosure.poses);
         let middle = |x: TimeJet<Interval>| Jet([x.0[0], x.0[1], x.0[2]].map(Interval::middle));
         let plain: Vec<Pose<Rates>> = instant
             .enclosure
@@ -313,7 +313,7 @@ impl PairProof<'_, '_> {
             }
         }
         let length = Interval::constant(to) - Interval::constant(from);
-        let part = Part { cores: self.cores(&slab.enclosure), slab: &slab, places, length };
+        let part = Part { cores: self.cores(&slab.poses), slab: &slab, places, length };
         let [start, middle, end] = part.places.each_ref();
         let mut best = f64::NEG_INFINITY;
         if let Some(direction) = middle.of_features {
@@ -362,7 +362,7 @@ impl PairProof<'_, '_> {
 
     /// Bound by the parabola at the time at which a convex distance is stationary.
     fn least_of_convex(&mut self, part: &Part<'_>) -> Option<(f64, bool)> {
-        let Interval { low: from, high: to } = part.slab.enclosure.over;
+        let Interval { low: from, high: to } = part.slab.over;
         let mut place = part.places[1].clone();
         for _ in 0..STEPS {
             // Along the nearest points there, so that nothing is lost.
