@@ -1,8 +1,8 @@
 //! Proofs that clearances are kept between the output times.
 
 use hardpoint::Analysis;
-use hardpoint::model::Model;
-use hardpoint::run::ClearanceProof;
+use hardpoint::model::{Model, ShapeId};
+use hardpoint::run::{ClearanceProof, ClearanceProver};
 use hardpoint_file::parse;
 
 /// Allowance for round-off, as a fraction of the mechanism's size.
@@ -19,11 +19,69 @@ fn the_least_distances_of_the_knee_are_proved_and_greater_ones_are_not() {
     let found = analysis.clearances(&[]);
     let mut prover = analysis.clearance_prover(&[]).unwrap();
     for pair in &found.pairs {
-        let least = pair.least().unwrap().at.distance[0];
-        let proof = prover.prove(pair.shapes, least - ROUND_OFF * model.size());
-        println!("{:?} {least} {proof:?} {}", pair.shapes, prover.enclosures());
-        let proof = prover.prove(pair.shapes, least + 1e-9);
-        println!("{:?} {least} {proof:?} {}", pair.shapes, prover.enclosures());
+        assert_exact(&mut prover, pair.shapes, pair.least().unwrap().at.distance[0], model.size(), 60);
+    }
+    // The bounds of the motion are computed once.
+    assert!(prover.enclosures() < 100, "{}", prover.enclosures());
+}
+
+/// The least distance, m, is proved but for round-off with at most this number of bounds, and one that is 1e-6 mm greater
+/// is not.
+fn assert_exact(prover: &mut ClearanceProver<'_>, shapes: [ShapeId; 2], least: f64, size: f64, most: usize) {
+    let proof = prover.prove(shapes, least - ROUND_OFF * size);
+    let ClearanceProof::Proved { slabs, bounds } = proof else { panic!("{shapes:?}, {least}: {proof:?}") };
+    assert!(0 < slabs && slabs <= bounds && bounds <= most, "{shapes:?}: {proof:?}");
+    let refused = prover.prove(shapes, least + 1e-9);
+    assert!(matches!(refused, ClearanceProof::NotProved { .. }), "{shapes:?}, {least}: {refused:?}");
+}
+
+/// Shapes on the bodies of two suspensions: capsules, spheres, cylinders, planes.
+const SUSPENSIONS: [(&str, &str); 2] = [
+    (
+        include_str!("../../../../models/double_wishbone.toml"),
+        r#"
+[shapes]
+arm = { body = "uca", capsule = ["uca_rear", "upper_ball"], radius = 12 }
+lower = { body = "lca", capsule = ["lca_front", "lower_ball"], radius = 12 }
+end = { body = "knuckle", sphere = "tie_rod_outer", radius = 15 }
+drum = { body = "ground", cylinder = [[-60, 380, 60], [-60, 420, 60]], radius = 30, round = 2 }
+post = { body = "ground", capsule = [[-40, 430, 380], [-40, 470, 390]], radius = 10 }
+road = { body = "ground", plane = [0, 0, 0], normal = "z" }
+[clearances.upper]
+between = [["arm"], ["drum", "post"]]
+[clearances.others]
+between = [["lower", "end"], ["drum", "post", "road"]]
+"#,
+    ),
+    (
+        include_str!("../../../../models/macpherson.toml"),
+        r#"
+[shapes]
+arm = { body = "lca", capsule = ["lca_front", "ball_joint"], radius = 15 }
+rod_end = { body = "knuckle", sphere = "tie_rod_outer", radius = 12 }
+tube = { body = "knuckle", capsule = ["strut_lower", "ball_joint"], radius = 20 }
+beam = { body = "ground", capsule = [[100, 420, 60], [200, 500, 60]], radius = 20 }
+drum = { body = "ground", cylinder = [[-120, 560, 150], [-120, 600, 150]], radius = 40, round = 3 }
+floor = { body = "ground", plane = [0, 0, -260], normal = "z" }
+[clearances.all]
+between = [["arm", "rod_end", "tube"], ["beam", "drum", "floor"]]
+"#,
+    ),
+];
+
+#[test]
+fn clearances_of_suspensions_are_proved() {
+    for (text, shapes) in SUSPENSIONS {
+        let model = model_of(&format!("{text}\n{shapes}"));
+        let analysis = Analysis::new(&model).unwrap();
+        let found = analysis.clearances(&[]);
+        assert!(found.pairs.len() >= 8);
+        let mut prover = analysis.clearance_prover(&[]).unwrap();
+        for pair in &found.pairs {
+            let least = pair.least().unwrap().at.distance[0];
+            // Little more than one bound for each output step.
+            assert_exact(&mut prover, pair.shapes, least, model.size(), model.times.len() + 20);
+        }
     }
 }
 
@@ -115,6 +173,9 @@ fn two_hundred_four_bars_are_proved_and_greater_claims_are_refused() {
         assert!(matches!(refused, ClearanceProof::NotProved { .. }), "{refused:?}");
     }
     counts.sort_unstable();
-    println!("{tried} tried; bounds {} in the median, {} at 90 %, {} at most", counts[100], counts[180], counts[199]);
+    println!(
+        "{tried} tried; bounds {} in the median, {} at 90 %, {} at most",
+        counts[100], counts[180], counts[199]
+    );
     assert!(counts[199] <= 200, "{counts:?}");
 }

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use hardpoint::law::TimeJet;
 use hardpoint::model::Model;
 use hardpoint::motion::{BodyState, TubeFailure};
-use hardpoint::law::TimeJet;
 use hardpoint::number::Interval;
 use hardpoint::space::{Pose, Vec3};
 use hardpoint::topology::Formulation;

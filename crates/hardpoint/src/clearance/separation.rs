@@ -302,7 +302,8 @@ mod tests {
                 // At the minimum of a convex function nothing is left.
                 if name == "convex" && from < 0.0 {
                     let inside = (with_rates(f(0.0)), Interval::between(from, to));
-                    let bound = lower_bound(over, ends, inside, Interval::constant(to) - Interval::constant(from));
+                    let bound =
+                        lower_bound(over, ends, inside, Interval::constant(to) - Interval::constant(from));
                     assert!(bound >= -1e-300 && bound <= 0.0, "{bound}");
                 }
             }

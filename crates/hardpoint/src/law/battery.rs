@@ -314,7 +314,8 @@ fn rates_are_unbounded_where_the_speed_jumps_inside_and_bounded_up_to_there() {
     for (law, kink) in kinked() {
         let cuts = law.cuts(0.1, 2.0);
         assert!(cuts.iter().any(|cut| (cut - kink).abs() < 1e-9), "{law}: {cuts:?}");
-        let [value, rate, second, _] = law.enclosure(Interval::between(kink - 1e-3, kink + 1e-3)).derivatives();
+        let [value, rate, second, _] =
+            law.enclosure(Interval::between(kink - 1e-3, kink + 1e-3)).derivatives();
         assert!(value.width() < 0.02 && !rate.is_bounded() && !second.is_bounded(), "{law}");
         let [before, after] = [cuts[0], cuts[cuts.len() - 1]];
         for over in [Interval::between(before - 1e-3, before), Interval::between(after, after + 1e-3)] {

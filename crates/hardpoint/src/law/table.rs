@@ -307,7 +307,7 @@ impl LawKind for Spline {
         };
         let mut all: Option<Jet<Interval, 4>> = None;
         let (mut shift, mut from) = (self.periods_before(over.low, false), over.low);
-        if !self.is_periodic && !(self.reaches(over.low) && self.reaches(over.high)) {
+        if !(self.is_periodic || self.reaches(over.low) && self.reaches(over.high)) {
             return unbounded;
         }
         loop {

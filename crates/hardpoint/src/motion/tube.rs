@@ -18,9 +18,9 @@
 //! over duals of them (a column of J for each unknown), and over jets of them (phi_t, and the rates of all bodies). The
 //! coordinates of a ball are those of its correction in Newton's method, from its rotation at the middle of T.
 //!
-//! The excess of these bounds is of first order in the length of T. By Taylor's theorem, `f(T) in f(t) + f.(t) (T - t)
-//! + f..(T) (T - t)^2 / 2` with the narrow bounds at the middle t of T, that of positions is of third order, and with
-//! the jerk, likewise, that of speeds and accelerations is of third and second.
+//! The excess of these bounds is of first order in the length of T. By Taylor's theorem,
+//! `f(T) in f(t) + f.(t) (T - t) + f..(T) (T - t)^2 / 2` with the narrow bounds at the middle t of T: that of positions
+//! is then of third order. With the jerk, likewise, that of speeds is of third and that of accelerations of second.
 //!
 //! What is proved holds for the mechanism whose geometry is that of the solver, to the last bit, and whose laws are the
 //! formulas of their numbers. Rows that are redundant and not selected have no part in it.
@@ -342,7 +342,8 @@ impl TubeSolver {
             if away.iter().zip(&image).all(|(x, k)| x.strictly_encloses(*k)) {
                 for (k, c) in unknowns.iter().enumerate() {
                     found.unique[c.0] = boxed[k];
-                    found.coordinates[c.0] = Jet([points[k] + image[k], Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE]);
+                    found.coordinates[c.0] =
+                        Jet([points[k] + image[k], Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE]);
                 }
                 contraction = Some(step);
                 break;
@@ -730,7 +731,9 @@ impl<'m> ProvenMotion<'m> {
             return known.clone();
         }
         let found = match self.solve_slab(from, to) {
-            Err(TubeFailure::NoContraction { .. }) if halvings > 0 => self.join_halves(from, to, halvings - 1),
+            Err(TubeFailure::NoContraction { .. }) if halvings > 0 => {
+                self.join_halves(from, to, halvings - 1)
+            }
             found => found,
         };
         // With more halvings, a failure may be none.
@@ -766,7 +769,8 @@ impl<'m> ProvenMotion<'m> {
         let [start, _, middle] = first.instants.clone();
         let end = second.instants[2].clone();
         // A rate that jumps from one half to the other has no bounds over both.
-        let laws = (0..self.mechanism.model.drivers.len()).map(|d| self.mechanism.parts.law_of(d).enclosure(over));
+        let laws =
+            (0..self.mechanism.model.drivers.len()).map(|d| self.mechanism.parts.law_of(d).enclosure(over));
         let mut is_bounded = [true; 4];
         for law in laws {
             for (known, rate) in is_bounded.iter_mut().zip(law.0) {
@@ -781,10 +785,11 @@ impl<'m> ProvenMotion<'m> {
         let vector = |a: Vec3<TimeJet<Interval>>, b: Vec3<TimeJet<Interval>>, c: Vec3<TimeJet<Interval>>| {
             Vec3::new(either(a.x, b.x, c.x), either(a.y, b.y, c.y), either(a.z, b.z, c.z))
         };
-        let poses = first.poses.iter().zip(&second.poses).zip(&middle.enclosure.poses).map(|((a, b), c)| Pose {
-            rot: Mat3 { cols: [0, 1, 2].map(|k| vector(a.rot.cols[k], b.rot.cols[k], c.rot.cols[k])) },
-            r: vector(a.r, b.r, c.r),
-        });
+        let poses =
+            first.poses.iter().zip(&second.poses).zip(&middle.enclosure.poses).map(|((a, b), c)| Pose {
+                rot: Mat3 { cols: [0, 1, 2].map(|k| vector(a.rot.cols[k], b.rot.cols[k], c.rot.cols[k])) },
+                r: vector(a.r, b.r, c.r),
+            });
         Ok(Rc::new(Slab { poses: poses.collect(), over, instants: [start, middle, end] }))
     }
 }

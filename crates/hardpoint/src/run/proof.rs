@@ -202,7 +202,12 @@ impl<'a> ClearanceProver<'a> {
     }
 
     /// Proves that two shapes are never nearer than the claim, m, between two times.
-    pub fn prove_between(&mut self, shapes: [ShapeId; 2], claim: f64, [start, end]: [f64; 2]) -> ClearanceProof {
+    pub fn prove_between(
+        &mut self,
+        shapes: [ShapeId; 2],
+        claim: f64,
+        [start, end]: [f64; 2],
+    ) -> ClearanceProof {
         let mut ends: Vec<f64> = self.motion.times().filter(|t| start < *t && *t < end).collect();
         ends.extend(self.motion.cuts(start, end));
         ends.extend([start, end]);
@@ -236,7 +241,8 @@ impl<'a> ClearanceProver<'a> {
             };
             if !(halves && may_pass) {
                 let (bound, reason) = failed;
-                let within = bound == f64::NEG_INFINITY && reason == ProofFailure::Unresolved && pair.has_ring();
+                let within =
+                    bound == f64::NEG_INFINITY && reason == ProofFailure::Unresolved && pair.has_ring();
                 let reason = if within { ProofFailure::WithinRing } else { reason };
                 let bound = (Interval::constant(bound) - pair.rounds()).low;
                 return ClearanceProof::NotProved { from, to, bound, reason };
