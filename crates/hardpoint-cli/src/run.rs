@@ -97,10 +97,11 @@ pub fn run(options: &Run) -> Outcome {
         Some(_) => Vec::new(),
     };
     let all = file.clone();
-    let (mut done, mut metrics): (Vec<CaseDone>, Vec<CaseMetrics>) = (Vec::new(), Vec::new());
+    let mut done: Vec<CaseDone> = Vec::new();
+    let mut results = CaseResults { metrics: Vec::new(), first: None };
     let each = |file: ModelFile, case: Option<&str>| {
         let path = of_case(&whole, case);
-        let outcome = run_in(&session, options, (&file, &maps), case, &path, &mut metrics);
+        let outcome = run_in(&session, options, (&file, &maps), case, &path, &mut results);
         if let Some(case) = case {
             let (Ok(ended) | Err(ended)) = outcome;
             let folder = path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -119,8 +120,8 @@ pub fn run(options: &Run) -> Outcome {
     }
     let written = Folder::open(&whole).and_then(|mut folder| {
         maps::write(&maps, &mut folder)?;
-        let page = if session.interrupted() { None } else { page_of_cases(&all, options, &metrics, &maps) };
-        write_metrics(&metrics, &all, &mut folder)?;
+        let page = if session.interrupted() { None } else { page_of_cases(&all, options, &results, &maps) };
+        write_metrics(&results.metrics, &all, &mut folder)?;
         if let Some(html) = &page {
             folder.write(REPORT, |out| out.write_all(html.as_bytes()))?;
         }
@@ -135,7 +136,8 @@ pub fn run(options: &Run) -> Outcome {
         Err(error) => return session.not_written(&error),
     };
     if !options.common.json {
-        let tables = CaseMetrics::table(&metrics, &all.model).into_iter().chain(MapFact::table(&maps));
+        let tables =
+            CaseMetrics::table(&results.metrics, &all.model).into_iter().chain(MapFact::table(&maps));
         tables.for_each(|table| text::print(&text::section(&table)));
         if let Some(report) = report {
             text::print(&format!("\nreport of all cases: {}\n", report.display()));
@@ -152,20 +154,28 @@ fn write_metrics(metrics: &[CaseMetrics], file: &ModelFile, folder: &mut Folder)
     folder.write(METRICS, |out| Ok(CaseMetrics::write(metrics, &file.model, file.units, out)?))
 }
 
-/// Page of the file's first motion with the metrics of all cases; `None` without metrics.
-fn page_of_cases(
-    file: &ModelFile,
-    options: &Run,
-    metrics: &[CaseMetrics],
-    maps: &[MapFact],
-) -> Option<String> {
+/// Results of the cases for the page of all of them.
+struct CaseResults {
+    metrics: Vec<CaseMetrics>,
+    /// Motion of the first case, if it was solved.
+    first: Option<Course>,
+}
+
+/// Page of the file's first motion with the metrics of all cases; `None` without metrics, or if no position of that
+/// motion was solved.
+fn page_of_cases(all: &ModelFile, options: &Run, results: &CaseResults, maps: &[MapFact]) -> Option<String> {
+    let CaseResults { metrics, first } = results;
+    let course = first.as_ref().filter(|course| !course.kept.motion.is_empty())?;
     if metrics.iter().all(|of| of.metrics.is_empty()) {
         return None;
     }
-    let model = file.model.motions().into_iter().next()?;
-    let analysis = Analysis::with(&model, options.common.formulation()).ok()?;
-    let finish = |page, _: &Solution| CaseMetrics::page(metrics, &file.model, MapFact::page(maps, page));
-    pages::page(file, &analysis, None, finish)
+    let mut file = all.clone();
+    file.model = all.model.motions().into_iter().next()?;
+    let analysis = Analysis::with(&file.model, options.common.formulation()).ok()?;
+    let mut summary = Summary::new(&file, analysis.topology(), course);
+    summary.diagnostics = diagnose::all(&file, &summary, course, None);
+    let finish = |page| CaseMetrics::page(metrics, &all.model, MapFact::page(maps, page));
+    Some(report(&Request::of(&file, &analysis, course, &summary), &finish).expect("a payload is plain data"))
 }
 
 /// Solves only the case of that name, if it is a grid.
@@ -249,7 +259,7 @@ fn run_in(
     (file, maps): (&ModelFile, &[MapFact]),
     case: Option<&str>,
     path: &Path,
-    metrics: &mut Vec<CaseMetrics>,
+    cases: &mut CaseResults,
 ) -> Result<Outcome, Outcome> {
     let analysis = session.plan(file, options.common.formulation())?;
     let read = session.seconds();
@@ -278,7 +288,7 @@ fn run_in(
     let mut results = Results { file, analysis: &analysis, course: &course, differences: Vec::new(), maps };
     results.study(session, options.common.formulation(), !options.no_compare, &mut summary);
 
-    metrics.push(CaseMetrics {
+    cases.metrics.push(CaseMetrics {
         case: case.map_or_else(String::new, str::to_owned),
         metrics: summary.metrics.clone(),
     });
@@ -345,7 +355,7 @@ fn run_in(
         }
         // In a file with cases, the summary of the whole file has the maps.
         if case.is_none() {
-            write_metrics(metrics, file, &mut folder).map_err(|e| session.not_written(&e))?;
+            write_metrics(&cases.metrics, file, &mut folder).map_err(|e| session.not_written(&e))?;
             if !summary.metrics.is_empty() {
                 summary.files.push(folder.path_of(METRICS).display().to_string());
             }
@@ -374,6 +384,10 @@ fn run_in(
             let partial = if summary.status == RunStatus::Complete { "" } else { " (partial)" };
             text::print(&format!("\nreport: {}{partial}\n", report.display()));
         }
+    }
+    // The page of all cases shows the first one.
+    if case.is_some() && cases.metrics.len() == 1 {
+        cases.first = Some(course);
     }
     Ok(match summary.status {
         RunStatus::Stopped => Outcome::Stopped,

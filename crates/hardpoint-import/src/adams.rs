@@ -1,5 +1,6 @@
 //! Adams/Solver datasets (`.adm`): parts, markers, joints, primitives, motions, couplers, gears.
 
+mod functions;
 mod loads;
 
 use std::collections::{BTreeMap, BTreeSet};

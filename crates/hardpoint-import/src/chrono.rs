@@ -160,7 +160,8 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         (false, _) => [("Spring", "spring"), ("Shock", "damper")],
     };
     corner.springs = chrono_part::springs(&root, &members, notes);
-    chrono_part::account(&root, PARTS, notes);
+    let arms = ELASTIC.map(|(part, _)| part);
+    chrono_part::account(&root, PARTS, &arms, notes);
     let mut rack = None;
     if notes.problem_count() == 0 && !corner.build(&mut m, notes, &mut rack) {
         let message = format!("points of the template `{name}` are missing");
@@ -168,10 +169,31 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     }
     if notes.problem_count() == 0 {
         masses(&root, &mut m, known, &corner, notes);
+        for (part, pivot) in ELASTIC {
+            let Some(data) = root.get(part).and_then(|p| p.get(chrono_part::BUSHING)) else { continue };
+            let joint = m.joints.iter().position(|j| j.name == pivot);
+            let found = joint.and_then(|k| Some((k, m.joints[k].through?)));
+            let Some((joint, [from, to])) = found else {
+                let why = "the part has no hinge on the chassis in the model";
+                notes.refused(chrono_part::BUSHING, part, Some(data.at), why);
+                continue;
+            };
+            // Chrono has the bushing of an arm halfway between its pivots.
+            let offset = (to - from).norm() / 2.0;
+            chrono_part::bushing(&mut m, notes, data, joint, [false, false, true], offset);
+        }
     }
     Some(m)
 }
 
+/// Parts that may have a bushing at their hinge on the chassis, with the name of the hinge in the model.
+const ELASTIC: [(&str, &str); 5] = [
+    ("Upper Control Arm", "upper_arm_pivot"),
+    ("Upper Arm", "upper_arm_pivot"),
+    ("Lower Control Arm", "lower_arm_pivot"),
+    ("Control Arm", "lower_arm_pivot"),
+    ("Trailing Arm", "trailing_arm_pivot"),
+];
 /// Parts of the templates that are read.
 const PARTS: &[&str] = &[
     "Spindle",

@@ -40,7 +40,7 @@ pub fn read(
     let mut axle = Axle { root, m, notes, read: Vec::new() };
     axle.build(template, angles);
     let Axle { m, read, notes, .. } = axle;
-    chrono_part::account(root, &read, notes);
+    chrono_part::account(root, &read, &[], notes);
     Some(m)
 }
 

@@ -58,14 +58,15 @@ pub fn read(
         reader.wheel(spin_axis(side, camber, toe), spring);
     }
     for tree in LISTS.into_iter().flat_map(|key| list(root, key)) {
-        chrono_part::part(tree.text_of("Name").unwrap_or_default(), tree, notes);
+        // Bushings belong to joints.
+        chrono_part::part(tree.text_of("Name").unwrap_or_default(), tree, tree.get("Type").is_some(), notes);
     }
     for tree in list(root, "RSDAs") {
         let why = "rotational springs between bodies have no equivalent";
         notes.refused("RSDA", tree.text_of("Name").unwrap_or_default(), Some(tree.at), why);
     }
     let read: Vec<&str> = LISTS.into_iter().chain(["RSDAs", "Spindle"]).collect();
-    chrono_part::account(root, &read, notes);
+    chrono_part::account(root, &read, &[], notes);
     robot::standard_gravity(&mut m, notes, "a Chrono suspension");
     Some(m)
 }
@@ -190,6 +191,7 @@ impl Side<'_> {
                     let why =
                         format!("its type `{written}` has no equivalent: a driver fixes the motion instead");
                     self.notes.refused("joint", &name, Some(tree.at), why);
+                    self.bushing(tree, None, "");
                     continue;
                 }
             };
@@ -220,7 +222,7 @@ impl Side<'_> {
             let [x, y, z] = self.axes(tree, rotation).cols;
             let Some(bodies) = self.pair(tree, at) else { continue };
             let joint = Joint::new(&name, note("joint", &name, tree.at, self.notes), kind, bodies, at);
-            self.m.joint(match kind {
+            let number = self.m.joint(match kind {
                 "revolute" => joint.along(z),
                 "universal" => joint.with_axes(x, y),
                 "inline" => joint.along(x),
@@ -228,6 +230,27 @@ impl Side<'_> {
                 _ => joint,
             });
             self.notes.taken("joint", &name, Some(tree.at));
+            self.bushing(tree, Some(number), kind);
+        }
+    }
+
+    /// Adds the bushing of a joint of this type.
+    fn bushing(&mut self, tree: &Tree, joint: Option<usize>, kind: &str) {
+        let Some(data) = tree.get(chrono_part::BUSHING) else { return };
+        // The pins of a cross are its z and x axes in the model, and x and y in Chrono.
+        let free = match kind {
+            "fixed" => Some([false; 3]),
+            "revolute" => Some([false, false, true]),
+            "universal" => Some([true, false, true]),
+            "spherical" => Some([true; 3]),
+            _ => None,
+        };
+        match joint.zip(free) {
+            Some((joint, free)) => chrono_part::bushing(self.m, self.notes, data, joint, free, 0.0),
+            None => {
+                let why = "joints of this type have no bushing";
+                self.notes.refused(chrono_part::BUSHING, &self.named(tree), Some(data.at), why);
+            }
         }
     }
 

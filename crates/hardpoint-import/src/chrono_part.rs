@@ -6,7 +6,7 @@ use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::corner::plain;
 use crate::markers::ElementSource;
-use crate::mechanism::{GROUND, Mechanism, Spring};
+use crate::mechanism::{Force, ForceOn, GROUND, JointElasticity, Mechanism, Spring};
 use crate::report::{ImportLog, SourceSpan};
 use crate::robot;
 use crate::sides::{over, with_word};
@@ -49,6 +49,63 @@ const READ: &[&str] = &[
 const DRAWN: [&str; 3] = ["Radius", "Width", "Visualization"];
 /// Keys of the stops of a spring.
 const STOPS: [&str; 2] = ["Minimum Length", "Maximum Length"];
+
+/// Key of the bushing of a joint or part.
+pub const BUSHING: &str = "Bushing Data";
+
+/// Adds a bushing to the joint with this index. `free` are the rotations that the joint leaves free, about its axes in
+/// the model. The bushing is at a distance along z from the joint's location.
+pub fn bushing(
+    m: &mut Mechanism,
+    notes: &mut ImportLog,
+    data: &Tree,
+    joint: usize,
+    free: [bool; 3],
+    offset: f64,
+) {
+    let at = Some(data.at);
+    let name = m.joints[joint].name.clone();
+    let of = |tree: Option<&Tree>, key: &str| tree.and_then(|t| t.get(key)?.number());
+    let [slide, turn] = ["Stiffness Linear", "Stiffness Rotational"].map(|key| of(Some(data), key));
+    let free_turn = of(data.get("DOF"), "Stiffness Rotational").unwrap_or(0.0);
+    let (Some(slide), Some(turn)) = (slide, turn) else {
+        notes.refused(BUSHING, &name, at, "it has no `Stiffness Linear` or no `Stiffness Rotational`");
+        return;
+    };
+    let is_held = free.contains(&false);
+    if !(slide > 0.0 && slide.is_finite() && turn.is_finite() && (turn > 0.0 || !is_held) && free_turn >= 0.0)
+    {
+        let why = "a bushing without stiffness in a direction of its joint has no equivalent";
+        notes.refused(BUSHING, &name, at, why);
+        return;
+    }
+    for (key, at, _) in data.entries() {
+        let known =
+            ["Stiffness Linear", "Stiffness Rotational", "Damping Linear", "Damping Rotational", "DOF"];
+        if !known.contains(&key.as_str()) {
+            notes.not_understood(key, &name, Some(*at), "unknown key of a bushing");
+        }
+    }
+    let per_angle = m.per_angle();
+    let turns = free.map(|is_free| if is_free { free_turn } else { turn } * per_angle);
+    let stiffness = [slide, slide, slide, turns[0], turns[1], turns[2]];
+    let source = ElementSource { kind: BUSHING, name: &name, at };
+    m.force(Force {
+        name: with_word(&name, "bushing"),
+        note: source.note(notes),
+        on: ForceOn::Joint(joint, JointElasticity { stiffness, offset }),
+        spring: Spring::default(),
+    });
+    let damping = [Some(data), data.get("DOF")]
+        .into_iter()
+        .flat_map(|tree| ["Damping Linear", "Damping Rotational"].map(|key| of(tree, key).unwrap_or(0.0)));
+    if damping.into_iter().any(|c| c != 0.0) {
+        let why = "its damping is not imported: elastic joints of the model deflect at rest";
+        notes.approximated(BUSHING, &name, at, why);
+    } else {
+        notes.taken(BUSHING, &name, at);
+    }
+}
 
 /// Mass and inertia of a part about its centre of mass, along its own axes.
 pub struct Inertial {
@@ -270,7 +327,8 @@ fn points(list: &Tree) -> Option<Vec<[f64; 2]>> {
 }
 
 /// Accounts for all keys of the file besides the parts that were read: those with other content, and unknown keys.
-pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
+/// Bushings of elastic parts have been read as well.
+pub fn account(root: &Tree, read: &[&str], elastic: &[&str], notes: &mut ImportLog) {
     for (key, at, value) in root.entries() {
         match key.as_str() {
             "Name" | "Type" | "Template" | "Vehicle-Frame Inertia" | "Independent" | "Steerable" => {}
@@ -286,14 +344,14 @@ pub fn account(root: &Tree, read: &[&str], notes: &mut ImportLog) {
                 notes.refused(key, "", Some(*at), why);
             }
             "Antiroll Body" => notes.ignored(key, Some(*at)),
-            _ if read.contains(&key.as_str()) => part(key, value, notes),
+            _ if read.contains(&key.as_str()) => part(key, value, elastic.contains(&key.as_str()), notes),
             _ => notes.not_understood(key, "", Some(*at), "unknown part of this template"),
         }
     }
 }
 
-/// Accounts for the keys of a part.
-pub fn part(name: &str, part: &Tree, notes: &mut ImportLog) {
+/// Accounts for the keys of a part, whose bushing may have been read.
+pub fn part(name: &str, part: &Tree, is_elastic: bool, notes: &mut ImportLog) {
     for (key, at, _) in part.entries() {
         let known = |list: &[&str]| list.contains(&key.as_str());
         if key.starts_with("Location")
@@ -305,9 +363,14 @@ pub fn part(name: &str, part: &Tree, notes: &mut ImportLog) {
         }
         if known(&DRAWN) {
             notes.ignored(key, Some(*at));
-        } else if key.starts_with("Bushing") {
-            notes.refused(key, name, Some(*at), "bushings are not imported: the joint is rigid in the model");
-        } else {
+        } else if key.starts_with("Bushing") && !(key == BUSHING && is_elastic) {
+            notes.refused(
+                key,
+                name,
+                Some(*at),
+                "this bushing is not imported: the joint is rigid in the model",
+            );
+        } else if key != BUSHING {
             notes.not_understood(key, name, Some(*at), "unknown key of the part");
         }
     }

@@ -36,12 +36,48 @@ pub fn translate(text: &str, language: Language) -> Result<String, String> {
 /// # Errors
 /// See [`translate`].
 pub fn translate_with(text: &str, language: Language, time: &'static str) -> Result<String, String> {
-    let mut parser = Parser { tokens: tokens(text, language)?, at: 0, depth: 0, language, time };
-    let out = parser.sum()?;
-    match parser.tokens.get(parser.at) {
-        None => Ok(out),
-        Some(extra) => Err(format!("`{}` is not expected here", extra.text())),
-    }
+    let parser = Parser {
+        tokens: tokens(text, language)?,
+        at: 0,
+        depth: 0,
+        language,
+        time,
+        measured: None,
+        corners: Vec::new(),
+    };
+    Ok(parser.whole()?.text)
+}
+
+/// Translation of a function of the motion, like `DM(1, 2)`, with its arguments; `None` for any other function.
+pub type MotionFunctions<'m> = dyn Fn(&str, &[String]) -> Option<Result<String, String>> + 'm;
+
+/// Function of positions and velocities.
+pub struct Characteristic {
+    /// Expression of model files.
+    pub text: String,
+    /// Pairs of expressions; where both are equal, the slope of the function may jump.
+    pub corners: Vec<[String; 2]>,
+}
+
+/// Translates a function of Adams of positions and velocities but not of the time.
+///
+/// # Errors
+/// See [`translate`].
+pub fn translate_characteristic(
+    text: &str,
+    measured: &MotionFunctions<'_>,
+) -> Result<Characteristic, String> {
+    let language = Language::Adams;
+    let parser = Parser {
+        tokens: tokens(text, language)?,
+        at: 0,
+        depth: 0,
+        language,
+        time: "t",
+        measured: Some(measured),
+        corners: Vec::new(),
+    };
+    parser.whole()
 }
 
 /// Returns the value of a translated expression that does not depend on the time.
@@ -147,15 +183,27 @@ fn mark_is(bytes: &[char], k: usize, letter: char) -> bool {
     bytes.get(k).is_some_and(|c| c.eq_ignore_ascii_case(&letter))
 }
 
-struct Parser {
+struct Parser<'m> {
     tokens: Vec<Token>,
     at: usize,
     depth: usize,
     language: Language,
     time: &'static str,
+    /// Functions of the motion, of which the expression is a function instead of the time.
+    measured: Option<&'m MotionFunctions<'m>>,
+    corners: Vec<[String; 2]>,
 }
 
-impl Parser {
+impl Parser<'_> {
+    /// Translates all tokens.
+    fn whole(mut self) -> Result<Characteristic, String> {
+        let text = self.sum()?;
+        match self.tokens.get(self.at) {
+            None => Ok(Characteristic { text, corners: self.corners }),
+            Some(extra) => Err(format!("`{}` is not expected here", extra.text())),
+        }
+    }
+
     fn sign(&self) -> Option<&'static str> {
         match self.tokens.get(self.at) {
             Some(Token::Sign(s)) => Some(s),
@@ -261,6 +309,7 @@ impl Parser {
                 self.call(&name, &arguments)
             }
             Token::Name(name) => match name.as_str() {
+                "time" | "t" if self.measured.is_some() => Err("it depends on the time".into()),
                 "time" | "t" => Ok(self.time.into()),
                 "pi" => Ok("pi".into()),
                 "dtor" => Ok("(pi/180)".into()),
@@ -272,7 +321,23 @@ impl Parser {
     }
 
     /// Translates a function call.
-    fn call(&self, name: &str, x: &[String]) -> Result<String, String> {
+    fn call(&mut self, name: &str, x: &[String]) -> Result<String, String> {
+        if let Some(found) = self.measured.and_then(|measured| measured(name, x)) {
+            return found;
+        }
+        let bounds: &[usize] = match (name, x.len()) {
+            ("step" | "step5" | "havsin", 5) => &[1, 3],
+            ("bistop", 8) => &[2, 3],
+            ("impact", 7) => &[2],
+            ("min" | "max" | "dim" | "sign", 2) => &[1],
+            _ => &[],
+        };
+        if self.measured.is_some() {
+            self.corners.extend(bounds.iter().map(|k| [x[0].clone(), x[*k].clone()]));
+            if ["abs", "if"].contains(&name) && !x.is_empty() {
+                self.corners.push([x[0].clone(), "0".into()]);
+            }
+        }
         let each: usize = x.iter().map(String::len).sum();
         let first: usize = x.iter().take(3).map(String::len).sum();
         if REPEATED * each + x.len() * first > LONGEST {
@@ -336,6 +401,12 @@ impl Parser {
                 Ok(format!("(({})*sin(({})*(({}) - ({})) - ({})) + ({b}))", x[2], x[3], x[0], x[1], x[4]))
             }
             ("if", 4) => Ok(format!("if(({e}) < 0, {}, if(0 < ({e}), {}, {}))", x[1], x[3], x[2], e = x[0])),
+            // A stop below x1 and one above x2: k (x1 - x)^e and -k (x - x2)^e, each with damping and without pull
+            ("bistop", 8) => {
+                let [below, above] = [stop(x, &x[2], false, &x[4..]), stop(x, &x[3], true, &x[4..])];
+                Ok(format!("({below} - {above})"))
+            }
+            ("impact", 7) => Ok(stop(x, &x[2], false, &x[3..])),
             // a0 + a1 (x - x0) + a2 (x - x0)^2 + ...
             ("poly", 3..) => {
                 let term = |(k, a): (usize, &String)| match k {
@@ -369,6 +440,22 @@ impl Parser {
             _ => Err(format!("the function `{name}` with {} arguments has no equivalent", x.len())),
         }
     }
+}
+
+/// Push of a one-sided stop at a bound, which a coordinate passes upwards or downwards. The first arguments are the
+/// coordinate and its rate; the last ones are stiffness, exponent, largest damping and the depth where that is reached.
+fn stop(x: &[String], bound: &str, upwards: bool, law: &[String]) -> String {
+    let (at, rate) = (&x[0], &x[1]);
+    let [k, e, c, d] = [0, 1, 2, 3].map(|n| &law[n]);
+    let (depth, speed) = match upwards {
+        true => (format!("(({at}) - ({bound}))"), format!("({rate})")),
+        false => (format!("(({bound}) - ({at}))"), format!("(-({rate}))")),
+    };
+    let push = format!("({k})*max(0, {depth})^({e})");
+    let damping = format!("({c})*{speed}*step({depth}, 0, 0, {d}, 1)");
+    // At rest the depth of the damping, which may be zero, is irrelevant.
+    let push = if constant(rate) == Some(0.0) { push } else { format!("{push} + {damping}") };
+    format!("if({depth} < 0, 0, max(0, {push}))")
 }
 
 #[cfg(test)]
@@ -405,6 +492,47 @@ mod tests {
         assert_eq!(at("\"2*T1\"<n>3*<n>time", Language::Ondsel, 2.0), 6.0);
         assert_eq!(constant(&translate("3*2", Language::Ondsel).unwrap()), Some(6.0));
         assert_eq!(constant("t"), None);
+    }
+
+    #[test]
+    fn stops_push_from_one_or_both_sides() {
+        let measured = |rate: &'static str| {
+            move |name: &str, x: &[String]| match (name, x.join(" ").as_str()) {
+                ("dm", "1 2") => Some(Ok("t".into())),
+                ("vr", "1 2") => Some(Ok(rate.into())),
+                _ => None,
+            }
+        };
+        let at = |text: &str, rate, x: f64| {
+            let out = translate_characteristic(text, &measured(rate)).unwrap();
+            hardpoint::law::Law::parse(&out.text).unwrap_or_else(|e| panic!("{}: {e:?}", out.text)).at(x).0[0]
+        };
+        let both = "BISTOP(DM(1,2), VR(1,2), 100, 150, 20, 1.5, 3, 2)";
+        for (x, rate, wanted) in [
+            (96.0, "0", 160.0),
+            (100.0, "0", 0.0),
+            (130.0, "9", 0.0),
+            (154.0, "0", -160.0),
+            // Damping grows with the depth up to 2; a stop does not pull.
+            (96.0, "(-7)", 160.0 + 21.0),
+            (99.0, "(-7)", 20.0 + 0.5 * 21.0),
+            (96.0, "700", 0.0),
+            (154.0, "7", -181.0),
+            (154.0, "(-700)", 0.0),
+        ] {
+            let found = at(both, rate, x);
+            assert!(
+                (found - wanted).abs() <= 1e-12 * wanted.abs(),
+                "{x} {rate}: {found} instead of {wanted}"
+            );
+            let one = at("-IMPACT(DM(1,2), VR(1,2), 100, 20, 1.5, 3, 2)", rate, x);
+            assert!((one + wanted.max(0.0)).abs() <= 1e-12 * wanted.abs(), "{x} {rate}: {one}");
+        }
+        let of = |text: &str| translate_characteristic(text, &measured("0"));
+        let corners = of(both).ok().map(|c| c.corners.len());
+        assert_eq!(corners, Some(2));
+        assert!(of("TIME*DM(1,2)").err().is_some_and(|why| why.contains("time")));
+        assert!(of("DM(1,3)").err().is_some_and(|why| why.contains("dm")));
     }
 
     #[test]

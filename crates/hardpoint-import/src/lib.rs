@@ -42,6 +42,7 @@ pub mod mechanism;
 mod mjcf;
 mod report;
 mod robot;
+mod sampled;
 mod sdf;
 mod series;
 mod shapes;

@@ -141,6 +141,32 @@ pub enum ForceOn {
     Points([(usize, Vec3); 2]),
     /// Two points, along and about axes that are fixed in the first body.
     Bushing([(usize, Vec3); 2], Bushing),
+    /// A joint, by its index, along and about its axes.
+    Joint(usize, JointElasticity),
+}
+
+/// Stiffness of an elastic joint, per unit of length or angle of the mechanism, in N or N m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointElasticity {
+    /// Stiffnesses along and about the axes of the joint: x, y, z.
+    pub stiffness: [f64; 6],
+    /// Distance along z from the joint's location to the point at which they are defined.
+    pub offset: f64,
+}
+
+impl JointElasticity {
+    /// Further stiffness matrix at the joint's location; `None` if the stiffnesses are defined there. `per_angle` is
+    /// the angle unit of the mechanism in rad.
+    pub fn matrix(&self, per_angle: f64) -> Option<[[f64; 6]; 6]> {
+        let (a, [x, y, ..]) = (self.offset, self.stiffness.map(|k| k * per_angle));
+        // Displacements at the point: x + a about_y and y - a about_x
+        let mut matrix = [[0.0; 6]; 6];
+        let couples = [(0, 4, a * x, a * a * x), (1, 3, -a * y, a * a * y)];
+        for (slide, turn, coupled, own) in couples {
+            (matrix[slide][turn], matrix[turn][slide], matrix[turn][turn]) = (coupled, coupled, own);
+        }
+        (a != 0.0).then_some(matrix)
+    }
 }
 
 /// Characteristic of a bushing besides its damping, along x, y, z and about them, per unit of length or angle of the
@@ -460,6 +486,11 @@ impl Mechanism {
             }
         }
         reached[to]
+    }
+
+    /// Returns the angle unit of the mechanism, rad.
+    pub fn per_angle(&self) -> f64 {
+        if self.angle == "deg" { 1_f64.to_radians() } else { 1.0 }
     }
 
     /// Returns 1 mm in the length unit of the mechanism.

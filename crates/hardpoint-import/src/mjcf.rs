@@ -307,6 +307,8 @@ struct Reader<'d, 'n> {
     tendons: BTreeMap<String, Vec<(Coordinate, f64)>>,
     /// Tendons between two sites.
     rods: BTreeMap<String, [String; 2]>,
+    /// Values of joint coordinates in the design configuration, and without force of springs (`springref`).
+    references: BTreeMap<String, [f64; 2]>,
     connections: Vec<PointConnection>,
     free: Vec<FreeBody>,
     shapes: Vec<VisibleShape<'d>>,
@@ -353,6 +355,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             joints: BTreeMap::new(),
             tendons: BTreeMap::new(),
             rods: BTreeMap::new(),
+            references: BTreeMap::new(),
             connections: Vec::new(),
             free: Vec::new(),
             shapes: Vec::new(),
@@ -670,6 +673,8 @@ impl<'d, 'n> Reader<'d, 'n> {
         let turns = coordinate.is_some_and(|c| c.name == "angle");
         // Coordinates are relative to the design configuration, where the value is `ref`.
         let free = if turns { self.angle(springref - zero) } else { springref - zero };
+        let zero = if turns { self.angle(zero) } else { zero };
+        self.references.insert(source.name.to_owned(), [zero, zero + free]);
         let source = ElementSource { kind: "spring", ..source };
         robot::joint_spring(&mut self.m, self.notes, source, coordinate, [stiffness, damping, free]);
         robot::friction(self.notes, source.name, source.at, friction);

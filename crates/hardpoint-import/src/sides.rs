@@ -198,8 +198,12 @@ impl Mirror<'_> {
         let ends = |on| match on {
             ForceOn::Points(ends) => Some(ends),
             // The sign on the other side depends on the joint, or on the axes.
-            ForceOn::Coordinate(_) | ForceOn::Bushing(..) => None,
+            ForceOn::Coordinate(_) | ForceOn::Bushing(..) | ForceOn::Joint(..) => None,
         };
+        if let (ForceOn::Joint(l, left_law), ForceOn::Joint(r, right_law)) = (left.on, right.on) {
+            let names = [l, r].map(|k| &self.m.joints[k].name);
+            return *names[1] == other(names[0]) && left_law == right_law && left.spring == right.spring;
+        }
         // The mirror takes the x and z axes as arrows, so that y is the opposite of an image.
         let is_image = |l: Bushing, r: Bushing| {
             let signs = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0];

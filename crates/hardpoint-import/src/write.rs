@@ -376,6 +376,19 @@ impl<'m> Writer<'m> {
                         }
                     }
                 }
+                ForceOn::Joint(joint, elasticity) => {
+                    t["type"] = value("elastic_joint");
+                    t["joint"] = value(self.m.joints[joint].name.as_str());
+                    for (name, stiffness) in DIRECTION_NAMES.iter().zip(elasticity.stiffness) {
+                        if stiffness != 0.0 {
+                            t[name] = value(stiffness);
+                        }
+                    }
+                    if let Some(matrix) = elasticity.matrix(self.m.per_angle()) {
+                        t["matrix"] =
+                            value(matrix.iter().map(|row| Value::from(numbers(row))).collect::<Array>());
+                    }
+                }
             }
             if spring.damping != 0.0 {
                 t["damping"] = value(spring.damping);

@@ -63,6 +63,8 @@ record! {
         MinimumPlace::Inside => "inside",
         MinimumPlace::End => "end",
     };
+    /// True if the rate jumps from negative to positive there.
+    kink: bool = found.is_kink;
     /// Nearest points of the shapes' cores, global.
     points: [[f64; 3]; 2] = found.at.points.map(|p| p.map(length).to_array());
     /// True if more than one pair of points is nearest, since lines or faces are parallel.

@@ -105,6 +105,19 @@ fn metrics_of_all_cases_are_written_printed_and_first_on_a_page() {
     assert_eq!(metrics["rows"][0][0], "toe_per_aligning_torque_in_phase", "the order of the file");
     let own = bench.page("out/braking/report.html");
     assert_eq!(own["metrics"]["rows"].as_array().unwrap().len(), 2);
+
+    // The page shows the first case as it was solved: here without sensitivities.
+    let output = bench.run(&["run", "axle.toml", "-o", "plain", "--no-compare", "--no-sensitivities"]);
+    assert_eq!(output.status.code(), Some(0));
+    let [all, first] = ["plain", "plain/parallel_travel"].map(|of| bench.page(&format!("{of}/report.html")));
+    assert_eq!(all["quantities"], first["quantities"]);
+    let derivatives = |page: &serde_json::Value| {
+        let values = page["values"].as_array().unwrap();
+        let all = values.iter().flat_map(|of| of["sensitivities"].as_array().unwrap());
+        all.filter(|derivative| !derivative.is_null()).count()
+    };
+    assert!(derivatives(&page) > 0, "{}", page["values"][0]);
+    assert_eq!((derivatives(&all), derivatives(&first)), (0, 0));
 }
 
 #[test]

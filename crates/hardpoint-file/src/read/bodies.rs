@@ -83,7 +83,7 @@ pub(super) fn bodies(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     }
 }
 
-fn frame<'a>(
+pub(super) fn frame<'a>(
     r: &mut Reader<'_>,
     body: &Fields<'a>,
     f: Field<'a>,

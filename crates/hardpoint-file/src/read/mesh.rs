@@ -220,6 +220,44 @@ pub(super) fn drawn(r: &mut Reader<'_>, said: &MeshDraft) -> Option<Mesh> {
     Some(Mesh { file: name.clone(), frame: said.frame, vertices, triangles })
 }
 
+/// Corners in m and triangles of a surface, and whether they are given in the body's frame.
+type CornersAndTriangles = (Vec<Vec3>, Vec<[u32; 3]>, bool);
+
+/// The surface of a shape: a file, or with `true` that of its body. Without files, on the page, it has no triangles.
+pub(super) fn surface(
+    r: &mut Reader<'_>,
+    meshes: &Meshes,
+    shape: &Fields<'_>,
+    f: Field<'_>,
+    body: &str,
+) -> Option<CornersAndTriangles> {
+    let said = match f.value.get_ref().as_bool() {
+        Some(true) => match meshes.get(body).cloned() {
+            Some(BodyMesh::Said(said)) => said,
+            // An error of the body is reported at its own entry, an unknown body by the core.
+            Some(BodyMesh::Faulty) => return None,
+            None if body != "ground" => return Some((Vec::new(), Vec::new(), true)),
+            None | Some(BodyMesh::None) => {
+                let message =
+                    format!("{} is the `mesh` of body `{}`, which has none", shape.what, shown(body));
+                r.report("HP0104", f.value.span(), message).help =
+                    Some("name a file, for example `mesh = \"arch.stl\"`".into());
+                return None;
+            }
+        },
+        Some(false) => {
+            r.wrong(f.value, &shape.subject(f.key), "the name of a file, or `true`");
+            return None;
+        }
+        None => mesh(r, shape, f)?,
+    };
+    if cfg!(target_family = "wasm") || matches!(r.folder, Folder::Given(_)) {
+        return Some((Vec::new(), Vec::new(), true));
+    }
+    let Mesh { vertices, triangles, frame, .. } = drawn(r, &said)?;
+    Some((vertices, triangles, frame == MeshFrame::Body))
+}
+
 /// Solid enclosed by the surface of a mass: the mesh under this key, or else that of its body.
 pub(super) fn solid(
     r: &mut Reader<'_>,

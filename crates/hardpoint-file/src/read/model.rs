@@ -125,7 +125,7 @@ const UNIT_WORDS: [(&str, &str); 12] = [
 ];
 /// Tables of `docs/file-format.md`, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 42] {
+pub(crate) fn tables() -> [(&'static str, Shape); 44] {
     use super::{declared, law, mesh};
     use crate::compose::INCLUDE_TABLE;
 

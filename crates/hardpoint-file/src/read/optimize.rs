@@ -43,7 +43,7 @@ pub(super) const LIMIT: Kinds = Kinds {
     tables: || LIMITS.iter().map(|l| &l.0).collect(),
 };
 /// Reads the limited quantities; a box has several.
-type Read = fn(&mut Reader<'_>, &Fields<'_>) -> Option<Vec<One>>;
+type Read = fn(&mut Reader<'_>, &Fields<'_>, &Raw) -> Option<Vec<One>>;
 /// Axis of a box (or none), limited quantity, and its limits.
 type One = (&'static str, LimitTargetDraft, Bounds);
 /// Minimum and maximum.
@@ -62,7 +62,7 @@ static LIMITS: &[(Table, Read)] = &[
             /// The metric's name.
             must "metric": METRIC, "\"ackermann_error\"";
         },
-        |r, fields| {
+        |r, fields, _| {
             let name = r.name_of(fields, "metric");
             let bounds = bounds_of_limit(r, fields);
             Some(vec![("", LimitTargetDraft::Metric(name?), bounds?)])
@@ -81,7 +81,7 @@ static LIMITS: &[(Table, Read)] = &[
             /// Range of its z.
             may "z": SIDE, "{ min = 0 }";
         },
-        boxed,
+        |r, fields, _| boxed(r, fields),
     ),
     (
         limit! {
@@ -90,7 +90,7 @@ static LIMITS: &[(Table, Read)] = &[
             /// The hardpoints' names.
             must "between": Shape::exactly(2, &HARDPOINT), "[\"A\", \"B\"]";
         },
-        |r, fields| {
+        |r, fields, _| {
             let names = r.names_of::<2>(fields, "between");
             let bounds = bounds_of_limit(r, fields);
             Some(vec![("", LimitTargetDraft::Distance(names?), bounds?)])
@@ -103,10 +103,37 @@ static LIMITS: &[(Table, Read)] = &[
             /// The joint's name.
             must "length": JOINT, "\"rod\"";
         },
-        |r, fields| {
+        |r, fields, _| {
             let name = r.name_of(fields, "length");
             let bounds = bounds_of_limit(r, fields);
             Some(vec![("", LimitTargetDraft::Length(name?), bounds?)])
+        },
+    ),
+    (
+        limit! {
+            /// The least distance of the shapes of a clearance; by default its own `min` is kept.
+            "LimitOfClearance":
+            /// The clearance's name.
+            must "clearance": Shape::Name("a clearance"), "\"rod_to_screws\"";
+        },
+        |r, fields, raw| {
+            let name = r.name_of(fields, "clearance")?;
+            let of = LimitTargetDraft::Metric(format!("{name}.min"));
+            if ["min", "max", "equal"].iter().any(|key| fields.get(key).is_some()) {
+                let bounds = bounds_of_limit(r, fields);
+                return Some(vec![("", of, bounds?)]);
+            }
+            let min = raw.draft.clearances.iter().find(|c| c.name == name).map(|c| &c.min);
+            let asked = min.filter(|min| min.of.is_empty()).and_then(|min| min.default);
+            if asked.is_none() && min.is_some() {
+                let message = format!("{} has no values", fields.what);
+                r.report("HP0104", fields.at.clone(), message).help =
+                    Some(format!("give `min = 2` here, or one `min` in `clearances.{name}`"));
+                return None;
+            }
+            // The core reports an unknown clearance.
+            let asked = asked.map(|x| x * r.units.length.per_metre());
+            Some(vec![("", of, [asked.or(Some(0.0)), None])])
         },
     ),
 ];
@@ -174,7 +201,7 @@ fn limits(r: &mut Reader<'_>, optimize: &Fields<'_>, raw: &mut Raw) -> Vec<Limit
         let kind = r.led_by(&fields, LIMITS, ["limited quantity", "the limited quantity is given"]);
         // With keys of several kinds, further errors depend on the intended one.
         let is_clear = r.found.len() == before;
-        let read = kind.filter(|_| is_clear).and_then(|(_, read)| read(r, &fields));
+        let read = kind.filter(|_| is_clear).and_then(|(_, read)| read(r, &fields, raw));
         let read = read.unwrap_or_else(|| {
             r.unread.push("");
             vec![("", LimitTargetDraft::Unread, [None; 2])]

@@ -1,18 +1,19 @@
 //! Shapes of bodies, and the clearances between them.
 
 use hardpoint::draft::{
-    BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, EndsDraft, MeasureDraft,
-    MeasureKindDraft, MetricDraft, MinimumDraft, NumberDraft, PointRef, Section,
+    BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, EndsDraft, FrameDraft, LocationDraft,
+    MeasureDraft, MeasureKindDraft, MetricDraft, MinimumDraft, NumberDraft, PointRef, Section,
 };
 use hardpoint::model::{ElementUnit, Reduction};
+use hardpoint::space::{Pose, Vec3};
 
 use crate::values::{
     BODY, EntryPlace, Field, Fields, Kinds, LENGTH, LINE, Need, PLACE, Reader, Shape, Subject, Table, Value,
     all_read, keys, table,
 };
 
-use super::declared;
 use super::raw::Raw;
+use super::{bodies, declared, mesh};
 
 pub(crate) const SHAPE: Kinds = Kinds {
     name: "BodyShape",
@@ -20,8 +21,9 @@ pub(crate) const SHAPE: Kinds = Kinds {
     typed: false,
     tables: || FORMS.iter().map(|f| &f.0).collect(),
 };
-type Read =
-    fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace) -> Option<(BodyShapeKindDraft, Option<NumberDraft>)>;
+type Read = fn(&mut Reader<'_>, &Fields<'_>, &mut EntryPlace, &Raw) -> Option<ReadShape>;
+/// A kind of shape, and its rounding.
+type ReadShape = (BodyShapeKindDraft, Option<NumberDraft>);
 
 const ENDS: Shape = Shape::Any(
     "Ends",
@@ -54,7 +56,7 @@ static FORMS: &[(Table, Read)] = &[
             /// Its radius.
             must "radius": LENGTH, "18";
         },
-        |r, fields, place| {
+        |r, fields, place, _| {
             let centre = point(r, fields, "sphere", place);
             let radius = length(r, fields, "radius");
             Some((BodyShapeKindDraft::Sphere { centre: centre? }, Some(radius?)))
@@ -71,7 +73,7 @@ static FORMS: &[(Table, Read)] = &[
             /// Its radius.
             must "radius": LENGTH, "4";
         },
-        |r, fields, place| {
+        |r, fields, place, _| {
             let ends = ends(r, fields, "capsule", place);
             let radius = length(r, fields, "radius");
             Some((BodyShapeKindDraft::Capsule { ends: ends? }, Some(radius?)))
@@ -92,7 +94,7 @@ static FORMS: &[(Table, Read)] = &[
             /// Radius of the bar. Default: 0.
             may "round": LENGTH, "5";
         },
-        |r, fields, place| {
+        |r, fields, place, _| {
             let centre = point(r, fields, "ring", place);
             let axis = r.line_of(fields, "axis", place);
             let radius = length(r, fields, "radius");
@@ -113,7 +115,7 @@ static FORMS: &[(Table, Read)] = &[
             /// Radius of its edges. Default: 0.
             may "round": LENGTH, "1";
         },
-        |r, fields, place| {
+        |r, fields, place, _| {
             let ends = ends(r, fields, "cylinder", place);
             let radius = length(r, fields, "radius");
             let round = optional_length(r, fields, "round")?;
@@ -131,7 +133,7 @@ static FORMS: &[(Table, Read)] = &[
             /// Radius of its shoulders. Default: 0.
             may "round": LENGTH, "25";
         },
-        |r, fields, _| {
+        |r, fields, _, _| {
             let wheel = r.name_of(fields, "wheel");
             let width = length(r, fields, "width");
             let round = optional_length(r, fields, "round")?;
@@ -151,15 +153,107 @@ static FORMS: &[(Table, Read)] = &[
             /// Thickness that is added on the free side. Default: 0.
             may "round": LENGTH, "1";
         },
-        |r, fields, place| {
+        |r, fields, place, _| {
             let at = point(r, fields, "plane", place);
             let normal = r.line_of(fields, "normal", place);
             let round = optional_length(r, fields, "round")?;
             Some((BodyShapeKindDraft::Plane { point: at?, normal: normal? }, round))
         },
     ),
+    (
+        form! {
+            /// A box.
+            "Box":
+            /// Its lengths along its axes.
+            must "box": Shape::exactly(3, &LENGTH), "[40, 20, 90]";
+            /// The body's name.
+            must "body": BODY, "\"frame\"";
+            /// Its centre and axes in the design configuration. Default: the global origin and axes.
+            may "frame": Shape::Kinds(&bodies::FRAME), "{ position = [0, 0, 30] }";
+            /// Radius that is added on all sides. Default: 0.
+            may "round": LENGTH, "1";
+        },
+        |r, fields, place, raw| {
+            let sides = r.given(fields, "box", |r, f| {
+                r.quantities::<3>(f.value, &fields.subject("box"), "three lengths", LENGTH)
+            });
+            let frame = match fields.get("frame") {
+                Some(_) => r.given(fields, "frame", |r, f| bodies::frame(r, fields, f, place, raw))?,
+                None => FrameDraft::Pose(Pose::IDENTITY),
+            };
+            let body = r.name_of(fields, "body");
+            let round = optional_length(r, fields, "round")?;
+            let FrameDraft::Pose(pose) = frame else {
+                let at = fields.get("frame").map_or(fields.at.clone(), |f| f.value.span());
+                r.senseless(at, "the frame of a box is given by three points").help =
+                    Some("give its position and orientation, like `{ position = [0, 0, 30] }`".into());
+                return None;
+            };
+            let half = Vec3::from(sides?) * 0.5;
+            let body = body?;
+            let corner = |k: u8| {
+                let side = |axis: u8, length: f64| if k >> axis & 1 == 1 { length } else { -length };
+                let at = pose.point(Vec3::new(side(0, half.x), side(1, half.y), side(2, half.z)));
+                PointRef::On { body: body.clone(), at: LocationDraft::At(at) }
+            };
+            Some((BodyShapeKindDraft::Hull { points: (0..8).map(corner).collect() }, round))
+        },
+    ),
+    (
+        form! {
+            /// The convex hull of points.
+            "Hull":
+            /// Points: hardpoints' names or coordinates in the design configuration.
+            must "hull": Shape::List(&PLACE, [4, MOST_POINTS]), "[\"p1\", \"p2\", [0, 4, 9], [1, 7, 2]]";
+            /// The body's name.
+            must "body": BODY, "\"frame\"";
+            /// Radius that is added on all sides. Default: 0.
+            may "round": LENGTH, "2";
+        },
+        |r, fields, place, _| {
+            let subject = fields.subject("hull");
+            let points = r.given(fields, "hull", |r, f| {
+                let list = r.list(f.value, &subject, "a list of four or more points")?;
+                if !(4..=MOST_POINTS).contains(&list.len()) {
+                    let message = format!("{} has {} points", subject.name, list.len());
+                    r.senseless(f.value.span(), message).help =
+                        Some(format!("give 4 to {MOST_POINTS} points, or a `mesh`"));
+                    return None;
+                }
+                place.items("hull", list.iter().map(|v| v.span()).collect());
+                all_read(list.into_iter().enumerate().map(|(k, v)| r.place(v, &subject.item(k))))
+            });
+            let body = r.name_of(fields, "body")?;
+            let round = optional_length(r, fields, "round")?;
+            let on = |at| PointRef::On { body: body.clone(), at };
+            Some((BodyShapeKindDraft::Hull { points: points?.into_iter().map(on).collect() }, round))
+        },
+    ),
+    (
+        form! {
+            /// A surface of triangles. It does not change with the design.
+            "MeshShape":
+            /// A file of triangles, or `true` for the body's own `mesh`.
+            must "mesh": Shape::Any("MeshOfShape", "", &[Shape::Flag, Shape::File, Shape::Table(&mesh::MESH_TABLE)]),
+                "\"arch.stl\"";
+            /// The body's name.
+            must "body": BODY, "\"ground\"";
+            /// Radius that is added on all sides. Default: 0.
+            may "round": LENGTH, "0.3";
+        },
+        |r, fields, _, raw| {
+            let body = r.name_of(fields, "body");
+            let round = optional_length(r, fields, "round")?;
+            let field = fields.get("mesh")?;
+            let body = body?;
+            let (vertices, triangles, in_body) = mesh::surface(r, &raw.meshes, fields, field, &body)?;
+            Some((BodyShapeKindDraft::Mesh { body, vertices, triangles, in_body }, round))
+        },
+    ),
 ];
 
+/// Maximum number of points of a hull.
+const MOST_POINTS: usize = 40;
 const SHAPE_NAME: Shape = Shape::Name("a shape");
 const SIDE: Shape = Shape::Any("ClearanceSide", "", &[SHAPE_NAME, Shape::some(&SHAPE_NAME)]);
 pub(crate) const CLEARANCE: Table = table! {
@@ -187,7 +281,7 @@ pub(super) fn shapes(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
             if missing.filter(|key| r.need(&fields, key.key).is_none()).count() > 0 {
                 return None;
             }
-            read(r, &fields, &mut place)
+            read(r, &fields, &mut place, raw)
         });
         let group = r.given(&fields, "group", |r, f| r.text(&fields, f));
         r.unread.clear();

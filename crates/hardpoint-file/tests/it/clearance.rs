@@ -8,6 +8,8 @@ use serde_json::Value;
 
 /// Round-off of distances in mm, and of times in s, at values of 10 to 100.
 const EXACT: f64 = 1e-10;
+/// Tolerance of the limits of an optimisation, m.
+const LIMIT: f64 = 1e-8;
 
 fn model_of(text: &str) -> Model {
     parse(text, "clearance.toml").unwrap_or_else(|e| panic!("{e}\n{text}")).model
@@ -99,4 +101,310 @@ fn the_least_of_several_pairs_is_a_metric() {
     assert_near(of("c2.min"), 1.794967044519548, "c2");
     assert_near(of("r1.min"), 2.541030034433604, "r1");
     assert_near(of("all.min"), -0.2064275563667836, "all");
+}
+
+/// A knee whose coupler hits a screw, with the limits of the gallery's model.
+const GALLERY: &str = include_str!("../../../../models/knee.toml");
+
+#[test]
+fn a_limit_of_a_clearance_brings_shapes_apart() {
+    let file = parse(GALLERY, "knee.toml").unwrap_or_else(|e| panic!("{e}"));
+    let model = &file.model;
+    let limits = &model.optimization.as_ref().unwrap().limits;
+    assert_eq!((limits[0].least, limits[0].most), (Some(1.5e-3), None));
+    let analysis = Analysis::new(model).unwrap();
+    let touching = |c: &Clearances| c.pairs.iter().any(|pair| pair.least().unwrap().at.distance[0] < 0.0);
+    assert!(touching(&analysis.clearances(&[])));
+    let found = crate::searches::searched(&file, model.optimization.as_ref().unwrap());
+    let best = crate::searches::best(&found).found.as_ref().unwrap();
+    for pair in &analysis.clearances(&best.design).pairs {
+        let least = pair.least().unwrap().at.distance[0];
+        assert!(least > 1.5e-3 - LIMIT, "{:?}: {least}", pair.shapes);
+    }
+}
+
+/// Distances of the same model that is described in other words.
+#[test]
+fn what_must_not_matter_does_not() {
+    let reference = Analysis::new(&model_of(KNEE)).unwrap().clearances(&[]);
+    let coarse = KNEE.replace("steps = 20", "steps = 3");
+    let fine = KNEE.replace("steps = 20", "steps = 157");
+    let metres = KNEE
+        .replace("length = \"mm\"", "length = \"cm\"")
+        .replace("[0, 0]", "[0, 0]")
+        .replace("[14, 25]", "[1.4, 2.5]")
+        .replace("[78, 52]", "[7.8, 5.2]")
+        .replace("[66, -6]", "[6.6, -0.6]")
+        .replace("[22, 47.5, -2]", "[2.2, 4.75, -0.2]")
+        .replace("[-2, 40, -2]", "[-0.2, 4.0, -0.2]")
+        .replace(".y\", 7]", ".y\", 0.7]")
+        .replace("value = 4,", "value = 0.4,")
+        .replace("value = 3.5,", "value = 0.35,")
+        .replace("min = 1.5", "min = 0.15");
+    let swapped = KNEE.replace("[\"coupler_rod\", \"screw1\"]", "[\"screw1\", \"coupler_rod\"]");
+    let reversed = KNEE.replace("capsule = [\"B\", \"C\"]", "capsule = [\"C\", \"B\"]");
+    for (what, text) in
+        [("coarse", coarse), ("fine", fine), ("cm", metres), ("swapped", swapped), ("reversed", reversed)]
+    {
+        let model = model_of(&text);
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        for (a, b) in reference.pairs.iter().zip(&found.pairs) {
+            assert_eq!(a.minima.len(), b.minima.len(), "{what}");
+            for (m, n) in a.minima.iter().zip(&b.minima) {
+                assert_near(n.at.time, m.at.time, what);
+                assert!((n.at.distance[0] - m.at.distance[0]).abs() < 1e-13, "{what}");
+                for (x, y) in n.d.iter().zip(&m.d) {
+                    assert_near(*x, *y, what);
+                }
+            }
+            assert_eq!(a.contacts.len(), b.contacts.len(), "{what}");
+            for (m, n) in a.contacts.iter().zip(&b.contacts) {
+                assert_near(n.at.time, m.at.time, what);
+            }
+        }
+    }
+}
+
+/// A cube of 12 triangles, sides of 40.
+const CUBE: &str = "
+v -20 -20 -20
+v 20 -20 -20
+v 20 20 -20
+v -20 20 -20
+v -20 -20 20
+v 20 -20 20
+v 20 20 20
+v -20 20 20
+f 1 3 2
+f 1 4 3
+f 5 6 7
+f 5 7 8
+f 1 2 6
+f 1 6 5
+f 2 3 7
+f 2 7 6
+f 3 4 8
+f 3 8 7
+f 4 1 5
+f 4 5 8
+";
+
+/// A cube that turns about an axis through its centre, and a ball beside it.
+fn cube(axis: &Value, design: &Value, shape: &str) -> String {
+    let [x, y, z, r] = ["c_x", "c_y", "c_z", "r"].map(|key| number(&design[key]));
+    format!(
+        r#"
+name = "cube"
+units = {{ length = "mm", angle = "deg" }}
+bodies = {{ cube = {{ frame = {{ position = [0, 0, 0] }} }} }}
+parameters.r = {{ value = {r}, unit = "length" }}
+hardpoints = {{ O = [0, 0, 0], c = [{x}, {y}, {z}] }}
+joints.pivot = {{ type = "revolute", bodies = ["ground", "cube"], at = "O", axis = {axis} }}
+drivers.motor = {{ joint = "pivot", law = "360*t" }}
+shapes.ball = {{ body = "ground", sphere = "c", radius = "r" }}
+shapes.cube = {{ body = "cube", {shape} }}
+clearances.gap = {{ between = ["ball", "cube"] }}
+design.c = {{ move = "c", along = "xyz" }}
+time = {{ end = 1, steps = 40 }}
+"#
+    )
+}
+
+#[test]
+fn a_ball_against_a_closed_mesh_a_box_and_a_hull_is_that_of_the_published_data() {
+    let data: Value = serde_json::from_str(include_str!("cube.json")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
+    let corners: Vec<String> =
+        (0..8).map(|k| format!("{:?}", [k & 1, k >> 1 & 1, k >> 2 & 1].map(|side| 40 * side - 20))).collect();
+    let hull = format!("hull = [{}]", corners.join(", "));
+    for (name, case) in data["cases"].as_object().unwrap() {
+        for shape in ["mesh = \"cube.obj\"", "box = [40, 40, 40]", &hull] {
+            let path = folder.path().join("cube.toml");
+            std::fs::write(&path, cube(&case["axis"], &case["design"], shape)).unwrap();
+            let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+            let found = Analysis::new(&model).unwrap().clearances(&[]);
+            let pair = pair(&model, &found, "gap");
+            let what = format!("{name}, {shape}");
+            for row in case["curve"].as_array().unwrap() {
+                let at = &pair.curve[row[0].as_u64().unwrap() as usize];
+                assert_near(at.distance[0] * 1e3, number(&row[1]), &what);
+            }
+            let inside: Vec<_> = pair.minima.iter().filter(|m| m.place == MinimumPlace::Inside).collect();
+            // Minima of the key are those within its band; all local minima are found.
+            for expected in case["minima"].as_array().unwrap() {
+                let time = number(&expected["t"]);
+                let minimum = inside
+                    .iter()
+                    .min_by(|a, b| (a.at.time - time).abs().total_cmp(&(b.at.time - time).abs()))
+                    .unwrap();
+                assert_near(minimum.at.time, time, &what);
+                assert_near(minimum.at.distance[0] * 1e3, number(&expected["value"]), &what);
+                assert_eq!(minimum.is_kink, expected["kink"] == true, "{what}");
+                for variable in ["c_x", "c_y", "c_z", "r"] {
+                    let k = model.variable(variable).unwrap().0;
+                    assert_near(
+                        minimum.d[k],
+                        number(&expected["by"][variable]),
+                        &format!("{what} by {variable}"),
+                    );
+                }
+            }
+            let contacts = case["contacts"].as_array().unwrap();
+            assert_eq!(pair.contacts.len(), contacts.len(), "{what}");
+            for (contact, expected) in pair.contacts.iter().zip(contacts) {
+                assert_near(contact.at.time, number(&expected["t"]), &what);
+                for variable in ["c_x", "c_y", "c_z", "r"] {
+                    let k = model.variable(variable).unwrap().0;
+                    let expected = number(&expected["by"][variable]);
+                    assert_near(contact.d[k] * 1e-3, expected, &format!("{what} by {variable}"));
+                }
+            }
+        }
+    }
+}
+
+/// Shapes of every kind on a body (`m_`), and of every kind on ground (`g_`).
+const SHAPES: [(&str, &str, &str); 9] = [
+    ("sphere", "sphere = \"p\", radius = \"r\"", "sphere = \"q\", radius = \"s\""),
+    (
+        "capsule",
+        "capsule = [\"p\", \"p2\"], radius = \"r\"",
+        "capsule = [\"q\", [70, 180, 95]], radius = \"s\"",
+    ),
+    (
+        "ring",
+        "ring = \"p\", axis = [1, 2, 3], radius = 30, round = \"r\"",
+        "ring = \"q\", axis = [1, -2, 1], radius = \"w\", round = 3",
+    ),
+    (
+        "cylinder",
+        "cylinder = [\"p\", \"p2\"], radius = 25, round = 2",
+        "cylinder = [\"q\", [70, 180, 95]], radius = \"w\", round = \"s\"",
+    ),
+    ("wheel", "wheel = \"m\", width = 24, round = \"r\"", "wheel = \"g\", width = \"w\", round = \"s\""),
+    ("plane", "plane = \"p\", normal = [0.1, 1, 0.2]", "plane = [100, 400, 0], normal = [0.2, -1, 0.1]"),
+    (
+        "box",
+        "box = [30, 20, 14], frame = { position = [100, 10, 5], cardan = [20, 30, 40] }",
+        "box = [20, 40, 30], frame = { position = [93, 200, 50] }, round = \"s\"",
+    ),
+    (
+        "hull",
+        "hull = [\"p\", \"p2\", [90, -20, 10], [120, 15, -12]], round = 1",
+        "hull = [\"q\", [70, 180, 95], [90, 230, 10], [120, 215, 32]]",
+    ),
+    (
+        "mesh",
+        "mesh = { file = \"cube.obj\", frame = \"body\", scale = 0.5 }",
+        "mesh = { file = \"far.obj\" }, round = \"s\"",
+    ),
+];
+
+/// A body that turns about two axes, with shapes of all kinds against those of ground.
+fn battery() -> String {
+    let mut text = String::from(
+        r#"
+name = "battery of shapes"
+units = { length = "mm", angle = "deg" }
+bodies = { mid = {}, arm = { frame = { position = [100, 0, 0] } } }
+parameters.r = { value = 4, unit = "length" }
+parameters.s = { value = 2.5, unit = "length" }
+parameters.w = { value = 21, unit = "length" }
+hardpoints = { O = [0, 0, 0], M = [40, 5, 3], p = [100, 10, -4], p2 = [125, 22, 17], q = [85, 190, 40] }
+joints.one = { type = "revolute", bodies = ["ground", "mid"], at = "O", axis = [0.1, 0.2, 1] }
+joints.two = { type = "revolute", bodies = ["mid", "arm"], at = "M", axis = [1, 0.3, -0.1] }
+drivers.one = { joint = "one", law = "20*sin(2*t)" }
+drivers.two = { joint = "two", law = "15*t + 10*t^2" }
+wheels.m = { body = "arm", centre = "p", spin_axis = [0.3, 1, 0.2], radius = 33, side = "left" }
+wheels.g = { body = "ground", centre = "q", spin_axis = [0.2, 1, -0.3], radius = 35, side = "left" }
+design.O_x = { move = "O", along = "x" }
+design.M_z = { move = "M", along = "z" }
+design.p = { move = "p", along = "xyz" }
+design.p2_y = { move = "p2", along = "y" }
+design.q = { move = "q", along = "xyz" }
+time = { end = 1, steps = 6 }
+"#,
+    );
+    for (name, moving, fixed) in SHAPES {
+        let body = |body: &str| if name == "wheel" { String::new() } else { format!("body = \"{body}\", ") };
+        text += &format!("shapes.m_{name} = {{ {}{moving} }}\n", body("arm"));
+        text += &format!("shapes.g_{name} = {{ {}{fixed} }}\n", body("ground"));
+    }
+    for (moving, ..) in SHAPES {
+        for (fixed, ..) in SHAPES {
+            if moving != "plane" || fixed != "plane" {
+                text += &format!(
+                    "clearances.{moving}_{fixed} = {{ between = [\"m_{moving}\", \"g_{fixed}\"] }}\n"
+                );
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn sensitivities_of_every_pair_of_shapes_are_verified() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
+    let far = CUBE.replace("v -20", "v 70").replace("v 20", "v 105");
+    let far: String = far
+        .lines()
+        .map(|line| match line.strip_prefix("v ") {
+            Some(at) => {
+                let at: Vec<f64> = at.split(' ').map(|x| x.parse().unwrap()).collect();
+                // A skewed block beside the arm.
+                format!(
+                    "v {} {} {}\n",
+                    at[0] + 0.2 * at[1],
+                    190.0 + at[1] + 0.1 * at[2],
+                    40.0 + at[2] - 0.3 * at[1]
+                )
+            }
+            None => format!("{line}\n"),
+        })
+        .collect();
+    std::fs::write(folder.path().join("far.obj"), far).unwrap();
+    let path = folder.path().join("battery.toml");
+    std::fs::write(&path, battery()).unwrap();
+    let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+    let solution = Analysis::new(&model).unwrap().run();
+    for (m, measure) in model.measures.iter().enumerate() {
+        for k in 0..solution.measured.len() {
+            let [value, rate, _] = solution.measured.value(k, m);
+            assert!(value > 0.02 && rate.is_finite(), "{}: {value} {rate} at {k}", measure.name);
+        }
+    }
+    crate::equilibrium::verify_all(&model);
+}
+
+/// Distances by formulas and those of an image in a mirror, moved and turned, agree.
+#[test]
+fn a_mirror_has_the_same_clearances() {
+    let text = r#"
+name = "both sides"
+units = { length = "mm", angle = "deg" }
+bodies = { left_arm = {} }
+hardpoints = { left_O = [0, 300, 0], left_p = [0, 500, 20], left_q = [50, 450, 200] }
+joints.left_pivot = { type = "revolute", bodies = ["ground", "left_arm"], at = "left_O", axis = [1, 0.2, 0] }
+drivers.left_motor = { joint = "left_pivot", law = "60*t" }
+shapes.left_rod = { body = "left_arm", capsule = ["left_O", "left_p"], radius = 10 }
+shapes.left_stop = { body = "ground", ring = "left_q", axis = [1, 0.3, 0.2], radius = 40, round = 4 }
+shapes.left_block = { body = "ground", box = [30, 20, 60], frame = { position = [60, 430, 150], cardan = [10, 20, 30] } }
+clearances.left_gap = { between = ["left_rod", "left_stop"], min = 2 }
+clearances.left_room = { between = ["left_rod", "left_block"] }
+mirror = { across = "y", names = { left = "right" } }
+design.left_q = { move = "left_q", along = "y" }
+time = { end = 1, steps = 20 }
+"#;
+    let model = model_of(text);
+    let found = Analysis::new(&model).unwrap().clearances(&[]);
+    for [left, right] in [["left_gap", "right_gap"], ["left_room", "right_room"]] {
+        let [left, right] = [left, right].map(|name| pair(&model, &found, name));
+        assert!(left.least().unwrap().at.distance[0].is_finite());
+        for (a, b) in left.curve.iter().zip(&right.curve) {
+            assert_near(a.distance[0] * 1e3, b.distance[0] * 1e3, "left and right");
+        }
+        assert_near(left.least().unwrap().at.time, right.least().unwrap().at.time, "left and right");
+    }
 }

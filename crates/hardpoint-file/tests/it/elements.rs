@@ -247,6 +247,22 @@ fn wheel_forces_follow_their_law() {
         assert!((road - expected).abs() < SAME * expected, "{road} {expected}");
     }
     assert!(values(&solution, "lift").iter().any(|x| x.abs() > 100.0));
+    // It is positive in its direction at a law of 1.
+    for (components, law, at_one) in [
+        ("outboard = -1000", "1 + t", 1000.0),
+        ("outboard = -1000", "-1 - t", -1000.0),
+        ("up = 4000\noutboard = -1000", "-1 - t", -4000.0_f64.hypot(1000.0)),
+        ("about_up = -70", "-1 - t", -70.0),
+    ] {
+        let pushed = pushed.replace("up = 4000\noutboard = -1000", components);
+        let pushed = pushed.replace("law = \"1 + t\"", &format!("law = \"{law}\""));
+        let file = parse(&pushed, "macpherson.toml").unwrap_or_else(|e| panic!("{e}\n{pushed}"));
+        let solution = solved(&file);
+        for (t, road) in solution.motion.times.iter().zip(values(&solution, "road")) {
+            let expected = (1.0 + t) * at_one;
+            assert!((road - expected).abs() < SAME * at_one.abs(), "{components} {law}: {road} {expected}");
+        }
+    }
 }
 
 #[test]

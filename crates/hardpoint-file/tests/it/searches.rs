@@ -40,7 +40,7 @@ fn searched_from(
     optimize(&file.model, &motions, &request, control)
 }
 
-fn searched(file: &ModelFile, asked: &OptimizationSettings) -> Optimization {
+pub(crate) fn searched(file: &ModelFile, asked: &OptimizationSettings) -> Optimization {
     searched_on(1, file, asked)
 }
 
@@ -48,7 +48,7 @@ fn asked(file: &ModelFile) -> OptimizationSettings {
     file.model.optimization.clone().expect("the file says what is wanted")
 }
 
-fn best(found: &Optimization) -> &SearchResult {
+pub(crate) fn best(found: &Optimization) -> &SearchResult {
     &found.searches[found.best.expect("something is found")]
 }
 

@@ -1,9 +1,10 @@
-//! Loads of a dataset: masses of parts, gravity, springs and dampers between points, bushings.
+//! Loads of a dataset: masses of parts, gravity, springs and dampers, bushings, forces by functions.
 
 use std::collections::BTreeSet;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
+use super::functions::ForceUnits;
 use super::{Reader, Statement};
 use crate::markers::ElementSource;
 use crate::mechanism::{Bushing, Force, ForceOn, GROUND, Spring};
@@ -46,6 +47,8 @@ const SYSTEMS: [(&str, &str, &str); 5] = [
     ("FPS", "SLUG", "POUND_FORCE"),
 ];
 
+/// Reason for a force without a unit.
+pub(super) const NO_UNIT: &str = "the file defines no known unit of force";
 /// Difference of unit vectors above which markers have different orientations; typed angles agree to about this.
 const ALIGNED: f64 = 1e-6;
 
@@ -89,12 +92,25 @@ impl Reader<'_> {
                     self.notes.taken("ACCGRAV", &s.label, Some(s.at));
                     done.insert((s.name.clone(), s.id.clone()));
                 }
-                ("SPRINGDAMPER", _, Some(unit)) if !s.flag("ROTATION") => {
+                ("SPRINGDAMPER", _, Some(unit)) if !s.flag("ROTATION") && !s.flag("ROTATIONAL") => {
                     self.spring(s, unit);
+                    done.insert((s.name.clone(), s.id.clone()));
+                }
+                ("SPRINGDAMPER", _, Some(unit)) => {
+                    self.turning_damper(s, ForceUnits { force: unit, metre });
                     done.insert((s.name.clone(), s.id.clone()));
                 }
                 ("BUSHING", _, Some(unit)) => {
                     self.bushing(s, unit, metre);
+                    done.insert((s.name.clone(), s.id.clone()));
+                }
+                ("SFORCE", ..) => {
+                    if self.given_force(s, force.map(|force| ForceUnits { force, metre })) {
+                        done.insert((s.name.clone(), s.id.clone()));
+                    }
+                }
+                ("SPRINGDAMPER" | "BUSHING", _, None) => {
+                    self.notes.refused(&s.name, &s.label, Some(s.at), NO_UNIT);
                     done.insert((s.name.clone(), s.id.clone()));
                 }
                 _ => {}
@@ -188,6 +204,18 @@ impl Reader<'_> {
             },
         });
         self.notes.taken("SPRINGDAMPER", &s.label, Some(s.at));
+    }
+
+    /// Reads a spring and damper about an axis. The moment on the part of marker I about z of marker J is
+    /// `-CT da/dt - KT (a - ANGLE) + TORQUE`.
+    fn turning_damper(&mut self, s: &Statement, units: ForceUnits) {
+        let Some(pair) = self.pair(s) else { return };
+        let mut first =
+            |key: &str| s.numbers(key, self.notes).and_then(|n| n.first().copied()).unwrap_or(0.0);
+        let [k, c, angle, torque] = ["KT", "CT", "ANGLE", "TORQUE"].map(&mut first);
+        if let Err(why) = self.turning_spring(s, pair, [torque + k * angle, -k, -c], units, &[]) {
+            self.notes.refused(&s.name, &s.label, Some(s.at), why);
+        }
     }
 
     /// Reads a bushing between two markers: along and about the axes of marker J, on the part of marker I, the force is

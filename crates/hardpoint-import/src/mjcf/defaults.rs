@@ -133,6 +133,7 @@ impl<'d> Reader<'d, '_> {
         let element = match node.tag_name().name() {
             "connect" | "weld" => "equality",
             "freejoint" => "",
+            "spatial" | "fixed" => "tendon",
             name => name,
         };
         let value = defaults.get(&(element.to_owned(), key.to_owned()))?;

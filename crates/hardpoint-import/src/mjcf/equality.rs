@@ -5,8 +5,9 @@ use hardpoint::space::{Pose, Quat, Vec3};
 use super::{CLOSED, Element, PointConnection, Reader};
 use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Spring};
+use crate::report::SourceSpan;
 use crate::turn::{home, none};
-use crate::{robot, xml};
+use crate::{robot, sampled, xml};
 
 impl<'d> Reader<'d, '_> {
     fn end(&mut self, element: Element<'d>, key: &str) -> Option<(usize, Pose)> {
@@ -296,6 +297,7 @@ impl<'d> Reader<'d, '_> {
                     }
                     self.tendons.insert(name.to_owned(), terms);
                     self.notes.taken("tendon", name, xml::at(text, node));
+                    self.sum_spring(element, name);
                     continue;
                 }
                 let sites: Vec<String> =
@@ -306,53 +308,190 @@ impl<'d> Reader<'d, '_> {
                     self.rods.insert(name.to_owned(), [from.clone(), to.clone()]);
                 }
                 // A tendon constrains nothing by itself; an equality may.
-                self.tendon_spring(element, name);
+                self.tendon_spring(element, name, &inner);
             }
         }
     }
 
-    /// Adds the spring and damper of a tendon between two sites, and reports its other properties.
-    fn tendon_spring(&mut self, element: Element<'d>, name: &str) {
+    /// Reads stiffness, damping and the two lengths between which a tendon has no force; reports other properties.
+    /// `None` if it has neither stiffness nor damping.
+    fn tendon_law(&mut self, element: Element<'d>, name: &str) -> Option<TendonLaw> {
         let (text, node) = element;
         let (kind, at) = (node.tag_name().name(), xml::at(text, node));
-        let list = |key: &str| node.attribute(key).and_then(xml::numbers).unwrap_or_default();
-        let first = |key: &str| list(key).first().copied().unwrap_or(0.0);
-        if node.has_attribute("range") && node.attribute("limited") != Some("false") {
+        let list = |reader: &Self, key: &str| {
+            let found = reader.attribute(element, key, None);
+            found.and_then(|(value, _)| xml::numbers(&value)).unwrap_or_default()
+        };
+        let is_limited = self.attribute(element, "limited", None).is_none_or(|(value, _)| value != "false");
+        if self.attribute(element, "range", None).is_some() && is_limited {
             self.notes.refused(kind, name, at, "its limits are not supported: drivers prescribe the motion");
         }
-        robot::friction(self.notes, name, at, first("frictionloss"));
-        let [stiffness, damping] = ["stiffness", "damping"].map(first);
-        if stiffness == 0.0 && damping == 0.0 {
-            self.notes.ignored(kind, at);
-            return;
-        }
-        let lengths = list("springlength");
-        let ends = self.rods.get(name).map(|ends| ends.each_ref().map(|site| self.sites.get(site).copied()));
-        let (Some([Some((i, from)), Some((j, to))]), true) = (ends, lengths.len() < 2 && are_two(ends))
-        else {
-            let why =
-                "only springs of tendons with one length between two sites on two bodies have an equivalent";
-            self.notes.refused(kind, name, at, why);
-            return;
+        robot::friction(self.notes, name, at, list(self, "frictionloss").first().copied().unwrap_or(0.0));
+        let mut coefficient = |key: &str| match list(self, key)[..] {
+            [x, ref rest @ ..] => {
+                if rest.iter().any(|x| *x != 0.0) {
+                    let why = format!("`{key}` that depends on the length is not supported");
+                    self.notes.refused(key, name, at, why);
+                }
+                x
+            }
+            [] => 0.0,
         };
+        let [stiffness, damping] = ["stiffness", "damping"].map(&mut coefficient);
+        if stiffness == 0.0 && damping == 0.0 {
+            return None;
+        }
         if !(stiffness >= 0.0 && damping >= 0.0) {
             self.notes.refused(kind, name, at, "stiffness and damping must not be negative");
-            return;
+            return None;
         }
+        // A negative length means the length at the reference of the springs.
+        let lengths = match list(self, "springlength")[..] {
+            [length] if length >= 0.0 => Some([length; 2]),
+            [low, high] if low >= 0.0 && high >= low => Some([low, high]),
+            _ => None,
+        };
+        Some(TendonLaw { stiffness, damping, lengths })
+    }
+
+    /// Adds the spring and damper of a tendon that is a multiple of one joint coordinate.
+    fn sum_spring(&mut self, element: Element<'d>, name: &str) {
+        let at = xml::at(element.0, element.1);
+        let Some(TendonLaw { stiffness, damping, lengths }) = self.tendon_law(element, name) else { return };
+        let terms = self.tendons.get(name).cloned().unwrap_or_default();
+        let [(coordinate, factor)] = terms[..] else {
+            let why = "springs of tendons that are sums of several joints have no equivalent";
+            self.notes.refused("fixed", name, at, why);
+            return;
+        };
+        let joint = self.joints.iter().find(|(_, c)| **c == coordinate).map(|(name, _)| name);
+        let [zero, reference] = joint.and_then(|j| self.references.get(j)).copied().unwrap_or_default();
+        let free = match lengths {
+            None => Some(reference),
+            Some([low, high]) if low == high && factor != 0.0 => Some(low / factor),
+            Some(_) => None,
+        };
+        let Some(free) = free else {
+            let why = "a spring about a joint without force between two lengths has no equivalent";
+            self.notes.refused("fixed", name, at, why);
+            return;
+        };
+        let source = ElementSource { kind: "fixed", name, at };
+        let square = factor * factor;
+        let law = [stiffness * square, damping * square, free - zero];
+        robot::joint_spring(&mut self.m, self.notes, source, Some(coordinate), law);
+    }
+
+    /// Returns the part of a tendon that changes its length, from one body to another, and the length of all other
+    /// parts.
+    fn changing_part(
+        &mut self,
+        path: &[Element<'d>],
+        at: Option<SourceSpan>,
+    ) -> Result<([(usize, Pose); 2], f64), Option<&'static str>> {
+        let mut sites = Vec::new();
+        for (_, node) in path {
+            match node.tag_name().name() {
+                "site" => {
+                    let site = node.attribute("site").unwrap_or_default();
+                    let Some(found) = self.sites.get(site).copied() else {
+                        let message = format!("the site `{site}` does not exist");
+                        self.notes.problem_with("HP0803", at, message, "use a site of the model");
+                        return Err(None);
+                    };
+                    sites.push(found);
+                }
+                "geom" => return Err(Some("springs of tendons that wrap around a geom have no equivalent")),
+                _ => return Err(Some("springs of tendons with pulleys have no equivalent")),
+            }
+        }
+        let (mut changing, mut rest) = (None, 0.0);
+        for pair in sites.windows(2) {
+            let [a, b] = [pair[0], pair[1]];
+            if a.0 == b.0 {
+                rest += (a.1.r - b.1.r).norm();
+            } else if changing.replace([a, b]).is_some() {
+                return Err(Some(
+                    "springs of tendons that lead over more than two bodies, or to and fro, have no equivalent",
+                ));
+            }
+        }
+        changing
+            .map(|ends| (ends, rest))
+            .ok_or(Some("its sites are on the same body, so that its length is constant"))
+    }
+
+    /// Adds the spring and damper of a tendon through sites.
+    fn tendon_spring(&mut self, element: Element<'d>, name: &str, path: &[Element<'d>]) {
+        let (text, node) = element;
+        let (kind, at) = (node.tag_name().name(), xml::at(text, node));
+        let Some(TendonLaw { stiffness, damping, lengths }) = self.tendon_law(element, name) else {
+            self.notes.ignored(kind, at);
+            return;
+        };
+        let ([(i, from), (j, to)], rest) = match self.changing_part(path, at) {
+            Ok(found) => found,
+            Err(why) => {
+                why.into_iter().for_each(|why| self.notes.refused(kind, name, at, why));
+                return;
+            }
+        };
         let source = ElementSource { kind, name, at };
-        // A negative length means the length in the design configuration.
-        let free = lengths.first().copied().filter(|l| *l > 0.0 && stiffness > 0.0);
+        let nominal = (to.r - from.r).norm();
+        let mut spring = Spring { stiffness, damping, ..Spring::default() };
+        let mut lost = None;
+        match lengths.map(|[low, high]| [low - rest, high - rest]) {
+            None if self.references.values().any(|[zero, reference]| zero != reference) => {
+                lost = Some(
+                    "it has no force in the design configuration, which differs from `springref` of joints"
+                        .to_owned(),
+                );
+            }
+            None => {}
+            Some([low, high]) if low == high && (low > 0.0 || stiffness == 0.0) => {
+                spring.free = (stiffness > 0.0).then_some(low);
+            }
+            Some([low, high]) if low == high => spring.preload = Some(stiffness * (nominal - low)),
+            Some([low, high]) => {
+                let tension = |x: f64| stiffness * ((x - high).max(0.0) - (low - x).max(0.0));
+                let to = 2.0 * nominal.max(high);
+                match sampled::sample(tension, [0.0, to], &[low, high]) {
+                    Ok(table) => {
+                        let free = if low > 0.0 { low } else { nominal };
+                        spring.stiffness = 0.0;
+                        spring.free = Some(free);
+                        spring.extension = table.points.iter().map(|[x, force]| [x - free, *force]).collect();
+                        lost = Some(table.report(to, "m"));
+                    }
+                    Err(x) => {
+                        self.notes.refused(
+                            kind,
+                            name,
+                            at,
+                            format!("its force has no value at a length of {x} m"),
+                        );
+                        return;
+                    }
+                }
+            }
+        }
         self.m.force(Force {
             name: name.to_owned(),
             note: source.note(self.notes),
             on: ForceOn::Points([(i, from.r), (j, to.r)]),
-            spring: Spring { stiffness, damping, free, ..Spring::default() },
+            spring,
         });
-        self.notes.taken(kind, name, at);
+        match lost {
+            Some(why) => self.notes.approximated(kind, name, at, why),
+            None => self.notes.taken(kind, name, at),
+        }
     }
 }
 
-/// Returns true if the two ends of a tendon are on two bodies.
-fn are_two(ends: Option<[Option<(usize, Pose)>; 2]>) -> bool {
-    matches!(ends, Some([Some((i, _)), Some((j, _))]) if i != j)
+/// Spring and damper of a tendon.
+struct TendonLaw {
+    stiffness: f64,
+    damping: f64,
+    /// Lengths between which it has no force, if the file defines them.
+    lengths: Option<[f64; 2]>,
 }

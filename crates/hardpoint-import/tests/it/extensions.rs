@@ -499,6 +499,72 @@ fn springs_of_tendons_pull() {
 }
 
 #[test]
+fn tendons_of_constant_further_parts_or_with_slack_are_springs() {
+    let model = |defaults: &str, joint: &str, tendon: &str| {
+        format!(
+            r#"<mujoco><option gravity="0 0 0"/><default>{defaults}</default><worldbody><site name="top" pos="0.5 0 1"/><site name="far" pos="0.5 0 3"/>
+            <geom name="drum" type="sphere" size="0.1"/><body name="a"><joint name="j" axis="0 1 0" {joint}/><inertial pos="0.5 0 0" mass="2"/>
+            <site name="end" pos="0.5 0 0"/><site name="middle" pos="0.25 0 0"/><body name="b" pos="0 1 0"><site name="other"/></body></body></worldbody>
+            <tendon>{tendon}</tendon></mujoco>"#
+        )
+    };
+    let path = r#"<site site="end"/><site site="top"/>"#;
+    let spatial = |law: &str, path: &str| format!(r#"<spatial name="s" {law}>{path}</spatial>"#);
+    let long = r#"<site site="middle"/><site site="end"/><site site="top"/><site site="far"/>"#;
+    let fixed = |law: &str| format!(r#"<fixed name="s" {law}><joint joint="j" coef="0.5"/></fixed>"#);
+    // At t = 0 the end is 1 m below the top and at rest; the moment about y is minus the force upwards times 0.5 m.
+    for (defaults, joint, tendon, moment, is_exact) in [
+        // From a class: 40 N/m over 0.25 m
+        (r#"<tendon stiffness="40"/>"#, "", spatial(r#"springlength="0.75""#, path), -0.5 * 10.0, true),
+        // 0.25 m and 2 m of it are constant.
+        ("", "", spatial(r#"stiffness="40" springlength="3""#, long), -0.5 * 10.0, true),
+        // Longer than its constant parts alone: without a positive free length
+        ("", "", spatial(r#"stiffness="40" springlength="2""#, long), -0.5 * 50.0, true),
+        // Slack between 0.5 and 0.9 m, and between 1.2 and 1.5 m
+        ("", "", spatial(r#"stiffness="40" springlength="0.5 0.9""#, path), -0.5 * 4.0, false),
+        ("", "", spatial(r#"stiffness="40" springlength="1.2 1.5""#, path), 0.5 * 8.0, false),
+        ("", "", spatial(r#"stiffness="40" springlength="0.8 1.2""#, path), 0.0, false),
+        // A multiple of the angle: 40 x 0.25 N m/rad over 0.3 / 0.5 rad, or over the reference of the spring
+        ("", "", fixed(r#"stiffness="40" springlength="0.3""#), 10.0 * 0.6, true),
+        ("", r#"ref="0.2" springref="0.5""#, fixed(r#"stiffness="40" springlength="0.3""#), 10.0 * 0.4, true),
+        ("", r#"ref="0.2" springref="0.5""#, fixed(r#"stiffness="40""#), 10.0 * 0.3, true),
+    ] {
+        let text =
+            model(defaults, joint, &tendon).replace("<mujoco>", r#"<mujoco><compiler angle="radian"/>"#);
+        let (imported, _) = read("m.xml", &text);
+        let approximated =
+            imported.report.of(ElementOutcome::Approximated).filter(|e| e.kind == "spatial").count();
+        assert_eq!(approximated, usize::from(!is_exact), "{tendon}: {}", imported.report);
+        let refused: Vec<_> = imported.report.of(ElementOutcome::Refused).collect();
+        assert!(refused.is_empty(), "{tendon}: {}", imported.report);
+        let (found, measured) = driver_torque(&imported.text);
+        let accepted = if is_exact { 1e-9 } else { 1e-3 * (f64::abs(moment) + 0.5) };
+        assert!((found + moment).abs() < accepted, "{tendon}: {found} instead of {}\n{measured}", -moment);
+    }
+    for (tendon, reason) in [
+        (spatial(r#"stiffness="40""#, &format!(r#"{path}<site site="other"/>"#)), "more than two bodies"),
+        (spatial(r#"stiffness="40""#, r#"<site site="end"/><geom geom="drum"/><site site="top"/>"#), "wrap"),
+        (
+            spatial(r#"stiffness="40""#, r#"<site site="end"/><pulley divisor="2"/><site site="top"/>"#),
+            "pulley",
+        ),
+        (spatial(r#"stiffness="40""#, r#"<site site="end"/><site site="middle"/>"#), "same body"),
+        (spatial(r#"stiffness="-40""#, path), "negative"),
+        (spatial(r#"stiffness="40 3""#, path), "depends on the length"),
+        (fixed(r#"stiffness="40" springlength="0.1 0.2""#), "between two lengths"),
+        (
+            r#"<fixed name="s" stiffness="4"><joint joint="j" coef="1"/><joint joint="j" coef="2"/></fixed>"#
+                .to_owned(),
+            "several joints",
+        ),
+    ] {
+        let (imported, _) = read("m.xml", &model("", "", &tendon));
+        let refused: Vec<_> = imported.report.of(ElementOutcome::Refused).collect();
+        assert!(refused.len() == 1 && refused[0].why.contains(reason), "{tendon}: {}", imported.report);
+    }
+}
+
+#[test]
 fn datasets_of_adams_bring_bushings() {
     // Marker 1 has its z axis along the global y axis; the bushing is 100 mm from the hinge, and its second marker
     // moves by 100 mm times the sine of the angle.
@@ -620,4 +686,124 @@ fn fixed_joints_assemble_separated_frames_in_every_format() {
     let (_, file) = read("m.urdf", urdf);
     let turned = Pose { rot: Mat3::about([1.0, 0.0, 0.0].into(), 0.3), r: [0.0, 0.0, 0.02].into() };
     assert!(off(&poses(&file, &["a", "b"]), [at([0.1, 0.0, 0.0]), turned]) < SAME);
+}
+
+/// Dataset of a block of 2 kg that slides along x, with further statements; its displacement is prescribed.
+fn slider(further: &str, x: &str) -> String {
+    format!(
+        "slider\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND\nPART/1, GROUND\n\
+         MARKER/1, PART=1, REULER=90D,90D,0D\nPART/2\nMARKER/2, PART=2, QP=200,0,0, REULER=90D,90D,0D\n\
+         JOINT/1, TRANSLATIONAL, I=2, J=1\nMOTION/1, TRANSLATIONAL, JOINT=1, FUNCTION=200+{x}\n{further}END\n"
+    )
+}
+
+/// Imported model and the driver forces at all output times.
+fn driver_forces(text: &str) -> (ImportedModel, Vec<[f64; 2]>) {
+    let (imported, _) = read("m.adm", text);
+    let measured =
+        format!("{}\n[measures.force]\ntype = \"driver_force\"\ndriver = \"MOTION_1\"\n", imported.text);
+    let file = hardpoint_file::parse(&measured, "m.toml").unwrap_or_else(|e| panic!("{e}\n{measured}"));
+    let run = Analysis::new(&file.model).unwrap().run();
+    let force = run.measured.index("force").unwrap();
+    let times = run.motion.times.iter().enumerate();
+    let values = times.map(|(k, t)| [*t, run.measured.value(k, force)[0]]).collect();
+    (imported, values)
+}
+
+#[test]
+fn datasets_of_adams_bring_stops() {
+    // A stop below 160 mm and one above 230 mm; the block moves 80 mm to both sides.
+    let stop = |exponent: f64, (at, rate): (&str, &str), damping: f64| {
+        format!(
+            "SFORCE/4, TRANSLATIONAL, I=2, J=1, FUNCTION=BISTOP({at}, {rate},\n, 160, 230, 30, {exponent}, {damping}, 0.1)\n"
+        )
+    };
+    let x = |t: f64| 200.0 + 80.0 * (6.0 * t).sin();
+    for (exponent, measured, damping) in [
+        (1.0, ("DM(2,1)", "VR(2,1)"), 0.0),
+        (1.5, ("DM(1,2)", "VR(1,2)"), 0.0),
+        (2.2, ("DZ(2,1,1)", "VZ(2,1,1,1)"), 5.0),
+    ] {
+        let text = slider(&stop(exponent, measured, damping), "80*SIN(6*TIME)");
+        let (imported, forces) = driver_forces(&text);
+        assert_eq!(imported.report.of(ElementOutcome::Ignored).count(), 0, "{}", imported.report);
+        assert_eq!(imported.report.of(ElementOutcome::Refused).count(), 0, "{}", imported.report);
+        let entries: Vec<_> = imported.report.of(ElementOutcome::Approximated).collect();
+        assert_eq!(entries.len(), 1, "{}", imported.report);
+        assert!(entries[0].why.contains("deviates by up to"), "{}", entries[0].why);
+        assert_eq!(entries[0].why.contains("damping"), damping > 0.0, "{}", entries[0].why);
+        let [mut below, mut above] = [0; 2];
+        for [t, force] in forces {
+            let x = x(t);
+            // The driver holds the block against the stop.
+            let wanted = 30.0 * ((x - 230.0).max(0.0).powf(exponent) - (160.0 - x).max(0.0).powf(exponent));
+            // A thousandth of the force, and of that 1 % of the range beyond the stop.
+            let accepted = 1.5e-3 * (wanted.abs() + 30.0 * 4.6_f64.powf(exponent));
+            assert!((force - wanted).abs() < accepted, "{exponent} at {x}: {force} instead of {wanted}");
+            below += u32::from(x < 159.0);
+            above += u32::from(x > 231.0);
+        }
+        assert!(below > 3 && above > 3);
+    }
+}
+
+#[test]
+fn forces_by_linear_functions_are_springs() {
+    // 7 N/mm without force at 150 mm, and 0.2 N s/mm.
+    let force = "SFORCE/4, TRANSLATION, I=2, J=1, FUNCTION=-7*(DM(2,1)-150) - 0.2*VR(2,1)\n";
+    let (imported, forces) = driver_forces(&slider(force, "40*TIME"));
+    assert_eq!(imported.report.of(ElementOutcome::Approximated).count(), 0, "{}", imported.report);
+    for [t, force] in forces {
+        let wanted = 7.0 * (50.0 + 40.0 * t) + 0.2 * 40.0;
+        assert!((force - wanted).abs() < 1e-9 * wanted, "{force} instead of {wanted}");
+    }
+    // A constant force of 25 N that separates them; the markers in reverse order.
+    let (_, forces) = driver_forces(&slider("SFORCE/4, TRANSLATION, I=1, J=2, FUNCTION=25\n", "40*TIME"));
+    assert!(forces.iter().all(|[_, force]| (force + 25.0).abs() < 1e-9), "{forces:?}");
+    // About the axis of a hinge, as a SPRINGDAMPER and as a function.
+    let hinge = |further: &str| {
+        format!(
+            "hinge\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1, REULER=0D,-90D,0D\n\
+             PART/2\nMARKER/23, PART=2, REULER=0D,-90D,20D\nJOINT/1, REVOLUTE, I=23, J=1\nMOTION/1, ROTATIONAL, JOINT=1, FUNCTION=0.4*TIME+20D\n\
+             {further}END\n"
+        )
+    };
+    for (further, nominal) in [
+        ("SPRINGDAMPER/4, I=23, J=1, ROTATION, KT=7E3, CT=600, ANGLE=10D, TORQUE=50\n", -1.0),
+        ("SFORCE/4, ROTATIONAL, I=23, J=1, FUNCTION=-7E3*(AZ(23,1)-10D) - 600*WZ(23,1,1) + 50\n", -1.0),
+        ("SFORCE/4, ROTATIONAL, I=1, J=23, FUNCTION=7E3*(AZ(23,1)-10D) + 600*WZ(23,1,1) - 50\n", -1.0),
+    ] {
+        let (imported, forces) = driver_forces(&hinge(further));
+        assert_eq!(imported.report.of(ElementOutcome::Refused).count(), 0, "{}", imported.report);
+        for [t, force] in forces {
+            let angle = 10_f64.to_radians() + 0.4 * t;
+            let wanted = nominal * (-7.0 * angle - 0.6 * 0.4 + 0.05);
+            assert!((force - wanted).abs() < 1e-9, "{further}{t}: {force} instead of {wanted}");
+        }
+    }
+}
+
+#[test]
+fn forces_without_equivalent_are_refused_with_their_reason() {
+    for (force, reason) in [
+        ("I=2, J=1, FUNCTION=USER(1,2)", "user"),
+        ("I=2, J=1, FUNCTION=5*TIME", "time"),
+        ("I=2, J=1, FUNCTION=7*DM(2,1)", "negative"),
+        ("I=2, J=1, FUNCTION=-7*DX(2,1,1)", "no translational joint"),
+        ("I=2, J=1, FUNCTION=-7*DM(2,5)", "its own markers"),
+        ("I=2, J=1, ACTIONONLY, FUNCTION=-7*DM(2,1)", "one part alone"),
+        ("I=2, J=1, FUNCTION=IMPACT(DM(2,1), VR(2,1), -3, 10, 1.5, 0, 1)", "no force"),
+        ("I=2, J=1, FUNCTION=1/(DM(2,1)-100)", "no value"),
+        ("I=2, J=3, FUNCTION=-7*DM(2,3)", "coincide"),
+    ] {
+        let force =
+            format!("MARKER/3, PART=1, QP=200,0,0\nMARKER/5, PART=1\nSFORCE/4, TRANSLATIONAL, {force}\n");
+        let (imported, _) = read("m.adm", &slider(&force, "40*TIME"));
+        let refused: Vec<_> = imported.report.of(ElementOutcome::Refused).collect();
+        assert!(refused.len() == 1 && refused[0].why.contains(reason), "{reason}: {}", imported.report);
+    }
+    let without = slider("SFORCE/4, TRANSLATIONAL, I=2, J=1, FUNCTION=-7*DM(2,1)\n", "40*TIME");
+    let (imported, _) = read("m.adm", &without.replace("FORCE=NEWTON, ", ""));
+    let refused: Vec<_> = imported.report.of(ElementOutcome::Refused).collect();
+    assert!(refused.len() == 1 && refused[0].why.contains("unit of force"), "{}", imported.report);
 }

@@ -114,6 +114,99 @@ fn masses_of_generic_bodies_turn_with_their_rotation() {
     }
 }
 
+/// Bushing data of Chrono.
+fn bushing(slide: f64, turn: f64, free: f64, damping: f64) -> String {
+    format!(
+        r#""Bushing Data": {{"Stiffness Linear": {slide}, "Stiffness Rotational": {turn}, "Damping Linear": {damping}, "Damping Rotational": 0,
+        "DOF": {{"Stiffness Linear": 0, "Damping Linear": 0, "Stiffness Rotational": {free}, "Damping Rotational": 0}}}},"#
+    )
+}
+
+#[test]
+fn bushings_of_chrono_deflect_where_chrono_has_them() {
+    let data = bushing(2e5, 900.0, 12.0, 0.0);
+    let (imported, _) = read("front.json", &leaning("", &data, ""));
+    let of = |fate| imported.report.of(fate).filter(|e| e.kind == "Bushing Data").count();
+    assert_eq!(of(ElementOutcome::Taken), 1, "{}", imported.report);
+    // The same with a bushing instead of the hinge, halfway between its pivots and along its axis.
+    let mut doc: DocumentMut = imported.text.parse().unwrap();
+    let point = |body: &str| format!("{{ body = \"{body}\", at = [0.0, 0.4, 0.2] }}");
+    let joints = doc["joints"].as_table_mut().unwrap();
+    assert!(joints.remove("upper_arm_pivot").is_some());
+    let forces = doc["forces"].as_table_mut().unwrap();
+    assert!(forces.remove("upper_arm_pivot_bushing").is_some());
+    doc["design"].as_table_mut().unwrap().clear();
+    let per_degree = |x: f64| x.to_radians();
+    let own = format!(
+        "[forces.own]\ntype = \"bushing\"\nfrom = {}\nto = {}\naxis = \"x\"\naxis2 = \"z\"\nx = 2e5\ny = 2e5\nz = 2e5\n\
+         about_x = {a}\nabout_y = {a}\nabout_z = {}\n",
+        point("ground"),
+        point("upper_arm"),
+        per_degree(12.0),
+        a = per_degree(900.0)
+    );
+    let load = "[forces.side]\ntype = \"wheel_force\"\nwheel = \"wheel\"\noutboard = 3\nforward = 2\nlaw = \"t\"\n\
+        [equilibrium]\n[time]\nend = 1\nsteps = 4\n";
+    let camber = |text: &str, further: &str| {
+        // Without the weights, whose deflections are larger
+        let text = text.replace("acceleration = 9.80665", "acceleration = 0");
+        let text =
+            text.split("[time]").next().unwrap_or_default().replace("law = \"0.06*sin(2*pi*t)\"", "law = 0");
+        let text = text.split("[cases").next().unwrap_or_default().to_owned();
+        measured(&text, &format!("{further}{load}"), "", &["wheel.camber", "wheel.toe"])
+    };
+    let [found, wanted] = [camber(&imported.text, ""), camber(&doc.to_string(), &own)];
+    for k in 0..2 {
+        let change = |of: &[Vec<f64>], n: usize| of[k][n] - of[k][0];
+        assert!(change(&wanted, 4).abs() > 1e-7, "{wanted:?}");
+        for n in 1..5 {
+            let [a, b] = [change(&found, n), change(&wanted, n)];
+            // Angles of the bushing are about 1e-5 rad, whose squares the matrix neglects.
+            assert!((a - b).abs() < 1e-4 * b.abs(), "{k} {n}: {a} instead of {b}");
+        }
+    }
+    // Damping is reported, and so are bushings that have no hinge or no stiffness.
+    for (arm, fate) in [
+        (bushing(2e5, 900.0, 12.0, 5.0), ElementOutcome::Approximated),
+        (bushing(2e5, 0.0, 12.0, 0.0), ElementOutcome::Refused),
+        (bushing(-2e5, 900.0, 12.0, 0.0), ElementOutcome::Refused),
+    ] {
+        let (imported, _) = read("front.json", &leaning("", &arm, ""));
+        let entries: Vec<_> = imported.report.entries.iter().filter(|e| e.kind == "Bushing Data").collect();
+        assert!(entries.len() == 1 && entries[0].fate == fate, "{}", imported.report);
+    }
+    let text = leaning("", "", "").replace("\"Tierod\": {", &format!("\"Tierod\": {{{data}"));
+    let (imported, _) = read("front.json", &text);
+    let refused: Vec<_> = imported.report.of(ElementOutcome::Refused).collect();
+    assert!(refused.iter().any(|e| e.kind == "Bushing Data" && e.name == "Tierod"), "{}", imported.report);
+}
+
+#[test]
+fn bushings_of_generic_joints_have_the_axes_of_the_joints() {
+    let text = std::fs::read_to_string(folder().join("chrono/generic.json")).unwrap();
+    let data = bushing(3e5, 700.0, 15.0, 0.0);
+    let joint = |kind: &str| {
+        text.replace(
+            "\"Type\": \"Spherical\", \"Mirrored\": true, \"Body1\": \"Upper Arm\"",
+            &format!("\"Type\": \"{kind}\", {data} \"Mirrored\": true, \"Body1\": \"Upper Arm\""),
+        )
+    };
+    for (kind, turns) in [("Spherical", [15.0; 3]), ("Universal", [15.0, 700.0, 15.0])] {
+        // A cross instead of the ball leaves no degree of freedom, which the check of the model reports.
+        let imported = hardpoint_import::import(joint(kind).as_bytes(), "g.json", &|_| None).unwrap();
+        let doc: DocumentMut = imported.text.parse().unwrap();
+        let of = |key: &str| number(&doc, &["forces", "Upper Ball_bushing", key]);
+        for (k, key) in ["x", "y", "z"].into_iter().enumerate() {
+            near(of(key), 3e5, key);
+            near(of(&format!("about_{key}")), f64::to_radians(turns[k]), key);
+        }
+    }
+    let (imported, _) = read("g.json", &joint("Point Plane"));
+    let refused: Vec<_> =
+        imported.report.of(ElementOutcome::Refused).filter(|e| e.kind == "Bushing Data").collect();
+    assert_eq!(refused.len(), 1, "{}", imported.report);
+}
+
 /// Values of measures at all output times of a case; `further` is appended to the text.
 fn measured(text: &str, further: &str, case: &str, names: &[&str]) -> Vec<Vec<f64>> {
     let text = format!("{text}\n{further}");
@@ -505,6 +598,6 @@ fn every_key_of_a_part_is_accounted_for() {
     let (imported, _) = read("front.json", &leaning("", arm, rest));
     let of = |fate| imported.report.of(fate).map(|e| e.kind.clone()).collect::<Vec<_>>();
     assert_eq!(of(ElementOutcome::NotUnderstood), ["Colour", "Turbo"]);
-    assert_eq!(of(ElementOutcome::Refused), ["Bushing Data", "Axle"]);
+    assert_eq!(of(ElementOutcome::Refused), ["Axle", "Bushing Data"]);
     assert_eq!(of(ElementOutcome::Ignored), ["Radius"]);
 }

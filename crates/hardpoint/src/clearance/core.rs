@@ -46,7 +46,8 @@ impl<T: Real> Circle<T> {
         Self { centre: self.centre + self.axis * by, ..*self }
     }
 
-    fn value(&self) -> Circle {
+    /// The plain numbers.
+    pub fn value(&self) -> Circle {
         Circle { centre: self.centre.value(), axis: self.axis.value(), radius: self.radius.value() }
     }
 }
@@ -68,7 +69,7 @@ impl<T: Real> Core<T> {
     }
 
     /// One of its features, and the distance by which the core extends beyond it: the radius of a cylinder beyond its
-    /// axis, otherwise 0.
+    /// axis, otherwise 0. What is no point, rim or cap is its line or circle.
     pub fn feature(&self, feature: Feature) -> (Placed<T>, T) {
         let zero = T::zero();
         match (self, feature) {
@@ -76,18 +77,11 @@ impl<T: Real> Core<T> {
             (Self::Segment([a, b]), Feature::Point(at)) => {
                 (Placed::Point((*b - *a).times_plus(T::constant(at), *a)), zero)
             }
-            (Self::Segment([a, b]), Feature::Line | Feature::Circle(_) | Feature::Face(_)) => {
-                (Placed::Line { from: *a, along: *b - *a }, zero)
-            }
+            (Self::Segment([a, b]), _) => (Placed::Line { from: *a, along: *b - *a }, zero),
             (Self::Circle(circle), Feature::Point(_)) => (Placed::Point(circle.centre), zero),
-            (Self::Circle(circle), Feature::Line | Feature::Circle(_) | Feature::Face(_)) => {
-                (Placed::Circle(*circle), zero)
-            }
+            (Self::Circle(circle), _) => (Placed::Circle(*circle), zero),
             (Self::Cylinder { middle, half_width }, Feature::Point(at)) => {
                 (Placed::Point(middle.moved(*half_width * at).centre), zero)
-            }
-            (Self::Cylinder { middle, .. }, Feature::Line) => {
-                (Placed::Line { from: middle.centre, along: middle.axis }, middle.radius)
             }
             (Self::Cylinder { middle, half_width }, Feature::Circle(side)) => {
                 (Placed::Circle(middle.moved(*half_width * side)), zero)
@@ -95,6 +89,9 @@ impl<T: Real> Core<T> {
             (Self::Cylinder { middle, half_width }, Feature::Face(side)) => {
                 let point = middle.moved(*half_width * side).centre;
                 (Placed::Face { point, normal: middle.axis * T::constant(side) }, zero)
+            }
+            (Self::Cylinder { middle, .. }, _) => {
+                (Placed::Line { from: middle.centre, along: middle.axis }, middle.radius)
             }
             (Self::HalfSpace { point, normal }, _) => (Placed::Face { point: *point, normal: *normal }, zero),
         }
@@ -111,5 +108,10 @@ impl Core {
             Self::Cylinder { middle, half_width } => (middle.centre, middle.radius.hypot(*half_width)),
             Self::HalfSpace { point, .. } => (*point, f64::INFINITY),
         }
+    }
+
+    /// Distance of a point; negative within a cylinder and behind a plane.
+    pub fn distance_from(&self, p: Vec3) -> f64 {
+        super::nearest::nearest(&Self::Point(p), self).distance
     }
 }

@@ -28,6 +28,12 @@ pub(crate) enum Feature {
     Circle(f64),
     /// The cap of a cylinder on this side, or the plane of a half-space.
     Face(f64),
+    /// A corner of a surface.
+    Vertex(u32),
+    /// The line of an edge of a surface, between two corners.
+    Edge([u32; 2]),
+    /// The plane of a facet of a surface.
+    Facet([u32; 3]),
 }
 
 /// A feature in global coordinates.
@@ -37,6 +43,18 @@ pub(crate) enum Placed<T> {
     Line { from: Vec3<T>, along: Vec3<T> },
     Circle(Circle<T>),
     Face { point: Vec3<T>, normal: Vec3<T> },
+}
+
+impl<T: Real> Placed<T> {
+    /// The plain numbers.
+    pub fn value(&self) -> Placed<f64> {
+        match self {
+            Self::Point(p) => Placed::Point(p.value()),
+            Self::Line { from, along } => Placed::Line { from: from.value(), along: along.value() },
+            Self::Circle(circle) => Placed::Circle(circle.value()),
+            Self::Face { point, normal } => Placed::Face { point: point.value(), normal: normal.value() },
+        }
+    }
 }
 
 /// Distance between two features; the nearest points are near `near`, which parameters are counted from.
@@ -116,12 +134,7 @@ impl<T: Real> Curve<T> {
         match self {
             Self::Line { from, along } => Curve::Line { from: from.value(), along: along.value() },
             Self::Circle { circle, x, y } => {
-                let plain = Circle {
-                    centre: circle.centre.value(),
-                    axis: circle.axis.value(),
-                    radius: circle.radius.value(),
-                };
-                Curve::Circle { circle: plain, x: x.value(), y: y.value() }
+                Curve::Circle { circle: circle.value(), x: x.value(), y: y.value() }
             }
         }
     }

@@ -5,13 +5,16 @@
 //! circle or a face. `nearest.rs` selects the features for plain numbers; `feature.rs` evaluates the distance between
 //! them over any number type, so that a clearance is a measure like all others.
 //!
-//! `docs/theory.md`, section 14.
+//! `docs/theory.md`, section 16.
 
 mod core;
 mod feature;
 mod nearest;
 mod placed;
 mod separation;
+mod surface;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use nearest::nearest;
 pub(crate) use placed::PlacedShapes;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::space::{Real, Vec3};
 
 use super::core::{Circle, Core};
-use super::feature::{Feature, PARALLEL, distance};
+use super::feature::{Feature, PARALLEL, Placed, distance};
 
 /// Where two cores are nearest.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +25,20 @@ pub(crate) struct Nearest {
 impl Nearest {
     /// The distance of the cores by the formula of these features.
     pub fn distance_of<T: Real>(&self, cores: [&Core<T>; 2]) -> T {
-        let [(a, less), (b, as_well)] = [0, 1].map(|k| cores[k].feature(self.features[k]));
+        self.distance_between([0, 1].map(|k| cores[k].feature(self.features[k])))
+    }
+
+    /// The same for features that are placed, each with the distance by which its core extends beyond it.
+    pub fn distance_between<T: Real>(&self, [(a, less), (b, as_well)]: [(Placed<T>, T); 2]) -> T {
         distance(&a, &b, self.points) * self.sign - less - as_well
+    }
+
+    /// With the sign by which the formula gives this distance: a formula between points or lines is never negative,
+    /// one of a facet is negative behind it.
+    pub fn signed(mut self, features: [(Placed<f64>, f64); 2]) -> Self {
+        self.sign = 1.0;
+        self.sign = if self.distance_between(features) * self.distance < 0.0 { -1.0 } else { 1.0 };
+        self
     }
 
     /// True if the cores meet, so that their distance does not say how deep they are in each other.
@@ -34,7 +46,7 @@ impl Nearest {
         self.sign > 0.0 && (self.points[1] - self.points[0]).norm() <= within
     }
 
-    fn reversed(self) -> Self {
+    pub(super) fn reversed(self) -> Self {
         let ([a, b], [p, q]) = (self.features, self.points);
         Self { features: [b, a], points: [q, p], ..self }
     }
@@ -65,11 +77,13 @@ pub(crate) fn nearest(a: &Core, b: &Core) -> Nearest {
             segment_and_cylinder(*ends, &Drum { middle: *middle, half_width: *half_width }).reversed()
         }
         (Core::Circle(circle), Core::Circle(other)) => {
-            circle_and(circle, Feature::Circle(0.0), &Core::Circle(*other))
+            along_circle(circle, Feature::Circle(0.0), |p| from_point(p, &Core::Circle(*other)))
         }
-        (Core::Circle(circle), Core::Cylinder { .. }) => circle_and(circle, Feature::Circle(0.0), b),
+        (Core::Circle(circle), Core::Cylinder { .. }) => {
+            along_circle(circle, Feature::Circle(0.0), |p| from_point(p, b))
+        }
         (Core::Cylinder { .. }, Core::Circle(circle)) => {
-            circle_and(circle, Feature::Circle(0.0), a).reversed()
+            along_circle(circle, Feature::Circle(0.0), |p| from_point(p, a)).reversed()
         }
         (Core::Cylinder { middle: p, half_width: w }, Core::Cylinder { middle: q, half_width: v }) => {
             cylinders([&Drum { middle: *p, half_width: *w }, &Drum { middle: *q, half_width: *v }])
@@ -77,7 +91,7 @@ pub(crate) fn nearest(a: &Core, b: &Core) -> Nearest {
     }
 }
 
-fn found(features: [Feature; 2], points: [Vec3; 2], distance: f64) -> Nearest {
+pub(super) fn found(features: [Feature; 2], points: [Vec3; 2], distance: f64) -> Nearest {
     Nearest { features, points, distance, sign: 1.0, is_parallel: false }
 }
 
@@ -192,7 +206,7 @@ fn of_circle(circle: &Circle, p: Vec3) -> Vec3 {
 }
 
 /// The nearest points of two segments.
-fn segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Nearest {
+pub(super) fn segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Nearest {
     let (e, f, from) = (b - a, d - c, c - a);
     let (ee, ff) = (e.dot(e), f.dot(f));
     let across = e.cross(f);
@@ -224,7 +238,7 @@ fn segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Nearest {
 }
 
 /// The nearest of several.
-fn nearer<const N: usize>(all: [Nearest; N]) -> Nearest {
+pub(super) fn nearer<const N: usize>(all: [Nearest; N]) -> Nearest {
     all.into_iter().reduce(|a, b| if b.distance < a.distance { b } else { a }).expect("there is one")
 }
 
@@ -269,7 +283,7 @@ fn segment_and_circle([a, b]: [Vec3; 2], circle: &Circle) -> Nearest {
 }
 
 /// Place in [0, 1] of the least value of a function that is sampled first; 0 and 1 are the same place of a periodic one.
-fn least_sampled(f: impl Fn(f64) -> f64, is_periodic: bool) -> f64 {
+pub(super) fn least_sampled(f: impl Fn(f64) -> f64, is_periodic: bool) -> f64 {
     let place = |k: usize| k as f64 / SAMPLES as f64;
     let samples: [f64; SAMPLES + 1] = std::array::from_fn(|k| f(place(k)));
     let around = |k: usize| {
@@ -302,8 +316,13 @@ fn least_sampled(f: impl Fn(f64) -> f64, is_periodic: bool) -> f64 {
     refined.reduce(|a, b| if b.0 < a.0 { b } else { a }).map_or(0.0, |(_, t)| t)
 }
 
+/// A solid cylinder, halfway between whose caps is this circle.
+pub(super) fn around_drum(middle: &Circle, half_width: f64) -> Drum {
+    Drum { middle: *middle, half_width }
+}
+
 /// A solid cylinder.
-struct Drum {
+pub(super) struct Drum {
     middle: Circle,
     half_width: f64,
 }
@@ -318,7 +337,7 @@ impl Drum {
     }
 
     /// Distance of a point, negative inside: a convex function of the point.
-    fn distance(&self, p: Vec3) -> f64 {
+    pub fn distance(&self, p: Vec3) -> f64 {
         let (z, rho, _) = self.cylindrical(p);
         let (above, beyond) = (z.abs() - self.half_width, rho - self.middle.radius);
         if above > 0.0 && beyond > 0.0 { above.hypot(beyond) } else { above.max(beyond) }
@@ -343,7 +362,7 @@ impl Drum {
 }
 
 /// The nearest points of a segment and a solid cylinder; of overlapping ones, the deepest point of the segment.
-fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
+pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
     let at = |t: f64| a + (b - a) * t;
     let depth = |t: f64| drum.distance(at(t));
     let mut t = least_within(depth, [0.0, 1.0]);
@@ -362,7 +381,11 @@ fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
         && match feature {
             Feature::Line => is_stationary([a, b], drum, t),
             Feature::Circle(_) => true,
-            Feature::Face(_) | Feature::Point(_) => false,
+            Feature::Face(_)
+            | Feature::Point(_)
+            | Feature::Vertex(_)
+            | Feature::Edge(_)
+            | Feature::Facet(_) => false,
         };
     let own = if slides { Feature::Line } else { Feature::Point(t) };
     Nearest { is_parallel, ..found([own, feature], [at(t), q], distance) }
@@ -377,26 +400,19 @@ fn is_stationary([a, b]: [Vec3; 2], drum: &Drum, t: f64) -> bool {
     !is_parallel && out.dot(e).abs() <= f64::EPSILON.sqrt() * 10.0 * rho.max(e.norm()) * e.norm()
 }
 
-/// The nearest points of a circle and a convex core or another circle.
-fn circle_and(circle: &Circle, itself: Feature, other: &Core) -> Nearest {
+/// The nearest points of a circle and something whose nearest point to a given one is known.
+pub(super) fn along_circle(circle: &Circle, itself: Feature, from: impl Fn(Vec3) -> Nearest) -> Nearest {
     let x = circle.axis.any_perpendicular();
     let y = circle.axis.cross(x);
     let at = |turn: f64| {
         let (sin, cos) = (turn * TAU).sin_cos();
         circle.centre + (x * cos + y * sin) * circle.radius
     };
-    let apart = |turn: f64| match other {
-        Core::Circle(other) => (of_circle(other, at(turn)) - at(turn)).norm(),
-        Core::Cylinder { middle, half_width } => {
-            Drum { middle: *middle, half_width: *half_width }.distance(at(turn))
-        }
-        Core::Point(_) | Core::Segment(_) | Core::HalfSpace { .. } => from_point(at(turn), other).distance,
-    };
-    let turn = least_sampled(apart, true);
-    let near = from_point(at(turn), other);
+    let apart = |turn: f64| from(at(turn)).distance;
+    let near = from(at(least_sampled(apart, true)));
     // Parallel circles and faces: all points of the circle are nearest.
-    let is_parallel =
-        (0..4).all(|k| (apart(f64::from(k) * 0.25) - near.distance).abs() <= PARALLEL * circle.radius);
+    let is_level = |k: u8| (apart(f64::from(k) * 0.25) - near.distance).abs() <= PARALLEL * circle.radius;
+    let is_parallel = (0..4).all(is_level);
     Nearest { features: [itself, near.features[1]], is_parallel, ..near }
 }
 
@@ -407,7 +423,7 @@ fn cylinders(drums: [&Drum; 2]) -> Nearest {
         let core = Core::Cylinder { middle: other.middle, half_width: other.half_width };
         [-1.0, 1.0].map(|side| {
             let rim = drums[of].middle.moved(drums[of].half_width * side);
-            circle_and(&rim, Feature::Circle(side), &core)
+            along_circle(&rim, Feature::Circle(side), |p| from_point(p, &core))
         })
     };
     let ([a, b], [c, d]) = (rims(0), rims(1));

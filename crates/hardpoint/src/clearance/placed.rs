@@ -1,11 +1,13 @@
 //! Shapes of a model at poses of its bodies, and the nearest pair of a clearance.
 
 use crate::design::{BodyFixed, ShapeGeometry};
-use crate::model::{BodyId, ClearanceId, Model, PointId, ShapeId, ShapeKind};
+use crate::model::{BodyId, ClearanceId, Model, PointId, ShapeId, ShapeKind, with_core};
 use crate::space::{Pose, Real, Vec3};
 
 use super::core::{Circle, Core};
+use super::feature::{Feature, Placed};
 use super::nearest::{Nearest, nearest};
+use super::surface::{View, core_and_surface, moved, surfaces};
 
 /// The shapes of a model where its bodies are.
 #[derive(Clone, Copy)]
@@ -26,16 +28,16 @@ impl<T: Real> PlacedShapes<'_, T> {
         self.poses[body.0].rot * axis
     }
 
-    /// Core of a shape, in global coordinates.
-    pub fn core(&self, shape: ShapeId) -> Core<T> {
+    /// Core of a shape, in global coordinates; `None` for a surface.
+    pub fn core(&self, shape: ShapeId) -> Option<Core<T>> {
         let ShapeGeometry { size, round, .. } = self.fixed.shapes[shape.0];
         let body = |p: PointId| self.model.points[p.0].body;
-        match self.model.shapes[shape.0].kind {
-            ShapeKind::Sphere { centre } => Core::Point(self.point(centre)),
+        Some(match &self.model.shapes[shape.0].kind {
+            ShapeKind::Sphere { centre } => Core::Point(self.point(*centre)),
             ShapeKind::Capsule { ends } => Core::Segment(ends.map(|p| self.point(p))),
             ShapeKind::Ring { centre, .. } => Core::Circle(Circle {
-                centre: self.point(centre),
-                axis: self.axis(shape, body(centre)),
+                centre: self.point(*centre),
+                axis: self.axis(shape, body(*centre)),
                 radius: size,
             }),
             ShapeKind::Cylinder { ends, .. } => {
@@ -58,9 +60,10 @@ impl<T: Real> PlacedShapes<'_, T> {
                 Core::Cylinder { middle, half_width: size * 0.5 - round }
             }
             ShapeKind::Plane { point, .. } => {
-                Core::HalfSpace { point: self.point(point), normal: self.axis(shape, body(point)) }
+                Core::HalfSpace { point: self.point(*point), normal: self.axis(shape, body(*point)) }
             }
-        }
+            ShapeKind::Hull { .. } | ShapeKind::Mesh { .. } => return None,
+        })
     }
 
     /// Radii around the cores of two shapes.
@@ -69,31 +72,126 @@ impl<T: Real> PlacedShapes<'_, T> {
         a + b
     }
 
+    /// A feature of a shape, and the distance by which the core extends beyond it.
+    fn feature(&self, shape: ShapeId, feature: Feature) -> (Placed<T>, T) {
+        let vertex = |k: u32| match &self.model.shapes[shape.0].kind {
+            ShapeKind::Hull { points, .. } => self.point(points[k as usize]),
+            ShapeKind::Mesh { body, surface } => {
+                self.poses[body.0].point(surface.vertices()[k as usize].spread())
+            }
+            with_core!() => unreachable!("only surfaces have vertices"),
+        };
+        let placed = match feature {
+            Feature::Vertex(k) => Placed::Point(vertex(k)),
+            Feature::Edge([a, b]) => Placed::Line { from: vertex(a), along: vertex(b) - vertex(a) },
+            Feature::Facet(corners) => {
+                let [a, b, c] = corners.map(vertex);
+                let normal = (b - a).cross(c - a);
+                Placed::Face { point: a, normal: normal * (T::one() / normal.norm()) }
+            }
+            Feature::Point(_) | Feature::Line | Feature::Circle(_) | Feature::Face(_) => {
+                let core = self.core(shape).expect("a surface has vertices, edges and facets");
+                return core.feature(feature);
+            }
+        };
+        (placed, T::zero())
+    }
+
+    /// A ball around a shape: centre and radius.
+    fn ball(&self, shape: ShapeId) -> (Vec3, f64) {
+        let round = self.fixed.shapes[shape.0].round.value();
+        let (centre, radius) = match &self.model.shapes[shape.0].kind {
+            ShapeKind::Mesh { body, surface } => {
+                let (centre, radius) = surface.ball();
+                (self.poses[body.0].value().point(centre), radius)
+            }
+            ShapeKind::Hull { points, facets } => {
+                let points = self.points(points);
+                View::Hull { points: &points, facets }.ball()
+            }
+            with_core!() => self.core(shape).expect("it is no surface").value().ball(),
+        };
+        (centre, radius + round)
+    }
+
+    fn points(&self, points: &[PointId]) -> Vec<Vec3> {
+        points.iter().map(|p| self.point(*p).value()).collect()
+    }
+
     /// Where two shapes are nearest, with the distance of the shapes.
     pub fn nearest(&self, shapes: [ShapeId; 2]) -> Nearest {
-        let [a, b] = shapes.map(|s| self.core(s).value());
-        let near = nearest(&a, &b);
+        let near = self.nearest_of_cores(shapes);
         Nearest { distance: near.distance - self.rounds(shapes).value(), ..near }
+    }
+
+    fn nearest_of_cores(&self, shapes: [ShapeId; 2]) -> Nearest {
+        let kinds = shapes.map(|s| &self.model.shapes[s.0].kind);
+        let cores = shapes.map(|s| self.core(s).map(|core| core.value()));
+        let corners = kinds.map(|kind| match kind {
+            ShapeKind::Hull { points, .. } => self.points(points),
+            ShapeKind::Mesh { .. } | with_core!() => Vec::new(),
+        });
+        // Surfaces in the frame in which their points are known, and that frame.
+        let views = [0, 1].map(|k| match kinds[k] {
+            ShapeKind::Mesh { body, surface } => Some((View::Mesh(surface), self.poses[body.0].value())),
+            ShapeKind::Hull { facets, .. } => {
+                Some((View::Hull { points: &corners[k], facets }, Pose::IDENTITY))
+            }
+            with_core!() => None,
+        });
+        let (near, frame) = match (cores, views) {
+            ([Some(a), Some(b)], _) => return nearest(&a, &b),
+            ([Some(core), _], [_, Some((view, frame))]) => {
+                (core_and_surface(&moved(&core, frame.inverse()), view), frame)
+            }
+            ([_, Some(core)], [Some((view, frame)), _]) => {
+                (core_and_surface(&moved(&core, frame.inverse()), view).reversed(), frame)
+            }
+            (_, [Some((a, frame)), Some((b, other))]) => {
+                (surfaces(a, b, frame.inverse().compose(other)), frame)
+            }
+            _ => unreachable!("a shape has a core or is a surface"),
+        };
+        let near = Nearest { points: near.points.map(|p| frame.point(p)), ..near };
+        let plain = |k: usize| {
+            let (placed, less) = self.feature(shapes[k], near.features[k]);
+            (placed.value(), less.value())
+        };
+        near.signed([plain(0), plain(1)])
     }
 
     /// Distance of two shapes between these features: that of their cores minus both radii.
     pub fn distance(&self, shapes: [ShapeId; 2], near: &Nearest) -> T {
-        let [a, b] = shapes.map(|s| self.core(s));
-        near.distance_of([&a, &b]) - self.rounds(shapes)
+        if !near.distance.is_finite() {
+            return T::constant(f64::NAN);
+        }
+        let features = [0, 1].map(|k| self.feature(shapes[k], near.features[k]));
+        near.distance_between(features) - self.rounds(shapes)
     }
 
     /// The pair of a clearance whose shapes are nearest, and where they are; `None` if it has no pairs.
     pub fn nearest_pair(&self, clearance: ClearanceId) -> Option<(usize, Nearest)> {
+        let pairs = &self.model.clearances[clearance.0].pairs;
+        if let [only] = &pairs[..] {
+            return Some((0, self.nearest(only.shapes)));
+        }
+        // By balls around both shapes, the nearest first: those farther apart than a distance that is known do not
+        // count.
+        let mut bounds: Vec<(f64, usize)> = pairs
+            .iter()
+            .enumerate()
+            .map(|(k, pair)| {
+                let [(p, r), (q, s)] = pair.shapes.map(|shape| self.ball(shape));
+                ((q - p).norm() - r - s, k)
+            })
+            .collect();
+        bounds.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut least: Option<(usize, Nearest)> = None;
-        for (k, pair) in self.model.clearances[clearance.0].pairs.iter().enumerate() {
-            // Farther apart than the nearest pair so far, by balls around both.
-            if let Some((_, near)) = &least {
-                let [(p, r), (q, s)] = pair.shapes.map(|shape| self.core(shape).value().ball());
-                if (q - p).norm() - r - s - self.rounds(pair.shapes).value() > near.distance {
-                    continue;
-                }
+        for (bound, k) in bounds {
+            if least.as_ref().is_some_and(|(_, found)| bound > found.distance) {
+                break;
             }
-            let near = self.nearest(pair.shapes);
+            let near = self.nearest(pairs[k].shapes);
             if least.as_ref().is_none_or(|(_, found)| near.distance < found.distance) {
                 least = Some((k, near));
             }

@@ -65,7 +65,12 @@ impl Direction {
         }
         (0..2).find_map(|of| match near.features[of] {
             Feature::Face(side) => Some(Self::Normal { of, side }),
-            Feature::Point(_) | Feature::Line | Feature::Circle(_) => None,
+            Feature::Point(_)
+            | Feature::Line
+            | Feature::Circle(_)
+            | Feature::Vertex(_)
+            | Feature::Edge(_)
+            | Feature::Facet(_) => None,
         })
     }
 }

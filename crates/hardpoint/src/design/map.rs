@@ -510,7 +510,11 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
             ShapeKind::Ring { radius: size, .. }
             | ShapeKind::Cylinder { radius: size, .. }
             | ShapeKind::Tyre { width: size, .. } => Some(size),
-            ShapeKind::Sphere { .. } | ShapeKind::Capsule { .. } | ShapeKind::Plane { .. } => None,
+            ShapeKind::Sphere { .. }
+            | ShapeKind::Capsule { .. }
+            | ShapeKind::Plane { .. }
+            | ShapeKind::Hull { .. }
+            | ShapeKind::Mesh { .. } => None,
         };
         let axis = shape.axis(self.design_map.model()).map(|(body, axis)| self.in_body(body, axis));
         ShapeGeometry { axis, size: number(size), round: number(shape.round) }

@@ -1,5 +1,7 @@
 //! Shapes and clearances as written.
 
+use crate::space::Vec3;
+
 use super::{DirectionDraft, NumberDraft, PointRef};
 
 /// A shape; see [`Shape`](crate::model::Shape).
@@ -59,6 +61,22 @@ pub enum BodyShapeKindDraft {
         point: PointRef,
         /// Normal, which points out of the half-space.
         normal: DirectionDraft,
+    },
+    /// The convex hull of points.
+    Hull {
+        /// The points, on one body.
+        points: Vec<PointRef>,
+    },
+    /// A surface of triangles.
+    Mesh {
+        /// The body's name.
+        body: String,
+        /// Corners, m.
+        vertices: Vec<Vec3>,
+        /// Triangles, by the numbers of their corners.
+        triangles: Vec<[u32; 3]>,
+        /// True if the corners are given in the body's frame, rather than global in the design configuration.
+        in_body: bool,
     },
 }
 

@@ -2,7 +2,7 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{ActsOn, Compliance, ForceProperties, Properties, WheelForce};
+use crate::model::element::{ActsOn, Compliance, Force, ForceProperties, Properties, WheelForce};
 use crate::model::{Dimension, ElementId, GROUND, Model, WheelPoint};
 use crate::space::{Real, Vec3, Wrench};
 
@@ -70,9 +70,13 @@ impl ForceFormula for WheelForce {
     }
 
     fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> T {
-        // A zero force has no derivative.
-        let (_, push, turn) = self.road(at, e);
-        if self.is_moment() { turn.norm() } else { push.norm() }
+        // Positive in the direction at a law of 1. Without components it has no derivative.
+        let of = |n: Option<Force>| at.or_zero(n.map(|n| n.0));
+        let full = match self.is_moment() {
+            true => at.or_zero(self.about_up.map(|n| n.0)).abs(),
+            false => Vec3::new(of(self.outboard), of(self.forward), of(self.up)).norm(),
+        };
+        full * at.laws[e.0]
     }
 
     fn deflections<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId, _: impl FnMut(T, T)) {}

@@ -171,11 +171,9 @@ impl<'a> LoadSolver<'a> {
         }
     }
 
-    /// Value of a given force or moment, with the sign of its law.
+    /// Value of a given force or moment, positive along its own direction.
     pub fn given(&self, element: ElementId) -> f64 {
-        let applied = self.equilibrium.applied();
-        // Of several components, the size is their norm.
-        applied.size(element).copysign(applied.laws[element.0])
+        self.equilibrium.applied().size(element)
     }
 
     /// Elements whose friction is not determined at this step, because redundant constraints share the normal force.

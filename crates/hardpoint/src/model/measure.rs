@@ -231,7 +231,8 @@ macro_rules! measures {
         moving(1),
         format!("{} of joint `{}`", part.words(), model.joints[joint.0].name);
 
-    /// Tension of a spring, force or moment of one on a joint's coordinate, size of any other force.
+    /// Tension of a spring, force or moment of one on a joint's coordinate, given force along its direction, otherwise
+    /// the size of the force.
     SpringForce "spring_force" [Polar, normal: false] {
         /// The force's name.
         force: String => ElementId,

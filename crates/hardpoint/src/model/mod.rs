@@ -44,6 +44,7 @@ pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, LimitTarget, OptimizationSettings};
 pub use page::{NamedDesign, Plot};
+pub(crate) use shape::with_core;
 pub use shape::{Clearance, ClearanceId, Shape, ShapeId, ShapeKind, ShapePair};
 pub use shared::SharedModel;
 pub(crate) use solid::about_centre;

@@ -1,5 +1,9 @@
 //! Shapes of bodies, and the clearances between them.
 
+use std::sync::Arc;
+
+use crate::space::Surface;
+
 use super::{BodyId, Direction, Length, Model, PointId, WheelId};
 
 /// A shape's place in [`Model::shapes`].
@@ -24,7 +28,7 @@ pub struct Shape {
 }
 
 /// Kind of a shape, with the numbers of its core.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ShapeKind {
     /// A ball.
     Sphere {
@@ -66,7 +70,34 @@ pub enum ShapeKind {
         /// Normal, which points out of the half-space.
         normal: Direction,
     },
+    /// The convex hull of points, such as a box.
+    Hull {
+        /// The points, on one body.
+        points: Vec<PointId>,
+        /// Triangles between them, in the design configuration, which face outward.
+        facets: Vec<[u32; 3]>,
+    },
+    /// A surface of triangles, which does not change with the design.
+    Mesh {
+        /// The body that carries it.
+        body: BodyId,
+        /// The surface in the frame of that body, m.
+        surface: Arc<Surface>,
+    },
 }
+
+/// Pattern of the shapes that have a core and no vertices.
+macro_rules! with_core {
+    () => {
+        ShapeKind::Sphere { .. }
+            | ShapeKind::Capsule { .. }
+            | ShapeKind::Ring { .. }
+            | ShapeKind::Cylinder { .. }
+            | ShapeKind::Tyre { .. }
+            | ShapeKind::Plane { .. }
+    };
+}
+pub(crate) use with_core;
 
 impl Shape {
     /// The shape's kind, as model files name it.
@@ -78,23 +109,25 @@ impl Shape {
             ShapeKind::Cylinder { .. } => "cylinder",
             ShapeKind::Tyre { .. } => "tyre",
             ShapeKind::Plane { .. } => "plane",
+            ShapeKind::Hull { .. } => "hull",
+            ShapeKind::Mesh { .. } => "mesh",
         }
     }
 
     /// The bodies that its points are fixed in: one, or of a rod that is only a joint those of both ends.
     pub fn bodies(&self, model: &Model) -> Vec<BodyId> {
         let body = |p: PointId| model.points[p.0].body;
-        match self.kind {
+        match &self.kind {
             ShapeKind::Sphere { centre: p }
             | ShapeKind::Ring { centre: p, .. }
-            | ShapeKind::Plane { point: p, .. } => {
-                vec![body(p)]
-            }
+            | ShapeKind::Plane { point: p, .. } => vec![body(*p)],
             ShapeKind::Tyre { wheel, .. } => vec![model.wheels[wheel.0].body],
             ShapeKind::Capsule { ends } | ShapeKind::Cylinder { ends, .. } => {
                 let [a, b] = ends.map(body);
                 if a == b { vec![a] } else { vec![a, b] }
             }
+            ShapeKind::Hull { points, .. } => vec![body(points[0])],
+            ShapeKind::Mesh { body, .. } => vec![*body],
         }
     }
 
@@ -108,7 +141,11 @@ impl Shape {
                 let wheel = &model.wheels[wheel.0];
                 Some((wheel.body, wheel.spin_axis))
             }
-            ShapeKind::Sphere { .. } | ShapeKind::Capsule { .. } | ShapeKind::Cylinder { .. } => None,
+            ShapeKind::Sphere { .. }
+            | ShapeKind::Capsule { .. }
+            | ShapeKind::Cylinder { .. }
+            | ShapeKind::Hull { .. }
+            | ShapeKind::Mesh { .. } => None,
         }
     }
 }

@@ -17,7 +17,7 @@ impl SpringTable {
     ///
     /// # Errors
     /// The end of a sentence, such as "has 1 point".
-    pub(crate) fn new(points: &[[f64; 2]]) -> Result<Self, String> {
+    pub fn new(points: &[[f64; 2]]) -> Result<Self, String> {
         if points.len() < 2 {
             return Err(format!("has {} of at least 2 points", points.len()));
         }
@@ -39,6 +39,11 @@ impl SpringTable {
     /// Points: deflection, m, and force, N, both in tension.
     pub fn points(&self) -> &[[f64; 2]] {
         &self.points
+    }
+
+    /// Force at a deflection.
+    pub fn force(&self, deflection: f64) -> f64 {
+        self.at(deflection)[0]
     }
 
     /// The force at a deflection, and its slope there.

@@ -60,6 +60,8 @@ pub struct ClearanceMinimum {
     pub at: ShapeDistance,
     /// Place in the motion.
     pub place: MinimumPlace,
+    /// True if the rate jumps there from negative to positive, since two features are equally near.
+    pub is_kink: bool,
     /// Derivative of the distance by every design variable; NaN for those that are not admissible.
     pub d: Vec<f64>,
 }
@@ -161,7 +163,8 @@ impl Analysis<'_> {
             times.sort_by(f64::total_cmp);
             times.dedup();
         }
-        let mut events: Vec<f64> = located.events.iter().map(|e| e.time).chain(own.iter().copied()).collect();
+        let of_events = located.events.iter().flat_map(|e| [e.time].into_iter().chain(e.kink));
+        let mut events: Vec<f64> = of_events.chain(own.iter().copied()).collect();
         events.sort_by(f64::total_cmp);
         events.dedup();
         let solution = self.motion_at(&events, design, true);
@@ -174,6 +177,7 @@ impl Analysis<'_> {
         self.at_times(times.to_vec()).solve(run)
     }
 
+    /// Results at the located times, of a motion that is solved at them.
     fn results(
         &self,
         design: &[f64],
@@ -194,9 +198,20 @@ impl Analysis<'_> {
             for event in located.events.iter().filter(|e| e.pair == p) {
                 let Some(k) = place(event.time) else { continue };
                 let at = samples[k];
-                let d = self.derivatives(design, *shapes, solution, k);
+                let mut d = self.derivatives(design, *shapes, solution, k);
+                // At a kink both sides change, and their intersection moves in time: the part of each is that with
+                // which the rate is zero.
+                let other = event.kink.and_then(place);
+                if let Some(k) = other {
+                    let rates = [at.distance[1], samples[k].distance[1]];
+                    let part = rates[1] / (rates[1] - rates[0]);
+                    let beside = self.derivatives(design, *shapes, solution, k);
+                    d.iter_mut().zip(beside).for_each(|(d, other)| *d = part * *d + (1.0 - part) * other);
+                }
                 match event.kind {
-                    EventKind::Minimum(place) => minima.push(ClearanceMinimum { at, place, d }),
+                    EventKind::Minimum(place) => {
+                        minima.push(ClearanceMinimum { at, place, is_kink: other.is_some(), d });
+                    }
                     EventKind::Contact(begins) => {
                         let rate = at.distance[1];
                         let rate = if rate.abs() > GRAZING * fastest { rate } else { f64::NAN };
@@ -298,10 +313,12 @@ impl<'m> Curves<'m> {
         let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| {
             (low.min(s.distance[0]), high.max(s.distance[0]))
         });
-        let mut event = |time: f64, kind: EventKind| located.events.push(Event { pair: p, time, kind });
+        let mut events: Vec<Event> = Vec::new();
+        let mut event = |time: f64, kind: EventKind| events.push(Event { pair: p, time, kink: None, kind });
         if high - low <= CONSTANT * self.size {
             located.constant[p] = true;
             event(times[0], EventKind::Minimum(MinimumPlace::Start));
+            located.events.extend(events);
             return;
         }
         let rates_known = samples.iter().all(|s| s.distance[1].is_finite());
@@ -324,7 +341,7 @@ impl<'m> Curves<'m> {
                 let [_, rate, acceleration] = samples[k].distance;
                 k > 0 && k < last && acceleration > 0.0 && rate.abs() <= LOCATED * span * acceleration
             };
-            let mut found: Vec<f64> = Vec::new();
+            let (mut found, mut kinks): (Vec<f64>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
             for k in (1..last).filter(|k| is_minimum(*k)) {
                 if found.last().is_none_or(|t| times[k] - t > SAME_TIME * span) {
                     found.push(times[k]);
@@ -349,9 +366,9 @@ impl<'m> Curves<'m> {
                         continue;
                     }
                     if narrow {
-                        // The acceleration jumps there: nothing is gained by further times.
-                        let nearest = if value(k) <= value(k + 1) { times[k] } else { times[k + 1] };
-                        found.push(nearest);
+                        // The rate jumps there: nothing is gained by further times.
+                        let [near, far] = if value(k) <= value(k + 1) { [k, k + 1] } else { [k + 1, k] };
+                        kinks.push([times[near], times[far]]);
                         continue;
                     }
                     add.push(t);
@@ -361,6 +378,9 @@ impl<'m> Curves<'m> {
                 }
             }
             found.into_iter().for_each(|t| event(t, EventKind::Minimum(MinimumPlace::Inside)));
+            let kind = EventKind::Minimum(MinimumPlace::Inside);
+            let of_kink = |[time, other]: [f64; 2]| Event { pair: p, time, kink: Some(other), kind };
+            located.events.extend(kinks.into_iter().map(of_kink));
         } else {
             for k in 1..last {
                 if value(k) > value(k - 1) || value(k) > value(k + 1) {
@@ -400,6 +420,7 @@ impl<'m> Curves<'m> {
                 add.push(0.5 * (times[k] + times[k + 1]));
             }
         }
+        located.events.extend(events);
         located.add.extend(add);
     }
 }
@@ -423,6 +444,8 @@ struct Located {
 struct Event {
     pair: usize,
     time: f64,
+    /// At a kink, the time on its other side.
+    kink: Option<f64>,
     kind: EventKind,
 }
 

@@ -113,6 +113,11 @@ pub enum ProofFailure {
     Unresolved,
     /// A ring is nearest from the inside, where only points have a bound.
     WithinRing,
+    /// A shape is a hull or a mesh, which have no bounds by separation yet.
+    Surface {
+        /// The shape.
+        shape: ShapeId,
+    },
     /// The motion has no proven bounds there.
     Motion(TubeFailure),
 }
@@ -208,6 +213,13 @@ impl<'a> ClearanceProver<'a> {
         claim: f64,
         [start, end]: [f64; 2],
     ) -> ClearanceProof {
+        let is_surface = |s: &ShapeId| {
+            matches!(self.model.shapes[s.0].kind, ShapeKind::Hull { .. } | ShapeKind::Mesh { .. })
+        };
+        if let Some(shape) = shapes.into_iter().find(is_surface) {
+            let (bound, reason) = (f64::NEG_INFINITY, ProofFailure::Surface { shape });
+            return ClearanceProof::NotProved { from: start, to: end, bound, reason };
+        }
         let mut ends: Vec<f64> = self.motion.times().filter(|t| start < *t && *t < end).collect();
         ends.extend(self.motion.cuts(start, end));
         ends.extend([start, end]);
@@ -235,7 +247,9 @@ impl<'a> ClearanceProver<'a> {
             let middle = Interval::between(from, to).middle();
             let halves = from < middle && middle < to && to - from > SHORTEST * (end - start);
             let may_pass = match failed.1 {
-                ProofFailure::Nearer { .. } | ProofFailure::WithinRing => false,
+                ProofFailure::Nearer { .. } | ProofFailure::WithinRing | ProofFailure::Surface { .. } => {
+                    false
+                }
                 ProofFailure::Unresolved => true,
                 ProofFailure::Motion(reason) => reason.may_be_halved(),
             };
@@ -252,6 +266,9 @@ impl<'a> ClearanceProver<'a> {
         ClearanceProof::Proved { slabs, bounds }
     }
 }
+
+/// Surfaces are refused before.
+const HAS_CORE: &str = "a shape with a core";
 
 /// Proof of one claim.
 struct PairProof<'p, 'a> {
@@ -273,7 +290,7 @@ impl PairProof<'_, '_> {
     fn cores(&self, poses: &[Pose<TimeJet<Interval>>]) -> [EnclosedCore; 2] {
         let ClearanceProver { model, constants, .. } = &*self.prover;
         let placed = PlacedShapes { model, fixed: constants, poses };
-        self.shapes.map(|shape| placed.core(shape))
+        self.shapes.map(|shape| placed.core(shape).expect(HAS_CORE))
     }
 
     /// The shapes at one time.
@@ -294,7 +311,7 @@ impl PairProof<'_, '_> {
             .collect();
         let ClearanceProver { model, moving, .. } = &*self.prover;
         let placed = PlacedShapes { model, fixed: moving, poses: &plain };
-        let cores_at = self.shapes.map(|shape| placed.core(shape));
+        let cores_at = self.shapes.map(|shape| placed.core(shape).expect(HAS_CORE));
         let values = cores_at.each_ref().map(|core| core.value());
         let near = nearest(&values[0], &values[1]);
         let place = Rc::new(Place {

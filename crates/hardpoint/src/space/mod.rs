@@ -7,6 +7,7 @@ mod euler;
 mod mat3;
 mod pose;
 mod quat;
+mod surface;
 mod twist;
 mod vec3;
 
@@ -14,6 +15,7 @@ pub use euler::{Angles, euler_313_from_rotation, euler_rates, rotation_from_eule
 pub use mat3::Mat3;
 pub use pose::Pose;
 pub use quat::Quat;
+pub use surface::{Surface, TrianglePart, hull, nearest_of_triangle};
 pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 

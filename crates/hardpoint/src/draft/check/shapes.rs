@@ -1,5 +1,7 @@
 //! Checks of shapes and clearances.
 
+use std::sync::Arc;
+
 use crate::draft::{
     BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, DraftLocation, EndsDraft, NumberDraft,
     Section,
@@ -7,6 +9,8 @@ use crate::draft::{
 use crate::model::{
     BodyId, BodyPoint, Clearance, ClearanceId, Joint, Length, PointId, Shape, ShapeId, ShapeKind, ShapePair,
 };
+
+use crate::space::{Surface, Vec3, hull};
 
 use super::{Checker, Here, SAME_POINT, UNPLACED};
 
@@ -58,6 +62,19 @@ impl Checker<'_> {
                 let normal = self.line(normal, name, here, "normal");
                 ShapeKind::Plane { point: point?, normal: normal?.0 }
             }
+            BodyShapeKindDraft::Hull { points } => {
+                let found: Vec<_> = (points.iter().enumerate())
+                    .map(|(k, p)| self.point(p, name, here.item("hull", k)))
+                    .collect();
+                self.hull(name, found.into_iter().collect::<Option<_>>()?, here)?
+            }
+            BodyShapeKindDraft::Mesh { body, vertices, triangles, in_body } => {
+                let body = self.body(body, here.key("body"))?;
+                let frame = self.model.bodies[body.0].frame.inverse();
+                let local = |p: &Vec3| if *in_body { *p } else { frame.point(*p) };
+                let surface = Surface::new(vertices.iter().map(local).collect(), triangles.clone());
+                ShapeKind::Mesh { body, surface: Arc::new(surface) }
+            }
         };
         self.check_extent(name, &kind, round, here);
         (self.faults.len() == faults).then(|| Shape {
@@ -66,6 +83,18 @@ impl Checker<'_> {
             kind,
             round,
         })
+    }
+
+    /// The hull of points: HP0263 if they lie in one plane.
+    fn hull(&mut self, name: &str, points: Vec<PointId>, here: Here) -> Option<ShapeKind> {
+        let places: Option<Vec<Vec3>> =
+            points.iter().map(|p| self.position(self.model.points[p.0].at)).collect();
+        let Some(facets) = hull(&places?) else {
+            self.fault("HP0263", here.key("hull"), format!("the points of shape `{name}` lie in one plane"))
+                .help("give at least four points that do not, or a `mesh`");
+            return None;
+        };
+        Some(ShapeKind::Hull { points, facets })
     }
 
     fn length(&mut self, number: &NumberDraft, name: &str, here: Here, key: &'static str) -> Option<Length> {
@@ -122,17 +151,19 @@ impl Checker<'_> {
             apart.filter(|_| p.body == q.body)
         };
         // The size that must be positive, the largest rounding, and the name of the rounding.
-        let (size, most, rounding) = match *kind {
+        let (size, most, rounding) = match kind {
             ShapeKind::Sphere { .. } | ShapeKind::Capsule { .. } => (None, f64::INFINITY, "radius"),
-            ShapeKind::Plane { .. } => (None, f64::INFINITY, "round"),
-            ShapeKind::Ring { radius, .. } => (Some((value(radius), "radius")), value(radius), "round"),
+            ShapeKind::Plane { .. } | ShapeKind::Hull { .. } | ShapeKind::Mesh { .. } => {
+                (None, f64::INFINITY, "round")
+            }
+            ShapeKind::Ring { radius, .. } => (Some((value(*radius), "radius")), value(*radius), "round"),
             ShapeKind::Cylinder { radius, ends } => {
-                let half = 0.5 * length(ends).unwrap_or(f64::INFINITY);
-                (Some((value(radius), "radius")), value(radius).min(half), "round")
+                let half = 0.5 * length(*ends).unwrap_or(f64::INFINITY);
+                (Some((value(*radius), "radius")), value(*radius).min(half), "round")
             }
             ShapeKind::Tyre { width, wheel } => {
                 let radius = self.model.wheels[wheel.0].radius;
-                (Some((value(width), "width")), radius.min(0.5 * value(width)), "round")
+                (Some((value(*width), "width")), radius.min(0.5 * value(*width)), "round")
             }
         };
         let ends = match *kind {
@@ -141,7 +172,9 @@ impl Checker<'_> {
             ShapeKind::Sphere { .. }
             | ShapeKind::Ring { .. }
             | ShapeKind::Tyre { .. }
-            | ShapeKind::Plane { .. } => None,
+            | ShapeKind::Plane { .. }
+            | ShapeKind::Hull { .. }
+            | ShapeKind::Mesh { .. } => None,
         };
         let round = round.map_or(0.0, value);
         let coincide =

@@ -770,6 +770,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
             MeasureKindDraft::AngularVelocity { along, .. } => *along = along.map(|v| to.rot * v),
             MeasureKindDraft::Rate { .. }
             | MeasureKindDraft::Slope { .. }
+            | MeasureKindDraft::Clearance { .. }
             | MeasureKindDraft::Combination { .. } => {}
             // Of two bodies, whose frames are drawn along.
             MeasureKindDraft::Orientation { .. } => {}

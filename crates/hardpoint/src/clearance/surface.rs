@@ -1,0 +1,320 @@
+//! Nearest points of a surface of triangles and another core or surface, for plain numbers.
+//!
+//! The surface of a closed mesh and of a convex hull has an inside: points there have negative distances, and the
+//! distance of a core is that of its deepest point.
+
+use crate::space::{Pose, Surface, TrianglePart, Vec3, nearest_of_triangle};
+
+use super::core::{Circle, Core};
+use super::feature::Feature;
+use super::nearest::{
+    Nearest, along_circle, around_drum, found, least_sampled, nearer, segment_and_cylinder, segments,
+};
+
+/// A surface in the frame in which its points are given.
+#[derive(Clone, Copy)]
+pub(super) enum View<'a> {
+    /// A mesh, with a tree.
+    Mesh(&'a Surface),
+    /// A convex hull with few facets.
+    Hull { points: &'a [Vec3], facets: &'a [[u32; 3]] },
+}
+
+impl View<'_> {
+    fn triangle(&self, t: usize) -> ([Vec3; 3], [u32; 3]) {
+        match self {
+            Self::Mesh(surface) => (surface.corners(t), surface.triangles()[t]),
+            Self::Hull { points, facets } => (facets[t].map(|k| points[k as usize]), facets[t]),
+        }
+    }
+
+    fn points(&self) -> &[Vec3] {
+        match self {
+            Self::Mesh(surface) => surface.vertices(),
+            Self::Hull { points, .. } => points,
+        }
+    }
+
+    /// True if it has an inside.
+    fn is_closed(&self) -> bool {
+        match self {
+            Self::Mesh(surface) => surface.is_closed(),
+            Self::Hull { .. } => true,
+        }
+    }
+
+    /// A ball around it.
+    pub fn ball(&self) -> (Vec3, f64) {
+        match self {
+            Self::Mesh(surface) => surface.ball(),
+            Self::Hull { points, .. } => {
+                let centre = points.iter().fold(Vec3::ZERO, |sum, p| sum + *p) * (1.0 / points.len() as f64);
+                (centre, points.iter().map(|p| (*p - centre).norm()).fold(0.0, f64::max))
+            }
+        }
+    }
+
+    /// Visits the triangles that may be nearest; `each` returns their distances.
+    fn search(&self, apart: &dyn Fn(Vec3) -> f64, each: &mut dyn FnMut(usize) -> f64) {
+        match self {
+            Self::Mesh(surface) => surface.search(apart, each),
+            Self::Hull { facets, .. } => {
+                for t in 0..facets.len() {
+                    each(t);
+                }
+            }
+        }
+    }
+
+    /// The nearest point to a point; its distance is negative inside.
+    fn nearest_to(&self, p: Vec3) -> Nearest {
+        let own = Feature::Point(0.0);
+        if let Self::Hull { points, facets } = self {
+            // Inside a convex hull the nearest facet is the one whose plane is nearest.
+            let height = |f: &[u32; 3]| {
+                let [a, b, c] = f.map(|k| points[k as usize]);
+                let normal = (b - a).cross(c - a);
+                let length = normal.norm();
+                (normal.dot(p - a) / length, normal * (1.0 / length), *f)
+            };
+            let most = facets.iter().map(height).reduce(|a, b| if b.0 > a.0 { b } else { a });
+            if let Some((height, normal, facet)) = most.filter(|most| most.0 <= 0.0) {
+                return found([own, Feature::Facet(facet)], [p, p - normal * height], height);
+            }
+        }
+        let mut best: Option<(f64, Vec3, TrianglePart)> = None;
+        self.search(&|q| (q - p).norm(), &mut |t| {
+            let (corners, ids) = self.triangle(t);
+            let (q, part) = nearest_of_triangle(p, corners, ids);
+            let apart = (q - p).norm();
+            if best.is_none_or(|best| apart < best.0) {
+                best = Some((apart, q, part));
+            }
+            apart
+        });
+        let Some((apart, q, part)) = best else {
+            // The page has no meshes: nothing is known there.
+            return found([own, Feature::Vertex(0)], [p, p], f64::NAN);
+        };
+        let inside = matches!(self, Self::Mesh(surface) if surface.is_inside(p, part, q));
+        let feature = match part {
+            TrianglePart::Vertex(k) => Feature::Vertex(k),
+            TrianglePart::Edge(ends) => Feature::Edge(ends),
+            TrianglePart::Face(corners) => Feature::Facet(corners),
+        };
+        found([own, feature], [p, q], if inside { -apart } else { apart })
+    }
+
+    /// The nearest points of a triangle's edges and a core; `core_and_edge` is given both ends of an edge.
+    fn edges(&self, t: usize, each: impl Fn([Vec3; 2]) -> Nearest) -> Nearest {
+        let (corners, ids) = self.triangle(t);
+        nearer([0, 1, 2].map(|k| {
+            let next = (k + 1) % 3;
+            let near = each([corners[k], corners[next]]);
+            Nearest { features: [near.features[0], of_edge(near.features[1], [ids[k], ids[next]])], ..near }
+        }))
+    }
+}
+
+/// Feature of a surface, by that of one of its edges as a segment.
+fn of_edge(feature: Feature, ends: [u32; 2]) -> Feature {
+    match feature {
+        Feature::Point(at) if at <= 0.0 => Feature::Vertex(ends[0]),
+        Feature::Point(at) if at >= 1.0 => Feature::Vertex(ends[1]),
+        // A point within an edge, where both are parallel.
+        Feature::Point(_) | Feature::Line => Feature::Edge(ends),
+        other @ (Feature::Circle(_)
+        | Feature::Face(_)
+        | Feature::Vertex(_)
+        | Feature::Edge(_)
+        | Feature::Facet(_)) => other,
+    }
+}
+
+/// The nearest points of a core and a surface, both in the frame of the surface.
+pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
+    match core {
+        Core::Point(p) => view.nearest_to(*p),
+        Core::Segment(ends) => segment_and_surface(*ends, view),
+        Core::Circle(circle) => along_circle(circle, Feature::Circle(0.0), |p| view.nearest_to(p)),
+        Core::Cylinder { middle, half_width } => {
+            let rims = [-1.0, 1.0].map(|side| {
+                let rim = middle.moved(half_width * side);
+                along_circle(&rim, Feature::Circle(side), |p| view.nearest_to(p))
+            });
+            let drum = around_drum(middle, *half_width);
+            let mut best = nearer(rims);
+            view.search(&|q| drum.distance(q), &mut |t| {
+                let near = view.edges(t, |edge| segment_and_cylinder(edge, &drum).reversed());
+                if near.distance < best.distance {
+                    best = near;
+                }
+                near.distance
+            });
+            best
+        }
+        Core::HalfSpace { point, normal } => {
+            let height = |p: &Vec3| normal.dot(*p - *point);
+            let lowest = view.points().iter().enumerate().map(|(k, p)| (height(p), k, *p));
+            match lowest.reduce(|a, b| if b.0 < a.0 { b } else { a }) {
+                Some((height, k, p)) => {
+                    let features = [Feature::Face(1.0), Feature::Vertex(k as u32)];
+                    found(features, [p - *normal * height, p], height)
+                }
+                None => found([Feature::Face(1.0), Feature::Vertex(0)], [*point; 2], f64::NAN),
+            }
+        }
+    }
+}
+
+/// The nearest points of a segment and a surface; of one that is partly inside, its deepest point.
+fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
+    let at = |t: f64| a + (b - a) * t;
+    let ends = [0.0, 1.0].map(|t| {
+        let near = view.nearest_to(at(t));
+        Nearest { features: [Feature::Point(t), near.features[1]], ..near }
+    });
+    let [first, second] = &ends;
+    if !(first.distance.is_finite() && second.distance.is_finite()) {
+        return ends[0];
+    }
+    let mut pierces = view.is_closed() && ends.iter().any(|near| near.distance < 0.0);
+    let mut best = nearer(ends);
+    if !pierces {
+        let reach = Core::Segment([a, b]);
+        view.search(&|q| reach.distance_from(q), &mut |t| {
+            let (corners, _) = view.triangle(t);
+            if is_pierced([a, b], corners) {
+                pierces = true;
+                return 0.0;
+            }
+            let near = view.edges(t, |edge| segments([a, b], edge));
+            if near.distance < best.distance {
+                best = near;
+            }
+            near.distance
+        });
+    }
+    if !pierces {
+        return best;
+    }
+    if !view.is_closed() {
+        return Nearest { distance: 0.0, points: [best.points[0]; 2], ..best };
+    }
+    let t = least_sampled(|t| view.nearest_to(at(t)).distance, false);
+    let near = view.nearest_to(at(t));
+    Nearest { features: [Feature::Point(t), near.features[1]], ..near }
+}
+
+/// True if a segment goes through a triangle.
+fn is_pierced([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
+    let normal = (b - a).cross(c - a);
+    let (from, to) = (normal.dot(p - a), normal.dot(q - a));
+    if from * to > 0.0 || from == to {
+        return false;
+    }
+    let x = p + (q - p) * (from / (from - to));
+    let inside = |u: Vec3, v: Vec3| normal.dot((v - u).cross(x - u)) >= 0.0;
+    inside(a, b) && inside(b, c) && inside(c, a)
+}
+
+/// The nearest points of two surfaces; `place` moves points of the second into the frame of the first. Where they
+/// overlap the distance is 0.
+pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
+    let mut best = found([Feature::Vertex(0); 2], [Vec3::ZERO; 2], f64::INFINITY);
+    let mut overlap = None;
+    let mut each = |s: usize, t: usize| {
+        let ((p, ids), (q, others)) = (a.triangle(s), b.triangle(t));
+        let q = q.map(|q| place.point(q));
+        for k in 0..3 {
+            let (own, other) = ([p[k], p[(k + 1) % 3]], [q[k], q[(k + 1) % 3]]);
+            if is_pierced(own, q) || is_pierced(other, p) {
+                overlap = Some(own[0]);
+                return 0.0;
+            }
+        }
+        // Of edges, and of corners over faces.
+        let edges = |k: usize| {
+            let near = nearer([0, 1, 2].map(|n| {
+                let near = segments([p[k], p[(k + 1) % 3]], [q[n], q[(n + 1) % 3]]);
+                let [own, other] = near.features;
+                let features = [
+                    of_edge(own, [ids[k], ids[(k + 1) % 3]]),
+                    of_edge(other, [others[n], others[(n + 1) % 3]]),
+                ];
+                Nearest { features, ..near }
+            }));
+            near
+        };
+        let corner = |p: Vec3, id: u32, corners: [Vec3; 3], ids: [u32; 3]| {
+            let (q, part) = nearest_of_triangle(p, corners, ids);
+            let feature = match part {
+                TrianglePart::Vertex(k) => Feature::Vertex(k),
+                TrianglePart::Edge(ends) => Feature::Edge(ends),
+                TrianglePart::Face(corners) => Feature::Facet(corners),
+            };
+            found([Feature::Vertex(id), feature], [p, q], (q - p).norm())
+        };
+        let near = nearer([
+            nearer([0, 1, 2].map(edges)),
+            nearer([0, 1, 2].map(|k| corner(p[k], ids[k], q, others))),
+            nearer([0, 1, 2].map(|k| corner(q[k], others[k], p, ids))).reversed(),
+        ]);
+        if near.distance < best.distance {
+            best = near;
+        }
+        near.distance
+    };
+    match (a, b) {
+        (View::Mesh(p), View::Mesh(q)) => p.search_pairs(q, &|x| place.point(x), &mut each),
+        (View::Mesh(p), View::Hull { facets, .. }) => {
+            let (centre, radius) = b.ball();
+            let centre = place.point(centre);
+            p.search(&|x| (x - centre).norm() - radius, &mut |s| {
+                (0..facets.len()).map(|t| each(s, t)).fold(f64::INFINITY, f64::min)
+            });
+        }
+        (View::Hull { facets, .. }, View::Mesh(q)) => {
+            let (centre, radius) = a.ball();
+            q.search(&|x| (place.point(x) - centre).norm() - radius, &mut |t| {
+                (0..facets.len()).map(|s| each(s, t)).fold(f64::INFINITY, f64::min)
+            });
+        }
+        (View::Hull { facets: p, .. }, View::Hull { facets: q, .. }) => {
+            for s in 0..p.len() {
+                for t in 0..q.len() {
+                    each(s, t);
+                }
+            }
+        }
+    }
+    if let Some(p) = overlap {
+        return Nearest { points: [p; 2], distance: 0.0, ..best };
+    }
+    // One within the other.
+    let is_inside = |view: View<'_>, p: Option<Vec3>| {
+        view.is_closed() && p.is_some_and(|p| view.nearest_to(p).distance < 0.0)
+    };
+    let back = place.inverse();
+    let first = a.points().first().map(|p| back.point(*p));
+    if is_inside(a, b.points().first().map(|p| place.point(*p))) || is_inside(b, first) {
+        return Nearest { points: [best.points[0]; 2], distance: 0.0, ..best };
+    }
+    if best.distance.is_infinite() { Nearest { distance: f64::NAN, ..best } } else { best }
+}
+
+/// A core in another frame.
+pub(super) fn moved(core: &Core, pose: Pose) -> Core {
+    let circle = |c: &Circle| Circle { centre: pose.point(c.centre), axis: pose.rot * c.axis, ..*c };
+    match core {
+        Core::Point(p) => Core::Point(pose.point(*p)),
+        Core::Segment(ends) => Core::Segment(ends.map(|p| pose.point(p))),
+        Core::Circle(c) => Core::Circle(circle(c)),
+        Core::Cylinder { middle, half_width } => {
+            Core::Cylinder { middle: circle(middle), half_width: *half_width }
+        }
+        Core::HalfSpace { point, normal } => {
+            Core::HalfSpace { point: pose.point(*point), normal: pose.rot * *normal }
+        }
+    }
+}

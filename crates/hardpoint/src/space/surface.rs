@@ -1,0 +1,343 @@
+//! Surfaces of triangles, with a tree of balls for distances.
+
+use std::collections::BTreeMap;
+
+use super::Vec3;
+
+/// Triangles per leaf of the tree.
+const LEAF: usize = 2;
+
+/// A surface of triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    vertices: Vec<Vec3>,
+    /// In the order of the leaves.
+    triangles: Vec<[u32; 3]>,
+    nodes: Vec<Node>,
+    is_closed: bool,
+    /// Sums of the normals of the triangles at each vertex, weighted by their angles, and at each edge; empty for an
+    /// open surface.
+    vertex_normals: Vec<Vec3>,
+    edge_normals: BTreeMap<[u32; 2], Vec3>,
+}
+
+/// A ball around some triangles.
+#[derive(Clone, Debug, PartialEq)]
+struct Node {
+    centre: Vec3,
+    radius: f64,
+    /// Triangles below it.
+    triangles: [usize; 2],
+    /// Both halves; `None` for a leaf.
+    halves: Option<[usize; 2]>,
+}
+
+/// Part of a triangle: a corner, an edge between two of them, or the inside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TrianglePart {
+    /// The vertex of this number.
+    Vertex(u32),
+    /// The edge between two vertices.
+    Edge([u32; 2]),
+    /// The face of three vertices.
+    Face([u32; 3]),
+}
+
+impl Surface {
+    /// Surface of triangles between vertices. It is closed if every edge has as many triangles in both directions; then
+    /// its triangles are turned outward.
+    pub fn new(vertices: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Self {
+        let is_closed = !triangles.is_empty() && closed(&triangles);
+        if is_closed && volume(&vertices, &triangles) < 0.0 {
+            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        let mut nodes = Vec::new();
+        let count = triangles.len();
+        if count > 0 {
+            grow(&vertices, &mut triangles, 0, &mut nodes);
+        }
+        let mut surface = Self {
+            vertices,
+            triangles,
+            nodes,
+            is_closed,
+            vertex_normals: Vec::new(),
+            edge_normals: BTreeMap::new(),
+        };
+        if is_closed {
+            surface.add_normals();
+        }
+        surface
+    }
+
+    /// Corners of the triangles.
+    pub fn vertices(&self) -> &[Vec3] {
+        &self.vertices
+    }
+
+    /// The triangles, by the numbers of their vertices.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// True if it encloses a volume.
+    pub fn is_closed(&self) -> bool {
+        self.is_closed
+    }
+
+    /// A ball around it.
+    pub fn ball(&self) -> (Vec3, f64) {
+        self.nodes.first().map_or((Vec3::ZERO, 0.0), |node| (node.centre, node.radius))
+    }
+
+    /// Corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.triangles[triangle].map(|k| self.vertices[k as usize])
+    }
+
+    /// Visits the triangles that may be nearer to something than the nearest one so far. `apart` is the distance of
+    /// that thing from a point; `each` is given a triangle, and returns its distance.
+    pub fn search(&self, apart: &dyn Fn(Vec3) -> f64, each: &mut dyn FnMut(usize) -> f64) {
+        let mut least = f64::INFINITY;
+        let bound = |k: usize| apart(self.nodes[k].centre) - self.nodes[k].radius;
+        let mut open: Vec<(f64, usize)> = Vec::with_capacity(64);
+        open.extend((!self.nodes.is_empty()).then(|| (bound(0), 0)));
+        while let Some((at_least, k)) = open.pop() {
+            if at_least > least {
+                continue;
+            }
+            let node = &self.nodes[k];
+            match node.halves {
+                None => (node.triangles[0]..node.triangles[1]).for_each(|t| least = least.min(each(t))),
+                Some(halves) => {
+                    let mut bounds = halves.map(|half| (bound(half), half));
+                    if bounds[0].0 < bounds[1].0 {
+                        bounds.swap(0, 1);
+                    }
+                    open.extend(bounds.into_iter().filter(|(at_least, _)| *at_least <= least));
+                }
+            }
+        }
+    }
+
+    /// Visits the pairs of triangles of this and another surface that may be nearer than the nearest ones so far;
+    /// `place` moves points of the other one here.
+    pub fn search_pairs(
+        &self,
+        other: &Self,
+        place: &dyn Fn(Vec3) -> Vec3,
+        each: &mut dyn FnMut(usize, usize) -> f64,
+    ) {
+        if self.nodes.is_empty() || other.nodes.is_empty() {
+            return;
+        }
+        let centres: Vec<Vec3> = other.nodes.iter().map(|node| place(node.centre)).collect();
+        let bound = |a: usize, b: usize| {
+            (centres[b] - self.nodes[a].centre).norm() - self.nodes[a].radius - other.nodes[b].radius
+        };
+        let mut least = f64::INFINITY;
+        let mut open = vec![(bound(0, 0), 0, 0)];
+        while let Some((at_least, a, b)) = open.pop() {
+            if at_least > least {
+                continue;
+            }
+            let (p, q) = (&self.nodes[a], &other.nodes[b]);
+            // The larger one is divided.
+            let divided = match (p.halves, q.halves) {
+                (Some(halves), _) if q.halves.is_none() || p.radius >= q.radius => {
+                    halves.map(|half| (half, b))
+                }
+                (_, Some(halves)) => halves.map(|half| (a, half)),
+                (Some(halves), None) => halves.map(|half| (half, b)),
+                (None, None) => {
+                    for s in p.triangles[0]..p.triangles[1] {
+                        for t in q.triangles[0]..q.triangles[1] {
+                            least = least.min(each(s, t));
+                        }
+                    }
+                    continue;
+                }
+            };
+            let mut bounds = divided.map(|(a, b)| (bound(a, b), a, b));
+            if bounds[0].0 < bounds[1].0 {
+                bounds.swap(0, 1);
+            }
+            open.extend(bounds.into_iter().filter(|(at_least, ..)| *at_least <= least));
+        }
+    }
+
+    /// True if a point that is nearest to this part of a closed surface is inside.
+    pub fn is_inside(&self, p: Vec3, part: TrianglePart, nearest: Vec3) -> bool {
+        let normal = match part {
+            TrianglePart::Vertex(k) => self.vertex_normals.get(k as usize).copied(),
+            TrianglePart::Edge([a, b]) => self.edge_normals.get(&[a.min(b), a.max(b)]).copied(),
+            TrianglePart::Face([a, b, c]) => {
+                let [a, b, c] = [a, b, c].map(|k| self.vertices[k as usize]);
+                Some((b - a).cross(c - a))
+            }
+        };
+        self.is_closed && normal.is_some_and(|n| n.dot(p - nearest) < 0.0)
+    }
+
+    fn add_normals(&mut self) {
+        self.vertex_normals = vec![Vec3::ZERO; self.vertices.len()];
+        for corners in &self.triangles {
+            let [a, b, c] = corners.map(|k| self.vertices[k as usize]);
+            let Some(normal) = (b - a).cross(c - a).unit() else { continue };
+            for k in 0..3 {
+                let (here, next, other) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
+                let [at, p, q] = [here, next, other].map(|k| self.vertices[k as usize]);
+                let (u, v) = (p - at, q - at);
+                let angle = u.cross(v).norm().atan2(u.dot(v));
+                self.vertex_normals[here as usize] += normal * angle;
+                *self.edge_normals.entry([here.min(next), here.max(next)]).or_insert(Vec3::ZERO) += normal;
+            }
+        }
+    }
+}
+
+/// True if every edge has as many triangles in both directions.
+fn closed(triangles: &[[u32; 3]]) -> bool {
+    let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
+    for [a, b, c] in triangles.iter().copied() {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            *edges.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+        }
+    }
+    edges.values().all(|way| *way == 0)
+}
+
+fn volume(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+    let corner = |k: u32| vertices[k as usize] - vertices[triangles[0][0] as usize];
+    triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum()
+}
+
+/// Adds the node of triangles that begin with number `first`, and those below it; returns its index.
+fn grow(vertices: &[Vec3], triangles: &mut [[u32; 3]], first: usize, nodes: &mut Vec<Node>) -> usize {
+    let corners = || triangles.iter().flatten().map(|k| vertices[*k as usize]);
+    let (mut low, mut high) =
+        (Vec3::ZERO + Vec3::new(1.0, 1.0, 1.0) * f64::INFINITY, Vec3::new(1.0, 1.0, 1.0) * f64::NEG_INFINITY);
+    for p in corners() {
+        low = Vec3::new(low.x.min(p.x), low.y.min(p.y), low.z.min(p.z));
+        high = Vec3::new(high.x.max(p.x), high.y.max(p.y), high.z.max(p.z));
+    }
+    let centre = (low + high) * 0.5;
+    let radius = corners().map(|p| (p - centre).norm()).fold(0.0, f64::max);
+    let (k, count) = (nodes.len(), triangles.len());
+    nodes.push(Node { centre, radius, triangles: [first, first + count], halves: None });
+    if count > LEAF {
+        let extent = high - low;
+        let axis = (0..3).max_by(|a, b| extent[*a].total_cmp(&extent[*b])).unwrap_or(0);
+        let middle = |t: &[u32; 3]| t.iter().map(|k| vertices[*k as usize][axis]).sum::<f64>();
+        triangles.select_nth_unstable_by(count / 2, |a, b| middle(a).total_cmp(&middle(b)));
+        let (left, right) = triangles.split_at_mut(count / 2);
+        let left = grow(vertices, left, first, nodes);
+        let right = grow(vertices, right, first + count / 2, nodes);
+        nodes[k].halves = Some([left, right]);
+    }
+    k
+}
+
+/// The nearest point of a triangle to a point, and the part that it lies on.
+pub fn nearest_of_triangle(p: Vec3, [a, b, c]: [Vec3; 3], [i, j, k]: [u32; 3]) -> (Vec3, TrianglePart) {
+    let edge = |from: Vec3, to: Vec3, ends: [u32; 2]| {
+        let e = to - from;
+        let t = (e.dot(p - from) / e.dot(e)).clamp(0.0, 1.0);
+        let part = if t <= 0.0 {
+            TrianglePart::Vertex(ends[0])
+        } else if t >= 1.0 {
+            TrianglePart::Vertex(ends[1])
+        } else {
+            TrianglePart::Edge(ends)
+        };
+        (from + e * t, part)
+    };
+    let normal = (b - a).cross(c - a);
+    // Inside all three edges, seen along the normal.
+    let inside = |from: Vec3, to: Vec3| normal.dot((to - from).cross(p - from)) > 0.0;
+    if inside(a, b) && inside(b, c) && inside(c, a) {
+        let height = normal.dot(p - a) / normal.dot(normal);
+        return (p - normal * height, TrianglePart::Face([i, j, k]));
+    }
+    let edges = [edge(a, b, [i, j]), edge(b, c, [j, k]), edge(c, a, [k, i])];
+    let apart = |found: &(Vec3, TrianglePart)| (found.0 - p).norm();
+    edges.into_iter().reduce(|a, b| if apart(&b) < apart(&a) { b } else { a }).expect("three edges")
+}
+
+/// Facets of the convex hull of points, as triangles that face outward; `None` if the points lie in one plane. Several
+/// triangles may cover the same facet of more than three points.
+pub fn hull(points: &[Vec3]) -> Option<Vec<[u32; 3]>> {
+    let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
+    let within = FLAT * size;
+    let mut found = Vec::new();
+    let count = points.len() as u32;
+    for i in 0..count {
+        for j in i + 1..count {
+            for k in j + 1..count {
+                let [a, b, c] = [i, j, k].map(|n| points[n as usize]);
+                let Some(normal) = (b - a).cross(c - a).unit() else { continue };
+                let heights = || points.iter().map(|p| normal.dot(*p - a));
+                let (most, least) = (heights().fold(0.0, f64::max), heights().fold(0.0, f64::min));
+                if most <= within && least < -within {
+                    found.push([i, j, k]);
+                } else if least >= -within && most > within {
+                    found.push([i, k, j]);
+                }
+            }
+        }
+    }
+    (!found.is_empty()).then_some(found)
+}
+
+/// Distance from a plane, as a fraction of the extent of points, below which they lie in it.
+const FLAT: f64 = 1e-9;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cube() -> Surface {
+        let at = |k: u32| Vec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2 & 1)) * 2.0;
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        Surface::new((0..8).map(at).collect(), triangles)
+    }
+
+    #[test]
+    fn a_cube_is_closed_and_its_points_are_inside() {
+        let cube = cube();
+        assert!(cube.is_closed());
+        for (p, expected) in [
+            (Vec3::new(1.0, 1.0, 0.3), -0.3),
+            (Vec3::new(1.0, 1.0, 2.5), 0.5),
+            (Vec3::new(3.0, 3.0, 1.0), 2.0_f64.sqrt()),
+            (Vec3::new(-1.0, -1.0, -1.0), 3.0_f64.sqrt()),
+        ] {
+            let mut best = (f64::INFINITY, Vec3::ZERO, TrianglePart::Vertex(0));
+            cube.search(&|q| (q - p).norm(), &mut |t| {
+                let (q, part) = nearest_of_triangle(p, cube.corners(t), cube.triangles()[t]);
+                if (q - p).norm() < best.0 {
+                    best = ((q - p).norm(), q, part);
+                }
+                (q - p).norm()
+            });
+            let sign = if cube.is_inside(p, best.2, best.1) { -1.0 } else { 1.0 };
+            assert!((sign * best.0 - expected).abs() < 1e-14, "{p:?}: {best:?}");
+        }
+    }
+
+    #[test]
+    fn the_hull_of_a_cube_has_its_faces() {
+        let cube = cube();
+        let inner = Vec3::new(0.7, 1.1, 0.9);
+        let points: Vec<Vec3> = cube.vertices().iter().copied().chain([inner]).collect();
+        let facets = hull(&points).unwrap();
+        assert!(facets.iter().flatten().all(|k| *k < 8));
+        for [a, b, c] in facets.iter().map(|f| f.map(|k| points[k as usize])) {
+            assert!((b - a).cross(c - a).dot(inner - a) < 0.0);
+        }
+        // Four triangles of each face.
+        assert_eq!(facets.len(), 24);
+        assert_eq!(hull(&points[..4]), None);
+    }
+}
