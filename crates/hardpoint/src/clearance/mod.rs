@@ -11,8 +11,11 @@ mod core;
 mod feature;
 mod nearest;
 mod placed;
+mod separation;
 mod surface;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use nearest::nearest;
 pub(crate) use placed::PlacedShapes;
+pub(crate) use separation::{Direction, EnclosedCore, direction_of, lower_bound, separations};

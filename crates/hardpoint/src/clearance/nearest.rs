@@ -24,7 +24,6 @@ pub(crate) struct Nearest {
 
 impl Nearest {
     /// The distance of the cores by the formula of these features.
-    #[cfg(test)]
     pub fn distance_of<T: Real>(&self, cores: [&Core<T>; 2]) -> T {
         self.distance_between([0, 1].map(|k| cores[k].feature(self.features[k])))
     }

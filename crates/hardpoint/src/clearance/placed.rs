@@ -67,7 +67,7 @@ impl<T: Real> PlacedShapes<'_, T> {
     }
 
     /// Radii around the cores of two shapes.
-    fn rounds(&self, shapes: [ShapeId; 2]) -> T {
+    pub fn rounds(&self, shapes: [ShapeId; 2]) -> T {
         let [a, b] = shapes.map(|s| self.fixed.shapes[s.0].round);
         a + b
     }

@@ -31,10 +31,7 @@ fn sine_of_difference<T: Real>([s, c]: [T; 2], target: T) -> T {
 /// Angle with this sine and cosine (up to a common factor) that is nearest to `near`, rad.
 #[inline(never)]
 fn unwrapped<T: Real>([s, c]: [T; 2], near: T) -> T {
-    const TURN: f64 = 2.0 * std::f64::consts::PI;
-    // angle + 2 pi k, the nearest to `near`
-    let angle = s.atan2(c);
-    angle + ((near - angle) * (1.0 / TURN)).round() * TURN
+    s.angle_near(c, near)
 }
 
 /// Angle about z_i nearest to `near`, rad.

@@ -18,11 +18,13 @@
 //! Derivatives are propagated as [jets](crate::number::Jet), so they carry rounding error only, no step size; `abs`,
 //! `min`, `max`, `step` and `if` are differentiated on the side that is active.
 
+mod enclosure;
 mod parse;
 mod program;
 mod range;
 mod term;
 
+pub(crate) use enclosure::Enclosure;
 pub use parse::ExpressionError;
 pub(crate) use parse::{names, parse, parse_open};
 pub(crate) use program::{Operation, Program};

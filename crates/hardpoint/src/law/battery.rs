@@ -258,3 +258,91 @@ fn outside_of_its_times_a_law_has_no_value_but_rounding_is_forgiven() {
     assert!((law.at(1.0).value() - 1.0).abs() < 1e-15);
     assert!(law.at(1.01).value().is_nan() && law.at(-0.01).value().is_nan());
 }
+
+/// Laws whose pieces meet with kinks, at the times after them.
+fn kinked() -> Vec<(Law, f64)> {
+    let pieces = vec![
+        Piece::lasting(0.9, Law::polynomial(&[0.2, 1.5]).unwrap()),
+        Piece::open_ended(Law::polynomial(&[0.0, -0.5, 0.3]).unwrap()),
+    ];
+    let expression = |text: &str| Law::parse(text).unwrap();
+    vec![
+        (Law::sequence(pieces).unwrap(), 0.9),
+        (expression("abs(sin(3*(t - 1.1)))*t"), 1.1),
+        (expression("max(t, 2 - t)"), 1.0),
+        (expression("min(t^2, 1)"), 1.0),
+        (expression("if(t < 1.3, t^2, 1.69 + t - 1.3)"), 1.3),
+    ]
+}
+
+#[test]
+fn enclosures_contain_value_and_rates_at_all_times_and_converge() {
+    let mut laws = every_kind();
+    laws.extend(kinked().into_iter().map(|(law, _)| law));
+    laws.push(Law::parse("2 + 0.4*t").unwrap().from_zero(2.0));
+    laws.push(Law::parse("t^2.3 + hypot(t, 1) + tanh(t)/(1 + t) + asin(t/9) - log10(1 + t)").unwrap());
+    for law in laws {
+        let mut widths: Vec<[f64; 4]> = Vec::new();
+        for (from, to) in [(0.05, 2.15), (0.4, 0.9), (0.9, 1.1), (1.2, 1.25), (1.9, 1.9001), (0.7, 0.7)] {
+            let bounds = law.enclosure(Interval::between(from, to));
+            widths.push(bounds.0.map(Interval::width));
+            for k in 0..=200 {
+                let t = from + (to - from) * f64::from(k) / 200.0;
+                let exact = law.at(t).derivatives();
+                for (n, (bounds, exact)) in bounds.0.iter().zip(exact).enumerate() {
+                    // At the end, the law has the rates of the side after it.
+                    if n > 0 && k == 200 && to > from {
+                        continue;
+                    }
+                    // The value of the law is rounded in every operation.
+                    let hair = 1e-12 * exact.abs().max(1.0);
+                    let inside = bounds.low - hair <= exact && exact <= bounds.high + hair;
+                    assert!(inside, "{law}, order {n} at {t}: {exact} is not in {bounds:?}");
+                }
+            }
+        }
+        // First order: from a twentieth of a second to a ten-thousandth.
+        for n in 0..3 {
+            let [wide, narrow, point] = [widths[3][n], widths[4][n], widths[5][n]];
+            assert!(narrow < 0.05 * wide.max(0.02) && point < 1e-9, "{law}, order {n}: {widths:?}");
+        }
+    }
+}
+
+#[test]
+fn rates_are_unbounded_where_the_speed_jumps_inside_and_bounded_up_to_there() {
+    for (law, kink) in kinked() {
+        let cuts = law.cuts(0.1, 2.0);
+        assert!(cuts.iter().any(|cut| (cut - kink).abs() < 1e-9), "{law}: {cuts:?}");
+        let [value, rate, second, _] =
+            law.enclosure(Interval::between(kink - 1e-3, kink + 1e-3)).derivatives();
+        assert!(value.width() < 0.02 && !rate.is_bounded() && !second.is_bounded(), "{law}");
+        let [before, after] = [cuts[0], cuts[cuts.len() - 1]];
+        for over in [Interval::between(before - 1e-3, before), Interval::between(after, after + 1e-3)] {
+            let [value, ..] = law.enclosure(over).derivatives();
+            assert!(value.is_bounded(), "{law}");
+        }
+    }
+    // Exactly at the kink, where it is known exactly.
+    for k in [0, 2, 4] {
+        let (law, kink) = kinked().swap_remove(k);
+        for over in [Interval::between(kink - 0.01, kink), Interval::between(kink, kink + 0.01)] {
+            assert!(law.enclosure(over).dd().is_bounded(), "{law} over {over:?}");
+        }
+    }
+}
+
+#[test]
+fn a_jump_of_the_value_is_enclosed() {
+    let law = Law::parse("if(t < 1, 2, 5)").unwrap();
+    let [value, rate, ..] = law.enclosure(Interval::between(0.9, 1.1)).derivatives();
+    assert!(value.encloses(Interval::between(2.0, 5.0)) && value.width() < 3.0 + 1e-14 && !rate.is_bounded());
+    assert!(!law.enclosure(Interval::between(0.9, f64::INFINITY)).d().is_bounded());
+    let late = Law::table(&Table {
+        times: vec![0.0, 1.0],
+        values: vec![0.0, 1.0],
+        degree: SplineDegree::Cubic,
+        ends: SplineEnds::default(),
+    });
+    assert_eq!(late.unwrap().enclosure(Interval::between(0.5, 1.5)).value(), Interval::ENTIRE);
+}

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::expression::{self, ExpressionError, Program, Stretch};
-use crate::number::{Jet, Real};
+use crate::expression::{self, Enclosure, ExpressionError, Program, Stretch};
+use crate::number::{Interval, Jet, Real};
 
 use super::jumps::{Break, find_switches};
 use super::kind::LawKind;
@@ -50,6 +50,10 @@ impl LawKind for ExpressionLaw {
 
     fn over(&self, from: f64, to: f64) -> Stretch {
         self.program.at(Stretch::time(from, to), |_| Stretch::UNBOUNDED)
+    }
+
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+        self.program.at(Enclosure::time(over), |_| Enclosure::unbounded()).0
     }
 
     fn parameters(&self) -> Vec<Parameter> {

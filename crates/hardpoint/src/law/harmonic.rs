@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use crate::expression::{ExpressionValue, Stretch};
-use crate::number::{Function, Jet, Real};
+use crate::number::{Function, Interval, Jet, Real};
 
 use super::Law;
 use super::error::{LawError, check_finite};
@@ -61,6 +61,11 @@ impl LawKind for Harmonic {
         (Stretch::time(from, to) * of(TAU * self.frequency) + of(self.phase)).function(Function::Sin)
             * of(self.amplitude)
             + of(self.offset)
+    }
+
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+        // Smooth everywhere.
+        self.at(Jet::time(over), None)
     }
 
     parameters! {

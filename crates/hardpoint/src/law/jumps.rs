@@ -32,6 +32,11 @@ impl Break {
         Self { time, before: time, after: time }
     }
 
+    /// Its time, with the two times that bracket it.
+    pub(super) fn bracket(self) -> [f64; 3] {
+        [self.before, self.time, self.after]
+    }
+
     /// True if the break is inside a law that begins at `start` and ends at `end`.
     pub(super) fn is_between(self, start: f64, end: f64) -> bool {
         let room = SAME_TIME * self.time.abs().max(1.0);

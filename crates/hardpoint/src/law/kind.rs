@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::expression::{Range, Stretch};
-use crate::number::{Jet, Real};
+use crate::number::{Interval, Jet, Real};
 
 use super::jumps::Break;
 use super::parameter::{Parameter, ParameterKind, Seed};
@@ -31,6 +31,10 @@ pub(super) trait LawKind: fmt::Display {
     /// Bounds of f and of its rate over the closed interval between two times; unbounded if it is undefined or jumps
     /// anywhere in it.
     fn over(&self, from: f64, to: f64) -> Stretch;
+
+    /// Bounds of f and of its first three rates over an interval of time, with outward rounding. A rate is unbounded if
+    /// one of a lower order jumps anywhere inside it, and all are if f is undefined.
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4>;
 
     /// Appends the breaks between `from` and `to` at which the value or the first two derivatives may jump.
     fn find_breaks(&self, _from: f64, _to: f64, _breaks: &mut Vec<Break>) {}
@@ -77,6 +81,10 @@ macro_rules! kinds {
 
             fn over(&self, from: f64, to: f64) -> Stretch {
                 match self { $(Self::$kind(law) => law.over(from, to)),* }
+            }
+
+            fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+                match self { $(Self::$kind(law) => law.enclosure(over)),* }
             }
 
             fn find_breaks(&self, from: f64, to: f64, breaks: &mut Vec<Break>) {
@@ -136,6 +144,34 @@ pub(super) fn one_way(law: &impl LawKind, middle: f64, from: f64, to: f64) -> St
     let [start, fastest, end] = [at(from), at(middle.clamp(from, to)), at(to)];
     let rate = Range::between(start.d(), end.d()).or(Range::exactly(fastest.d()));
     Stretch { value: Range::between(start.value(), end.value()), rate }
+}
+
+/// Smallest bounds that contain those of two pieces that follow each other. The second rate may jump between them, so
+/// that the third is unbounded.
+pub(super) fn either(a: Jet<Interval, 4>, b: Jet<Interval, 4>) -> Jet<Interval, 4> {
+    let [f, d, dd, _] = std::array::from_fn(|n| a.0[n].or(b.0[n]));
+    Jet([f, d, dd, Interval::ENTIRE])
+}
+
+/// Bounds over an interval of time of a law in pieces, whose speed is continuous. Piece k ends where piece k + 1 begins,
+/// at `ends[k]`; the last one has no end. A piece of which only an end is in the interval is left out: its value there
+/// is that of its neighbour.
+pub(super) fn in_pieces(
+    over: Interval,
+    ends: &[f64],
+    piece: impl Fn(usize, Interval) -> Jet<Interval, 4>,
+) -> Jet<Interval, 4> {
+    let mut all: Option<Jet<Interval, 4>> = None;
+    for k in 0..=ends.len() {
+        let start = k.checked_sub(1).map_or(f64::NEG_INFINITY, |before| ends[before]);
+        let end = ends.get(k).copied().unwrap_or(f64::INFINITY);
+        let part = Interval { low: over.low.max(start), high: over.high.min(end) };
+        if part.low < part.high || over.is_point() && part.is_point() {
+            let bounds = piece(k, part);
+            all = Some(all.map_or(bounds, |all| either(all, bounds)));
+        }
+    }
+    all.unwrap_or(Jet([Interval::ENTIRE; 4]))
 }
 
 /// Writes a sum in the usual notation: signs between the terms, zero terms omitted, `0` if none is left.

@@ -36,7 +36,7 @@ pub use sequence::Piece;
 pub use table::{SplineDegree, SplineEndRates, SplineEnds, Table};
 
 use crate::expression::{self, ExpressionError, Stretch};
-use crate::number::{Dual, Jet, Real};
+use crate::number::{Dual, Interval, Jet, Real};
 
 kinds! {
     formula: ExpressionLaw,
@@ -298,6 +298,36 @@ impl Law {
         let over = self.kind.over(from, to) * Stretch::constant(self.factor);
         let over = over - Stretch::constant(self.design_value.unwrap_or(0.0));
         over.settled(self.at(0.5 * (from + to)).value(), to - from)
+    }
+
+    /// Bounds of f and of its first three rates over an interval of time, with outward rounding: in the driver's unit per
+    /// s to the order. A rate is unbounded if one of a lower order jumps inside of the interval; all are if the law is
+    /// undefined anywhere in it. Rates at the ends are those of the side inside.
+    ///
+    /// ```
+    /// use hardpoint::{law::Law, number::Interval};
+    ///
+    /// let law = Law::parse("abs(t - 1)*t")?;
+    /// let [value, rate, ..] = law.enclosure(Interval::between(1.0, 1.5)).derivatives();
+    /// assert!(value.contains(0.75) && rate.contains(2.0) && rate.is_bounded());
+    /// assert!(!law.enclosure(Interval::between(0.5, 1.5)).d().is_bounded()); // the rate jumps at 1
+    /// # Ok::<(), hardpoint::expression::ExpressionError>(())
+    /// ```
+    pub fn enclosure(&self, over: Interval) -> TimeJet<Interval> {
+        let value = self.kind.enclosure(over) * self.factor;
+        value - Jet::constant(Interval::constant(self.design_value.unwrap_or(0.0)))
+    }
+
+    /// Times between `from` and `to` (excluded), in order, at which a rate of the law may jump: a jump lies at one of
+    /// them, or between two that follow each other closely.
+    pub(crate) fn cuts(&self, from: f64, to: f64) -> Vec<f64> {
+        let mut breaks = Vec::new();
+        self.kind.find_breaks(from, to, &mut breaks);
+        let mut cuts: Vec<f64> = breaks.into_iter().flat_map(Break::bracket).collect();
+        cuts.retain(|t| from < *t && *t < to);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        cuts
     }
 
     /// Maximum magnitude of the rate between two times, per s.

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::expression::Stretch;
-use crate::number::{Jet, Real};
+use crate::number::{Interval, Jet, Real};
 
 use super::Law;
 use super::error::{LawError, check_finite};
@@ -59,6 +59,11 @@ impl LawKind for Polynomial {
 
     fn over(&self, from: f64, to: f64) -> Stretch {
         Stretch::of_polynomial(&self.coefficients, from, to)
+    }
+
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+        // Smooth everywhere.
+        self.at(Jet::time(over), None)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::expression::{Range, Stretch};
-use crate::number::{Jet, Real};
+use crate::number::{Interval, Jet, Real};
 
 use super::Law;
 use super::error::LawError;
@@ -218,6 +218,26 @@ impl LawKind for Sequence {
             let rate = if self.pieces[k].continued { piece(k).rate } else { Range::UNBOUNDED };
             all.or(Stretch { rate, ..piece(k) })
         })
+    }
+
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+        // At a start, the piece before and the one after have different rates; an interval has the one inside of it.
+        let (first, last) = (self.piece_at(over.low, false), self.piece_at(over.high, !over.is_point()));
+        let (Some(first), Some(last)) = (first, last) else { return Jet([Interval::ENTIRE; 4]) };
+        let value = |k: usize| {
+            let start = self.starts[k];
+            let end = self.pieces[k].duration.map_or(f64::INFINITY, |_| self.starts[k + 1]);
+            let part = Interval { low: over.low.max(start), high: over.high.min(end) };
+            let of_law = self.pieces[k].law.enclosure(part - Interval::constant(start));
+            of_law.plus(Interval::constant(self.offsets[k]))
+        };
+        let bounds = value(first);
+        if first == last {
+            return bounds;
+        }
+        // Rates may jump from one piece to the next.
+        let values = (first + 1..=last).fold(bounds.value(), |all, k| all.or(value(k).value()));
+        Jet([values, Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE])
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -3,12 +3,12 @@
 use std::fmt;
 
 use crate::expression::Stretch;
-use crate::number::{Jet, Real};
+use crate::number::{Interval, Jet, Real};
 
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::jumps::Break;
-use super::kind::{LawKind, is_after, is_before, one_way, parameters};
+use super::kind::{LawKind, in_pieces, is_after, is_before, one_way, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 use super::polynomial::sum_of_powers;
 
@@ -114,6 +114,21 @@ impl LawKind for SmoothStep {
 
     fn over(&self, from: f64, to: f64) -> Stretch {
         one_way(self, 0.5 * (self.start + self.end), from, to)
+    }
+
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+        let [from, to, start, end] = [self.from, self.to, self.start, self.end].map(Interval::constant);
+        if !(self.start < self.end) {
+            return Jet([Interval::ENTIRE; 4]);
+        }
+        in_pieces(over, &[self.start, self.end], |k, part| match k {
+            0 => Jet::constant(from),
+            1 => {
+                let u = Jet::time(part).plus(-start).times(Interval::one() / (end - start));
+                self.rise(u).times(to - from).plus(from)
+            }
+            _ => Jet::constant(to),
+        })
     }
 
     parameters! {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::expression::{Range, Stretch};
-use crate::number::{Jet, Real};
+use crate::number::{Interval, Jet, Real};
 
 use super::Law;
 use super::error::{LawError, check_finite};
@@ -53,6 +53,11 @@ impl LawKind for ConstantSpeed {
     fn over(&self, from: f64, to: f64) -> Stretch {
         let at = |t: f64| self.speed * t + self.offset;
         Stretch { value: Range::between(at(from), at(to)), rate: Range::exactly(self.speed) }
+    }
+
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+        // Smooth everywhere.
+        self.at(Jet::time(over), None)
     }
 
     parameters! {

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use crate::expression::Stretch;
 use crate::linalg::{Basis, EndKind, Segment};
-use crate::number::{Jet, Real};
+use crate::number::{Interval, Jet, Real};
 
 use super::Law;
 use super::error::LawError;
-use super::kind::LawKind;
+use super::kind::{LawKind, either};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter};
 use super::polynomial::sum_of_powers;
 
@@ -293,6 +293,43 @@ impl LawKind for Spline {
         (from, to) = (from.clamp(first, last), to.clamp(first, last));
         add(from, to);
         over.unwrap_or(Stretch::UNBOUNDED)
+    }
+
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+        let unbounded = Jet([Interval::ENTIRE; 4]);
+        let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
+        // Segment k, repeated after a time.
+        let part = |k: usize, from: f64, to: f64, shift: f64| {
+            let [low, high] = [from, to].map(|t| t.clamp(over.low, over.high));
+            let since =
+                (Interval { low, high } - Interval::constant(shift)) - Interval::constant(self.times[k]);
+            self.curve(&self.segments[k], Jet::time(since))
+        };
+        let mut all: Option<Jet<Interval, 4>> = None;
+        let (mut shift, mut from) = (self.periods_before(over.low, false), over.low);
+        if !(self.is_periodic || self.reaches(over.low) && self.reaches(over.high)) {
+            return unbounded;
+        }
+        loop {
+            let k = self.segment_at((from - shift).clamp(first, last), false);
+            // The last segment reaches to the end of the table and what is as good as its end.
+            let is_last = k + 1 == self.segments.len();
+            let ends = if is_last && !self.is_periodic { f64::INFINITY } else { self.times[k + 1] + shift };
+            let to = over.high.min(ends);
+            if to > from || over.is_point() {
+                let bounds = part(k, from, to, shift);
+                all = Some(all.map_or(bounds, |all| either(all, bounds)));
+            } else if !(is_last && self.is_periodic) {
+                return unbounded;
+            }
+            if to >= over.high {
+                return all.unwrap_or(unbounded);
+            }
+            if is_last {
+                shift += last - first;
+            }
+            from = to;
+        }
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -3,12 +3,12 @@
 use std::fmt;
 
 use crate::expression::Stretch;
-use crate::number::{Jet, Real};
+use crate::number::{Interval, Jet, Real};
 
 use super::Law;
 use super::error::{LawError, check_finite};
 use super::jumps::Break;
-use super::kind::{LawKind, is_after, is_before, one_way, parameters};
+use super::kind::{LawKind, in_pieces, is_after, is_before, one_way, parameters};
 use super::parameter::{Parameter, ParameterKind, Seed, parameter, seeded};
 
 /// A law that is `from` until `start` and `to` after `end`. Between them the speed is a trapezoid: it rises linearly
@@ -105,6 +105,25 @@ impl LawKind for Trapezoid {
 
     fn over(&self, from: f64, to: f64) -> Stretch {
         one_way(self, 0.5 * (self.start + self.end), from, to)
+    }
+
+    fn enclosure(&self, over: Interval) -> Jet<Interval, 4> {
+        let [from, to, start, end, ramp] =
+            [self.from, self.to, self.start, self.end, self.ramp].map(Interval::constant);
+        if !self.has_room() {
+            return Jet([Interval::ENTIRE; 4]);
+        }
+        // As in `at`.
+        let speed = (to - from) / (end - start - ramp);
+        let half = speed / (ramp + ramp);
+        let corners = [self.start, self.start + self.ramp, self.end - self.ramp, self.end];
+        in_pieces(over, &corners, |k, part| match k {
+            0 => Jet::constant(from),
+            1 => Jet::time(part).plus(-start).powi(2).times(half).plus(from),
+            2 => Jet::time(part).plus(-start - ramp * 0.5).times(speed).plus(from),
+            3 => Jet::time(part).plus(-end).powi(2).times(-half).plus(to),
+            _ => Jet::constant(to),
+        })
     }
 
     parameters! {

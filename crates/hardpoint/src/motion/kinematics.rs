@@ -180,7 +180,7 @@ impl<T: Real> State<T> {
 
     /// Poses of the bodies, from the markers that place them.
     #[inline(always)]
-    fn place_bodies(
+    pub(super) fn place_bodies(
         &mut self,
         topology: &Topology,
         parts: &PlanGeometry<T>,

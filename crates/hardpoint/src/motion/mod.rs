@@ -30,6 +30,7 @@ pub(crate) mod stepper;
 mod stop;
 pub(crate) mod tape;
 pub(crate) mod time_batch;
+pub(crate) mod tube;
 pub(crate) mod turns;
 mod walk;
 
@@ -38,6 +39,7 @@ pub use gap::{Assembly, AssemblyShift, Closing, Gap};
 pub use jerk::BodyJerk;
 pub use margin::Margin;
 pub use stop::{GivingDirection, Stop, StopKind};
+pub use tube::{ProvenMotion, TubeFailure};
 
 use kinematics::State;
 

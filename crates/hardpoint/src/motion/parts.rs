@@ -80,6 +80,19 @@ impl PlanGeometry<f64> {
         Self { laws: laws.to_vec(), ..Self::of(model, topology, design) }
     }
 
+    /// This geometry in another scalar type, as constants, without laws.
+    pub fn spread<T: Real>(&self) -> PlanGeometry<T> {
+        let poses = |poses: &[Pose<f64>]| poses.iter().map(|pose| pose.spread()).collect();
+        PlanGeometry {
+            parent_marker: poses(&self.parent_marker),
+            child_from_marker: poses(&self.child_from_marker),
+            ends: self.ends.each_ref().map(|ends| poses(ends)),
+            kept: self.kept.iter().map(|x| T::constant(*x)).collect(),
+            curves: self.curves.clone(),
+            laws: Vec::new(),
+        }
+    }
+
     /// The law of driver d.
     pub fn law_of(&self, d: usize) -> &Law {
         &self.laws[d]

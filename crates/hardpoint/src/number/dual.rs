@@ -206,6 +206,11 @@ impl<T: Real> Real for Dual<T> {
         Self { v, d: (self.d * x.v - self.v * x.d) / square }
     }
     #[inline(always)]
+    fn angle_near(self, cos: Self, near: Self) -> Self {
+        // Whole turns are constant.
+        Self { v: self.v.angle_near(cos.v, near.v), ..self.atan2(cos) }
+    }
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         T::operation(|| {
             let (sin, cos) = self.v.sin_cos();

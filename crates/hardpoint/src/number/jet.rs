@@ -425,6 +425,13 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         larger
     }
     #[inline(always)]
+    fn angle_near(self, cos: Self, near: Self) -> Self {
+        // Whole turns are constant in time.
+        let mut angle = self.atan2(cos);
+        angle.0[0] = self.0[0].angle_near(cos.0[0], near.0[0]);
+        angle
+    }
+    #[inline(always)]
     fn rate(self) -> Self {
         let mut rate = Self::undefined();
         for n in 1..N {

@@ -5,6 +5,7 @@
 //! | `f64` | the value only |
 //! | [`Dual`] | the derivative with respect to one variable; nested: second derivatives |
 //! | [`Jet`] | up to three time derivatives |
+//! | [`Interval`] | bounds: all numbers that the value may be |
 //! | [`hardpoint_tape::Number`] | its recorded arithmetic: kernels are recorded with it |
 //!
 //! All of them implement [`Real`], and they nest: a `Dual<Jet<f64, 3>>` is a measure with its rates, and the
@@ -13,11 +14,13 @@
 
 mod dual;
 mod function;
+mod interval;
 mod jet;
 mod real;
 pub(crate) mod record;
 
 pub use dual::Dual;
 pub use function::Function;
+pub use interval::Interval;
 pub use jet::{Jet, Rates};
 pub use real::Real;

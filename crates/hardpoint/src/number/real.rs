@@ -168,6 +168,15 @@ pub trait Real:
         Self::constant(self.value().atan2(x.value()))
     }
 
+    /// Angle with the sine `self` and the cosine `cos`, up to a common factor, that is nearest to `near`, rad.
+    #[inline(always)]
+    fn angle_near(self, cos: Self, near: Self) -> Self {
+        const TURN: f64 = 2.0 * std::f64::consts::PI;
+        // angle + 2 pi k, the nearest to `near`
+        let angle = self.atan2(cos);
+        angle + ((near - angle) * (1.0 / TURN)).round() * TURN
+    }
+
     /// Sine and cosine of an angle of any size, rad; for plain numbers, those of the standard library.
     fn sin_cos_of_any(self) -> (Self, Self);
 

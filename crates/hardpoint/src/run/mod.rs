@@ -13,6 +13,7 @@ mod jerk;
 mod loads;
 mod metric;
 mod nearest;
+mod proof;
 mod quadrature;
 mod request;
 mod second;
@@ -31,6 +32,7 @@ pub use metric::{
     place_of,
 };
 pub use nearest::{NearestAdmissible, nearest_admissible};
+pub use proof::{ClearanceProof, ClearanceProver, ProofFailure};
 pub use request::{Progress, Run};
 pub use second::SecondDerivatives;
 pub use sink::Sink;

@@ -1,0 +1,181 @@
+//! Proofs that clearances are kept between the output times.
+
+use hardpoint::Analysis;
+use hardpoint::model::{Model, ShapeId};
+use hardpoint::run::{ClearanceProof, ClearanceProver};
+use hardpoint_file::parse;
+
+/// Allowance for round-off, as a fraction of the mechanism's size.
+const ROUND_OFF: f64 = 1e-12;
+
+fn model_of(text: &str) -> Model {
+    parse(text, "proof.toml").unwrap_or_else(|e| panic!("{e}\n{text}")).model
+}
+
+#[test]
+fn the_least_distances_of_the_knee_are_proved_and_greater_ones_are_not() {
+    let model = model_of(include_str!("knee.toml"));
+    let analysis = Analysis::new(&model).unwrap();
+    let found = analysis.clearances(&[]);
+    let mut prover = analysis.clearance_prover(&[]).unwrap();
+    for pair in &found.pairs {
+        assert_exact(&mut prover, pair.shapes, pair.least().unwrap().at.distance[0], model.size(), 60);
+    }
+    // The bounds of the motion are computed once.
+    assert!(prover.enclosures() < 100, "{}", prover.enclosures());
+}
+
+/// The least distance, m, is proved but for round-off with at most this number of bounds, and one that is 1e-6 mm greater
+/// is not.
+fn assert_exact(prover: &mut ClearanceProver<'_>, shapes: [ShapeId; 2], least: f64, size: f64, most: usize) {
+    let proof = prover.prove(shapes, least - ROUND_OFF * size);
+    let ClearanceProof::Proved { slabs, bounds } = proof else { panic!("{shapes:?}, {least}: {proof:?}") };
+    assert!(0 < slabs && slabs <= bounds && bounds <= most, "{shapes:?}: {proof:?}");
+    let refused = prover.prove(shapes, least + 1e-9);
+    assert!(matches!(refused, ClearanceProof::NotProved { .. }), "{shapes:?}, {least}: {refused:?}");
+}
+
+/// Shapes on the bodies of two suspensions: capsules, spheres, cylinders, planes.
+const SUSPENSIONS: [(&str, &str); 2] = [
+    (
+        include_str!("../../../../models/double_wishbone.toml"),
+        r#"
+[shapes]
+arm = { body = "uca", capsule = ["uca_rear", "upper_ball"], radius = 12 }
+lower = { body = "lca", capsule = ["lca_front", "lower_ball"], radius = 12 }
+end = { body = "knuckle", sphere = "tie_rod_outer", radius = 15 }
+drum = { body = "ground", cylinder = [[-60, 380, 60], [-60, 420, 60]], radius = 30, round = 2 }
+post = { body = "ground", capsule = [[-40, 430, 380], [-40, 470, 390]], radius = 10 }
+road = { body = "ground", plane = [0, 0, 0], normal = "z" }
+[clearances.upper]
+between = [["arm"], ["drum", "post"]]
+[clearances.others]
+between = [["lower", "end"], ["drum", "post", "road"]]
+"#,
+    ),
+    (
+        include_str!("../../../../models/macpherson.toml"),
+        r#"
+[shapes]
+arm = { body = "lca", capsule = ["lca_front", "ball_joint"], radius = 15 }
+rod_end = { body = "knuckle", sphere = "tie_rod_outer", radius = 12 }
+tube = { body = "knuckle", capsule = ["strut_lower", "ball_joint"], radius = 20 }
+beam = { body = "ground", capsule = [[100, 420, 60], [200, 500, 60]], radius = 20 }
+drum = { body = "ground", cylinder = [[-120, 560, 150], [-120, 600, 150]], radius = 40, round = 3 }
+floor = { body = "ground", plane = [0, 0, -260], normal = "z" }
+[clearances.all]
+between = [["arm", "rod_end", "tube"], ["beam", "drum", "floor"]]
+"#,
+    ),
+];
+
+#[test]
+fn clearances_of_suspensions_are_proved() {
+    for (text, shapes) in SUSPENSIONS {
+        let model = model_of(&format!("{text}\n{shapes}"));
+        let analysis = Analysis::new(&model).unwrap();
+        let found = analysis.clearances(&[]);
+        assert!(found.pairs.len() >= 8);
+        let mut prover = analysis.clearance_prover(&[]).unwrap();
+        for pair in &found.pairs {
+            let least = pair.least().unwrap().at.distance[0];
+            // Little more than one bound for each output step.
+            assert_exact(&mut prover, pair.shapes, least, model.size(), model.times.len() + 20);
+        }
+    }
+}
+
+/// Deterministic generator of numbers in (0, 1).
+fn numbers(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// A four-bar of about 60 mm whose crank turns by 160 deg, with a screw near the way of its coupler; `None` if it does
+/// not assemble over the turn with a transmission angle above 8.6 deg.
+fn four_bar(next: &mut impl FnMut() -> f64) -> Option<(Model, f64)> {
+    let mut between = |low: f64, high: f64| low + (high - low) * next();
+    let crank = [between(-30.0, 30.0), between(-30.0, 30.0)];
+    let coupler = [between(30.0, 90.0), between(10.0, 70.0)];
+    let pivot = [between(40.0, 80.0), between(-30.0, 10.0)];
+    let screw = [between(-20.0, 90.0), between(-30.0, 80.0)];
+    let (rod, head) = (between(1.0, 5.0), between(1.0, 5.0));
+    let length = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    let [l1, l2, l3] = [length([0.0; 2], crank), length(crank, coupler), length(coupler, pivot)];
+    if l1 < 10.0 {
+        return None;
+    }
+    let start = crank[1].atan2(crank[0]);
+    for k in 0..=400 {
+        let angle = start + f64::from(k) / 400.0 * 160f64.to_radians();
+        let d = length([l1 * angle.cos(), l1 * angle.sin()], pivot);
+        let cosine = (l2 * l2 + l3 * l3 - d * d) / (2.0 * l2 * l3);
+        if !(cosine.abs() < 8.6f64.to_radians().cos()) {
+            return None;
+        }
+    }
+    let model = model_of(&format!(
+        r#"
+name = "four-bar"
+units = {{ length = "mm", angle = "deg" }}
+planar = "xy"
+bodies = {{ ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C"], rocker = ["C", "D"] }}
+drivers.motor = {{ joint = "A", law = "160*t" }}
+time = {{ end = 1.0, steps = 8 }}
+[hardpoints]
+A = [0, 0]
+B = {crank:?}
+C = {coupler:?}
+D = {pivot:?}
+[shapes]
+rod = {{ body = "coupler", capsule = ["B", "C"], radius = {rod} }}
+screw = {{ body = "ground", capsule = [[{x}, {y}, -2], [{x}, {y}, 7]], radius = {head} }}
+[clearances.c]
+between = ["rod", "screw"]
+"#,
+        x = screw[0],
+        y = screw[1],
+    ));
+    Some((model, 1e-3 * (rod + head)))
+}
+
+#[test]
+fn two_hundred_four_bars_are_proved_and_greater_claims_are_refused() {
+    let mut next = numbers(5);
+    let (mut counts, mut tried) = (Vec::new(), 0);
+    while counts.len() < 200 {
+        tried += 1;
+        let Some((model, rounds)) = four_bar(&mut next) else { continue };
+        let analysis = Analysis::new(&model).unwrap();
+        let found = analysis.clearances(&[]);
+        let pair = &found.pairs[0];
+        let least = pair.least().unwrap();
+        // Where the cores meet there is no distance.
+        if found.stop.is_some() || least.at.cores_meet || pair.curve.iter().any(|s| s.cores_meet) {
+            continue;
+        }
+        let least = least.at.distance[0];
+        if least + rounds < 1e-5 {
+            continue;
+        }
+        let mut prover = analysis.clearance_prover(&[]).unwrap();
+        let proof = prover.prove(pair.shapes, least - ROUND_OFF * model.size());
+        let ClearanceProof::Proved { bounds, slabs } = proof else {
+            panic!("four-bar {} of {tried}, least {least}: {proof:?}", counts.len());
+        };
+        assert!(slabs <= bounds);
+        counts.push(bounds);
+        // 1e-6 mm above the least.
+        let refused = prover.prove(pair.shapes, least + 1e-9);
+        assert!(matches!(refused, ClearanceProof::NotProved { .. }), "{refused:?}");
+    }
+    counts.sort_unstable();
+    println!(
+        "{tried} tried; bounds {} in the median, {} at 90 %, {} at most",
+        counts[100], counts[180], counts[199]
+    );
+    assert!(counts[199] <= 200, "{counts:?}");
+}

@@ -1,0 +1,317 @@
+//! Proven lower bounds of the distance of two cores over an interval of time.
+//!
+//! For any unit vector n, two convex cores are at least `min n . Q - max n . P` apart, Q in the second and P in the
+//! first; with n along the nearest points it is their distance. n may turn in any way: over an interval of time every
+//! `n(t) . (Q(t) - P(t))` of the points at which the extrema can be (ends of a segment, points of two rims) is a smooth
+//! function, and the distance is never less than the least of these. So no bound depends on which features are nearest.
+//!
+//! | direction | n(t) | no slack |
+//! |---|---|---|
+//! | fixed | constant | at one time, to first order |
+//! | turning | along a vector that is a polynomial in time | at an instant and its rates, or at both ends |
+//! | normal | of a plane, or of the cap of a cylinder | while that is nearest |
+//!
+//! A circle has the bound of its disc, and from a point its own: the distance by the formula of `feature.rs`, always.
+
+use crate::law::TimeJet;
+use crate::number::{Dual, Interval, Jet, Rates};
+use crate::space::{Real, Vec3};
+
+use super::core::{Circle, Core};
+use super::feature::Feature;
+use super::nearest::Nearest;
+
+/// A core with bounds of its place and rates.
+pub(crate) type EnclosedCore = Core<TimeJet<Interval>>;
+
+/// Unit vector from the first core to the second one, over time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Direction {
+    /// Along a cubic polynomial: its coefficients by the time since an instant.
+    Turning { coefficients: [Vec3; 4], since: f64 },
+    /// Normal of the plane or cap of core k, on this side.
+    Normal { of: usize, side: f64 },
+    /// From a point to the nearest point of a circle.
+    ToCircle,
+}
+
+impl Direction {
+    /// A fixed direction.
+    pub fn fixed(n: Vec3) -> Self {
+        Self::Turning { coefficients: [n, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO], since: 0.0 }
+    }
+
+    /// The direction that has this value and these rates at an instant.
+    pub fn through([n, d, dd]: [Vec3; 3], since: f64) -> Self {
+        Self::Turning { coefficients: [n, d, dd * 0.5, Vec3::ZERO], since }
+    }
+
+    /// The direction that has these values and rates at two times.
+    pub fn between([[n, d, _], [m, e, _]]: [[Vec3; 3]; 2], [from, to]: [f64; 2]) -> Self {
+        let per = 1.0 / (to - from);
+        let rise = (m - n) * per;
+        // Hermite's cubic.
+        let square = (rise * 3.0 - d * 2.0 - e) * per;
+        let cube = (d + e - rise * 2.0) * (per * per);
+        Self::Turning { coefficients: [n, d, square, cube], since: from }
+    }
+
+    /// The direction that goes with the features that are nearest, if one of them has it.
+    pub fn of_features(cores: [&Core; 2], near: &Nearest) -> Option<Self> {
+        let is_circle = |core: &Core| matches!(core, Core::Circle(_));
+        let is_point = |core: &Core| matches!(core, Core::Point(_));
+        if is_circle(cores[0]) && is_point(cores[1]) || is_point(cores[0]) && is_circle(cores[1]) {
+            return Some(Self::ToCircle);
+        }
+        (0..2).find_map(|of| match near.features[of] {
+            Feature::Face(side) => Some(Self::Normal { of, side }),
+            Feature::Point(_)
+            | Feature::Line
+            | Feature::Circle(_)
+            | Feature::Vertex(_)
+            | Feature::Edge(_)
+            | Feature::Facet(_) => None,
+        })
+    }
+}
+
+/// Unit vector along the nearest points of two cores that are apart, from the first to the second, with its first two
+/// rates: the derivatives of the distance by a translation of the second core.
+pub(crate) fn direction_of(cores: [&Core<Rates>; 2], near: &Nearest) -> Option<[Vec3; 3]> {
+    if !(near.distance > 0.0) {
+        return None;
+    }
+    let still = |v: Vec3<Rates>, _: usize| v.map(Dual::constant);
+    let moved = |v: Vec3<Rates>, axis: usize| v.with_derivative(Vec3::AXES[axis].spread());
+    let by = [0, 1, 2].map(|axis| {
+        let pair = [placed(cores[0], |v| still(v, axis)), placed(cores[1], |v| moved(v, axis))];
+        near.distance_of(pair.each_ref()).d
+    });
+    let [x, y, z] = by;
+    let rates = [0, 1, 2].map(|n| Vec3::new(x.0[n], y.0[n], z.0[n]));
+    let length = rates[0].norm();
+    ((length - 1.0).abs() < UNIT && rates.iter().all(|v| v.is_finite())).then_some(rates)
+}
+
+/// Deviation from one of the length of a direction above which it is not that of the nearest points.
+const UNIT: f64 = 1e-6;
+
+/// A core over dual numbers, with these positions.
+fn placed(core: &Core<Rates>, point: impl Fn(Vec3<Rates>) -> Vec3<Dual<Rates>>) -> Core<Dual<Rates>> {
+    let constant = |v: Vec3<Rates>| v.map(Dual::constant);
+    let circle = |c: &Circle<Rates>| Circle {
+        centre: point(c.centre),
+        axis: constant(c.axis),
+        radius: Dual::constant(c.radius),
+    };
+    match core {
+        Core::Point(p) => Core::Point(point(*p)),
+        Core::Segment(ends) => Core::Segment(ends.map(&point)),
+        Core::Circle(c) => Core::Circle(circle(c)),
+        Core::Cylinder { middle, half_width } => {
+            Core::Cylinder { middle: circle(middle), half_width: Dual::constant(*half_width) }
+        }
+        Core::HalfSpace { point: p, normal } => {
+            Core::HalfSpace { point: point(*p), normal: constant(*normal) }
+        }
+    }
+}
+
+/// Bounds, over an interval of time, of functions of which the least is at most the distance of two cores; `None` if a
+/// direction bounds nothing. Their number and order depend on the direction and the kinds of the cores only.
+pub(crate) fn separations(
+    cores: [&EnclosedCore; 2],
+    direction: Direction,
+    over: Interval,
+) -> Option<Vec<TimeJet<Interval>>> {
+    let n = match direction {
+        Direction::Turning { coefficients: [a, b, c, d], since } => {
+            let time = Jet::time(over - Interval::constant(since));
+            let component = |of: [f64; 4]| {
+                let [a, b, c, d] = of.map(|x| Jet::constant(Interval::constant(x)));
+                a + time * (b + time * (c + time * d))
+            };
+            Vec3::new(
+                component([a.x, b.x, c.x, d.x]),
+                component([a.y, b.y, c.y, d.y]),
+                component([a.z, b.z, c.z, d.z]),
+            )
+        }
+        Direction::Normal { of, side } => {
+            let outwards = if of == 0 { side } else { -side };
+            match cores[of] {
+                Core::Cylinder { middle, .. } => middle.axis * Jet::constant(Interval::constant(outwards)),
+                Core::HalfSpace { normal, .. } if of == 0 => *normal,
+                Core::HalfSpace { normal, .. } => -*normal,
+                Core::Point(_) | Core::Segment(_) | Core::Circle(_) => return None,
+            }
+        }
+        Direction::ToCircle => {
+            let [Core::Point(p), Core::Circle(circle)] = cores else {
+                let [Core::Circle(circle), Core::Point(p)] = cores else { return None };
+                return Some(vec![to_circle(*p, circle)]);
+            };
+            return Some(vec![to_circle(*p, circle)]);
+        }
+    };
+    let n = n * (Jet::constant(Interval::one()) / n.norm());
+    let [of_first, of_second] = [0, 1].map(|k| {
+        let side = match direction {
+            Direction::Normal { of, side } if of == k => Some(side),
+            Direction::Normal { .. } | Direction::Turning { .. } | Direction::ToCircle => None,
+        };
+        supports(cores[k], n, side)
+    });
+    let (of_first, of_second) = (of_first?, of_second?);
+    let gap = |(p, r): &Support, (q, s): &Support| n.dot(*q - *p) - *r - *s;
+    Some(of_second.iter().flat_map(|b| of_first.iter().map(|a| gap(a, b))).collect())
+}
+
+/// A point, and how far the core extends beyond it along a direction.
+type Support = (Vec3<TimeJet<Interval>>, TimeJet<Interval>);
+
+/// The points of a core one of which is the farthest along n or against it. `side` is that of its own plane or cap, if n
+/// is its normal.
+fn supports(core: &EnclosedCore, n: Vec3<TimeJet<Interval>>, side: Option<f64>) -> Option<Vec<Support>> {
+    let zero = TimeJet::zero();
+    Some(match (core, side) {
+        (Core::Point(p), _) => vec![(*p, zero)],
+        (Core::Segment(ends), _) => ends.iter().map(|p| (*p, zero)).collect(),
+        (Core::Circle(circle), _) => vec![(circle.centre, rim(circle, n))],
+        // All of a cap is at the same height along its normal.
+        (Core::Cylinder { middle, half_width }, Some(side)) => {
+            vec![(middle.moved(*half_width * side).centre, zero)]
+        }
+        (Core::Cylinder { middle, half_width }, None) => {
+            let beyond = rim(middle, n);
+            [-1.0, 1.0].map(|side| (middle.moved(*half_width * side).centre, beyond)).to_vec()
+        }
+        (Core::HalfSpace { point, .. }, Some(_)) => vec![(*point, zero)],
+        (Core::HalfSpace { .. }, None) => return None,
+    })
+}
+
+/// How far a circle extends from its centre along n: `R abs(n x e)`.
+fn rim(circle: &Circle<TimeJet<Interval>>, n: Vec3<TimeJet<Interval>>) -> TimeJet<Interval> {
+    let across = n.cross(circle.axis);
+    let length = across.norm();
+    if length.value().is_bounded() {
+        return circle.radius * length;
+    }
+    // Where n is along the axis the length has no rates.
+    let square = |x: TimeJet<Interval>| x.value().square();
+    let size = (square(across.x) + square(across.y) + square(across.z)).sqrt();
+    let unknown = Interval::ENTIRE;
+    Jet([circle.radius.value() * size, unknown, unknown, unknown])
+}
+
+/// `sqrt(z z + (rho - R)^2)`
+fn to_circle(p: Vec3<TimeJet<Interval>>, circle: &Circle<TimeJet<Interval>>) -> TimeJet<Interval> {
+    let v = p - circle.centre;
+    let (z, rho) = (circle.axis.dot(v), circle.axis.cross(v).norm());
+    Real::hypot(z, rho - circle.radius)
+}
+
+/// Proven lower bound of a function over an interval of time. `over` are bounds over all of it, `ends` narrow ones at
+/// both ends, and `inside` those at a time within it, with the time since then.
+///
+/// The greatest of: the lower bound itself; with `f.. <= A` the chord less `A s (h - s) / 2`; with `f.. >= c` the
+/// parabola of that curvature through value and rate at a time inside; and where the rate does not change its sign, the
+/// value at an end.
+pub(crate) fn lower_bound(
+    over: TimeJet<Interval>,
+    ends: [Interval; 2],
+    inside: (TimeJet<Interval>, Interval),
+    length: Interval,
+) -> f64 {
+    let Jet([value, rate, second, _]) = over;
+    let mut best = value.low;
+    let [start, end] = ends;
+    // Up to the kink of a law the rate is bounded on either side, but not inside.
+    if !rate.is_bounded() {
+        return best;
+    }
+    if rate.low >= 0.0 {
+        best = best.max(start.low);
+    } else if rate.high <= 0.0 {
+        best = best.max(end.low);
+    }
+    if second.high.is_finite() {
+        let lowest = start.low.min(end.low);
+        let (bend, rise) = (Interval::constant(second.high.max(0.0)), end - start);
+        let square = length.square();
+        let sag = bend * square * 0.125;
+        // The lowest point of chord and parabola is inside unless abs(rise) >= A h^2 / 2.
+        let is_inside = !(Real::abs(rise).low >= (sag * 4.0).high);
+        best = best.max(if bend.high == 0.0 || !is_inside {
+            lowest
+        } else {
+            let curve = (start + end) * 0.5 - rise.square() / (bend * square * 2.0) - sag;
+            curve.low.max((Interval::constant(lowest) - sag).low)
+        });
+    }
+    let (Jet([at, slope, ..]), since) = inside;
+    if second.low.is_finite() && at.is_bounded() && slope.is_bounded() {
+        let bend = Interval::constant(second.low);
+        best = best.max(if second.low > 0.0 {
+            (at - slope.square() / (bend * 2.0)).low
+        } else {
+            (at + slope * since + bend * since.square() * 0.5).low
+        });
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Functions of a time with their first two rates.
+    type Curve = fn(f64) -> [f64; 3];
+
+    #[test]
+    fn bounds_are_below_the_function_and_exact_where_it_falls_or_is_convex() {
+        let curves: [(&str, Curve); 4] = [
+            ("falling", |t| [(-t).exp(), -(-t).exp(), (-t).exp()]),
+            ("sine", |t| [(3.0 * t).sin(), 3.0 * (3.0 * t).cos(), -9.0 * (3.0 * t).sin()]),
+            ("convex", |t| [t.cosh() - 1.0, t.sinh(), t.cosh()]),
+            ("cubic", |t| [t * t * t - t, 3.0 * t * t - 1.0, 6.0 * t]),
+        ];
+        let exact = |x: f64| Interval::between(x - 1e-15 * x.abs(), x + 1e-15 * x.abs());
+        let with_rates = |[f, d, dd]: [f64; 3]| Jet([exact(f), exact(d), exact(dd), Interval::ENTIRE]);
+        for (name, f) in curves {
+            for (from, to) in [(-1.0, 1.0), (-0.3, 0.5), (0.2, 0.25), (0.5, 0.6), (-0.02, 0.01)] {
+                let samples: Vec<[f64; 3]> =
+                    (0..=1000).map(|k| f(from + (to - from) * f64::from(k) / 1000.0)).collect();
+                let range = |n: usize| {
+                    let hull = samples.iter().map(|s| exact(s[n])).reduce(Interval::or).unwrap();
+                    // Of second order in the spacing of the samples.
+                    let hair = 30.0 * (to - from) * (to - from) * 1e-6;
+                    hull + Interval::symmetric(hair)
+                };
+                let over = Jet([range(0) + Interval::symmetric(10.0), range(1), range(2), Interval::ENTIRE]);
+                let least = samples.iter().map(|s| s[0]).fold(f64::INFINITY, f64::min);
+                let ends = [from, to].map(|t| exact(f(t)[0]));
+                for s in [0.0, 0.31, 0.5, 1.0] {
+                    let t = from + s * (to - from);
+                    let inside = (with_rates(f(t)), Interval::between(from, to) - Interval::constant(t));
+                    let length = Interval::constant(to) - Interval::constant(from);
+                    let bound = lower_bound(over, ends, inside, length);
+                    assert!(bound <= least + 1e-15, "{name} from {from} to {to}: {bound} > {least}");
+                    let h = to - from;
+                    assert!(bound >= least - 5.0 * h * h, "{name} from {from} to {to}: {bound} < {least}");
+                    if over.d().low > 0.0 || over.d().high < 0.0 {
+                        assert!(bound >= least - 1e-14, "{name} is monotone: {bound} < {least}");
+                    }
+                }
+                // At the minimum of a convex function nothing is left.
+                if name == "convex" && from < 0.0 {
+                    let inside = (with_rates(f(0.0)), Interval::between(from, to));
+                    let bound =
+                        lower_bound(over, ends, inside, Interval::constant(to) - Interval::constant(from));
+                    assert!(bound >= -1e-300 && bound <= 0.0, "{bound}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,795 @@
+//! Proven bounds of a motion between two times.
+//!
+//! Over an interval of time T, X is a box of the unknown coordinates of a block, m its middle, and Y about the inverse of
+//! the Jacobian there. If
+//!
+//! ```text
+//! K(X) = m - Y phi(m, T) + (I - Y J(X)) (X - m)
+//! ```
+//!
+//! in interval arithmetic is inside of X, then exactly one position in X belongs to each time of T, and K(X) contains it
+//! (Krawczyk). `phi(m, T)` is bounded by `phi(m, t) + phi_t(m, T) (T - t)`, too, with t the middle of T. The rates follow from the rates of the rows: with `k = |I - Y J(X)| < 1`,
+//!
+//! ```text
+//! J(X) q. in -phi_t(X, T):    |q.| <= |Y phi_t| / (1 - k),    then    q. := -Y phi_t + (I - Y J(X)) q.
+//! ```
+//!
+//! and q.. and q... likewise. No equation is written for this: residuals and poses are those of `kinematics.rs`, over intervals,
+//! over duals of them (a column of J for each unknown), and over jets of them (phi_t, and the rates of all bodies). The
+//! coordinates of a ball are those of its correction in Newton's method, from its rotation at the middle of T.
+//!
+//! The excess of these bounds is of first order in the length of T. By Taylor's theorem,
+//! `f(T) in f(t) + f.(t) (T - t) + f..(T) (T - t)^2 / 2` with the narrow bounds at the middle t of T: that of positions
+//! is then of third order. With the jerk, likewise, that of speeds is of third and that of accelerations of second.
+//!
+//! What is proved holds for the mechanism whose geometry is that of the solver, to the last bit, and whose laws are the
+//! formulas of their numbers. Rows that are redundant and not selected have no part in it.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use crate::law::TimeJet;
+use crate::linalg::{Factors, LARGEST_DENSE};
+use crate::model::{DriverId, JointId, Model};
+use crate::number::{Dual, Interval, Jet};
+use crate::space::{Mat3, Pose, Quat, Real, Vec3};
+use crate::topology::{BlockId, CoordinateId, Topology};
+
+use crate::joint::Freedom;
+
+use super::kinematics::State;
+use super::mechanism::{AcceptedPosition, Mechanism};
+use super::parts::PlanGeometry;
+use super::path::Path;
+
+/// Number of boxes that are tried before an interval of time is considered too long.
+const MOST_BOXES: usize = 8;
+/// Factor by which a box is larger than its prediction or the last image, so that the next image is inside of it.
+const SLACK: f64 = 1.1;
+/// Size that a box has at least, in units of its coordinate: far above the error of a solved position, which is
+/// round-off, and far below any motion of interest.
+const LEAST_BOX: f64 = 1e-11;
+/// Size of a box, rad or sizes, above which the equations of a position are not nearly linear in it.
+const LARGEST_BOX: f64 = 1.0;
+/// Largest `|I - Y J(X)|` for which bounds of rates are useful.
+const CONTRACTION: f64 = 0.9;
+/// Number of times that an interval is halved, and the bounds of its parts are joined, where it is too long for one box:
+/// eight parts cost as much as eight intervals, but their bounds serve as those of one.
+const MOST_HALVINGS: usize = 3;
+/// Number of passes of a linear system over its bounds.
+const PASSES: usize = 2;
+/// Number of passes that narrow boxes and rates with each other, at most.
+const MOST_PASSES: usize = 8;
+/// A pass that leaves more than this part of the width of the accelerations is the last one.
+const WORTHWHILE: f64 = 0.7;
+
+/// Reason why nothing is proved of a motion over an interval of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TubeFailure {
+    /// The joint follows a curve, which is not a formula over intervals.
+    FollowsCurve {
+        /// The joint.
+        joint: JointId,
+    },
+    /// The block has too many unknowns for dense matrices of intervals.
+    TooLarge {
+        /// The block.
+        block: BlockId,
+    },
+    /// The law of the driver is undefined in the interval.
+    Law {
+        /// The driver.
+        driver: DriverId,
+    },
+    /// No box contracts: the interval is too long, or a singular position is too near.
+    NoContraction {
+        /// The block.
+        block: BlockId,
+    },
+    /// No position was found at a time within the interval.
+    NotSolved {
+        /// The time, s.
+        time: f64,
+    },
+    /// The position at an end of the interval is not in the box: it belongs to another branch.
+    OtherBranch {
+        /// The time of that end, s.
+        time: f64,
+    },
+}
+
+impl TubeFailure {
+    /// True if a shorter interval may succeed.
+    pub fn may_be_halved(self) -> bool {
+        match self {
+            Self::FollowsCurve { .. } | Self::TooLarge { .. } => false,
+            Self::Law { .. }
+            | Self::NoContraction { .. }
+            | Self::NotSolved { .. }
+            | Self::OtherBranch { .. } => true,
+        }
+    }
+}
+
+/// Bounds of a motion over an interval of time, or at one time.
+#[derive(Clone, Debug)]
+pub(crate) struct Enclosure {
+    /// The interval of time.
+    pub over: Interval,
+    /// Per body: bounds of its pose and of its first three rates. Rates are unbounded if those of a law are.
+    pub poses: Vec<Pose<TimeJet<Interval>>>,
+    /// The time at which the coordinates of balls are zero.
+    pub middle: f64,
+    /// Per coordinate that begins a ball: its rotation at that time, nearly.
+    centres: Rc<Vec<Quat>>,
+    /// Per coordinate: box in which exactly one position belongs to each time; those of a ball count from its centre.
+    unique: Vec<Interval>,
+    /// Per block: its residuals at the middle of its coordinates.
+    residuals: Vec<Vec<Interval>>,
+    /// Per coordinate: bounds with rates.
+    coordinates: Vec<TimeJet<Interval>>,
+}
+
+/// Computes enclosures of one mechanism.
+pub(crate) struct TubeSolver {
+    /// The same state over intervals, over duals of them, and over jets of them.
+    values: State<Interval>,
+    columns: State<Dual<Interval>>,
+    rates: State<TimeJet<Interval>>,
+    parts: PlanGeometry<Interval>,
+    parts_of_columns: PlanGeometry<Dual<Interval>>,
+    parts_of_rates: PlanGeometry<TimeJet<Interval>>,
+    drivers: Vec<[Interval; 3]>,
+    drivers_of_columns: Vec<[Dual<Interval>; 3]>,
+    drivers_of_rates: Vec<[TimeJet<Interval>; 3]>,
+}
+
+/// Preconditioned equations of a block over a box.
+struct Contraction {
+    /// Y, row by row.
+    inverse: Vec<f64>,
+    /// I - Y J(X), row by row.
+    rest: Vec<Interval>,
+    n: usize,
+}
+
+impl Contraction {
+    /// `Y b`.
+    fn precondition(&self, b: &[Interval]) -> Vec<Interval> {
+        self.inverse
+            .chunks_exact(self.n)
+            .map(|y| product(y.iter().map(|y| Interval::constant(*y)), b))
+            .collect()
+    }
+
+    /// `(I - Y J) x`.
+    fn remainder(&self, x: &[Interval]) -> Vec<Interval> {
+        self.rest.chunks_exact(self.n).map(|row| product(row.iter().copied(), x)).collect()
+    }
+
+    /// `|I - Y J|`, in the norm of the largest row sum.
+    fn norm(&self) -> f64 {
+        let sum = |row: &[Interval]| {
+            row.iter().fold(Interval::zero(), |sum, x| sum + Interval::constant(x.magnitude())).high
+        };
+        self.rest.chunks_exact(self.n).map(sum).fold(0.0, f64::max)
+    }
+
+    /// Bounds of x with `J x = b`, within those that are known.
+    fn solve(&self, b: &[Interval], known: &[Interval]) -> Vec<Interval> {
+        let y = self.precondition(b);
+        let k = Interval::constant(self.norm());
+        let size = Interval::constant(y.iter().map(|y| y.magnitude()).fold(0.0, f64::max));
+        let most = (size / (Interval::one() - k)).high;
+        let mut x: Vec<Interval> = known.iter().map(|known| known.and(Interval::symmetric(most))).collect();
+        for _ in 0..PASSES {
+            let rest = self.remainder(&x);
+            for ((x, y), rest) in x.iter_mut().zip(&y).zip(rest) {
+                *x = x.and(*y + rest);
+            }
+        }
+        x
+    }
+}
+
+fn product(row: impl Iterator<Item = Interval>, x: &[Interval]) -> Interval {
+    row.zip(x).fold(Interval::zero(), |sum, (a, x)| sum + a * *x)
+}
+
+impl TubeSolver {
+    pub fn new(model: &Model, topology: &Topology, parts: &PlanGeometry<f64>) -> Self {
+        let drivers = model.drivers.len();
+        Self {
+            values: State::new(model, topology),
+            columns: State::new(model, topology),
+            rates: State::new(model, topology),
+            parts: parts.spread(),
+            parts_of_columns: parts.spread(),
+            parts_of_rates: parts.spread(),
+            drivers: vec![[Interval::zero(); 3]; drivers],
+            drivers_of_columns: vec![[Dual::zero(); 3]; drivers],
+            drivers_of_rates: vec![[TimeJet::zero(); 3]; drivers],
+        }
+    }
+
+    /// Bounds over an interval of time. `at` is the solved position in the middle of it, and `narrow` its enclosure, if
+    /// it is known.
+    pub fn enclose(
+        &mut self,
+        topology: &Topology,
+        laws: impl Fn(usize) -> TimeJet<Interval>,
+        over: Interval,
+        at: &AcceptedPosition,
+        narrow: Option<&Enclosure>,
+    ) -> Result<Enclosure, TubeFailure> {
+        if let Some((c, _)) = topology.contacts().next() {
+            return Err(TubeFailure::FollowsCurve { joint: topology[c].joint });
+        }
+        let zero = Interval::zero();
+        for d in 0..self.drivers.len() {
+            let law = laws(d);
+            if !law.value().is_bounded() {
+                return Err(TubeFailure::Law { driver: DriverId(d) });
+            }
+            self.drivers[d] = [law.value(), zero, zero];
+            self.drivers_of_columns[d] = self.drivers[d].map(Dual::constant);
+            self.drivers_of_rates[d] = [law, Jet::constant(zero), Jet::constant(zero)];
+        }
+        for r in topology.coupler_terms() {
+            let near = at.coupled[r.0][0];
+            self.values.near[r.0] = Real::constant(near);
+            self.columns.near[r.0] = Real::constant(near);
+            self.rates.near[r.0] = Real::constant(near);
+        }
+        let centres = narrow.map_or_else(|| Rc::new(at.balls.clone()), |narrow| narrow.centres.clone());
+        let o = topology.coordinates.len();
+        let mut found = Enclosure {
+            over,
+            poses: Vec::new(),
+            middle: at.time,
+            centres,
+            unique: vec![zero; o],
+            residuals: Vec::new(),
+            coordinates: vec![TimeJet::zero(); o],
+        };
+        for (c, d) in topology.driven_coordinates() {
+            let law = self.drivers_of_rates[d.0][0];
+            (found.coordinates[c.0], found.unique[c.0]) = (law, law.value());
+            self.values.q[c.0] = law.value();
+            self.columns.q[c.0] = Dual::constant(law.value());
+            self.rates.q[c.0] = law;
+        }
+        self.values.place(topology, &self.parts, topology.driven_links());
+        self.values.place_bodies(topology, &self.parts, topology.driven_links());
+        self.columns.place(topology, &self.parts_of_columns, topology.driven_links());
+        self.columns.place_bodies(topology, &self.parts_of_columns, topology.driven_links());
+        self.rates.place(topology, &self.parts_of_rates, topology.driven_links());
+        self.rates.place_bodies(topology, &self.parts_of_rates, topology.driven_links());
+        for b in topology.block_ids() {
+            self.enclose_block(topology, b, at, narrow, &mut found)?;
+        }
+        found.poses = self.rates.pose.clone();
+        if let Some(narrow) = narrow {
+            let since = over - Interval::constant(at.time);
+            for (pose, narrow) in found.poses.iter_mut().zip(&narrow.poses) {
+                pose.r = narrowed_vector(pose.r, narrow.r, since);
+                for (col, narrow) in pose.rot.cols.iter_mut().zip(narrow.rot.cols) {
+                    *col = narrowed_vector(*col, narrow, since);
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Finds the box of one block, and the bounds of its rates.
+    fn enclose_block(
+        &mut self,
+        topology: &Topology,
+        b: BlockId,
+        at: &AcceptedPosition,
+        narrow: Option<&Enclosure>,
+        found: &mut Enclosure,
+    ) -> Result<(), TubeFailure> {
+        let unknowns = &topology[b].unknowns;
+        let n = unknowns.len();
+        if n > LARGEST_DENSE {
+            return Err(TubeFailure::TooLarge { block: b });
+        }
+        let failed = TubeFailure::NoContraction { block: b };
+        let unit = |c: &CoordinateId| topology[*c].unit;
+        // The coordinates of a ball are zero at the middle: its rotation is there.
+        let middle: Vec<f64> = unknowns.iter().map(|c| at.q[c.0]).collect();
+        let half = 0.5 * found.over.width();
+        let predicted = |c: &CoordinateId| {
+            (at.qd[c.0].abs() + 0.5 * half * at.qdd[c.0].abs()) * half * SLACK + LEAST_BOX * unit(c)
+        };
+        let mut radius: Vec<f64> = unknowns.iter().map(predicted).collect();
+        let points: Vec<Interval> = middle.iter().map(|m| Interval::constant(*m)).collect();
+        let residual = self.residuals(topology, b, &points, &found.centres);
+        let since = found.over - Interval::constant(found.middle);
+        // phi(m, T) in phi(m, t) + phi_t(m, T) (T - t)
+        let moved = narrow.map(|narrow| {
+            for (c, m) in unknowns.iter().zip(&points) {
+                found.coordinates[c.0] = Jet::constant(*m);
+            }
+            (&narrow.residuals[b.0], self.rates_of_rows(topology, b, 1, found))
+        });
+        let mut contraction = None;
+        let mut first: Option<Vec<f64>> = None;
+        for _ in 0..MOST_BOXES {
+            let boxed: Vec<Interval> =
+                points.iter().zip(&radius).map(|(m, r)| *m + Interval::symmetric(*r)).collect();
+            let jacobian = self.jacobian(topology, b, &boxed, &found.centres);
+            let inverse = match &first {
+                Some(inverse) => inverse.clone(),
+                None => inverse_of(&jacobian, n).ok_or(failed)?,
+            };
+            first = Some(inverse.clone());
+            let step = Contraction::of(inverse, &jacobian, n);
+            let away: Vec<Interval> = boxed.iter().zip(&points).map(|(x, m)| *x - *m).collect();
+            let mut newton = step.precondition(&residual);
+            if let Some((start, rate)) = &moved {
+                let (start, rate) = (step.precondition(start), step.precondition(rate));
+                for (k, x) in newton.iter_mut().enumerate() {
+                    if rate[k].is_bounded() {
+                        *x = x.and(start[k] - rate[k] * since);
+                    }
+                }
+            }
+            let rest = step.remainder(&away);
+            // m - Y phi(m, T) + (I - Y J(X)) (X - m), less m
+            let image: Vec<Interval> = newton.iter().zip(&rest).map(|(p, q)| *q - *p).collect();
+            if away.iter().zip(&image).all(|(x, k)| x.strictly_encloses(*k)) {
+                for (k, c) in unknowns.iter().enumerate() {
+                    found.unique[c.0] = boxed[k];
+                    found.coordinates[c.0] =
+                        Jet([points[k] + image[k], Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE]);
+                }
+                contraction = Some(step);
+                break;
+            }
+            for (k, c) in unknowns.iter().enumerate() {
+                let reached = image[k].magnitude();
+                if !(reached <= LARGEST_BOX * unit(c)) {
+                    return Err(failed);
+                }
+                radius[k] = SLACK * reached + LEAST_BOX * unit(c);
+            }
+        }
+        let contraction = contraction.filter(|step| step.norm() <= CONTRACTION).ok_or(failed)?;
+        found.residuals.push(residual);
+        let mut inverse = contraction.inverse;
+        let mut width = f64::INFINITY;
+        for pass in 0..MOST_PASSES {
+            let boxed: Vec<Interval> = unknowns.iter().map(|c| found.coordinates[c.0].value()).collect();
+            let jacobian = self.jacobian(topology, b, &boxed, &found.centres);
+            if pass == 0 {
+                inverse = inverse_of(&jacobian, n).ok_or(failed)?;
+            }
+            let step = Contraction::of(inverse.clone(), &jacobian, n);
+            if !(step.norm() <= CONTRACTION) {
+                return Err(failed);
+            }
+            for order in 1..4 {
+                // The rates of the rows as if the rate of this order were zero.
+                let demand = self.rates_of_rows(topology, b, order, found);
+                let known: Vec<Interval> = unknowns.iter().map(|c| found.coordinates[c.0].0[order]).collect();
+                let rate = step.solve(&demand, &known);
+                for (c, rate) in unknowns.iter().zip(rate) {
+                    found.coordinates[c.0].0[order] = rate;
+                }
+            }
+            let Some(narrow) = narrow else { break };
+            for c in unknowns {
+                let x = &mut found.coordinates[c.0];
+                *x = x.narrowed(narrow.coordinates[c.0], since);
+            }
+            let widths = unknowns.iter().map(|c| found.coordinates[c.0].dd().width() / unit(c));
+            let now = widths.fold(0.0, f64::max);
+            if !(now < WORTHWHILE * width) {
+                break;
+            }
+            width = now;
+        }
+        // The bodies of the block, for those that depend on it, and as results.
+        let all: Vec<TimeJet<Interval>> = unknowns.iter().map(|c| found.coordinates[c.0]).collect();
+        let links = topology[b].link_ids();
+        set(&mut self.values, topology, b, |k| all[k].value(), &found.centres);
+        self.values.place(topology, &self.parts, links.clone());
+        self.values.place_bodies(topology, &self.parts, links.clone());
+        set(&mut self.columns, topology, b, |k| Dual::constant(all[k].value()), &found.centres);
+        self.columns.place(topology, &self.parts_of_columns, links.clone());
+        self.columns.place_bodies(topology, &self.parts_of_columns, links.clone());
+        set(&mut self.rates, topology, b, |k| all[k], &found.centres);
+        self.rates.place(topology, &self.parts_of_rates, links.clone());
+        self.rates.place_bodies(topology, &self.parts_of_rates, links);
+        Ok(())
+    }
+
+    /// Residuals of the selected rows of a block at these coordinates.
+    fn residuals(
+        &mut self,
+        topology: &Topology,
+        b: BlockId,
+        q: &[Interval],
+        centres: &[Quat],
+    ) -> Vec<Interval> {
+        set(&mut self.values, topology, b, |k| q[k], centres);
+        rows(&mut self.values, topology, &self.parts, &self.drivers, b)
+    }
+
+    /// Jacobian of the selected rows by the unknowns of a block, row by row.
+    fn jacobian(
+        &mut self,
+        topology: &Topology,
+        b: BlockId,
+        q: &[Interval],
+        centres: &[Quat],
+    ) -> Vec<Interval> {
+        let n = q.len();
+        let mut jacobian = vec![Interval::zero(); n * n];
+        for column in 0..n {
+            let of = |k: usize| if k == column { Dual::variable(q[k]) } else { Dual::constant(q[k]) };
+            set(&mut self.columns, topology, b, of, centres);
+            let found =
+                rows(&mut self.columns, topology, &self.parts_of_columns, &self.drivers_of_columns, b);
+            for (row, x) in found.into_iter().enumerate() {
+                jacobian[row * n + column] = x.d;
+            }
+        }
+        jacobian
+    }
+
+    /// The rates of an order of the selected rows, with a minus, if those of the unknowns were zero at this order.
+    fn rates_of_rows(
+        &mut self,
+        topology: &Topology,
+        b: BlockId,
+        order: usize,
+        found: &Enclosure,
+    ) -> Vec<Interval> {
+        let unknowns = &topology[b].unknowns;
+        let lower = |k: usize| {
+            let mut x = found.coordinates[unknowns[k].0];
+            x.0[order..].fill(Interval::zero());
+            x
+        };
+        set(&mut self.rates, topology, b, lower, &found.centres);
+        let found = rows(&mut self.rates, topology, &self.parts_of_rates, &self.drivers_of_rates, b);
+        found.into_iter().map(|x| -x.0[order]).collect()
+    }
+}
+
+impl Contraction {
+    fn of(inverse: Vec<f64>, jacobian: &[Interval], n: usize) -> Self {
+        let mut rest = vec![Interval::zero(); n * n];
+        for row in 0..n {
+            for column in 0..n {
+                let mut sum = Interval::constant(f64::from(u8::from(row == column)));
+                for k in 0..n {
+                    sum -= Interval::constant(inverse[row * n + k]) * jacobian[k * n + column];
+                }
+                rest[row * n + column] = sum;
+            }
+        }
+        Self { inverse, rest, n }
+    }
+}
+
+/// Inverse of the middle of a matrix, nearly; `None` if it is singular or unbounded.
+fn inverse_of(matrix: &[Interval], n: usize) -> Option<Vec<f64>> {
+    let mut factors = Factors::<f64>::new(n, |_| (0..n).collect(), LARGEST_DENSE);
+    for row in 0..n {
+        let entries = (0..n).map(|column| (column, matrix[row * n + column].middle()));
+        factors.set_row(row, entries, 0.0);
+    }
+    factors.factor();
+    let mut inverse = vec![0.0; n * n];
+    for column in 0..n {
+        let mut unit = vec![0.0; n];
+        unit[column] = 1.0;
+        factors.solve(&mut unit);
+        for row in 0..n {
+            inverse[row * n + column] = unit[row];
+        }
+    }
+    inverse.iter().all(|x| x.is_finite()).then_some(inverse)
+}
+
+/// Sets the unknowns of a block.
+fn set<T: Real>(
+    state: &mut State<T>,
+    topology: &Topology,
+    b: BlockId,
+    q: impl Fn(usize) -> T,
+    centres: &[Quat],
+) {
+    for (k, c) in topology[b].unknowns.iter().enumerate() {
+        state.q[c.0] = q(k);
+    }
+    for step in topology[b].link_ids().flat_map(|link| &topology[link].steps) {
+        if step.freedom == Freedom::Ball {
+            let k = step.first.0;
+            let by = Vec3::new(state.q[k], state.q[k + 1], state.q[k + 2]);
+            state.balls[k] = centres[k].spread().nudged(by);
+        }
+    }
+}
+
+/// Residuals of the selected rows of a block at the coordinates of the state.
+fn rows<T: Real>(
+    state: &mut State<T>,
+    topology: &Topology,
+    parts: &PlanGeometry<T>,
+    drivers: &[[T; 3]],
+    b: BlockId,
+) -> Vec<T> {
+    state.place(topology, parts, topology[b].link_ids());
+    for &c in &topology[b].closures {
+        state.place_ends(topology, parts, c);
+    }
+    topology[b].selected.iter().map(|&r| state.residual_of(topology, parts, drivers, r)).collect()
+}
+
+fn narrowed_vector(
+    x: Vec3<TimeJet<Interval>>,
+    narrow: Vec3<TimeJet<Interval>>,
+    since: Interval,
+) -> Vec3<TimeJet<Interval>> {
+    Vec3::new(x.x.narrowed(narrow.x, since), x.y.narrowed(narrow.y, since), x.z.narrowed(narrow.z, since))
+}
+
+/// True if the unknowns of a narrow enclosure are in the box in which those of another one are unique.
+fn is_within(topology: &Topology, narrow: &Enclosure, other: &Enclosure) -> bool {
+    topology.links.iter().flat_map(|link| &link.steps).all(|step| {
+        let k = step.first.0;
+        if step.is_driven {
+            return true;
+        }
+        if step.freedom != Freedom::Ball {
+            return other.unique[k].encloses(narrow.coordinates[k].value());
+        }
+        // The same rotation, counted from the centre of the other enclosure: (1, d/2) of it up to a factor.
+        let by = Vec3::new(0, 1, 2).map(|n| narrow.coordinates[k + n].value());
+        let rotation: Quat<Interval> = narrow.centres[k].spread().nudged(by);
+        let centre: Quat<Interval> = other.centres[k].spread();
+        let w = rotation.w * centre.w + rotation.v.dot(centre.v);
+        let v = centre.v * -rotation.w + rotation.v * centre.w - rotation.v.cross(centre.v);
+        (0..3).all(|n| other.unique[k + n].encloses(v[n] / w * 2.0))
+    })
+}
+
+/// A motion, with proven bounds of its parts.
+///
+/// The motion is that which passes through the position at the first output time; every enclosure belongs to it, because
+/// neighbouring ones have a position in common in which both are unique.
+pub struct ProvenMotion<'m> {
+    mechanism: Mechanism<'m>,
+    solver: TubeSolver,
+    /// Positions at output times.
+    outputs: Vec<OutputPosition>,
+    /// Plans with the different selections of independent rows along the motion.
+    plans: Vec<Topology>,
+    /// Enclosures at single times, with their positions, by plan and time.
+    instants: HashMap<(usize, u64), Result<Rc<Instant>, TubeFailure>>,
+    slabs: HashMap<[u64; 2], Result<Rc<Slab>, TubeFailure>>,
+    /// Number of enclosures over intervals that were computed.
+    computed: usize,
+}
+
+/// A position of the motion at an output time.
+pub(crate) struct OutputPosition {
+    pub at: AcceptedPosition,
+    /// Index of the plan by which it goes on from there.
+    pub plan: usize,
+}
+
+/// One time of a motion.
+pub(crate) struct Instant {
+    at: AcceptedPosition,
+    /// Narrow bounds.
+    pub enclosure: Enclosure,
+}
+
+impl Instant {
+    /// Its time, s.
+    pub fn time(&self) -> f64 {
+        self.enclosure.middle
+    }
+}
+
+/// Part of a motion.
+pub(crate) struct Slab {
+    /// The interval of time.
+    pub over: Interval,
+    /// Per body: bounds over the whole part.
+    pub poses: Vec<Pose<TimeJet<Interval>>>,
+    /// Its start, middle and end.
+    pub instants: [Rc<Instant>; 3],
+}
+
+impl<'m> ProvenMotion<'m> {
+    /// Motion through these positions of a mechanism.
+    pub(crate) fn new(mechanism: Mechanism<'m>, outputs: Vec<OutputPosition>, plans: Vec<Topology>) -> Self {
+        let solver = TubeSolver::new(mechanism.model, &mechanism.topology, &mechanism.parts);
+        let (instants, slabs) = (HashMap::new(), HashMap::new());
+        Self { mechanism, solver, outputs, plans, instants, slabs, computed: 0 }
+    }
+
+    /// The model of the mechanism.
+    pub fn model(&self) -> &'m Model {
+        self.mechanism.model
+    }
+
+    /// Output times that the motion reaches.
+    pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
+        self.outputs.iter().map(|output| output.at.time)
+    }
+
+    /// Number of enclosures over intervals of time that were computed: the effort.
+    pub fn computed(&self) -> usize {
+        self.computed
+    }
+
+    /// Bounds of the pose of every body, and of its first three rates, over the part of the motion between two times, which
+    /// are output times or between two that follow each other.
+    ///
+    /// # Errors
+    /// The reason why nothing is proved over this interval. A shorter one may be, if [`TubeFailure::may_be_halved`].
+    pub fn over(&mut self, from: f64, to: f64) -> Result<Vec<Pose<TimeJet<Interval>>>, TubeFailure> {
+        self.slab(from, to).map(|slab| slab.poses.clone())
+    }
+
+    /// Bounds of the pose of every body at a time, and of its first three rates.
+    ///
+    /// # Errors
+    /// The reason why nothing is proved at this time.
+    pub fn at(&mut self, t: f64) -> Result<Vec<Pose<TimeJet<Interval>>>, TubeFailure> {
+        let plan = self.plan_after(t);
+        self.instant(plan, t).map(|instant| instant.enclosure.poses.clone())
+    }
+
+    /// Times between two others at which rates of laws may jump.
+    pub fn cuts(&self, from: f64, to: f64) -> Vec<f64> {
+        let drivers = 0..self.mechanism.model.drivers.len();
+        let mut cuts: Vec<f64> =
+            drivers.flat_map(|d| self.mechanism.parts.law_of(d).cuts(from, to)).collect();
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        cuts
+    }
+
+    /// Plan by which the motion goes on from a time.
+    fn plan_after(&self, t: f64) -> usize {
+        let begun = self.outputs.partition_point(|output| output.at.time <= t);
+        self.outputs.get(begun.saturating_sub(1)).map_or(0, |output| output.plan)
+    }
+
+    /// Narrow bounds at a time, by a plan.
+    fn instant(&mut self, plan: usize, t: f64) -> Result<Rc<Instant>, TubeFailure> {
+        let key = (plan, t.to_bits());
+        if let Some(known) = self.instants.get(&key) {
+            return known.clone();
+        }
+        let found = self.solve_instant(plan, t);
+        self.instants.insert(key, found.clone());
+        found
+    }
+
+    /// Narrow bounds at a time within the part of the motion that starts at another time.
+    pub(crate) fn instant_within(&mut self, from: f64, t: f64) -> Result<Rc<Instant>, TubeFailure> {
+        let plan = self.plan_after(from);
+        self.instant(plan, t)
+    }
+
+    fn solve_instant(&mut self, plan: usize, t: f64) -> Result<Rc<Instant>, TubeFailure> {
+        let at = self.solve(plan, t)?;
+        let (laws, over) = (&self.mechanism.parts, Interval::constant(t));
+        let law = |d: usize| laws.law_of(d).enclosure(over);
+        let enclosure = self.solver.enclose(&self.plans[plan], law, over, &at, None)?;
+        Ok(Rc::new(Instant { at, enclosure }))
+    }
+
+    /// Position at a time, from the nearest one that is known.
+    fn solve(&mut self, plan: usize, t: f64) -> Result<AcceptedPosition, TubeFailure> {
+        let failed = TubeFailure::NotSolved { time: t };
+        let known = self.instants.values().filter_map(|known| known.as_ref().ok()).map(|known| &known.at);
+        let near = self.outputs.iter().map(|output| &output.at).chain(known).min_by(|a, b| {
+            let away = |at: &AcceptedPosition| (at.time - t).abs();
+            away(a).total_cmp(&away(b))
+        });
+        let near = near.ok_or(failed)?;
+        if near.time == t {
+            return Ok(near.clone());
+        }
+        let (mechanism, h) = (&mut self.mechanism, t - near.time);
+        mechanism.saved = near.clone();
+        mechanism.topology.clone_from(&self.plans[plan]);
+        mechanism.restore();
+        mechanism.expect_turns(h);
+        for c in mechanism.topology.unknown_coordinates() {
+            // q + q. h + q.. h^2 / 2; of a ball, its correction
+            let saved = &mechanism.saved;
+            mechanism.state.q[c.0] += (saved.qd[c.0] + 0.5 * h * saved.qdd[c.0]) * h;
+        }
+        mechanism.state.turn_balls(&mechanism.topology, mechanism.topology.link_ids());
+        let solved = mechanism.drive(Path::Laws, t).and_then(|()| mechanism.solve_within(f64::INFINITY));
+        solved.map_err(|_| failed)?;
+        mechanism.save(t);
+        Ok(mechanism.saved.clone())
+    }
+
+    /// Bounds over the part of the motion between two times.
+    pub(crate) fn slab(&mut self, from: f64, to: f64) -> Result<Rc<Slab>, TubeFailure> {
+        self.slab_in_parts(from, to, MOST_HALVINGS)
+    }
+
+    /// Bounds over the part of the motion between two times; if the box does not contract, those of its halves together.
+    fn slab_in_parts(&mut self, from: f64, to: f64, halvings: usize) -> Result<Rc<Slab>, TubeFailure> {
+        let key = [from, to].map(f64::to_bits);
+        if let Some(known) = self.slabs.get(&key) {
+            return known.clone();
+        }
+        let found = match self.solve_slab(from, to) {
+            Err(TubeFailure::NoContraction { .. }) if halvings > 0 => {
+                self.join_halves(from, to, halvings - 1)
+            }
+            found => found,
+        };
+        // With more halvings, a failure may be none.
+        if found.is_ok() || halvings == MOST_HALVINGS {
+            self.slabs.insert(key, found.clone());
+        }
+        found
+    }
+
+    fn solve_slab(&mut self, from: f64, to: f64) -> Result<Rc<Slab>, TubeFailure> {
+        self.computed += 1;
+        let (over, plan) = (Interval::between(from, to), self.plan_after(from));
+        let (start, end) = (self.instant(plan, from)?, self.instant(plan, to)?);
+        let middle = self.instant(plan, over.middle())?;
+        let laws = &self.mechanism.parts;
+        let law = |d: usize| laws.law_of(d).enclosure(over);
+        let topology = &self.plans[plan];
+        let enclosure = self.solver.enclose(topology, law, over, &middle.at, Some(&middle.enclosure))?;
+        for (instant, time) in [(&start, from), (&end, to)] {
+            if !is_within(topology, &instant.enclosure, &enclosure) {
+                return Err(TubeFailure::OtherBranch { time });
+            }
+        }
+        Ok(Rc::new(Slab { poses: enclosure.poses, over, instants: [start, middle, end] }))
+    }
+
+    /// Bounds that contain those of both halves.
+    fn join_halves(&mut self, from: f64, to: f64, halvings: usize) -> Result<Rc<Slab>, TubeFailure> {
+        let over = Interval::between(from, to);
+        let time = over.middle();
+        let first = self.slab_in_parts(from, time, halvings)?;
+        let second = self.slab_in_parts(time, to, halvings)?;
+        let [start, _, middle] = first.instants.clone();
+        let end = second.instants[2].clone();
+        // A rate that jumps from one half to the other has no bounds over both.
+        let laws =
+            (0..self.mechanism.model.drivers.len()).map(|d| self.mechanism.parts.law_of(d).enclosure(over));
+        let mut is_bounded = [true; 4];
+        for law in laws {
+            for (known, rate) in is_bounded.iter_mut().zip(law.0) {
+                *known &= rate.is_bounded();
+            }
+        }
+        let since = over - Interval::constant(time);
+        let either = |a: TimeJet<Interval>, b: TimeJet<Interval>, narrow: TimeJet<Interval>| {
+            let hull = |n: usize| if is_bounded[n] { a.0[n].or(b.0[n]) } else { Interval::ENTIRE };
+            Jet(std::array::from_fn(hull)).narrowed(narrow, since)
+        };
+        let vector = |a: Vec3<TimeJet<Interval>>, b: Vec3<TimeJet<Interval>>, c: Vec3<TimeJet<Interval>>| {
+            Vec3::new(either(a.x, b.x, c.x), either(a.y, b.y, c.y), either(a.z, b.z, c.z))
+        };
+        let poses =
+            first.poses.iter().zip(&second.poses).zip(&middle.enclosure.poses).map(|((a, b), c)| Pose {
+                rot: Mat3 { cols: [0, 1, 2].map(|k| vector(a.rot.cols[k], b.rot.cols[k], c.rot.cols[k])) },
+                r: vector(a.r, b.r, c.r),
+            });
+        Ok(Rc::new(Slab { poses: poses.collect(), over, instants: [start, middle, end] }))
+    }
+}

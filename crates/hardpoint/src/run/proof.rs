@@ -1,0 +1,406 @@
+//! Proven bounds of the motion of a design, and of its clearances between the output times.
+//!
+//! The motion is divided at its output times, and where rates of laws jump. A part passes if a proven lower bound of the
+//! distance over it is not below the claim (`clearance/separation.rs`), else it is halved. The bounds have no slack where
+//! the distance falls, rises or is convex over a part: the least distance itself can be proved, but for round-off.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use crate::clearance::{
+    Direction, EnclosedCore, PlacedShapes, direction_of, lower_bound, nearest, separations,
+};
+use crate::design::BodyFixed;
+use crate::law::TimeJet;
+use crate::model::{Model, ShapeId, ShapeKind};
+use crate::motion::parts::PlanGeometry;
+use crate::motion::stepper::Stepper;
+use crate::motion::tube::{Instant, OutputPosition, Slab};
+use crate::motion::{ProvenMotion, Stop, TubeFailure, advance};
+use crate::number::{Interval, Jet, Rates};
+use crate::space::{Mat3, Pose, Real, Vec3};
+
+use super::analysis::Analysis;
+use super::walk::PreparedDesign;
+
+impl Analysis<'_> {
+    /// Motion of a design (variable k at `design[k]`), of which bounds between the output times are proved, and the
+    /// reason why it ends before the last one, if it does. `None` with equilibrium: its elastic joints open as the forces
+    /// ask for, not by laws.
+    ///
+    /// ```
+    /// # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
+    /// # let draft = Draft::new("pendulum").hardpoint("O", [0.0; 3]).hardpoint("tip", [2.0, 0.0, 0.0]).bodies(["arm"])
+    /// #     .revolute("O", ["ground", "arm"], "O", [0.0, 0.0, 1.0]).driver("motor", "O", Law::parse("t").unwrap())
+    /// #     .times([0.0, 0.5]);
+    /// let model = Model::from_draft(&draft).unwrap();
+    /// let analysis = Analysis::new(&model).unwrap();
+    /// let (mut motion, _) = analysis.proven_motion(&[]).unwrap();
+    /// let arm = motion.over(0.0, 0.1).unwrap()[1];
+    /// let sine = arm.rot.cols[0].y; // of every angle from 0 to 0.1 rad, and its rates
+    /// assert!(sine.value().contains(0.05_f64.sin()) && sine.value().width() < 0.101);
+    /// assert!(sine.d().contains(0.05_f64.cos()) && sine.dd().contains(-(0.05_f64.sin())));
+    /// ```
+    pub fn proven_motion(&self, design: &[f64]) -> Option<(ProvenMotion<'_>, Option<Stop>)> {
+        if self.openings().is_some() {
+            return None;
+        }
+        let (model, PreparedDesign { geometry, laws, .. }) = (self.solved_model(), self.design(design));
+        let parts = PlanGeometry::same(model, self.topology(), &geometry, &laws);
+        let mut one = Stepper::new(model, self.topology(), parts);
+        let (mut outputs, mut plans, mut selections) = (Vec::new(), Vec::new(), None);
+        let mut stop = None;
+        for (k, &t) in model.times.iter().enumerate() {
+            let moved = if k == 0 { advance::start(&mut one, t) } else { advance::advance(&mut one, t) };
+            if let Err(reason) = moved {
+                stop = Some(*reason);
+                break;
+            }
+            if selections != Some(one.mechanism.selections) {
+                selections = Some(one.mechanism.selections);
+                plans.push(one.mechanism.topology.clone());
+            }
+            outputs.push(OutputPosition { at: one.mechanism.saved.clone(), plan: plans.len() - 1 });
+        }
+        Some((ProvenMotion::new(one.mechanism, outputs, plans), stop))
+    }
+}
+
+/// Length of a part of the motion, as a fraction of it, that is not halved again.
+const SHORTEST: f64 = 1e-9;
+/// A distance below the claim by more than this fraction of the mechanism's size refutes it: far above round-off.
+const BELOW: f64 = 1e-10;
+/// Steps of Newton's method to the time at which a distance is stationary.
+const STEPS: usize = 6;
+/// A step of Newton's method below this part of the interval leaves an error of its square.
+const STATIONARY: f64 = 1e-7;
+
+/// Result of the proof that a distance is never below a claim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ClearanceProof {
+    /// It never is, over all of the motion that was solved.
+    Proved {
+        /// Parts of the motion that passed.
+        slabs: usize,
+        /// Bounds that were computed: parts that passed, and those that were halved.
+        bounds: usize,
+    },
+    /// Nothing is proved over a part of the motion.
+    NotProved {
+        /// Start of that part, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+        /// Proven lower bound of the distance over it, m; minus infinity if there is none.
+        bound: f64,
+        /// Reason.
+        reason: ProofFailure,
+    },
+}
+
+/// Reason why a distance is not proved to be at least a claim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ProofFailure {
+    /// The distance at a time is less.
+    Nearer {
+        /// The time, s.
+        time: f64,
+        /// The distance, m.
+        distance: f64,
+    },
+    /// No bound reaches the claim, in however short a part: the claim is the least distance itself up to round-off, or
+    /// the rates of a law jump where the distance is least, or the shapes are in each other.
+    Unresolved,
+    /// A ring is nearest from the inside, where only points have a bound.
+    WithinRing,
+    /// A shape is a hull or a mesh, which have no bounds by separation yet.
+    Surface {
+        /// The shape.
+        shape: ShapeId,
+    },
+    /// The motion has no proven bounds there.
+    Motion(TubeFailure),
+}
+
+/// Proves clearances of one motion: the bounds of the motion are computed once for all pairs of shapes.
+pub struct ClearanceProver<'a> {
+    model: &'a Model,
+    motion: ProvenMotion<'a>,
+    /// Size of the mechanism, m.
+    size: f64,
+    moving: BodyFixed<Rates>,
+    constants: BodyFixed<TimeJet<Interval>>,
+    /// Reason why the motion ends before its last output time, if it does: proofs are for the part before.
+    pub stop: Option<Stop>,
+}
+
+impl Analysis<'_> {
+    /// Prover of the clearances of a design; `None` with equilibrium, as for [`proven_motion`](Self::proven_motion).
+    pub fn clearance_prover(&self, design: &[f64]) -> Option<ClearanceProver<'_>> {
+        let (motion, stop) = self.proven_motion(design)?;
+        let model = self.model();
+        let fixed: BodyFixed<f64> = self.design_map().fixed(&model.whole(design));
+        let constants = fixed.map(|x| Jet::constant(Interval::constant(x)));
+        let moving = fixed.map(Jet::constant);
+        Some(ClearanceProver { model, motion, size: fixed.size, moving, constants, stop })
+    }
+}
+
+/// Two shapes at one time.
+struct Place {
+    instant: Rc<Instant>,
+    cores: [EnclosedCore; 2],
+    /// Unit vector along the nearest points of the cores, with its first two rates, for plain numbers; `None` where they
+    /// meet.
+    direction: Option<[Vec3; 3]>,
+    /// Distance of the cores, for plain numbers.
+    distance: f64,
+    of_features: Option<Direction>,
+}
+
+/// A part of the motion with two shapes.
+struct Part<'p> {
+    slab: &'p Slab,
+    cores: [EnclosedCore; 2],
+    /// Start, middle and end.
+    places: [Rc<Place>; 3],
+    length: Interval,
+}
+
+impl Part<'_> {
+    /// Bound by a direction, with a time inside at which the parabola is anchored. Also: true if the functions that are
+    /// below the claim are convex.
+    fn bound(&self, direction: Direction, anchor: &Place, claim: f64) -> Option<(f64, bool)> {
+        let over = self.slab.over;
+        let all = separations(self.cores.each_ref(), direction, over)?;
+        let at = |place: &Place| separations(place.cores.each_ref(), direction, place.instant.enclosure.over);
+        let (start, inside, end) = (at(&self.places[0])?, at(anchor)?, at(&self.places[2])?);
+        let since = over - anchor.instant.enclosure.over;
+        let (mut least, mut convex) = (f64::INFINITY, true);
+        for (k, gap) in all.iter().enumerate() {
+            let gap = gap.narrowed(inside[k], since);
+            let ends = [start[k].value(), end[k].value()];
+            let bound = lower_bound(gap, ends, (inside[k], since), self.length);
+            convex &= bound >= claim || gap.dd().low > 0.0;
+            least = least.min(bound);
+        }
+        Some((least, convex))
+    }
+}
+
+impl<'a> ClearanceProver<'a> {
+    /// Number of enclosures of the motion over intervals that were computed so far.
+    pub fn enclosures(&self) -> usize {
+        self.motion.computed()
+    }
+
+    /// Proves that two shapes are never nearer than the claim, m, over the whole motion.
+    ///
+    /// The least distance of [`clearances`](Analysis::clearances) less an allowance for round-off, 1e-12 of the
+    /// mechanism's size, is proved wherever it is isolated; a greater claim never is.
+    pub fn prove(&mut self, shapes: [ShapeId; 2], claim: f64) -> ClearanceProof {
+        let times: Vec<f64> = self.motion.times().collect();
+        let (Some(&start), Some(&end)) = (times.first(), times.last()) else {
+            return ClearanceProof::Proved { slabs: 0, bounds: 0 };
+        };
+        self.prove_between(shapes, claim, [start, end])
+    }
+
+    /// Proves that two shapes are never nearer than the claim, m, between two times.
+    pub fn prove_between(
+        &mut self,
+        shapes: [ShapeId; 2],
+        claim: f64,
+        [start, end]: [f64; 2],
+    ) -> ClearanceProof {
+        let is_surface = |s: &ShapeId| {
+            matches!(self.model.shapes[s.0].kind, ShapeKind::Hull { .. } | ShapeKind::Mesh { .. })
+        };
+        if let Some(shape) = shapes.into_iter().find(is_surface) {
+            let (bound, reason) = (f64::NEG_INFINITY, ProofFailure::Surface { shape });
+            return ClearanceProof::NotProved { from: start, to: end, bound, reason };
+        }
+        let mut ends: Vec<f64> = self.motion.times().filter(|t| start < *t && *t < end).collect();
+        ends.extend(self.motion.cuts(start, end));
+        ends.extend([start, end]);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        let mut pair = PairProof { prover: self, shapes, claim: 0.0, places: HashMap::new() };
+        // Distance of the cores, rounded up.
+        pair.claim = (Interval::constant(claim) + pair.rounds()).high;
+        let (mut slabs, mut bounds) = (0, 0);
+        // The next part is the last one.
+        let mut parts: Vec<[f64; 2]> = ends.windows(2).rev().map(|pair| [pair[0], pair[1]]).collect();
+        if parts.is_empty() {
+            parts.push([start, end]);
+        }
+        while let Some([from, to]) = parts.pop() {
+            bounds += 1;
+            let failed = match pair.bound([from, to]) {
+                Ok(bound) if bound >= pair.claim => {
+                    slabs += 1;
+                    continue;
+                }
+                Ok(bound) => (bound, ProofFailure::Unresolved),
+                Err(reason) => (f64::NEG_INFINITY, reason),
+            };
+            let middle = Interval::between(from, to).middle();
+            let halves = from < middle && middle < to && to - from > SHORTEST * (end - start);
+            let may_pass = match failed.1 {
+                ProofFailure::Nearer { .. } | ProofFailure::WithinRing | ProofFailure::Surface { .. } => {
+                    false
+                }
+                ProofFailure::Unresolved => true,
+                ProofFailure::Motion(reason) => reason.may_be_halved(),
+            };
+            if !(halves && may_pass) {
+                let (bound, reason) = failed;
+                let within =
+                    bound == f64::NEG_INFINITY && reason == ProofFailure::Unresolved && pair.has_ring();
+                let reason = if within { ProofFailure::WithinRing } else { reason };
+                let bound = (Interval::constant(bound) - pair.rounds()).low;
+                return ClearanceProof::NotProved { from, to, bound, reason };
+            }
+            parts.extend([[middle, to], [from, middle]]);
+        }
+        ClearanceProof::Proved { slabs, bounds }
+    }
+}
+
+/// Surfaces are refused before.
+const HAS_CORE: &str = "a shape with a core";
+
+/// Proof of one claim.
+struct PairProof<'p, 'a> {
+    prover: &'p mut ClearanceProver<'a>,
+    shapes: [ShapeId; 2],
+    /// Least distance of the cores, m.
+    claim: f64,
+    places: HashMap<*const Instant, Rc<Place>>,
+}
+
+impl PairProof<'_, '_> {
+    /// Sum of the radii around both cores.
+    fn rounds(&self) -> Interval {
+        let ClearanceProver { model, constants, .. } = &*self.prover;
+        let poses: &[Pose<TimeJet<Interval>>] = &[];
+        PlacedShapes { model, fixed: constants, poses }.rounds(self.shapes).value()
+    }
+
+    fn cores(&self, poses: &[Pose<TimeJet<Interval>>]) -> [EnclosedCore; 2] {
+        let ClearanceProver { model, constants, .. } = &*self.prover;
+        let placed = PlacedShapes { model, fixed: constants, poses };
+        self.shapes.map(|shape| placed.core(shape).expect(HAS_CORE))
+    }
+
+    /// The shapes at one time.
+    fn place(&mut self, instant: &Rc<Instant>) -> Rc<Place> {
+        if let Some(place) = self.places.get(&Rc::as_ptr(instant)) {
+            return place.clone();
+        }
+        let cores = self.cores(&instant.enclosure.poses);
+        let middle = |x: TimeJet<Interval>| Jet([x.0[0], x.0[1], x.0[2]].map(Interval::middle));
+        let plain: Vec<Pose<Rates>> = instant
+            .enclosure
+            .poses
+            .iter()
+            .map(|pose| Pose {
+                rot: Mat3 { cols: pose.rot.cols.map(|c| c.map(middle)) },
+                r: pose.r.map(middle),
+            })
+            .collect();
+        let ClearanceProver { model, moving, .. } = &*self.prover;
+        let placed = PlacedShapes { model, fixed: moving, poses: &plain };
+        let cores_at = self.shapes.map(|shape| placed.core(shape).expect(HAS_CORE));
+        let values = cores_at.each_ref().map(|core| core.value());
+        let near = nearest(&values[0], &values[1]);
+        let place = Rc::new(Place {
+            instant: instant.clone(),
+            cores,
+            direction: direction_of(cores_at.each_ref(), &near),
+            distance: near.distance,
+            of_features: Direction::of_features(values.each_ref(), &near),
+        });
+        self.places.insert(Rc::as_ptr(instant), place.clone());
+        place
+    }
+
+    /// Proven lower bound of the distance of the cores over a part of the motion.
+    fn bound(&mut self, [from, to]: [f64; 2]) -> Result<f64, ProofFailure> {
+        let slab = self.prover.motion.slab(from, to).map_err(ProofFailure::Motion)?;
+        let places = slab.instants.each_ref().map(|instant| self.place(instant));
+        for place in &places {
+            if place.distance < self.claim - BELOW * self.prover.size {
+                let distance = place.distance - self.rounds().middle();
+                return Err(ProofFailure::Nearer { time: place.instant.time(), distance });
+            }
+        }
+        let length = Interval::constant(to) - Interval::constant(from);
+        let part = Part { cores: self.cores(&slab.poses), slab: &slab, places, length };
+        let [start, middle, end] = part.places.each_ref();
+        let mut best = f64::NEG_INFINITY;
+        if let Some(direction) = middle.of_features {
+            let found = part.bound(direction, middle, self.claim);
+            // A plane has a distance on both sides; otherwise cores that meet have none.
+            best = self.better(best, found, true);
+        }
+        if best >= self.claim {
+            return Ok(best);
+        }
+        if let Some([n, ..]) = middle.direction {
+            let found = part.bound(Direction::fixed(n), middle, self.claim);
+            best = self.better(best, found, false);
+        }
+        if best >= self.claim {
+            return Ok(best);
+        }
+        if let (Some(at_start), Some(at_end)) = (start.direction, end.direction) {
+            // Along the nearest points at both ends, so that nothing is lost where the distance falls or rises.
+            let direction = Direction::between([at_start, at_end], [from, to]);
+            let found = part.bound(direction, middle, self.claim);
+            best = self.better(best, found, false);
+            if best < self.claim && found.is_some_and(|(_, convex)| convex) {
+                let found = self.least_of_convex(&part);
+                best = self.better(best, found, false);
+            }
+        }
+        Ok(best)
+    }
+
+    /// The greater of two bounds. Cores that meet have no distance: a bound by separation is positive.
+    fn better(&self, best: f64, found: Option<(f64, bool)>, any_sign: bool) -> f64 {
+        match found {
+            Some((bound, _)) if bound > 0.0 || any_sign && self.has_plane() => best.max(bound),
+            Some(_) | None => best,
+        }
+    }
+
+    fn has_plane(&self) -> bool {
+        self.shapes.iter().any(|s| matches!(self.prover.model.shapes[s.0].kind, ShapeKind::Plane { .. }))
+    }
+
+    fn has_ring(&self) -> bool {
+        self.shapes.iter().any(|s| matches!(self.prover.model.shapes[s.0].kind, ShapeKind::Ring { .. }))
+    }
+
+    /// Bound by the parabola at the time at which a convex distance is stationary.
+    fn least_of_convex(&mut self, part: &Part<'_>) -> Option<(f64, bool)> {
+        let Interval { low: from, high: to } = part.slab.over;
+        let mut place = part.places[1].clone();
+        for _ in 0..STEPS {
+            // Along the nearest points there, so that nothing is lost.
+            let time = place.instant.time();
+            let direction = Direction::through(place.direction?, time);
+            let gaps = separations(place.cores.each_ref(), direction, place.instant.enclosure.over)?;
+            let nearest = gaps.iter().min_by(|a, b| a.value().low.total_cmp(&b.value().low))?;
+            let step = -nearest.d().middle() / nearest.dd().middle();
+            let next = (time + step).clamp(from, to);
+            if !((next - time).abs() > STATIONARY * (to - from)) {
+                return part.bound(direction, &place, self.claim);
+            }
+            let instant = self.prover.motion.instant_within(from, next).ok()?;
+            place = self.place(&instant);
+        }
+        None
+    }
+}
