@@ -313,7 +313,8 @@ const AFTER_CLEARANCE: &str = "\
 The model has `[shapes]` of its bodies, and `[clearances.NAME]` with the pairs of shapes. Least
 distances are located exactly, between output times too, with their derivatives by all design
 variables; so are the times at which shapes touch and part. Distances are negative where shapes
-overlap.
+overlap. That nothing is nearer between output times is proved with intervals; where it is not,
+the reason and the time are given.
 
 The exit code is 1 if a pair is nearer than the `min` of its clearance.
 
@@ -330,6 +331,9 @@ pub struct Clearance {
     pub common: Common,
     #[command(flatten)]
     pub motions: Motions,
+    /// Skip the proof that nothing is nearer between output times
+    #[arg(long)]
+    pub no_proof: bool,
     /// Write clearances.csv into this folder: distances, rates, accelerations and nearest points
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,

@@ -36,7 +36,13 @@ fn clearance_in(
         let _working = session.working("locating least distances");
         analysis.clearances(&[])
     };
-    let facts = ClearanceFact::all(&file.model, file.units, &found);
+    let mut prover = if options.no_proof { None } else { analysis.clearance_prover(&[]) };
+    let facts = {
+        let _working = session.working("proving that nothing is nearer between output times");
+        ClearanceFact::proved(&file.model, file.units, &found, &mut |pair| {
+            clearance::proof(&file.model, file.units, prover.as_mut()?, pair)
+        })
+    };
     let mut written = None;
     if let Some(mut folder) = folder {
         written = Some(folder.path_of("clearances.csv"));

@@ -10,6 +10,7 @@ use hardpoint::{Analysis, Solution};
 use hardpoint_export::RunDocument;
 use hardpoint_file::ModelFile;
 use hardpoint_report::GENERATOR;
+use hardpoint_report::clearance::{self, ClearanceFact};
 use hardpoint_report::columns::Columns;
 use hardpoint_report::course::Course;
 use hardpoint_report::deflection::DeflectionFact;
@@ -51,10 +52,12 @@ const JERK_ROWS: usize = 256;
 
 /// Page of a run.
 const REPORT: &str = "report.html";
+/// Distances of shapes.
+const CLEARANCES: &str = "clearances.csv";
 /// Metrics with their derivatives.
 const METRICS: &str = "metrics.csv";
 /// All files that a run may write; the last one marks them as complete.
-const FILES: [&str; 20] = [
+const FILES: [&str; 21] = [
     "motion.csv",
     "sensitivity.csv",
     "motion.npy",
@@ -66,6 +69,7 @@ const FILES: [&str; 20] = [
     "loads.csv",
     "drivers.csv",
     "deflections.csv",
+    CLEARANCES,
     METRICS,
     "motion.xlsx",
     "report.pdf",
@@ -294,7 +298,7 @@ fn run_in(
     });
 
     let report = folder.path_of(REPORT);
-    let mut tables_of_maps = Vec::new();
+    let mut tables_after = Vec::new();
     if solution.motion.is_empty() {
         summary.timings.total = session.seconds();
     } else {
@@ -329,6 +333,15 @@ fn run_in(
                 summary.files.push(folder.path_of(name).display().to_string());
             }
         }
+        if !file.model.clearances.is_empty() && !stopped_before {
+            let _working = session.working("least distances of shapes");
+            let found = analysis.clearances(&[]);
+            let (model, units) = (&file.model, file.units);
+            let written = folder.write(CLEARANCES, |out| Ok(clearance::write(model, units, &found, out)?));
+            written.map_err(|e| session.not_written(&e))?;
+            summary.files.push(folder.path_of(CLEARANCES).display().to_string());
+            tables_after.extend(ClearanceFact::table(&ClearanceFact::all(model, units, &found)));
+        }
         if options.workbook {
             let contents =
                 RunDocument { file, course: &course, summary: &summary, suffix: options.format.suffix() };
@@ -362,7 +375,7 @@ fn run_in(
             maps::note(maps, &mut summary);
             let names = maps::write(maps, &mut folder).map_err(|e| session.not_written(&e))?;
             summary.files.extend(names.iter().map(|name| folder.path_of(name).display().to_string()));
-            tables_of_maps = MapFact::table(maps);
+            tables_after.extend(MapFact::table(maps));
         }
         results.write(&mut folder, &mut summary, session).map_err(|e| session.not_written(&e))?;
         if session.interrupted() && !stopped_before {
@@ -377,7 +390,7 @@ fn run_in(
         session.print_json(&summary);
     } else {
         text::print(&summary_text(&summary));
-        for table in &tables_of_maps {
+        for table in &tables_after {
             text::print(&text::section(table));
         }
         if !solution.motion.is_empty() {

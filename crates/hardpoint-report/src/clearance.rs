@@ -3,7 +3,11 @@
 use std::io::Write;
 
 use hardpoint::model::{Clearance, Dimension, Model, ShapePair};
-use hardpoint::run::{ClearanceMinimum, Clearances, Contact, MinimumPlace, PairClearance, ShapeDistance};
+use hardpoint::motion::TubeFailure;
+use hardpoint::run::{
+    ClearanceMinimum, ClearanceProof, ClearanceProver, Clearances, Contact, MinimumPlace, PairClearance,
+    ProofFailure, ShapeDistance,
+};
 use hardpoint_file::Units;
 
 use crate::figures::{number, per, rounded, unit, variable_unit, with_unit};
@@ -89,9 +93,88 @@ record! {
         sensitivities(model, units, Dimension::NUMBER.rate(-1), &found.d);
 }
 
+/// Allowance of a proof below the least distance, as a fraction of the mechanism's size: round-off of solved positions.
+const ROUND_OFF: f64 = 1e-12;
+/// The same for a distance that does not change: no interval is so short that a bound of it has no slack.
+const OF_CONSTANT: f64 = 1e-5;
+
+record! {
+    /// Proof that two shapes are never nearer than a claim, between output times too.
+    ProofFact::of(model: &Model, units: Units, claim: f64, found: ClearanceProof) {
+        let (slabs, failure) = match found {
+            ClearanceProof::Proved { slabs, .. } => (Some(slabs), None),
+            ClearanceProof::NotProved { from, to, reason, .. } => (None, Some((from, to, reason))),
+        };
+    }
+    /// Distance that is claimed.
+    claim: f64 = units.from_si(Dimension::LENGTH, claim);
+    /// True if it is proved.
+    proved: bool = slabs.is_some();
+    /// Parts of the motion of the proof.
+    slabs: Option<usize> = slabs;
+    /// Part of the motion over which nothing is proved, s.
+    unproved: Option<[f64; 2]> = failure.map(|(from, to, _)| [from, to]);
+    /// Reason why nothing is proved there.
+    reason: Option<String> = failure.map(|(_, _, reason)| reason_in_words(model, reason));
+}
+
+fn reason_in_words(model: &Model, reason: ProofFailure) -> String {
+    match reason {
+        ProofFailure::Nearer { time, .. } => {
+            format!("the shapes are nearer at t = {} s", rounded(time, DIGITS))
+        }
+        ProofFailure::Unresolved => "no bound reaches the claim".into(),
+        ProofFailure::WithinRing => "bounds exist only for rings that are nearest from the outside".into(),
+        ProofFailure::Surface { shape } => {
+            format!("`{}` is a hull or a mesh, for which no bounds are computed", model.shapes[shape.0].name)
+        }
+        ProofFailure::Motion(failure) => {
+            format!("the motion has no bounds there: {}", motion_in_words(model, failure))
+        }
+    }
+}
+
+fn motion_in_words(model: &Model, failure: TubeFailure) -> String {
+    match failure {
+        TubeFailure::FollowsCurve { joint } => {
+            format!("joint `{}` follows a curve", model.joints.get(joint.0).map_or("", |j| j.name.as_str()))
+        }
+        TubeFailure::TooLarge { .. } => "a loop has too many unknowns".into(),
+        TubeFailure::Law { driver } => {
+            format!(
+                "the law of driver `{}` is undefined",
+                model.drivers.get(driver.0).map_or("", |d| d.name.as_str())
+            )
+        }
+        TubeFailure::NoContraction { .. } => "a singular position is near".into(),
+        TubeFailure::NotSolved { time } => {
+            format!("no position was found at t = {} s", rounded(time, DIGITS))
+        }
+        TubeFailure::OtherBranch { time } => {
+            format!("another position of the mechanism is near at t = {} s", rounded(time, DIGITS))
+        }
+    }
+}
+
+/// Proves the least distance of a pair, or states where that fails.
+pub fn proof(
+    model: &Model,
+    units: Units,
+    prover: &mut ClearanceProver<'_>,
+    found: &PairClearance,
+) -> Option<ProofFact> {
+    let least = found.least()?.at.distance[0];
+    let allowance = if found.is_constant { OF_CONSTANT } else { ROUND_OFF } * model.size();
+    let claim = least - allowance;
+    Some(ProofFact::of(model, units, claim, prover.prove(found.shapes, claim)))
+}
+
 record! {
     /// Distance of a pair of shapes over a motion.
-    ClearanceFact::of(model: &Model, units: Units, clearance: &Clearance, pair: &ShapePair, found: &PairClearance) {
+    ClearanceFact::of(
+        model: &Model, units: Units, clearance: &Clearance, pair: &ShapePair, found: &PairClearance,
+        proof: Option<ProofFact>,
+    ) {
         let [a, b] = model.pair_names(pair);
         let length = |x: f64| units.from_si(Dimension::LENGTH, x);
         let least = found.least().map(|m| m.at.distance[0]);
@@ -117,6 +200,8 @@ record! {
     touching: Vec<[f64; 2]> = found.intervals();
     /// Times at which they touch or part.
     contacts: Vec<ContactFact> = found.contacts.iter().map(|c| ContactFact::of(model, units, c)).collect();
+    /// Proof that the distance is never less; `null` where none was tried.
+    proof: Option<ProofFact> = proof;
     /// True if the pair is always farther apart than the clearance lists.
     beyond: bool = clearance.beyond.is_some_and(|beyond| least.is_some_and(|x| x > beyond));
 }
@@ -136,12 +221,34 @@ fn drivers(model: &Model, units: Units, time: f64) -> String {
 }
 
 impl ClearanceFact {
-    /// All pairs of all clearances.
+    /// All pairs of all clearances, without proofs.
     pub fn all(model: &Model, units: Units, found: &Clearances) -> Vec<Self> {
-        let of = |clearance| {
-            found.of(clearance).map(move |(pair, found)| Self::of(model, units, clearance, pair, found))
-        };
-        model.clearances.iter().flat_map(of).collect()
+        Self::proved(model, units, found, &mut |_| None)
+    }
+
+    /// All pairs of all clearances, each with its proof. A pair that several clearances have is proved once.
+    pub fn proved(
+        model: &Model,
+        units: Units,
+        found: &Clearances,
+        prove: &mut dyn FnMut(&PairClearance) -> Option<ProofFact>,
+    ) -> Vec<Self> {
+        let proofs: Vec<Option<ProofFact>> = found.pairs.iter().map(prove).collect();
+        let mut facts = Vec::new();
+        for clearance in &model.clearances {
+            for (pair, of) in found.of(clearance) {
+                let proof = found.pairs.iter().zip(&proofs).find(|(p, _)| p.shapes == pair.shapes);
+                facts.push(Self::of(
+                    model,
+                    units,
+                    clearance,
+                    pair,
+                    of,
+                    proof.and_then(|(_, proof)| proof.clone()),
+                ));
+            }
+        }
+        facts
     }
 
     /// The lowest of its minima.
@@ -187,7 +294,22 @@ impl ClearanceFact {
             } else {
                 format!("at {}", at(lowest.time, &lowest.drivers))
             };
-            lines.push(format!("{clearance}: {distance} at least, {a} against {b}, {when}"));
+            let proof =
+                self.proof.as_ref().map_or_else(String::new, |proof| match (proof.slabs, proof.unproved) {
+                    (Some(slabs), _) if self.constant => {
+                        format!(
+                            "; never less than {} {unit} (proved, {slabs} slabs)",
+                            rounded(proof.claim, DIGITS)
+                        )
+                    }
+                    (Some(slabs), _) => format!("; never less (proved, {slabs} slabs)"),
+                    (None, Some([from, to])) => {
+                        let reason = proof.reason.as_deref().unwrap_or_default();
+                        format!("; not proved between {} and {} s: {reason}", number(from), number(to))
+                    }
+                    (None, None) => String::new(),
+                });
+            lines.push(format!("{clearance}: {distance} at least, {a} against {b}, {when}{proof}"));
         } else {
             let spans: Vec<String> = (self.touching.iter())
                 .map(|[from, to]| format!("from {} to {} s", rounded(*from, DIGITS), rounded(*to, DIGITS)))
@@ -242,6 +364,13 @@ impl ClearanceFact {
         let least = |fact: &Self| fact.least.unwrap_or(f64::INFINITY);
         rows.sort_by(|a, b| a.clearance.cmp(&b.clearance).then(least(a).total_cmp(&least(b))));
         let shown = |x: Option<f64>, unit: &str| x.map_or("-".into(), |x| with_unit(x, unit));
+        let proofs = rows.iter().any(|f| f.proof.is_some());
+        let proved = |f: &&&Self| match &f.proof {
+            Some(proof) if proof.proved => "yes".into(),
+            Some(_) => "no".into(),
+            None => "-".into(),
+        };
+        let proved: Column<'_, &&Self> = ("proved", &proved);
         let columns: [Column<'_, &&Self>; 7] = [
             ("clearance", &|f| f.clearance.clone()),
             ("shapes", &|f| format!("{} - {}", f.shapes[0], f.shapes[1])),
@@ -263,6 +392,7 @@ impl ClearanceFact {
             }),
         ];
         let note = "Least distances of shapes over the motion, located exactly; negative where they overlap.";
+        let columns: Vec<_> = columns.into_iter().chain(proofs.then_some(proved)).collect();
         Table::of("Clearances", note, &columns, &rows).if_any()
     }
 }
