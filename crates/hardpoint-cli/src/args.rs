@@ -18,7 +18,7 @@ Examples:
   hardpoint import four_bar.asmt -o four_bar.toml
   hardpoint run models/macpherson.toml -o results/macpherson
   hardpoint verify models/macpherson.toml --sweep
-  hardpoint clearance models/knee.toml
+  hardpoint clearance models/studies/knee.toml
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --measure toe
   hardpoint optimize models/four_bar_inverse.toml --save found.toml
   hardpoint tolerance models/studies/strut_tolerances.toml -o results/strut
@@ -30,7 +30,7 @@ Examples:
 Exit codes:
     0  done; for verify: every variable passed
     1  verify: a sensitivity and its re-solved designs disagree;
-       clearance: shapes are nearer than asked for;
+       clearance: shapes are nearer than required;
        optimize: the search did not converge, or limits are violated
     2  invalid command line
     3  the model file cannot be read, or has errors
@@ -319,9 +319,9 @@ the reason and the time are given.
 The exit code is 1 if a pair is nearer than the `min` of its clearance.
 
 Examples:
-  hardpoint clearance models/knee.toml
-  hardpoint clearance models/knee.toml -o results/knee
-  hardpoint clearance models/knee.toml --json | jq '.pairs[] | [.shapes, .least]'";
+  hardpoint clearance models/studies/knee.toml
+  hardpoint clearance models/studies/knee.toml -o results/knee
+  hardpoint clearance models/studies/knee.toml --json | jq '.pairs[] | [.shapes, .least]'";
 
 /// `hardpoint clearance`.
 #[derive(Args, Debug)]

@@ -18,7 +18,7 @@ use crate::record::{Column, record, write_rows};
 const DIGITS: usize = 7;
 /// Number of the strongest variables in a sentence.
 const NAMED: usize = 5;
-/// A distance below that asked for by less than this fraction of the mechanism's size is kept: an optimum lies on its
+/// A distance below the required one by less than this fraction of the mechanism's size is kept: an optimum lies on its
 /// limit, and positions are solved to 1e-12 of the size.
 const KEPT: f64 = 1e-9;
 /// Derivatives below this fraction of the largest are zero but for round-off.
@@ -188,9 +188,9 @@ record! {
     unit: String = unit(units, Dimension::LENGTH);
     /// Least distance; `null` if no output time was solved.
     least: Option<f64> = least.map(length);
-    /// Distance that is asked for.
+    /// Distance that is required.
     min: Option<f64> = pair.min.map(length);
-    /// False if the least distance is below the one that is asked for.
+    /// False if the least distance is below the required one.
     kept: bool = !pair.min.is_some_and(below);
     /// True if the distance is the same at all times.
     constant: bool = found.is_constant;
@@ -349,7 +349,7 @@ impl ClearanceFact {
                     let sign = if by < 0.0 { "" } else { "+" };
                     format!("; {} {sign}{} would keep it, to first order", s.variable, number(by))
                 });
-            lines.push(format!("  NEARER than the {asked} asked for{}", change.unwrap_or_default()));
+            lines.push(format!("  NEARER than the required {asked}{}", change.unwrap_or_default()));
         }
         let others = self.minima.iter().filter(|m| !std::ptr::eq(*m, lowest)).count();
         if others > 0 && !self.constant {
@@ -380,7 +380,7 @@ impl ClearanceFact {
                 Some(m) => format!("{} s", number(m.time)),
                 None => "-".into(),
             }),
-            ("asked for", &|f| shown(f.min, &f.unit)),
+            ("required", &|f| shown(f.min, &f.unit)),
             ("kept", &|f| {
                 if f.min.is_none() { "-".into() } else { (if f.kept { "yes" } else { "NO" }).into() }
             }),

@@ -25,6 +25,8 @@ pub(crate) struct Raw {
     pub joint_numbers: HashMap<String, usize>,
     /// Quantity that each driver of the draft prescribes.
     pub driven: Vec<Quantity>,
+    /// Clearances that have a measure of their name by themselves.
+    pub measured_clearances: Vec<String>,
     /// Drivers without a law of their own, whose laws are in the cases, by their indices in the draft.
     pub without_law: Vec<usize>,
 }

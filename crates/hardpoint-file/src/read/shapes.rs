@@ -49,11 +49,11 @@ static FORMS: &[(Table, Read)] = &[
         form! {
             /// A ball.
             "Sphere":
-            /// Its centre: a hardpoint's name, or coordinates in the design configuration.
+            /// The centre: a hardpoint's name, or coordinates in the design configuration.
             must "sphere": PLACE, "\"outer_ball\"";
             /// The body's name.
             must "body": BODY, "\"knuckle\"";
-            /// Its radius.
+            /// The radius.
             must "radius": LENGTH, "18";
         },
         |r, fields, place, _| {
@@ -70,7 +70,7 @@ static FORMS: &[(Table, Read)] = &[
             must "capsule": ENDS, "[\"B\", \"C\"]";
             /// The body's name; not for the ends of a rod, leg or spring.
             may "body": BODY, "\"coupler\"";
-            /// Its radius.
+            /// The radius.
             must "radius": LENGTH, "4";
         },
         |r, fields, place, _| {
@@ -83,7 +83,7 @@ static FORMS: &[(Table, Read)] = &[
         form! {
             /// A bar that is bent to a circle, like the lip of a rim.
             "Ring":
-            /// Its centre: a hardpoint's name, or coordinates in the design configuration.
+            /// The centre: a hardpoint's name, or coordinates in the design configuration.
             must "ring": PLACE, "\"wheel_centre\"";
             /// The body's name.
             must "body": BODY, "\"knuckle\"";
@@ -110,7 +110,7 @@ static FORMS: &[(Table, Read)] = &[
             must "cylinder": ENDS, "[\"flange_a\", \"flange_b\"]";
             /// The body's name; not for the ends of a rod, leg or spring.
             may "body": BODY, "\"spool\"";
-            /// Its radius.
+            /// The radius.
             must "radius": LENGTH, "60";
             /// Radius of its edges. Default: 0.
             may "round": LENGTH, "1";
@@ -128,7 +128,7 @@ static FORMS: &[(Table, Read)] = &[
             "TyreShape":
             /// The wheel's name.
             must "wheel": Shape::Name("a wheel"), "\"front_left\"";
-            /// Its width.
+            /// The width.
             must "width": LENGTH, "190";
             /// Radius of its shoulders. Default: 0.
             may "round": LENGTH, "25";
@@ -164,11 +164,11 @@ static FORMS: &[(Table, Read)] = &[
         form! {
             /// A box.
             "Box":
-            /// Its lengths along its axes.
+            /// The lengths along its axes.
             must "box": Shape::exactly(3, &LENGTH), "[40, 20, 90]";
             /// The body's name.
             must "body": BODY, "\"frame\"";
-            /// Its centre and axes in the design configuration. Default: the global origin and axes.
+            /// The centre and axes in the design configuration. Default: the global origin and axes.
             may "frame": Shape::Kinds(&bodies::FRAME), "{ position = [0, 0, 30] }";
             /// Radius that is added on all sides. Default: 0.
             may "round": LENGTH, "1";
@@ -259,13 +259,13 @@ const SIDE: Shape = Shape::Any("ClearanceSide", "", &[SHAPE_NAME, Shape::some(&S
 pub(crate) const CLEARANCE: Table = table! {
     /// Distances between shapes. They are the measure NAME, their least value the metric NAME.min.
     "Clearance":
-    /// The shapes on both sides, by name, pattern with `*`, body or group; or `"all"` pairs that move relative to each
-    /// other. Shapes of bodies that share a joint count only where both are named as shapes.
+    /// The shapes on both sides, by name, pattern with `*`, body or group; or `"all"` pairs on different bodies, except
+    /// neighbours at a joint.
     must "between": Shape::Any("Between", "", &[Shape::Words(&[("all", "")]), Shape::exactly(2, &SIDE)]),
         "[\"rod\", \"screw*\"]";
     /// Pairs that are not measured.
     or("[]") "ignore": Shape::list(&Shape::exactly(2, &SHAPE_NAME)), "[[\"rod\", \"pin\"]]";
-    /// The least distance that is asked for; or several, by the shapes of a pair, with a `default`.
+    /// The least distance that is required; or several, by the shapes of a pair, with a `default`.
     may "min": Shape::Any("MinimumDistance", "", &[LENGTH, Shape::Entries("a shape", &LENGTH)]), "1.5";
     /// Pairs that are always farther apart than this are not listed in results. Default: all are listed.
     may "beyond": LENGTH, "50";
@@ -328,6 +328,7 @@ pub(super) fn clearances(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) 
             raw.places.push(Section::Measures, EntryPlace::at(at));
             let kind = MeasureKindDraft::Clearance { of: entry.0.clone() };
             raw.draft.measures.push(MeasureDraft { name: entry.0.clone(), kind });
+            raw.measured_clearances.push(entry.0.clone());
         }
         raw.draft.clearances.push(ClearanceDraft {
             name: entry.0,
@@ -344,11 +345,7 @@ pub(super) fn least(r: &Reader<'_>, raw: &mut Raw) {
     for k in 0..raw.draft.clearances.len() {
         let of = raw.draft.clearances[k].name.clone();
         let name = format!("{of}.min");
-        let is_measure = raw.draft.measures.iter().any(|m| {
-            m.name == of
-                && matches!(&m.kind, MeasureKindDraft::Clearance { of: clearance } if *clearance == of)
-        });
-        if !is_measure || raw.draft.metrics.iter().any(|m| m.name == name) {
+        if !raw.measured_clearances.contains(&of) || raw.draft.metrics.iter().any(|m| m.name == name) {
             continue;
         }
         let at = raw.places.list(Section::Clearances)[k].find("between", None);

@@ -104,7 +104,7 @@ fn the_least_of_several_pairs_is_a_metric() {
 }
 
 /// A knee whose coupler hits a screw, with the limits of the gallery's model.
-const GALLERY: &str = include_str!("../../../../models/knee.toml");
+const GALLERY: &str = include_str!("../../../../models/studies/knee.toml");
 
 #[test]
 fn a_limit_of_a_clearance_brings_shapes_apart() {
@@ -406,5 +406,18 @@ time = { end = 1, steps = 20 }
             assert_near(a.distance[0] * 1e3, b.distance[0] * 1e3, "left and right");
         }
         assert_near(left.least().unwrap().at.time, right.least().unwrap().at.time, "left and right");
+    }
+}
+
+/// The knee in the plane, and the same with joints in space.
+#[test]
+fn a_planar_model_has_the_clearances_of_its_long_form() {
+    let flat = Analysis::new(&model_of(KNEE)).unwrap().clearances(&[]);
+    let long = Analysis::new(&model_of(GALLERY)).unwrap().clearances(&[]);
+    for pair in &flat.pairs {
+        let same = long.pairs.iter().find(|other| other.shapes == pair.shapes).unwrap();
+        let [a, b] = [pair, same].map(|pair| pair.least().unwrap().at);
+        assert_near(a.time, b.time, "time");
+        assert_near(a.distance[0] * 1e3, b.distance[0] * 1e3, "distance");
     }
 }

@@ -349,6 +349,10 @@ const TURN: &str = "turn = { joint = \"pin\", law = \"20*t + 4*t^2\" }";
 #[test]
 fn the_planar_shorthand_of_every_measure_equals_its_long_form() {
     for kind in MeasureType::ALL {
+        // The knee is planar there, and is compared with its long form (`clearance.rs`).
+        if kind.name == "clearance" {
+            continue;
+        }
         let cases: &[&str] = match kind.name {
             "coordinate" => &["joint = \"pin\""],
             "distance" => &["from = \"p\", to = { body = \"ground\", at = <30 10> }"],

@@ -25,8 +25,8 @@ fn the_least_distances_of_the_knee_are_proved_and_greater_ones_are_not() {
     assert!(prover.enclosures() < 100, "{}", prover.enclosures());
 }
 
-/// The least distance, m, is proved but for round-off with at most this number of bounds, and one that is 1e-6 mm greater
-/// is not.
+/// The least distance, m, is proved but for round-off with at most this number of bounds, and one that is 1e-6 mm
+/// greater is not.
 fn assert_exact(prover: &mut ClearanceProver<'_>, shapes: [ShapeId; 2], least: f64, size: f64, most: usize) {
     let proof = prover.prove(shapes, least - ROUND_OFF * size);
     let ClearanceProof::Proved { slabs, bounds } = proof else { panic!("{shapes:?}, {least}: {proof:?}") };

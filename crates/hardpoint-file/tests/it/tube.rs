@@ -38,7 +38,7 @@ fn bounds(pose: &Pose<TimeJet<Interval>>) -> Vec<[Interval; 4]> {
     [pose.r, f, g, h].into_iter().flat_map(|v| [v.x, v.y, v.z]).map(|x| x.0).collect()
 }
 
-/// What was found over the intervals of a model.
+/// Results over the intervals of a model.
 #[derive(Default)]
 struct Tally {
     intervals: usize,

@@ -811,8 +811,15 @@ fn on_tyres() -> String {
         [equilibrium]\nreleased = [\"left_bump\", \"right_bump\"]\n";
     let text = text("front_axle");
     // Rates are not known at rest, and the mirror brings the other side.
-    let lines = text.lines().filter(|l| !l.starts_with("left_hop") && !l.starts_with("right_hop"));
+    let rates = ["left_hop", "left_motion_ratio", "bump_steer = ", "roll_centre_travel = "];
+    let lines = text.lines().filter(|l| !rates.iter().any(|start| l.starts_with(start)));
     let text = lines.collect::<Vec<_>>().join("\n");
+    // Released drivers do not move alone: no measures by wheel travel.
+    let (before, rest) = text.split_once("measures = [\n").unwrap();
+    let (_, after) = rest.split_once("\n]").unwrap();
+    let text = format!("{before}measures = [\"toe\", \"camber\", \"wheel_travel\", \"contact_z\"]{after}")
+        .replace("\"wheel_travel\", \"roll_centre_height\"]", "\"wheel_travel\"]")
+        .replace("measures = \"all\" }", "measures = [\"track\", \"total_toe\", \"ackermann_error\"] }");
     let measures = "[measures]\nleft_load = { type = \"spring_force\", force = \"left_tyre\" }\nright_load = { type = \"spring_force\", force = \"right_tyre\" }";
     text.replacen("[measures]", measures, 1).replacen("[design]", "[parameters]\nk_tyre = 250\n[design]", 1)
         + forces

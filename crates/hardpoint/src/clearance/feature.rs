@@ -117,7 +117,7 @@ impl<T: Real> Curve<T> {
         }
     }
 
-    /// Its point at a parameter, and the first two derivatives by the parameter.
+    /// The point at a parameter, and the first two derivatives by the parameter.
     fn at(&self, u: T) -> [Vec3<T>; 3] {
         match self {
             Self::Line { from, along } => [along.times_plus(u, *from), *along, Vec3::zero()],
@@ -185,5 +185,6 @@ fn inverse_curvature(p: &Curve<f64>, q: &Curve<f64>, at: [f64; 2]) -> [f64; 3] {
     if det > PARALLEL * PARALLEL * a * c { [c / det, -b / det, a / det] } else { [0.0; 3] }
 }
 
-/// Sine of the angle below which two lines are parallel: of their common perpendicular then half of the digits are lost.
+/// Sine of the angle below which two lines are parallel: of their common perpendicular then half of the digits are
+/// lost.
 pub(super) const PARALLEL: f64 = 1e-8;

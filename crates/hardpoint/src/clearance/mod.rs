@@ -1,4 +1,4 @@
-//! Distances between shapes: how near bodies come to each other.
+//! Distances between shapes: the gaps between bodies.
 //!
 //! A shape is a core with a radius: all points within the radius of the core (`shape.rs`). The distance of two shapes
 //! is that of their cores minus both radii. The nearest points lie on one feature of each core: a point, a line, a

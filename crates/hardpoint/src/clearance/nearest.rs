@@ -7,7 +7,7 @@ use crate::space::{Real, Vec3};
 use super::core::{Circle, Core};
 use super::feature::{Feature, PARALLEL, Placed, distance};
 
-/// Where two cores are nearest.
+/// The nearest points of two cores.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nearest {
     /// The features of both cores.
@@ -118,7 +118,7 @@ fn least_within(f: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
     0.5 * (low + high)
 }
 
-/// Where the core is nearest to a plane: at the point that is farthest against its normal.
+/// The point of a core that is nearest to a plane: the one that is farthest against its normal.
 fn above_plane(core: &Core, point: Vec3, normal: Vec3) -> Nearest {
     let height = |p: Vec3| normal.dot(p - point);
     let face = Feature::Face(1.0);
@@ -282,7 +282,8 @@ fn segment_and_circle([a, b]: [Vec3; 2], circle: &Circle) -> Nearest {
     found([feature, Feature::Circle(0.0)], points, (points[1] - points[0]).norm())
 }
 
-/// Place in [0, 1] of the least value of a function that is sampled first; 0 and 1 are the same place of a periodic one.
+/// Place in [0, 1] of the least value of a function that is sampled first; 0 and 1 are the same place of a periodic
+/// one.
 pub(super) fn least_sampled(f: impl Fn(f64) -> f64, is_periodic: bool) -> f64 {
     let place = |k: usize| k as f64 / SAMPLES as f64;
     let samples: [f64; SAMPLES + 1] = std::array::from_fn(|k| f(place(k)));
@@ -376,7 +377,8 @@ pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
     }
     let (feature, q, distance) = drum.nearest(at(t));
     let is_inside = t > 0.0 && t < 1.0 && !is_parallel;
-    // Over a cap, beside a parallel side, and at the edge between both within the cylinder, the point stays where it is.
+    // Over a cap, beside a parallel side, and at the edge between both within the cylinder, the point stays where it
+    // is.
     let slides = is_inside
         && match feature {
             Feature::Line => is_stationary([a, b], drum, t),

@@ -118,7 +118,7 @@ impl<T: Real> PlacedShapes<'_, T> {
         points.iter().map(|p| self.point(*p).value()).collect()
     }
 
-    /// Where two shapes are nearest, with the distance of the shapes.
+    /// The nearest points of two shapes, with the distance of the shapes.
     pub fn nearest(&self, shapes: [ShapeId; 2]) -> Nearest {
         let near = self.nearest_of_cores(shapes);
         Nearest { distance: near.distance - self.rounds(shapes).value(), ..near }

@@ -170,8 +170,8 @@ pub(crate) fn separations(
 /// A point, and how far the core extends beyond it along a direction.
 type Support = (Vec3<TimeJet<Interval>>, TimeJet<Interval>);
 
-/// The points of a core one of which is the farthest along n or against it. `side` is that of its own plane or cap, if n
-/// is its normal.
+/// The points of a core one of which is the farthest along n or against it. `side` is that of its own plane or cap, if
+/// n is its normal.
 fn supports(core: &EnclosedCore, n: Vec3<TimeJet<Interval>>, side: Option<f64>) -> Option<Vec<Support>> {
     let zero = TimeJet::zero();
     Some(match (core, side) {
@@ -191,7 +191,7 @@ fn supports(core: &EnclosedCore, n: Vec3<TimeJet<Interval>>, side: Option<f64>) 
     })
 }
 
-/// How far a circle extends from its centre along n: `R abs(n x e)`.
+/// Extent of a circle from its centre along n: `R abs(n x e)`.
 fn rim(circle: &Circle<TimeJet<Interval>>, n: Vec3<TimeJet<Interval>>) -> TimeJet<Interval> {
     let across = n.cross(circle.axis);
     let length = across.norm();

@@ -132,6 +132,11 @@ proptest! {
         // Where the features change, the acceleration jumps.
         let kind = |near: &super::nearest::Nearest| near.features.map(|f| std::mem::discriminant(&f));
         prop_assume!(around.iter().all(|n| kind(n) == kind(&near)) && near.distance > 0.05 && !near.is_parallel);
+        // Near a position in which lines or faces are parallel, higher derivatives are large.
+        let axes = [direction(&first), direction(&second)];
+        if let [Some(a), Some(b)] = axes {
+            prop_assume!(a.cross(b).norm() > 0.2);
+        }
         let side = |near: &super::nearest::Nearest| near.features;
         prop_assume!(around.iter().all(|n| same_place(&side(n), &side(&near))));
         let time: Rates = Jet([0.0, 1.0, 0.0]);
@@ -145,6 +150,16 @@ proptest! {
         // The fourth derivative of a distance grows with the inverse cube of the distance.
         let tolerance = 1e-6 * (1.0 + acceleration.abs()) / (near.distance * near.distance).min(1.0);
         prop_assert!((acceleration - curve).abs() < tolerance, "{first:?} {second:?} {near:?}: {acceleration} {curve}");
+    }
+}
+
+/// Direction of a core that has one.
+fn direction(core: &Core) -> Option<Vec3> {
+    match core {
+        Core::Point(_) => None,
+        Core::Segment([a, b]) => (*b - *a).unit(),
+        Core::Circle(circle) | Core::Cylinder { middle: circle, .. } => Some(circle.axis),
+        Core::HalfSpace { normal, .. } => Some(*normal),
     }
 }
 

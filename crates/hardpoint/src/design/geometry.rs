@@ -49,7 +49,7 @@ pub(crate) struct BodyFixed<T> {
 /// The numbers of a shape that no point gives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShapeGeometry<T> {
-    /// Its axis or normal, a unit vector in the frame of its body, if it has one that points do not give.
+    /// The axis or normal, a unit vector in the frame of its body, if it has one that points do not give.
     pub axis: Option<Vec3<T>>,
     /// Radius of a ring or cylinder, width of a tyre, m; otherwise 0.
     pub size: T,

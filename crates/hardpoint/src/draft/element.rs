@@ -1,7 +1,6 @@
 //! Masses and forces as written, and their resolution to a model.
 
-use crate::draft::{DirectionDraft, FieldDraft, MeasureField, PointRef};
-use crate::expression::Expression;
+use crate::draft::{DirectionDraft, FieldDraft, MeasureField, NumberDraft, PointRef};
 use crate::law::Law;
 use crate::model::{
     Angle, Axes, BodyId, CoupledStiffness, CubicStiffness, Damping, Density, Direction, ElementKind, Force,
@@ -12,23 +11,6 @@ use crate::space::Vec3;
 
 use super::check::MeasureCheck;
 use super::measure::Field;
-
-/// Number as written: a value, or an expression over parameters.
-#[derive(Clone, Debug)]
-pub struct NumberDraft {
-    /// Value, SI; ignored if an expression defines it.
-    pub value: f64,
-    /// Expression that defines the number.
-    pub expression: Option<Expression>,
-    /// Number of units of the text per SI unit.
-    pub per_unit: f64,
-}
-
-impl From<f64> for NumberDraft {
-    fn from(value: f64) -> Self {
-        Self { value, expression: None, per_unit: 1.0 }
-    }
-}
 
 /// A mass or force as written.
 #[derive(Clone, Debug)]

@@ -10,15 +10,17 @@ mod element;
 mod error;
 mod idle;
 mod measure;
+mod number;
 mod shape;
 
 pub use change::{ChangeDraft, ShapeDraft};
 pub(crate) use check::{CheckElement, ElementCheck};
 pub use check::{ConstantError, Nominal};
-pub use element::{ElementDraft, ElementKindDraft, ElementType, NumberDraft};
+pub use element::{ElementDraft, ElementKindDraft, ElementType};
 pub use error::{DraftError, DraftLocation, Section, did_you_mean, some_of};
 use measure::not_drivable;
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
+pub use number::NumberDraft;
 pub use shape::{BetweenDraft, BodyShapeDraft, BodyShapeKindDraft, ClearanceDraft, EndsDraft, MinimumDraft};
 
 use std::collections::BTreeMap;

@@ -24,7 +24,7 @@ pub enum BodyShapeKindDraft {
     Unread,
     /// A ball.
     Sphere {
-        /// Its centre.
+        /// The centre.
         centre: PointRef,
     },
     /// A rod with round ends.
@@ -34,7 +34,7 @@ pub enum BodyShapeKindDraft {
     },
     /// A bar that is bent to a circle.
     Ring {
-        /// Its centre.
+        /// The centre.
         centre: PointRef,
         /// Direction perpendicular to its plane.
         axis: DirectionDraft,
@@ -100,7 +100,7 @@ pub struct ClearanceDraft {
     pub ignore: Vec<[String; 2]>,
     /// Distance above which pairs are not listed in results, m.
     pub beyond: Option<f64>,
-    /// The least distance that is asked for, m.
+    /// The least distance that is required, m.
     pub min: MinimumDraft,
 }
 
@@ -113,7 +113,7 @@ pub enum BetweenDraft {
     Sides([Vec<String>; 2]),
 }
 
-/// Least distances that are asked for, m.
+/// Least distances that are required, m.
 #[derive(Clone, Debug, Default)]
 pub struct MinimumDraft {
     /// For all pairs without another one.

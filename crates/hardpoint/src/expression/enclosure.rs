@@ -105,8 +105,8 @@ impl ExpressionValue for Enclosure {
         if x.low >= end.high {
             return h1;
         }
-        // h0 + (h1 - h0) (3 u² - 2 u³); the rate is continuous at both ends, so that a part before or after the step only
-        // adds to the bounds.
+        // h0 + (h1 - h0) (3 u² - 2 u³); the rate is continuous at both ends, so that a part before or after the step
+        // only adds to the bounds.
         let u = ((self - x0) / (x1 - x0)).0;
         let inside = Interval { low: 0.0, high: 1.0 };
         let kept = Jet([u.value().and(inside), u.d(), u.dd(), u.ddd()]);

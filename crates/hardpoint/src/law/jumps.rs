@@ -32,7 +32,7 @@ impl Break {
         Self { time, before: time, after: time }
     }
 
-    /// Its time, with the two times that bracket it.
+    /// The time, with the two times that bracket it.
     pub(super) fn bracket(self) -> [f64; 3] {
         [self.before, self.time, self.after]
     }

@@ -153,9 +153,9 @@ pub(super) fn either(a: Jet<Interval, 4>, b: Jet<Interval, 4>) -> Jet<Interval, 
     Jet([f, d, dd, Interval::ENTIRE])
 }
 
-/// Bounds over an interval of time of a law in pieces, whose speed is continuous. Piece k ends where piece k + 1 begins,
-/// at `ends[k]`; the last one has no end. A piece of which only an end is in the interval is left out: its value there
-/// is that of its neighbour.
+/// Bounds over an interval of time of a law in pieces, whose speed is continuous. Piece k ends where piece k + 1
+/// begins, at `ends[k]`; the last one has no end. A piece of which only an end is in the interval is left out: its
+/// value there is that of its neighbour.
 pub(super) fn in_pieces(
     over: Interval,
     ends: &[f64],

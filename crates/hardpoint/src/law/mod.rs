@@ -300,9 +300,9 @@ impl Law {
         over.settled(self.at(0.5 * (from + to)).value(), to - from)
     }
 
-    /// Bounds of f and of its first three rates over an interval of time, with outward rounding: in the driver's unit per
-    /// s to the order. A rate is unbounded if one of a lower order jumps inside of the interval; all are if the law is
-    /// undefined anywhere in it. Rates at the ends are those of the side inside.
+    /// Bounds of f and of its first three rates over an interval of time, with outward rounding: in the driver's unit
+    /// per s to the order. A rate is unbounded if one of a lower order jumps inside of the interval; all are if the law
+    /// is undefined anywhere in it. Rates at the ends are those of the side inside.
     ///
     /// ```
     /// use hardpoint::{law::Law, number::Interval};

@@ -45,7 +45,7 @@ pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, LimitTarget, OptimizationSettings};
 pub use page::{NamedDesign, Plot};
 pub(crate) use shape::with_core;
-pub use shape::{Clearance, ClearanceId, Shape, ShapeId, ShapeKind, ShapePair};
+pub use shape::{Clearance, Shape, ShapeKind, ShapePair};
 pub use shared::SharedModel;
 pub(crate) use solid::about_centre;
 pub use solid::{OpenSurface, Solid};
@@ -91,6 +91,10 @@ ids! {
     WheelId
     /// An axle's place in [`Model::axles`].
     AxleId
+    /// A shape's place in [`Model::shapes`].
+    ShapeId
+    /// A clearance's place in [`Model::clearances`].
+    ClearanceId
     /// A measure's place in [`Model::measures`].
     MeasureId
     /// A case's place in [`Model::cases`].

@@ -4,15 +4,7 @@ use std::sync::Arc;
 
 use crate::space::Surface;
 
-use super::{BodyId, Direction, Length, Model, PointId, WheelId};
-
-/// A shape's place in [`Model::shapes`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ShapeId(pub usize);
-
-/// A clearance's place in [`Model::clearances`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ClearanceId(pub usize);
+use super::{BodyId, Direction, Length, Model, PointId, ShapeId, WheelId};
 
 /// A shape: all points within a radius of a core.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +13,7 @@ pub struct Shape {
     pub name: String,
     /// Group that clearances may name, if it is in one.
     pub group: Option<String>,
-    /// Its core.
+    /// The core.
     pub kind: ShapeKind,
     /// The radius of a sphere or capsule, the radius of a ring's bar, the rounding of edges; 0 where there is none.
     pub round: Option<Length>,
@@ -32,7 +24,7 @@ pub struct Shape {
 pub enum ShapeKind {
     /// A ball.
     Sphere {
-        /// Its centre.
+        /// The centre.
         centre: PointId,
     },
     /// A rod with round ends.
@@ -42,7 +34,7 @@ pub enum ShapeKind {
     },
     /// A bar that is bent to a circle: the lip of a rim.
     Ring {
-        /// Its centre.
+        /// The centre.
         centre: PointId,
         /// Direction perpendicular to its plane.
         axis: Direction,
@@ -166,7 +158,7 @@ pub struct Clearance {
 pub struct ShapePair {
     /// The shapes.
     pub shapes: [ShapeId; 2],
-    /// The least distance that is asked for, m.
+    /// The least distance that is required, m.
     pub min: Option<f64>,
 }
 

@@ -1,28 +1,30 @@
 //! Proven bounds of a motion between two times.
 //!
-//! Over an interval of time T, X is a box of the unknown coordinates of a block, m its middle, and Y about the inverse of
-//! the Jacobian there. If
+//! Over an interval of time T, X is a box of the unknown coordinates of a block, m its middle, and Y about the inverse
+//! of the Jacobian there. If
 //!
 //! ```text
 //! K(X) = m - Y phi(m, T) + (I - Y J(X)) (X - m)
 //! ```
 //!
-//! in interval arithmetic is inside of X, then exactly one position in X belongs to each time of T, and K(X) contains it
-//! (Krawczyk). `phi(m, T)` is bounded by `phi(m, t) + phi_t(m, T) (T - t)`, too, with t the middle of T. The rates follow from the rates of the rows: with `k = |I - Y J(X)| < 1`,
+//! in interval arithmetic is inside of X, then exactly one position in X belongs to each time of T, and K(X) contains
+//! it (Krawczyk). `phi(m, T)` is bounded by `phi(m, t) + phi_t(m, T) (T - t)`, too, with t the middle of T. The rates
+//! follow from the rates of the rows: with `k = |I - Y J(X)| < 1`,
 //!
 //! ```text
 //! J(X) q. in -phi_t(X, T):    |q.| <= |Y phi_t| / (1 - k),    then    q. := -Y phi_t + (I - Y J(X)) q.
 //! ```
 //!
-//! and q.. and q... likewise. No equation is written for this: residuals and poses are those of `kinematics.rs`, over intervals,
-//! over duals of them (a column of J for each unknown), and over jets of them (phi_t, and the rates of all bodies). The
-//! coordinates of a ball are those of its correction in Newton's method, from its rotation at the middle of T.
+//! and q.. and q... likewise. No equation is written for this: residuals and poses are those of `kinematics.rs`, over
+//! intervals, over duals of them (a column of J for each unknown), and over jets of them (phi_t, and the rates of all
+//! bodies). The coordinates of a ball are those of its correction in Newton's method, from its rotation at the middle
+//! of T.
 //!
 //! The excess of these bounds is of first order in the length of T. By Taylor's theorem,
 //! `f(T) in f(t) + f.(t) (T - t) + f..(T) (T - t)^2 / 2` with the narrow bounds at the middle t of T: that of positions
 //! is then of third order. With the jerk, likewise, that of speeds is of third and that of accelerations of second.
 //!
-//! What is proved holds for the mechanism whose geometry is that of the solver, to the last bit, and whose laws are the
+//! The proof holds for the mechanism whose geometry is that of the solver, to the last bit, and whose laws are the
 //! formulas of their numbers. Rows that are redundant and not selected have no part in it.
 
 use std::collections::HashMap;
@@ -53,8 +55,8 @@ const LEAST_BOX: f64 = 1e-11;
 const LARGEST_BOX: f64 = 1.0;
 /// Largest `|I - Y J(X)|` for which bounds of rates are useful.
 const CONTRACTION: f64 = 0.9;
-/// Number of times that an interval is halved, and the bounds of its parts are joined, where it is too long for one box:
-/// eight parts cost as much as eight intervals, but their bounds serve as those of one.
+/// Number of times that an interval is halved, and the bounds of its parts are joined, where it is too long for one
+/// box: eight parts have the cost of eight intervals, but their bounds serve as those of one.
 const MOST_HALVINGS: usize = 3;
 /// Number of passes of a linear system over its bounds.
 const PASSES: usize = 2;
@@ -561,8 +563,8 @@ fn is_within(topology: &Topology, narrow: &Enclosure, other: &Enclosure) -> bool
 
 /// A motion, with proven bounds of its parts.
 ///
-/// The motion is that which passes through the position at the first output time; every enclosure belongs to it, because
-/// neighbouring ones have a position in common in which both are unique.
+/// The motion is that which passes through the position at the first output time; every enclosure belongs to it,
+/// because neighbouring ones have a position in common in which both are unique.
 pub struct ProvenMotion<'m> {
     mechanism: Mechanism<'m>,
     solver: TubeSolver,
@@ -592,7 +594,7 @@ pub(crate) struct Instant {
 }
 
 impl Instant {
-    /// Its time, s.
+    /// The time, s.
     pub fn time(&self) -> f64 {
         self.enclosure.middle
     }
@@ -604,7 +606,7 @@ pub(crate) struct Slab {
     pub over: Interval,
     /// Per body: bounds over the whole part.
     pub poses: Vec<Pose<TimeJet<Interval>>>,
-    /// Its start, middle and end.
+    /// The start, middle and end.
     pub instants: [Rc<Instant>; 3],
 }
 
@@ -631,8 +633,8 @@ impl<'m> ProvenMotion<'m> {
         self.computed
     }
 
-    /// Bounds of the pose of every body, and of its first three rates, over the part of the motion between two times, which
-    /// are output times or between two that follow each other.
+    /// Bounds of the pose of every body, and of its first three rates, over the part of the motion between two times,
+    /// which are output times or between two that follow each other.
     ///
     /// # Errors
     /// The reason why nothing is proved over this interval. A shorter one may be, if [`TubeFailure::may_be_halved`].
@@ -724,7 +726,8 @@ impl<'m> ProvenMotion<'m> {
         self.slab_in_parts(from, to, MOST_HALVINGS)
     }
 
-    /// Bounds over the part of the motion between two times; if the box does not contract, those of its halves together.
+    /// Bounds over the part of the motion between two times; if the box does not contract, those of its halves
+    /// together.
     fn slab_in_parts(&mut self, from: f64, to: f64, halvings: usize) -> Result<Rc<Slab>, TubeFailure> {
         let key = [from, to].map(f64::to_bits);
         if let Some(known) = self.slabs.get(&key) {

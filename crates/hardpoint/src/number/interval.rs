@@ -10,7 +10,7 @@ use super::{Function, Jet, Real};
 ///
 /// The result of an operation contains the exact result for all numbers of its operands. Where that is not defined for
 /// all of them (a division by an interval with zero, the root of an interval with negative numbers), the result is the
-/// [entire line](Self::ENTIRE), which also stands for NaN, and which every further operation keeps.
+/// [entire line](Self::ENTIRE), which also represents NaN, and which every further operation keeps.
 ///
 /// Code over [`Real`] that branches on a value proves nothing for the other branch. Where a comparison is not the same
 /// for all numbers, [`value`](Real::value) is NaN, [`order`](Real::order) is `None`, [`exceeds`](Real::exceeds) is
@@ -22,7 +22,7 @@ use super::{Function, Jet, Real};
 ///
 /// let x = Interval::between(1.0, 2.0);
 /// let y = x * x - x; // the interval is larger than the range of x² - x, [0, 2]
-/// assert!(y.contains(0.0) && y.contains(2.0) && y.width() < 3.0 + 1e-12);
+/// assert!(y.contains(0.0) && y.contains(2.0) && y.width() < 4.0 + 1e-12);
 /// assert_eq!(x / (x + -1.5), Interval::ENTIRE);
 /// ```
 #[derive(Clone, Copy, PartialEq)]
@@ -672,8 +672,8 @@ mod tests {
                     };
                     let value = at(a, b);
                     let inside = bounds.contains(value) || value.is_nan() && bounds == Interval::ENTIRE;
-                    // The kernel's polynomials are accurate to one unit in the last place of 1; long products are rounded
-                    // in every factor.
+                    // The kernel's polynomials are accurate to one unit in the last place of 1; long products are
+                    // rounded in every factor.
                     let hair = match name {
                         "sin" | "cos" => 4e-16,
                         "powi 80" => 80.0 * f64::EPSILON * value.abs(),

@@ -56,7 +56,7 @@ pub enum MinimumPlace {
 /// A least distance of two shapes.
 #[derive(Clone, Debug)]
 pub struct ClearanceMinimum {
-    /// Where the shapes are.
+    /// Distance and nearest points there.
     pub at: ShapeDistance,
     /// Place in the motion.
     pub place: MinimumPlace,
@@ -69,7 +69,7 @@ pub struct ClearanceMinimum {
 /// A time at which two shapes touch or part.
 #[derive(Clone, Debug)]
 pub struct Contact {
-    /// Where the shapes are.
+    /// Distance and nearest points there.
     pub at: ShapeDistance,
     /// True if they touch there, false if they part.
     pub begins: bool,

@@ -1,8 +1,9 @@
 //! Proven bounds of the motion of a design, and of its clearances between the output times.
 //!
-//! The motion is divided at its output times, and where rates of laws jump. A part passes if a proven lower bound of the
-//! distance over it is not below the claim (`clearance/separation.rs`), else it is halved. The bounds have no slack where
-//! the distance falls, rises or is convex over a part: the least distance itself can be proved, but for round-off.
+//! The motion is divided at its output times, and where rates of laws jump. A part passes if a proven lower bound of
+//! the distance over it is not below the claim (`clearance/separation.rs`), else it is halved. The bounds have no slack
+//! where the distance falls, rises or is convex over a part: the least distance itself can be proved, but for
+//! round-off.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -25,8 +26,8 @@ use super::walk::PreparedDesign;
 
 impl Analysis<'_> {
     /// Motion of a design (variable k at `design[k]`), of which bounds between the output times are proved, and the
-    /// reason why it ends before the last one, if it does. `None` with equilibrium: its elastic joints open as the forces
-    /// ask for, not by laws.
+    /// reason why it ends before the last one, if it does. `None` with equilibrium: its elastic joints open as the
+    /// forces ask for, not by laws.
     ///
     /// ```
     /// # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
@@ -89,7 +90,7 @@ pub enum ClearanceProof {
     NotProved {
         /// Start of that part, s.
         from: f64,
-        /// Its end, s.
+        /// The end, s.
         to: f64,
         /// Proven lower bound of the distance over it, m; minus infinity if there is none.
         bound: f64,
@@ -150,8 +151,8 @@ impl Analysis<'_> {
 struct Place {
     instant: Rc<Instant>,
     cores: [EnclosedCore; 2],
-    /// Unit vector along the nearest points of the cores, with its first two rates, for plain numbers; `None` where they
-    /// meet.
+    /// Unit vector along the nearest points of the cores, with its first two rates, for plain numbers; `None` where
+    /// they meet.
     direction: Option<[Vec3; 3]>,
     /// Distance of the cores, for plain numbers.
     distance: f64,

@@ -44,8 +44,8 @@ pub enum TrianglePart {
 }
 
 impl Surface {
-    /// Surface of triangles between vertices. It is closed if every edge has as many triangles in both directions; then
-    /// its triangles are turned outward.
+    /// Surface of triangles between vertices. It is closed if the triangles at every edge are the same number in both
+    /// directions; then its triangles are turned outward.
     pub fn new(vertices: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Self {
         let is_closed = !triangles.is_empty() && closed(&triangles);
         if is_closed && volume(&vertices, &triangles) < 0.0 {
@@ -196,7 +196,7 @@ impl Surface {
     }
 }
 
-/// True if every edge has as many triangles in both directions.
+/// True if the triangles at every edge are the same number in both directions.
 fn closed(triangles: &[[u32; 3]]) -> bool {
     let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
     for [a, b, c] in triangles.iter().copied() {

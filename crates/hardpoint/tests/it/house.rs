@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 /// The rooms of the core, in the order of the walk: each may use those before it only. What somebody wrote (`draft`)
 /// knows the model that it means, and so comes after it; results are kept in `blocks`.
-const ROOMS: [&str; 19] = [
+const ROOMS: [&str; 20] = [
     "number",
     "linalg",
     "space",
@@ -19,6 +19,7 @@ const ROOMS: [&str; 19] = [
     "blocks",
     "motion",
     "sensitivity",
+    "clearance",
     "measure",
     "load",
     "element",
