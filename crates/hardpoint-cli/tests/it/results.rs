@@ -111,7 +111,7 @@ fn metrics_of_all_cases_are_written_printed_and_first_on_a_page() {
     assert_eq!(output.status.code(), Some(0));
     let [all, first] = ["plain", "plain/parallel_travel"].map(|of| bench.page(&format!("{of}/report.html")));
     assert_eq!(all["quantities"], first["quantities"]);
-    let derivatives = |page: &serde_json::Value| {
+    let derivatives = |page: &Value| {
         let values = page["values"].as_array().unwrap();
         let all = values.iter().flat_map(|of| of["sensitivities"].as_array().unwrap());
         all.filter(|derivative| !derivative.is_null()).count()
