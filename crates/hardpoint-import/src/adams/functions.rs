@@ -148,7 +148,7 @@ impl Reader<'_> {
         let mut spring = Spring { damping: damping * per_length / self.per_second(), ..Spring::default() };
         match function.line(range) {
             // Tension is positive in the model.
-            Some(Line { start, slope }) if slope == 0.0 => spring.preload = Some(-start * units.force),
+            Some(Line { start, slope: 0.0 }) => spring.preload = Some(-start * units.force),
             Some(Line { slope, .. }) if slope > 0.0 => {
                 return Err("its stiffness is negative".into());
             }
@@ -312,13 +312,12 @@ impl Reader<'_> {
     }
 }
 
+/// Functions of the motion of Adams by the expression of the rate, their name and their arguments.
+type RateFunctions<'m> = dyn Fn(&str, &str, &[String]) -> Option<Result<String, String>> + 'm;
+
 /// Reads a function of a length and its rate; `measured` gets the rate as an expression. The nominal length defines the
 /// speeds at which damping is examined.
-fn read(
-    text: &str,
-    nominal: f64,
-    measured: &dyn Fn(&str, &str, &[String]) -> Option<Result<String, String>>,
-) -> Result<LengthFunction, String> {
+fn read(text: &str, nominal: f64, measured: &RateFunctions<'_>) -> Result<LengthFunction, String> {
     let mut at_rates = Vec::new();
     let mut corners = Vec::new();
     let parse = |text: &str| {

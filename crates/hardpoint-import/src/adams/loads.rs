@@ -104,10 +104,8 @@ impl Reader<'_> {
                     self.bushing(s, unit, metre);
                     done.insert((s.name.clone(), s.id.clone()));
                 }
-                ("SFORCE", ..) => {
-                    if self.given_force(s, force.map(|force| ForceUnits { force, metre })) {
-                        done.insert((s.name.clone(), s.id.clone()));
-                    }
+                ("SFORCE", ..) if self.given_force(s, force.map(|force| ForceUnits { force, metre })) => {
+                    done.insert((s.name.clone(), s.id.clone()));
                 }
                 ("SPRINGDAMPER" | "BUSHING", _, None) => {
                     self.notes.refused(&s.name, &s.label, Some(s.at), NO_UNIT);

@@ -388,7 +388,7 @@ impl<'d> Reader<'d, '_> {
         &mut self,
         path: &[Element<'d>],
         at: Option<SourceSpan>,
-    ) -> Result<([(usize, Pose); 2], f64), Option<&'static str>> {
+    ) -> Result<ChangingPart, Option<&'static str>> {
         let mut sites = Vec::new();
         for (_, node) in path {
             match node.tag_name().name() {
@@ -487,6 +487,9 @@ impl<'d> Reader<'d, '_> {
         }
     }
 }
+
+/// Ends of the part of a tendon that changes its length, each on a body, and the length of its other parts.
+type ChangingPart = ([(usize, Pose); 2], f64);
 
 /// Spring and damper of a tendon.
 struct TendonLaw {
