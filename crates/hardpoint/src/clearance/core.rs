@@ -2,6 +2,7 @@
 
 use crate::space::{Real, Vec3};
 
+use super::circle::Circle;
 use super::feature::{Feature, Placed};
 
 /// Core of a shape, in global coordinates, m.
@@ -27,29 +28,6 @@ pub(crate) enum Core<T = f64> {
         /// Unit normal, which points away from the half-space.
         normal: Vec3<T>,
     },
-}
-
-/// A circle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Circle<T = f64> {
-    /// Centre.
-    pub centre: Vec3<T>,
-    /// Unit vector perpendicular to its plane.
-    pub axis: Vec3<T>,
-    /// Radius.
-    pub radius: T,
-}
-
-impl<T: Real> Circle<T> {
-    /// The circle, moved along its axis.
-    pub fn moved(&self, by: T) -> Self {
-        Self { centre: self.centre + self.axis * by, ..*self }
-    }
-
-    /// The plain numbers.
-    pub fn value(&self) -> Circle {
-        Circle { centre: self.centre.value(), axis: self.axis.value(), radius: self.radius.value() }
-    }
 }
 
 impl<T: Real> Core<T> {
@@ -108,10 +86,5 @@ impl Core {
             Self::Cylinder { middle, half_width } => (middle.centre, middle.radius.hypot(*half_width)),
             Self::HalfSpace { point, .. } => (*point, f64::INFINITY),
         }
-    }
-
-    /// Distance of a point; negative within a cylinder and behind a plane.
-    pub fn distance_from(&self, p: Vec3) -> f64 {
-        super::nearest::nearest(&Self::Point(p), self).distance
     }
 }

@@ -14,7 +14,7 @@
 
 use crate::space::{Real, Vec3};
 
-use super::core::Circle;
+use super::circle::Circle;
 
 /// Part of a core that holds one of the two nearest points.
 #[derive(Clone, Copy, Debug, PartialEq)]

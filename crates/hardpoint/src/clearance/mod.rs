@@ -7,6 +7,7 @@
 //!
 //! `docs/theory.md`, section 16.
 
+mod circle;
 mod core;
 mod feature;
 mod nearest;

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use crate::space::{Real, Vec3};
 
-use super::core::{Circle, Core};
+use super::circle::Circle;
+use super::core::Core;
 use super::feature::{Feature, PARALLEL, Placed, distance};
 
 /// The nearest points of two cores.
@@ -57,8 +58,17 @@ impl Nearest {
 const SAMPLES: usize = 48;
 /// Halvings of an interval until it is below the resolution of its ends.
 const HALVINGS: usize = 60;
+/// A place nearer to an end of a segment than this fraction of it is the end: a search stops short of it by round-off.
+const AT_END: f64 = 1e-10;
 /// Distance of two lines below which they lie in one plane, as a fraction of their size: round-off.
 const COPLANAR: f64 = 1e-11;
+
+impl Core {
+    /// Distance of a point; negative within a cylinder and behind a plane.
+    pub fn distance_from(&self, p: Vec3) -> f64 {
+        nearest(&Self::Point(p), self).distance
+    }
+}
 
 /// The nearest points of two cores.
 pub(crate) fn nearest(a: &Core, b: &Core) -> Nearest {
@@ -310,8 +320,9 @@ pub(super) fn least_sampled(f: impl Fn(f64) -> f64, is_periodic: bool) -> f64 {
         let ends = [place(k) - step, place(k) + step];
         let t = least_within(&f, if is_periodic { ends } else { ends.map(|t| t.clamp(0.0, 1.0)) });
         // An end itself, if the function decreases up to it.
-        let t = if !is_periodic && f(0.0) <= f(t) && k <= 1 { 0.0 } else { t };
-        let t = if !is_periodic && f(1.0) <= f(t) && k + 1 >= SAMPLES { 1.0 } else { t };
+        let t = if !is_periodic && (f(0.0) <= f(t) || t < AT_END) && k <= 1 { 0.0 } else { t };
+        let t =
+            if !is_periodic && (f(1.0) <= f(t) || t > 1.0 - AT_END) && k + 1 >= SAMPLES { 1.0 } else { t };
         (f(t), t)
     });
     refined.reduce(|a, b| if b.0 < a.0 { b } else { a }).map_or(0.0, |(_, t)| t)
@@ -367,7 +378,8 @@ pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
     let at = |t: f64| a + (b - a) * t;
     let depth = |t: f64| drum.distance(at(t));
     let mut t = least_within(depth, [0.0, 1.0]);
-    t = [0.0, 1.0].into_iter().fold(t, |best, end| if depth(end) <= depth(best) { end } else { best });
+    let is_end = |end: f64, best: f64| depth(end) <= depth(best) || (end - best).abs() < AT_END;
+    t = [0.0, 1.0].into_iter().fold(t, |best, end| if is_end(end, best) { end } else { best });
     // Over a cap, and along a side, all points of a parallel segment are nearest: the middle of them.
     let is_parallel = [0.0, 0.25, 0.75, 1.0]
         .into_iter()

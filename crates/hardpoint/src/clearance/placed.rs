@@ -4,7 +4,8 @@ use crate::design::{BodyFixed, ShapeGeometry};
 use crate::model::{BodyId, ClearanceId, Model, PointId, ShapeId, ShapeKind, with_core};
 use crate::space::{Pose, Real, Vec3};
 
-use super::core::{Circle, Core};
+use super::circle::Circle;
+use super::core::Core;
 use super::feature::{Feature, Placed};
 use super::nearest::{Nearest, nearest};
 use super::surface::{View, core_and_surface, moved, surfaces};

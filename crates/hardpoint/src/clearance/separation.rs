@@ -17,7 +17,8 @@ use crate::law::TimeJet;
 use crate::number::{Dual, Interval, Jet, Rates};
 use crate::space::{Real, Vec3};
 
-use super::core::{Circle, Core};
+use super::circle::Circle;
+use super::core::Core;
 use super::feature::Feature;
 use super::nearest::Nearest;
 

@@ -5,7 +5,8 @@
 
 use crate::space::{Pose, Surface, TrianglePart, Vec3, nearest_of_triangle};
 
-use super::core::{Circle, Core};
+use super::circle::Circle;
+use super::core::Core;
 use super::feature::Feature;
 use super::nearest::{
     Nearest, along_circle, around_drum, found, least_sampled, nearer, segment_and_cylinder, segments,

@@ -7,7 +7,8 @@ use proptest::prelude::*;
 use crate::number::{Jet, Rates};
 use crate::space::{Mat3, Pose, Real, Vec3};
 
-use super::core::{Circle, Core};
+use super::circle::Circle;
+use super::core::Core;
 use super::nearest::nearest;
 
 /// Kinds of cores that are paired with each other.

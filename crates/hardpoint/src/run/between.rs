@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::law::Law;
 use crate::linalg::{hermite, segment_at};
-use crate::model::{MeasureKind, Metric, Model, OutputSource, Reduction};
+use crate::model::{Metric, Model, Reduction};
 use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
@@ -57,8 +57,7 @@ fn is_between_outputs(metric: &Metric, times: &[f64]) -> bool {
 /// Returns true if a metric is taken at a time of its own whatever the output times resolve: a distance of shapes may
 /// change its features between them, and its least value is a promise.
 fn is_exact(model: &Model, metric: &Metric) -> bool {
-    let OutputSource::Measure(k) = metric.of else { return false };
-    matches!(model.measures[k].kind, MeasureKind::Clearance { .. })
+    model.type_of(metric.of) == "clearance"
 }
 
 impl Analysis<'_> {
