@@ -236,7 +236,7 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
         }
         // Of edges, and of corners over faces.
         let edges = |k: usize| {
-            let near = nearer([0, 1, 2].map(|n| {
+            nearer([0, 1, 2].map(|n| {
                 let near = segments([p[k], p[(k + 1) % 3]], [q[n], q[(n + 1) % 3]]);
                 let [own, other] = near.features;
                 let features = [
@@ -244,8 +244,7 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
                     of_edge(other, [others[n], others[(n + 1) % 3]]),
                 ];
                 Nearest { features, ..near }
-            }));
-            near
+            }))
         };
         let corner = |p: Vec3, id: u32, corners: [Vec3; 3], ids: [u32; 3]| {
             let (q, part) = nearest_of_triangle(p, corners, ids);

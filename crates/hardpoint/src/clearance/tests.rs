@@ -146,6 +146,10 @@ proptest! {
         prop_assert!((value - near.distance).abs() < EXACT);
         let d: Vec<f64> = around.iter().map(|n| n.distance).collect();
         let slope = (d[0] - 8.0 * d[1] + 8.0 * d[2] - d[3]) / (12.0 * h);
+        // Where two curves are nearly parallel, the fourth derivative is large, and differences are not accurate.
+        let coarse = (d[0] - 2.0 * near.distance + d[3]) / (4.0 * h * h);
+        let fine = (d[1] - 2.0 * near.distance + d[2]) / (h * h);
+        prop_assume!((coarse - fine).abs() < 1e-4 * (1.0 + fine.abs()));
         let curve = (-d[0] + 16.0 * d[1] - 30.0 * near.distance + 16.0 * d[2] - d[3]) / (12.0 * h * h);
         prop_assert!((rate - slope).abs() < 1e-7 * (1.0 + rate.abs()), "{first:?} {second:?} {near:?}: {rate} {slope}");
         // The fourth derivative of a distance grows with the inverse cube of the distance.

@@ -398,7 +398,7 @@ impl<'m> Curves<'m> {
         // Contacts: from a time at which the sign changes, Newton's method or the polynomial.
         for k in 0..last {
             let [a, b] = [value(k), value(k + 1)];
-            if !((a > 0.0) != (b > 0.0)) {
+            if (a > 0.0) == (b > 0.0) {
                 continue;
             }
             let begins = b <= 0.0;
