@@ -310,7 +310,7 @@ mod tests {
                     let inside = (with_rates(f(0.0)), Interval::between(from, to));
                     let bound =
                         lower_bound(over, ends, inside, Interval::constant(to) - Interval::constant(from));
-                    assert!(bound >= -1e-300 && bound <= 0.0, "{bound}");
+                    assert!((-1e-300..=0.0).contains(&bound), "{bound}");
                 }
             }
         }
