@@ -42,13 +42,17 @@ fn differences(file: &ModelFile, analysis: &Analysis<'_>, solution: &Solution) -
         .collect()
 }
 
+/// Budget of the strut's page, in bytes: a mail or a slow connection takes it. The engine is most of it; distances of
+/// shapes are in it since the page computes clearances.
+const STRUT: usize = 3_400_000;
+
 #[test]
 fn a_struts_page_weighs_three_megabytes_with_its_engine_and_leaves_nothing_out() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/macpherson.toml");
     let file = hardpoint_file::read(&path).unwrap();
     let (payload, report) = page(&file, true);
     let weight = report.len();
-    assert!(weight <= 3_200_000, "{weight}");
+    assert!(weight <= STRUT, "{weight}");
     assert_eq!(payload.times.values().len(), file.model.times.len());
     for variable in payload.variables.iter().filter(|v| !v.sensitivities.is_empty()) {
         assert_eq!(variable.shifts.len(), payload.bodies.len());
