@@ -114,7 +114,8 @@ export function pairName({ clearance }: Report, { shapes: [a, b] }: Pair): strin
 export function contactSentences(state: State): string[] {
   const { report } = state
   const { times, units, clearance } = report
-  if (!clearance) return []
+  // Until the first change is solved, nothing is known of it.
+  if (!clearance || (state.solver && state.isPredicted)) return []
   const depth = (distance: Curve) => {
     let deepest = -1
     distance.forEach((value, k) => value < 0 && (deepest < 0 || value < distance[deepest]) && (deepest = k))
