@@ -539,7 +539,7 @@ name: string,
  */
 kind: string,
 /**
- * Body that carries it, an index into [`Payload::bodies`]; of a rod that is only a joint the body of its first end.
+ * Body that carries it, an index into [`Payload::bodies`]; of a rod without a body that of its first end.
  */
 body: number,
 /**
@@ -626,11 +626,11 @@ minima: Array<[number, number]>, };
  */
 export type DesignShapes = {
 /**
- * As [`ClearanceMarks::shapes`], without the vertices of meshes, which no design changes.
+ * Shapes as in [`ClearanceMarks::shapes`], without the vertices of meshes, which no design changes.
  */
 shapes: Array<ShapeMark>,
 /**
- * As [`ClearanceMarks::pairs`].
+ * Pairs as in [`ClearanceMarks::pairs`].
  */
 pairs: Array<PairTrack>, };
 
@@ -882,7 +882,7 @@ values: Array<number | null>,
  */
 margin: Curve | null,
 /**
- * Its shapes and their distances, if the design was solved and the model has shapes.
+ * Shapes and their distances, if the design was solved and the model has shapes.
  */
 clearance?: DesignShapes, };
 

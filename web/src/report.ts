@@ -79,7 +79,7 @@ export interface Design extends Omit<wire.Design, 'poses' | 'loads' | 'quantitie
   /** By the quantity's index. */
   quantities: (ByOrder<Curve> | undefined)[]
   margin?: Curve
-  /** Its shapes, without the vertices of meshes, and their distances. */
+  /** Shapes of the design, without the vertices of meshes, and their distances. */
   clearance?: Omit<Clearance, 'clearances'>
 }
 

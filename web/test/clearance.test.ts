@@ -57,7 +57,7 @@ function shape(kind: Shape['kind'], places: BodyPlace[], more: Partial<Shape> = 
   return { name: kind, kind, body: 1, places, axis: null, ...numbers, vertices: none, triangles: none, ...more }
 }
 
-/** Two pairs of one clearance over the five steps of the crank: the second one is the nearer at the end, and touches. */
+/** Two pairs of one clearance over five steps: the second one is the nearer at the end, and touches. */
 function pairs(): Pair[] {
   const points = (...ends: [number, number][]) => Float32Array.from(ends.flatMap(([p, q]) => [p, 0, 0, q, 0, 0]))
   const known = { clearances: [0], touching: null, minima: [] }

@@ -409,7 +409,7 @@ pub struct ShapeMark {
     pub name: String,
     /// Kind in the model file: `sphere`, `capsule`, `ring`, `cylinder`, `tyre`, `plane`, `hull` or `mesh`.
     pub kind: &'static str,
-    /// Body that carries it, an index into [`Payload::bodies`]; of a rod that is only a joint the body of its first end.
+    /// Body that carries it, an index into [`Payload::bodies`]; of a rod without a body that of its first end.
     pub body: usize,
     /// Centre, both ends, or corners; none of a mesh.
     pub places: Vec<BodyPlace>,
@@ -463,9 +463,9 @@ pub struct PairTrack {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct DesignShapes {
-    /// As [`ClearanceMarks::shapes`], without the vertices of meshes, which no design changes.
+    /// Shapes as in [`ClearanceMarks::shapes`], without the vertices of meshes, which no design changes.
     pub shapes: Vec<ShapeMark>,
-    /// As [`ClearanceMarks::pairs`].
+    /// Pairs as in [`ClearanceMarks::pairs`].
     pub pairs: Vec<PairTrack>,
 }
 
@@ -601,7 +601,7 @@ pub struct Design {
     pub values: Vec<Option<f64>>,
     /// Margin to singular positions.
     pub margin: Option<Curve>,
-    /// Its shapes and their distances, if the design was solved and the model has shapes.
+    /// Shapes and their distances, if the design was solved and the model has shapes.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, ts(optional))]
     pub clearance: Option<DesignShapes>,

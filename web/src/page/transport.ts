@@ -60,7 +60,7 @@ export function transport(state: State): HTMLElement {
   show()
   const touching = el('div', { class: 'contacts', 'data-testid': 'contacts', 'aria-hidden': 'true' })
   let marked = ''
-  // Where the thumb is at the moments of contact.
+  // Marks are in the places of the thumb at the moments of contact.
   const mark = () => {
     if (!report.clearance || still) return
     const spans = contacts(state).map((interval) => stepsOf(report, interval).map((step) => step / state.lastStep))

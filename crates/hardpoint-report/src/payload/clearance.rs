@@ -15,8 +15,8 @@ use super::{Compose, Request};
 /// Number of output times above which minima and contacts are not located for a page: each pass solves all of them.
 const MOST_LOCATED: usize = 5000;
 
-/// Minima and contacts of all clearances, or a sentence on the reason why the page has none; neither for a model without
-/// clearances.
+/// Minima and contacts of all clearances, or a sentence on the reason why the page has none; `None` for a model
+/// without clearances.
 pub(super) fn located(request: &Request<'_>) -> Option<Result<Clearances, String>> {
     let model = request.analysis.model();
     let because = |reason: String| {
@@ -52,7 +52,7 @@ impl Compose<'_> {
         let clearance = &model.clearances[c];
         let measures = |source: OutputSource| match source {
             OutputSource::Measure(m) => {
-                matches!(model.measures[m].kind, MeasureKind::Clearance { of: ClearanceId(of) } if of == c)
+                model.measures[m].kind == MeasureKind::Clearance { of: ClearanceId(c) }
             }
             OutputSource::Point(..) => false,
         };

@@ -150,7 +150,7 @@ pub struct PairCurve {
 /// A shape of a design, in the frames of the bodies that carry it.
 #[derive(Clone, Debug)]
 pub struct ShapeOnBodies {
-    /// Its points with their bodies, m: the centre, the ends or the corners; none of a mesh.
+    /// Points with their bodies, m: the centre, the ends or the corners; none of a mesh.
     pub points: Vec<(BodyId, Vec3)>,
     /// Axis or normal, a unit vector in the frame of the first of its bodies, if it has one that points do not give.
     pub axis: Option<Vec3>,
