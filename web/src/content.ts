@@ -1,3 +1,4 @@
+import type { Interval } from './clearance'
 import { type Curve, firstIndex } from './curve'
 import { type Part, seenRange } from './zoom'
 
@@ -40,6 +41,8 @@ export interface Content {
   caption?: string
   /** Targets of the values: at one abscissa, or everywhere. */
   wanted?: { low: number | null; high: number | null; at?: number }[]
+  /** Intervals of time in which shapes touch. */
+  contacts?: readonly Interval[]
   /** Shown in place of the plot. */
   message?: string
 }

@@ -145,6 +145,10 @@ variables: Array<Variable>,
  */
 checks: Array<Table>,
 /**
+ * Shapes and the distances between them; only for models with shapes.
+ */
+clearance?: ClearanceMarks,
+/**
  * Text of the model, from which the page solves changed designs.
  */
 model: ModelText | null, };
@@ -506,6 +510,131 @@ radius: number,
 kingpin: [BodyPlace, BodyPlace] | null, };
 
 /**
+ * Shapes of bodies, and their distances over the motion.
+ */
+export type ClearanceMarks = {
+/**
+ * All shapes.
+ */
+shapes: Array<ShapeMark>,
+/**
+ * Clearances of the model.
+ */
+clearances: Array<ClearanceMark>,
+/**
+ * Pairs that are the nearest of their clearance at any shown step.
+ */
+pairs: Array<PairTrack>, };
+
+/**
+ * Shape of a body.
+ */
+export type ShapeMark = {
+/**
+ * Name of the shape.
+ */
+name: string,
+/**
+ * Kind in the model file: `sphere`, `capsule`, `ring`, `cylinder`, `tyre`, `plane`, `hull` or `mesh`.
+ */
+kind: string,
+/**
+ * Body that carries it, an index into [`Payload::bodies`]; of a rod without a body that of its first end.
+ */
+body: number,
+/**
+ * Centre, both ends, or corners; none of a mesh.
+ */
+places: Array<BodyPlace>,
+/**
+ * Unit vector along the axis or normal in the frame of `body`, of a ring, tyre or plane.
+ */
+axis: [number, number, number] | null,
+/**
+ * Radius, to the outside; of a ring that of the circle in the middle of its bar; 0 where there is none.
+ */
+radius: number,
+/**
+ * Half of a tyre's width; otherwise 0.
+ */
+half_width: number,
+/**
+ * Radius of a ring's bar, or of edges; that of a sphere or capsule is its radius.
+ */
+round: number,
+/**
+ * Vertices of a mesh in the frame of `body`, three coordinates each; empty otherwise, and of other designs.
+ */
+vertices: Curve,
+/**
+ * Three vertices per triangle of a mesh, or corners of a hull: integers below 2^24; empty otherwise.
+ */
+triangles: Curve, };
+
+/**
+ * Clearance of the model.
+ */
+export type ClearanceMark = {
+/**
+ * Name of the clearance.
+ */
+name: string,
+/**
+ * Measures of it, indices into [`Payload::quantities`].
+ */
+quantities: Array<number>,
+/**
+ * Distance that is required of all its pairs, if it is the same for all.
+ */
+min: number | null,
+/**
+ * Distance above which its pairs are not shown.
+ */
+beyond: number | null, };
+
+/**
+ * Distance of two shapes over the motion.
+ */
+export type PairTrack = {
+/**
+ * Both shapes, indices into [`ClearanceMarks::shapes`].
+ */
+shapes: [number, number],
+/**
+ * Clearances with this pair, indices into [`ClearanceMarks::clearances`].
+ */
+clearances: Array<number>,
+/**
+ * Distance, `n` steps; negative where the shapes overlap.
+ */
+distance: Curve,
+/**
+ * Nearest points of their surfaces in the world, six numbers per step.
+ */
+points: Curve,
+/**
+ * Intervals in which they touch, located exactly; `None` if they were not located.
+ */
+touching: Array<[number, number]> | null,
+/**
+ * Times and distances of all local minima, located exactly; empty if they were not located.
+ */
+minima: Array<[number, number]>, };
+
+/**
+ * Shapes and distances of another design.
+ */
+export type DesignShapes = {
+/**
+ * Shapes as in [`ClearanceMarks::shapes`], without the vertices of meshes, which no design changes.
+ */
+shapes: Array<ShapeMark>,
+/**
+ * Pairs as in [`ClearanceMarks::pairs`].
+ */
+pairs: Array<PairTrack>, };
+
+/**
  * Measured distance between two points.
  */
 export type DistanceMark = {
@@ -751,7 +880,11 @@ values: Array<number | null>,
 /**
  * Margin to singular positions.
  */
-margin: Curve | null, };
+margin: Curve | null,
+/**
+ * Shapes and their distances, if the design was solved and the model has shapes.
+ */
+clearance?: DesignShapes, };
 
 /**
  * Source of another design.

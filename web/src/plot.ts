@@ -311,7 +311,7 @@ export class Plot {
       mode: 2,
       pxAlign: 0,
       hooks: {
-        drawClear: [(u: uPlot) => drawWanted(u, this.content)],
+        drawClear: [(u: uPlot) => (drawWanted(u, this.content), drawContacts(u, this.content))],
         draw: [() => (this.#showTime(), this.overlay?.drawn())],
       },
       ...this.#size(),
@@ -645,6 +645,23 @@ function drawWanted(u: uPlot, { wanted = [] }: Content): void {
     const [left, width] = at === undefined ? [bbox.left, bbox.width] : [u.valToPos(at, 'x', true) - half, 2 * half]
     ctx.globalAlpha = at === undefined ? 0.12 : 0.35
     ctx.fillRect(left, top, width, Math.max(bottom - top, 2))
+  }
+  ctx.restore()
+}
+
+/** Intervals of contact, behind the curves; only over time. */
+function drawContacts(u: uPlot, { contacts = [], over }: Content): void {
+  if (over || contacts.length === 0) return
+  const { ctx, bbox } = u
+  ctx.save()
+  ctx.beginPath()
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height)
+  ctx.clip()
+  ctx.fillStyle = css('--load')
+  ctx.globalAlpha = 0.14
+  for (const [from, to] of contacts) {
+    const [left, right] = [from, to].map((time) => u.valToPos(time, 'x', true))
+    ctx.fillRect(left, bbox.top, Math.max(right - left, devicePixelRatio), bbox.height)
   }
   ctx.restore()
 }

@@ -72,13 +72,35 @@ export interface Load extends Omit<wire.LoadMark, 'force'> {
 }
 
 /** Another design over the same times; unknown data are empty or missing. */
-export interface Design extends Omit<wire.Design, 'poses' | 'loads' | 'quantities' | 'margin'> {
+export interface Design extends Omit<wire.Design, 'poses' | 'loads' | 'quantities' | 'margin' | 'clearance'> {
   poses: Curve[]
   /** The force of each of the report's loads. */
   loads: Curve[]
   /** By the quantity's index. */
   quantities: (ByOrder<Curve> | undefined)[]
   margin?: Curve
+  /** Shapes of the design, without the vertices of meshes, and their distances. */
+  clearance?: Omit<Clearance, 'clearances'>
+}
+
+/** A shape in the frames of its bodies. */
+export interface Shape extends Omit<wire.ShapeMark, 'vertices' | 'triangles'> {
+  vertices: Curve
+  triangles: Curve
+}
+
+/** Distance of two shapes over the motion. */
+export interface Pair extends Omit<wire.PairTrack, 'distance' | 'points'> {
+  distance: Curve
+  /** Two points of the world per step. */
+  points: Curve
+}
+
+/** Shapes, and their distances over the motion. */
+export interface Clearance {
+  shapes: Shape[]
+  clearances: wire.ClearanceMark[]
+  pairs: Pair[]
 }
 
 /** True for a given force, whose law no design changes. */
@@ -114,7 +136,17 @@ export interface SweepAxis extends Omit<wire.SweepAxis, 'values'> {
 export interface Report
   extends Omit<
     wire.Payload,
-    'times' | 'bodies' | 'drivers' | 'loads' | 'quantities' | 'margin' | 'variables' | 'designs' | 'maps' | 'sweep'
+    | 'times'
+    | 'bodies'
+    | 'drivers'
+    | 'loads'
+    | 'quantities'
+    | 'margin'
+    | 'variables'
+    | 'designs'
+    | 'maps'
+    | 'sweep'
+    | 'clearance'
   > {
   times: Curve
   bodies: Body[]
@@ -126,6 +158,7 @@ export interface Report
   designs: Design[]
   maps: GridMap[]
   sweep?: Sweep
+  clearance?: Clearance
 }
 
 export function read(payload: wire.Payload, decode: Decode): Report {
@@ -173,6 +206,7 @@ export function read(payload: wire.Payload, decode: Decode): Report {
       }
     }),
     designs: payload.designs.map((item) => design(item, decode)),
+    clearance: payload.clearance && { ...payload.clearance, ...distances(payload.clearance, decode) },
   }
 }
 
@@ -184,6 +218,18 @@ export function design(item: wire.Design, decode: Decode): Design {
     loads: item.loads.map(decode),
     quantities: item.quantities.map((item) => (item ? curves(item, decode) : undefined)),
     margin: item.margin ? decode(item.margin) : undefined,
+    clearance: item.clearance && distances(item.clearance, decode),
+  }
+}
+
+function distances({ shapes, pairs }: wire.DesignShapes, decode: Decode): Omit<Clearance, 'clearances'> {
+  return {
+    shapes: shapes.map((shape) => ({
+      ...shape,
+      vertices: decode(shape.vertices),
+      triangles: decode(shape.triangles),
+    })),
+    pairs: pairs.map((pair) => ({ ...pair, distance: decode(pair.distance), points: decode(pair.points) })),
   }
 }
 

@@ -21,6 +21,8 @@ export interface Choice {
   labels: boolean
   /** True if forces are drawn in the view. */
   forces: boolean
+  /** True if shapes and their nearest points are drawn in the view. */
+  shapes: boolean
   /** True if the rigid mechanism is shown alongside the elastic one. */
   rigid: boolean
   /** The design that the present one is compared with; the one as loaded where there is none. */
@@ -38,6 +40,8 @@ export interface ChoiceMemory {
   labels: boolean
   forces: boolean
   rigid: boolean
+  /** Missing in what was stored before there were shapes. */
+  shapes?: boolean
   /** Names of the body and the hardpoint. */
   trace?: [body: string, point: string]
   time: number
@@ -112,6 +116,7 @@ export class State {
       over: sheet.plots[0]?.over,
       labels: false,
       forces: true,
+      shapes: true,
       rigid: true,
     }
   }
@@ -119,19 +124,19 @@ export class State {
   /** Choices, to be made again on another page. */
   get memory(): ChoiceMemory {
     const { quantities, variables, bodies } = this.report
-    const { quantity, variable, order, over, labels, forces, rigid, trace } = this.choice
+    const { quantity, variable, order, over, labels, forces, rigid, shapes, trace } = this.choice
     return {
       quantity: quantities[quantity]?.name,
       over: over === undefined ? undefined : quantities[over]?.name,
       variable: variables[variable]?.name,
-      ...{ order, labels, forces, rigid },
+      ...{ order, labels, forces, rigid, shapes },
       trace: trace && [bodies[trace[0]].name, bodies[trace[0]].labels[trace[1]]],
       time: this.time,
     }
   }
 
   /** Makes the choices of another page that are possible here, before anything of this one is shown. */
-  recall({ quantity, over, variable, order, labels, forces, rigid, trace, time }: ChoiceMemory): void {
+  recall({ quantity, over, variable, order, labels, forces, rigid, shapes = true, trace, time }: ChoiceMemory): void {
     const { quantities, variables, bodies } = this.report
     const named = (list: readonly { name: string }[], name: string | undefined, otherwise: number) => {
       const found = list.findIndex((one) => one.name === name)
@@ -143,7 +148,7 @@ export class State {
       quantity: named(quantities, quantity, this.choice.quantity),
       variable: named(variables, variable, this.choice.variable),
       over: abscissaNamed(this.report, over),
-      ...{ order, labels, forces, rigid },
+      ...{ order, labels, forces, rigid, shapes },
       trace: point >= 0 ? [body, point] : undefined,
     })
     this.step = stepAt(this.report.times, time)

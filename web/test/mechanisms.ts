@@ -67,7 +67,15 @@ export const PALETTE: Palette = {
   ...{ light: { sky: 2, earth: '#c2cad2', sun: 1, shadow: 0.16 }, glass: 0.13 },
 }
 /** Initial choice. */
-export const CHOICE: Choice = { quantity: 0, variable: 0, order: 0, labels: false, forces: true, rigid: true }
+export const CHOICE: Choice = {
+  quantity: 0,
+  variable: 0,
+  order: 0,
+  labels: false,
+  forces: true,
+  rigid: true,
+  shapes: true,
+}
 
 /** Rotations about z of the crank from one step to the next. */
 const QUARTER = Math.PI / 2
@@ -128,6 +136,7 @@ export function crank(changes: Partial<Report> = {}): Report {
     maps: [],
     sweep: undefined,
     margin: undefined,
+    clearance: undefined,
     variables: [],
     ...changes,
   }

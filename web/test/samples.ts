@@ -21,6 +21,8 @@ export interface Samples {
   map: string
   /** A front axle on bushings, in equilibrium over wheel travel. */
   elastic: string
+  /** A four-bar whose rods pass screws: shapes, one of which hits another. */
+  knee: string
   /** 81 bodies and 240 design variables. */
   large: string
   /** The program that answers as the page's engine does. */
@@ -87,6 +89,7 @@ export default async function setup(project: TestProject): Promise<() => void> {
     () => command(hardpoint, ['whatif', join(MODELS, 'macpherson.toml'), ...change]),
     () => command(hardpoint, ['whatif', ride, ...higher, '--over', 'wheel_travel', '-o', join(folder, 'tutorial')]),
     () => command(hardpoint, ['run', join(MODELS, 'studies', 'strut_map.toml'), '-o', join(folder, 'map')]),
+    () => command(hardpoint, ['run', join(MODELS, 'studies', 'knee.toml'), '-o', join(folder, 'knee')]),
     ...files.map(
       (file) => () => command(hardpoint, ['run', join(MODELS, file), '-o', join(folder, basename(file, '.toml'))]),
     ),
@@ -100,6 +103,7 @@ export default async function setup(project: TestProject): Promise<() => void> {
     tutorial: page('tutorial', 'whatif.html'),
     map: page('map', 'ride', 'report.html'),
     elastic: page('elastic', 'report.html'),
+    knee: page('knee', 'report.html'),
     large: page('large', 'report.html'),
     models: Object.fromEntries(models),
     hardpoint,

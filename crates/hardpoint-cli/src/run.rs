@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use hardpoint::model::{Model, VariableId};
+use hardpoint::run::Clearances;
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
 use hardpoint_export::RunDocument;
@@ -250,7 +251,14 @@ pub fn page(
         session.fail(file, &summary.diagnostics);
         return Err(Outcome::Stopped);
     }
-    let mut results = Results { file, analysis: &analysis, course: &course, differences: Vec::new(), maps };
+    let mut results = Results {
+        file,
+        analysis: &analysis,
+        course: &course,
+        differences: Vec::new(),
+        maps,
+        clearances: None,
+    };
     results.study(session, formulation, true, &mut summary);
     maps::note(maps, &mut summary);
     summary.timings.total = session.seconds();
@@ -289,7 +297,14 @@ fn run_in(
     summary.left_out.extend(plan.left_out());
     summary.left_out.extend(written.left_out);
 
-    let mut results = Results { file, analysis: &analysis, course: &course, differences: Vec::new(), maps };
+    let mut results = Results {
+        file,
+        analysis: &analysis,
+        course: &course,
+        differences: Vec::new(),
+        maps,
+        clearances: None,
+    };
     results.study(session, options.common.formulation(), !options.no_compare, &mut summary);
 
     cases.metrics.push(CaseMetrics {
@@ -341,6 +356,7 @@ fn run_in(
             written.map_err(|e| session.not_written(&e))?;
             summary.files.push(folder.path_of(CLEARANCES).display().to_string());
             tables_after.extend(ClearanceFact::table(&ClearanceFact::all(model, units, &found)));
+            results.clearances = Some(found);
         }
         if options.workbook {
             let contents =
@@ -515,6 +531,8 @@ struct Results<'a> {
     course: &'a Course,
     differences: Vec<Option<Difference>>,
     maps: &'a [MapFact],
+    /// Minima and contacts of the clearances, once they are located.
+    clearances: Option<Clearances>,
 }
 
 impl Results<'_> {
@@ -544,7 +562,8 @@ impl Results<'_> {
     fn page(&self, summary: &Summary) -> String {
         let run = Request::of(self.file, self.analysis, self.course, summary);
         let finish = |page| MapFact::page(self.maps, page);
-        report(&Request { differences: &self.differences, ..run }, &finish).expect("a payload is plain data")
+        let request = Request { differences: &self.differences, clearances: self.clearances.as_ref(), ..run };
+        report(&request, &finish).expect("a payload is plain data")
     }
 
     fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), WriteError> {

@@ -334,6 +334,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }),
         variables: variables(&times),
         checks: checks(),
+        clearance: None,
         model: None,
         times: times.into_iter().collect(),
     };

@@ -10,7 +10,7 @@ use flate2::{Compression, write::DeflateEncoder};
 use hardpoint_table::tracks::{Precision, Tracks};
 use serde::Serialize;
 
-use crate::page::{Curve, Design, Payload};
+use crate::page::{Curve, Design, PairTrack, Payload, ShapeMark};
 
 /// Packs the payload: encodes and deflates it.
 ///
@@ -65,6 +65,9 @@ fn each_curve(payload: &mut Payload, visit: &mut impl FnMut(&mut Curve, Precisio
         driver.alone.iter_mut().for_each(|curve| visit(curve, Full, 1));
     }
     payload.loads.iter_mut().for_each(|load| visit(&mut load.force, Full, 3));
+    if let Some(clearance) = &mut payload.clearance {
+        each_curve_of_shapes(&mut clearance.shapes, &mut clearance.pairs, visit);
+    }
     for q in &mut payload.quantities {
         [&mut q.value, &mut q.rate, &mut q.accel, &mut q.wanted]
             .into_iter()
@@ -105,6 +108,25 @@ fn each_curve_of(design: &mut Design, visit: &mut impl FnMut(&mut Curve, Precisi
         [&mut q.value, &mut q.rate, &mut q.accel].into_iter().for_each(|curve| visit(curve, Full, 1));
     }
     design.margin.iter_mut().for_each(|margin| visit(margin, Full, 1));
+    if let Some(clearance) = &mut design.clearance {
+        each_curve_of_shapes(&mut clearance.shapes, &mut clearance.pairs, visit);
+    }
+}
+
+fn each_curve_of_shapes(
+    shapes: &mut [ShapeMark],
+    pairs: &mut [PairTrack],
+    visit: &mut impl FnMut(&mut Curve, Precision, usize),
+) {
+    use Precision::Full;
+    for shape in shapes {
+        visit(&mut shape.vertices, Full, 3);
+        visit(&mut shape.triangles, Full, 3);
+    }
+    for pair in pairs {
+        visit(&mut pair.distance, Full, 1);
+        visit(&mut pair.points, Full, 6);
+    }
 }
 
 /// Value with curves that can be passed on in plain layout, one number after the other: a curve is then the index of

@@ -135,6 +135,10 @@ pub struct Payload {
     pub variables: Vec<Variable>,
     /// Facts about the model: bodies, joints, constraints, redundancy, admissibility.
     pub checks: Vec<Table>,
+    /// Shapes and the distances between them; only for models with shapes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
+    pub clearance: Option<ClearanceMarks>,
     /// Text of the model, from which the page solves changed designs.
     pub model: Option<ModelText>,
 }
@@ -385,6 +389,86 @@ pub struct WheelMark {
     pub kingpin: Option<[BodyPlace; 2]>,
 }
 
+/// Shapes of bodies, and their distances over the motion.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ClearanceMarks {
+    /// All shapes.
+    pub shapes: Vec<ShapeMark>,
+    /// Clearances of the model.
+    pub clearances: Vec<ClearanceMark>,
+    /// Pairs that are the nearest of their clearance at any shown step.
+    pub pairs: Vec<PairTrack>,
+}
+
+/// Shape of a body.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ShapeMark {
+    /// Name of the shape.
+    pub name: String,
+    /// Kind in the model file: `sphere`, `capsule`, `ring`, `cylinder`, `tyre`, `plane`, `hull` or `mesh`.
+    pub kind: &'static str,
+    /// Body that carries it, an index into [`Payload::bodies`]; of a rod without a body that of its first end.
+    pub body: usize,
+    /// Centre, both ends, or corners; none of a mesh.
+    pub places: Vec<BodyPlace>,
+    /// Unit vector along the axis or normal in the frame of `body`, of a ring, tyre or plane.
+    pub axis: Option<[f64; 3]>,
+    /// Radius, to the outside; of a ring that of the circle in the middle of its bar; 0 where there is none.
+    pub radius: f64,
+    /// Half of a tyre's width; otherwise 0.
+    pub half_width: f64,
+    /// Radius of a ring's bar, or of edges; that of a sphere or capsule is its radius.
+    pub round: f64,
+    /// Vertices of a mesh in the frame of `body`, three coordinates each; empty otherwise, and of other designs.
+    pub vertices: Curve,
+    /// Three vertices per triangle of a mesh, or corners of a hull: integers below 2^24; empty otherwise.
+    pub triangles: Curve,
+}
+
+/// Clearance of the model.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ClearanceMark {
+    /// Name of the clearance.
+    pub name: String,
+    /// Measures of it, indices into [`Payload::quantities`].
+    pub quantities: Vec<usize>,
+    /// Distance that is required of all its pairs, if it is the same for all.
+    pub min: Option<f64>,
+    /// Distance above which its pairs are not shown.
+    pub beyond: Option<f64>,
+}
+
+/// Distance of two shapes over the motion.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct PairTrack {
+    /// Both shapes, indices into [`ClearanceMarks::shapes`].
+    pub shapes: [usize; 2],
+    /// Clearances with this pair, indices into [`ClearanceMarks::clearances`].
+    pub clearances: Vec<usize>,
+    /// Distance, `n` steps; negative where the shapes overlap.
+    pub distance: Curve,
+    /// Nearest points of their surfaces in the world, six numbers per step.
+    pub points: Curve,
+    /// Intervals in which they touch, located exactly; `None` if they were not located.
+    pub touching: Option<Vec<[f64; 2]>>,
+    /// Times and distances of all local minima, located exactly; empty if they were not located.
+    pub minima: Vec<[f64; 2]>,
+}
+
+/// Shapes and distances of another design.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct DesignShapes {
+    /// Shapes as in [`ClearanceMarks::shapes`], without the vertices of meshes, which no design changes.
+    pub shapes: Vec<ShapeMark>,
+    /// Pairs as in [`ClearanceMarks::pairs`].
+    pub pairs: Vec<PairTrack>,
+}
+
 /// Measured distance between two points.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
@@ -517,6 +601,10 @@ pub struct Design {
     pub values: Vec<Option<f64>>,
     /// Margin to singular positions.
     pub margin: Option<Curve>,
+    /// Shapes and their distances, if the design was solved and the model has shapes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
+    pub clearance: Option<DesignShapes>,
 }
 
 /// Source of another design.
@@ -905,6 +993,7 @@ pub(crate) mod tests {
             margin: None,
             variables: vec![],
             checks: vec![],
+            clearance: None,
             model: None,
         }
     }
@@ -919,6 +1008,11 @@ pub(crate) mod tests {
             5,
             "ends of the server, the payload, the engine, the code and what starts it"
         );
+    }
+
+    #[test]
+    fn a_page_without_shapes_has_no_key_for_them() {
+        assert!(!serde_json::to_string(&payload("sample")).unwrap().contains("clearance"));
     }
 
     #[test]
@@ -980,7 +1074,7 @@ pub(crate) mod tests {
         }
         declare!(
             Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark SlideMark JointCurve CouplerMark CouplerTerm
-            DriverMark BodyPlace WheelMark DistanceMark LoadMark VehicleAxes Quantity Plot NamedDesign NamedChange Value Gate Design DesignKind DesignCurves
+            DriverMark BodyPlace WheelMark ClearanceMarks ShapeMark ClearanceMark PairTrack DesignShapes DistanceMark LoadMark VehicleAxes Quantity Plot NamedDesign NamedChange Value Gate Design DesignKind DesignCurves
             GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");

@@ -5,6 +5,7 @@
 //! is reduced in this order: the comparison of bodies is dropped, the motion is thinned, and finally the sensitivities
 //! of bodies are dropped. The CSV files always contain everything.
 
+mod clearance;
 mod designs;
 mod drawing;
 mod first;
@@ -20,7 +21,7 @@ use std::path::Path;
 use hardpoint::joint::Quantity as Kind;
 use hardpoint::load::Loads;
 use hardpoint::model::{BodyId, Dimension, Driver, DriverId, Metric, Model, OutputSource, VariableId};
-use hardpoint::run::DriverRates;
+use hardpoint::run::{Clearances, DriverRates};
 use hardpoint::sensitivity::{BodySensitivity, admissibility_at_design};
 use hardpoint::space::Vec3;
 use hardpoint::{Analysis, Solution};
@@ -29,6 +30,7 @@ use hardpoint_study::Comparison;
 use hardpoint_study::difference::Difference;
 use hardpoint_table::series::{self, Scale, settled};
 
+use crate::clearance::ClearanceFact;
 use crate::course::{Course, RoundOff};
 use crate::deflection::DeflectionFact;
 use crate::encoding::{packed, size_in_page};
@@ -50,6 +52,8 @@ const MOST_BYTES: usize = 8 << 20;
 /// Minimum and maximum size of a value of a smooth curve on the page, in bytes; the page is packed to measure its size
 /// if these bounds do not decide whether it fits.
 const BYTES_PER_VALUE: [f64; 2] = [0.2, 3.0];
+/// Largest number of pairs of shapes in an estimate of the page's size: of many pairs few are ever the nearest ones.
+const MOST_PAIRS: usize = 64;
 /// Opening of a joint that the page calls a re-assembly, relative to the motion of the variable that opens it: rounded
 /// coordinates of a file open joints by less.
 const VISIBLE: f64 = 1e-5;
@@ -73,6 +77,8 @@ pub struct Request<'a> {
     pub differences: &'a [Option<Difference>],
     /// Another design over the same motion, if any.
     pub changed: Option<ChangedDesign<'a>>,
+    /// Minima and contacts of the clearances, if the caller has them already.
+    pub clearances: Option<&'a Clearances>,
 }
 
 impl<'a> Request<'a> {
@@ -83,7 +89,7 @@ impl<'a> Request<'a> {
         course: &'a Course,
         summary: &'a Summary,
     ) -> Self {
-        Self { file, analysis, course, summary, differences: &[], changed: None }
+        Self { file, analysis, course, summary, differences: &[], changed: None, clearances: None }
     }
 }
 
@@ -122,11 +128,16 @@ fn fitted(request: &Request<'_>, finish: &dyn Fn(Payload) -> Payload) -> (Payloa
         outputs: solution.measured.outputs.len(),
         loads: loads::count(model) + model.elastic_directions().len() + model.given_forces().len(),
         compared: request.differences.iter().any(Option::is_some),
+        pairs: model.clearances.iter().map(|c| c.pairs.len()).sum::<usize>().min(MOST_PAIRS),
         designs: request.changed.as_ref().map_or(0, ChangedDesign::designs)
             + usize::from(request.summary.rigid.is_some()),
     };
     let alone = driver_rates(request);
-    let compose = |detail: Detail| finish(composed(request, alone.as_ref(), detail));
+    let clearances = match request.clearances {
+        Some(found) => Some(Ok(found.clone())),
+        None => clearance::located(request),
+    };
+    let compose = |detail: Detail| finish(composed(request, alone.as_ref(), clearances.as_ref(), detail));
     let levels = Detail::levels(size, Bodies::of(request.course));
     let (last, levels) = levels.split_last().expect("there is always a least level");
     for level in levels {
@@ -165,7 +176,12 @@ fn driver_rates(request: &Request<'_>) -> Option<DriverRates> {
 }
 
 /// Payload with a given detail.
-fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) -> Payload {
+fn composed(
+    request: &Request<'_>,
+    alone: Option<&DriverRates>,
+    clearances: Option<&Result<Clearances, String>>,
+    detail: Detail,
+) -> Payload {
     let &Request { file, course, summary, differences, ref changed, .. } = request;
     let (model, units, solution) = (&file.model, file.units, &course.kept);
     let compose = Compose::new(request, alone, detail);
@@ -181,6 +197,15 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
         Some(Err(why)) => notes.push(why.clone()),
         None => {}
     }
+    let located = match clearances {
+        Some(Ok(found)) => Some(found),
+        Some(Err(why)) => {
+            notes.push(why.clone());
+            None
+        }
+        None => None,
+    };
+    let distances = located.map(|found| ClearanceFact::all(request.analysis.model(), units, found));
     Payload {
         title: model.name.clone(),
         description: file.description.clone().unwrap_or_default(),
@@ -227,9 +252,11 @@ fn composed(request: &Request<'_>, alone: Option<&DriverRates>, detail: Detail) 
             .iter()
             .flat_map(|a| a.tables())
             .chain(DeflectionFact::table(&deflections))
+            .chain(distances.and_then(|facts| ClearanceFact::table(&facts)))
             .chain(summary.validity_table())
             .chain(summary.model.tables())
             .collect(),
+        clearance: compose.clearance(located),
         model: Some(ModelText {
             file: file_name(file.file_name()),
             text: file.text().to_owned(),
@@ -273,6 +300,8 @@ struct Size {
     loads: usize,
     /// True if there are differences for comparison.
     compared: bool,
+    /// Pairs of shapes whose distances are shown.
+    pairs: usize,
     /// Other designs that are shown alongside.
     designs: usize,
 }
@@ -312,7 +341,7 @@ impl Detail {
         let steps = size.steps.div_ceil(self.stride);
         let origins = 3 * size.bodies;
         let shown = if self.origins { origins } else { 0 };
-        let motion = 3 * (size.outputs + shown + size.loads) + 7 * (size.bodies + 1);
+        let motion = 3 * (size.outputs + shown + size.loads) + 7 * (size.bodies + 1 + size.pairs);
         // Translation and rotation of a body; the sensitivity of its origin's position is the same numbers.
         let bodies = if self.bodies { 2 * origins } else { 0 };
         let rates = if self.body_rates { 2 * origins } else { 0 };
@@ -742,8 +771,16 @@ impl<'a> Compose<'a> {
 mod tests {
     use super::*;
 
-    const STRUT: Size =
-        Size { steps: 501, bodies: 4, variables: 16, outputs: 13, loads: 0, compared: true, designs: 0 };
+    const STRUT: Size = Size {
+        steps: 501,
+        bodies: 4,
+        variables: 16,
+        outputs: 13,
+        loads: 0,
+        compared: true,
+        pairs: 0,
+        designs: 0,
+    };
 
     #[test]
     fn a_suspension_is_shown_with_all_that_there_is() {

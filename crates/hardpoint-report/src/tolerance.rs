@@ -539,6 +539,7 @@ impl ToleranceInputs<'_> {
             quantities,
             values: vec![None; page.values.len()],
             margin: None,
+            clearance: None,
         }
     }
 

@@ -1,3 +1,4 @@
+import { clearanceOf, contacts } from '../clearance'
 import {
   atFixedAbscissa,
   changeFrom,
@@ -123,7 +124,10 @@ export function valueContent(state: State, subject: Subject): Content {
     const curve = quiet(band.quantities[index]![order], scale)
     content.lines.push({ label: band.name, color: css('--former'), curve, width: 1.3, dash: DOTTED })
   }
-  if (order === 0 && !difference) addTargets(state, quantity, content, present, over)
+  if (order === 0 && !difference) {
+    addTargets(state, quantity, content, present, over)
+    addContacts(state, quantity, content, over)
+  }
   for (const [k, { label, x, y }] of measured.entries())
     content.lines.push({ label, color: hue(k + 5), curve: y, over: x, free: true, marks: withGaps(y) })
   content.lines = content.lines.filter(({ curve }) => curve.length > 0)
@@ -203,6 +207,25 @@ function addTargets(
     return valueAt(x, stepAt(report.times, time))
   }
   content.wanted = limited.map(({ gate }) => ({ ...gate!, at: gate!.at === null ? undefined : at(gate!.at) }))
+}
+
+/** Distance that a clearance requires, and the intervals of time in which its shapes touch. */
+function addContacts(state: State, { index }: Quantity, content: Content, over?: number): void {
+  const { report } = state
+  const clearance = clearanceOf(report, index)
+  if (clearance === undefined) return
+  const notes = [content.caption]
+  const { name, min } = report.clearance!.clearances[clearance]
+  // A limit of the model shows the range already.
+  if (min !== null && !content.wanted?.length) {
+    content.wanted = [{ low: min, high: null }]
+    notes.push(`Shaded: at least the ${figure(min, report.units.length)} that \`${name}\` requires.`)
+  }
+  if (over === undefined) {
+    content.contacts = contacts(state, clearance)
+    if (content.contacts.length > 0) notes.push('Red: shapes touch.')
+  }
+  content.caption = notes.filter(Boolean).join(' ') || undefined
 }
 
 /**

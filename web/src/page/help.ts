@@ -22,6 +22,7 @@ const VIEW: Pairs = [
   ['F', 'fit the mechanism to the view'],
   ['L', 'show names of hardpoints'],
   ['N', 'show forces as arrows, if the model has masses or forces'],
+  ['H', 'show shapes and their nearest points, if the model has shapes'],
   ['D', 'measure distances and angles'],
 ]
 

@@ -89,6 +89,8 @@ export class Inspector {
       case 'load':
       case 'mark':
         return this.#values(part.name)
+      case 'shape':
+        return this.#shapeFacts(part.index)
     }
   }
 
@@ -159,6 +161,18 @@ export class Inspector {
       ...this.#values(name),
       el('p', { class: 'muted' }, cut ? 'Closes a loop (cut joint).' : 'Part of the spanning tree.'),
     ]
+  }
+
+  /** Distances of a shape from those that are the nearest of a clearance at some moment. */
+  #shapeFacts(index: number): HTMLElement[] {
+    const { report } = this.view.mechanism
+    const { length } = report.units
+    const own = (report.clearance?.pairs ?? []).filter(({ shapes }) => shapes.includes(index))
+    const rows = own.map(({ shapes: [a, b], distance }) => {
+      const other = report.clearance!.shapes[a === index ? b : a]
+      return [other.name, figure(valueAt(distance, this.state.step), length)]
+    })
+    return rows.length > 0 ? section('Distances', table(rows)) : []
   }
 
   /** Values of the quantities that are named after an entry. */

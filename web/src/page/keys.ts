@@ -53,6 +53,9 @@ function actionOf(
     case 'n':
     case 'N':
       return state.report.loads.length > 0 ? () => state.choose({ forces: !state.choice.forces }) : undefined
+    case 'h':
+    case 'H':
+      return state.report.clearance ? () => state.choose({ shapes: !state.choice.shapes }) : undefined
     case 'm':
     case 'M':
       return targets.grips

@@ -74,6 +74,17 @@ export function stage(state: State, pose?: Pose): Stage {
     },
     'forces',
   )
+  const shapes = el(
+    'button',
+    {
+      type: 'button',
+      title: 'Shapes of bodies, and the nearest points between them (H)',
+      'data-testid': 'shapes',
+      hidden: state.report.clearance === undefined,
+      onclick: () => state.choose({ shapes: !state.choice.shapes }),
+    },
+    'shapes',
+  )
   const rigid = el(
     'button',
     {
@@ -88,6 +99,7 @@ export function stage(state: State, pose?: Pose): Stage {
   const sync = () => {
     labels.setAttribute('aria-pressed', String(state.choice.labels))
     forces.setAttribute('aria-pressed', String(state.choice.forces))
+    shapes.setAttribute('aria-pressed', String(state.choice.shapes))
     rigid.setAttribute('aria-pressed', String(state.choice.rigid))
   }
   state.onChoice(sync)
@@ -103,6 +115,7 @@ export function stage(state: State, pose?: Pose): Stage {
       fit,
       labels,
       forces,
+      shapes,
       rigid,
       measuring.button,
       tracer(state),

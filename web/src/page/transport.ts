@@ -1,3 +1,4 @@
+import { contacts, stepsOf } from '../clearance'
 import { el, svg } from '../dom'
 import { number, pretty, roundBelow } from '../format'
 import type { State } from '../state'
@@ -57,5 +58,28 @@ export function transport(state: State): HTMLElement {
   }
   state.onTime(show)
   show()
-  return el('div', { class: 'transport', role: 'group', 'aria-label': 'Time' }, play, slider, readout, speed)
+  const touching = el('div', { class: 'contacts', 'data-testid': 'contacts', 'aria-hidden': 'true' })
+  let marked = ''
+  // Marks are in the places of the thumb at the moments of contact.
+  const mark = () => {
+    if (!report.clearance || still) return
+    const spans = contacts(state).map((interval) => stepsOf(report, interval).map((step) => step / state.lastStep))
+    if (marked === JSON.stringify(spans)) return
+    marked = JSON.stringify(spans)
+    touching.replaceChildren(
+      ...spans.map(([from, to]) => {
+        return el('span', { title: 'shapes touch', style: `--from: ${from.toFixed(5)}; --to: ${to.toFixed(5)}` })
+      }),
+    )
+  }
+  state.onChoice(mark)
+  mark()
+  return el(
+    'div',
+    { class: 'transport', role: 'group', 'aria-label': 'Time' },
+    play,
+    el('div', { class: 'scrub' }, touching, slider),
+    readout,
+    speed,
+  )
 }

@@ -5,7 +5,7 @@ import type { Mechanism } from './mechanism'
 
 /** Part under the pointer. */
 export interface Part {
-  kind: 'body' | 'joint' | 'coupler' | 'driver' | 'wheel' | 'distance' | 'load' | 'mark'
+  kind: 'body' | 'joint' | 'coupler' | 'driver' | 'wheel' | 'distance' | 'load' | 'shape' | 'mark'
   /** Index into the report's list of its kind. */
   index: number
   name: string

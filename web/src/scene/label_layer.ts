@@ -1,5 +1,6 @@
 import './labels.css'
 import { type Camera, Vector3 } from 'three'
+import { nearest, pairName } from '../clearance'
 import { svg } from '../dom'
 import { number, pretty } from '../format'
 import { rounded } from '../rounding'
@@ -11,6 +12,8 @@ import type { Mechanism } from './mechanism'
 export interface Label {
   at: Vector3
   text: string
+  /** True if it is a fault that is to be seen. */
+  alert?: boolean
 }
 
 /** Room for the title and the buttons, px. */
@@ -40,9 +43,9 @@ export class LabelLayer {
         seen: Math.abs(z) <= 1 && Math.abs(x) <= 1 && Math.abs(y) <= 1,
       }
     }
-    const spots = labels.flatMap(({ at, text }) => {
+    const spots = labels.flatMap(({ at, text, alert }) => {
       const { x, y, seen } = onScreen(at)
-      return seen ? [{ x, y, text }] : []
+      return seen ? [{ x, y, text, alert }] : []
     })
     this.placed = placeLabels(spots.slice(0, MOST), { width, height, top: TOP }, onScreen(middle), (text) =>
       this.#wide(text),
@@ -53,7 +56,8 @@ export class LabelLayer {
       ...this.placed.map(({ spot, x, y, width, height }) => {
         const text = svg('text', { x, y })
         text.textContent = spot.text
-        return svg('g', {}, svg('rect', { x: x - width / 2, y: y - height / 2, width, height, rx: 4 }), text)
+        const of: Record<string, string> = spot.alert ? { class: 'alert' } : {}
+        return svg('g', of, svg('rect', { x: x - width / 2, y: y - height / 2, width, height, rx: 4 }), text)
       }),
     )
   }
@@ -103,6 +107,17 @@ export function distanceLabels(
       text: `${name} ${number(rounded(value(quantity)), DIGITS)} ${pretty(report.quantities[quantity].units[0])}`,
     },
   ]
+}
+
+/** Distance of the nearest pair of each clearance, at the middle of its line. */
+export function clearanceLabels({ report }: Mechanism, step: number): Label[] {
+  return (report.clearance?.clearances ?? []).flatMap((_, index): Label[] => {
+    const found = nearest(report, index, step)
+    if (!found) return []
+    const [p, q] = found.points.map((point) => new Vector3(...point))
+    const value = `${number(rounded(found.distance), DIGITS)} ${pretty(report.units.length)}`
+    return [{ at: p.lerp(q, 0.5), text: `${pairName(report, found.pair)} ${value}`, alert: found.distance < 0 }]
+  })
 }
 
 /** Names for the hovered or selected item: a body with its hardpoints, or a joint at its location. */

@@ -3,6 +3,7 @@ export interface Spot {
   x: number
   y: number
   text: string
+  alert?: boolean
 }
 
 /** Place of a text: its middle, and the point that it belongs to. */

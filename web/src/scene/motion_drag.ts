@@ -92,6 +92,8 @@ function bodyOf({ kind, index }: Part, { report }: Mechanism): number {
       return index
     case 'wheel':
       return report.wheels[index].centre.body
+    case 'shape':
+      return report.clearance!.shapes[index].body
     case 'joint':
       return report.joints[index].body_j || report.joints[index].body_i
     case 'coupler':

@@ -84,7 +84,19 @@ export function solved(report: Report, design: Design, size: number): Report {
   return {
     ...redrawn,
     loads: redrawn.loads.map((load, k) => ({ ...load, force: design.loads[k] ?? new Float32Array() })),
+    clearance: design.clearance ? ofDesign(report, design.clearance) : redrawn.clearance,
   }
+}
+
+/** Shapes of another design, with the meshes as loaded. */
+function ofDesign({ clearance }: Report, { shapes, pairs }: NonNullable<Design['clearance']>): Report['clearance'] {
+  return (
+    clearance && {
+      ...clearance,
+      shapes: shapes.map((shape, k) => ({ ...shape, vertices: clearance.shapes[k].vertices })),
+      pairs,
+    }
+  )
 }
 
 function redraw(report: Report, poses: Curve[], move: Move): Report {
@@ -108,6 +120,12 @@ function redraw(report: Report, poses: Curve[], move: Move): Report {
       to: place(distance.to),
     })),
     loads: report.loads.map((load) => ({ ...load, at: place(load.at) })),
+    // Distances are known of solved designs only.
+    clearance: report.clearance && {
+      ...report.clearance,
+      shapes: report.clearance.shapes.map((shape) => ({ ...shape, places: shape.places.map(place) })),
+      pairs: [],
+    },
     drivers: report.drivers.map((driver) => ({ ...driver, point: driver.point && place(driver.point) })),
   }
 }

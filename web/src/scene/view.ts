@@ -13,7 +13,7 @@ import { changeText, shownChange } from './draw/design_velocity'
 import { forceText } from './draw/load'
 import { type Part, samePart } from './drawable'
 import { Floor } from './floor'
-import { distanceLabels, hardpointLabels, LabelLayer, partLabels } from './label_layer'
+import { clearanceLabels, distanceLabels, hardpointLabels, LabelLayer, partLabels } from './label_layer'
 import { Mechanism } from './mechanism'
 import { MotionDrag } from './motion_drag'
 import { type Emphasis, Outlines, OVER } from './outlines'
@@ -516,6 +516,7 @@ export class View {
     const labels = this.state.choice.labels
       ? hardpointLabels(this.mechanism, frame)
       : parts.flatMap((part) => partLabels(this.mechanism, frame, part))
+    if (this.state.choice.shapes) labels.unshift(...clearanceLabels(this.mechanism, this.state.step))
     const value = (quantity: number) => valueAt(this.state.curve(quantity, 0), this.state.step)
     labels.unshift(...distanceLabels(this.mechanism, frame, this.state.choice.distance, value))
     this.#labels.show(labels, this.camera, this.mechanism.centre, width, height)

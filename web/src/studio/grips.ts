@@ -1,6 +1,7 @@
 import './grips.css'
 import { Quaternion, Vector3 } from 'three'
 import { entry } from '../amount'
+import { contactSentences } from '../clearance'
 import { el, prose, svg } from '../dom'
 import type { MovableHardpoint, OpenReply } from '../engine/protocol'
 import { pretty } from '../format'
@@ -515,7 +516,8 @@ export class Grips {
     const hint = chosen
       ? 'Drag the point or an arrow; Shift: 10 times finer. Arrow keys step, X Y Z choose an axis, Escape leaves.'
       : 'Click a point to move it.'
-    const words = this.state.refusal || this.state.bound
+    const touching = this.on && this.state.changed ? contactSentences(this.state) : []
+    const words = [this.state.refusal || this.state.bound, ...touching].filter(Boolean).join(' ')
     this.#refusal.classList.toggle('hint', !words)
     this.#refusal.replaceChildren(...prose(words || hint))
     this.#refusal.title = words

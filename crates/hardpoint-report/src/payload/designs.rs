@@ -15,7 +15,7 @@ use hardpoint_file::ModelFile;
 use hardpoint_study::whatif::{WhatIf, unwrapped_value};
 use hardpoint_table::series::{ORIGIN, settled};
 
-use crate::page::{BodyTrack, Curve, Design, DesignCurves, DesignKind, Value};
+use crate::page::{BodyTrack, Curve, Design, DesignCurves, DesignKind, DesignShapes, Value};
 use crate::summary::StopFact;
 use crate::whatif::follows;
 
@@ -260,6 +260,7 @@ impl DesignComparison<'_> {
             values: self.values(values, |metric| found[metric], static_value),
             margin: (!margins.is_empty())
                 .then(|| self.curve(|k| margins.get(k).map_or(f64::NAN, |m| m.value))),
+            clearance: self.clearance(),
             ..self.design(&changed.name, DesignKind::Exact, changed.note.clone())
         }
     }
@@ -355,7 +356,21 @@ impl DesignComparison<'_> {
             quantities: Vec::new(),
             values: Vec::new(),
             margin: None,
+            clearance: None,
         }
+    }
+
+    /// Shapes of the changed design and their distances, if the model has shapes.
+    fn clearance(&self) -> Option<DesignShapes> {
+        let model = self.today.analysis.model();
+        if model.shapes.is_empty() {
+            return None;
+        }
+        let steps: Vec<usize> = self.whole_steps().filter(|k| *k < self.changed.solved()).collect();
+        let mut shapes = self.today.shapes(self.changed.change);
+        shapes.iter_mut().for_each(|shape| shape.vertices = Curve::default());
+        let pairs = self.today.pairs(self.changed.change, &self.changed.exact.motion, &steps, None);
+        Some(DesignShapes { shapes, pairs })
     }
 
     /// Change of every variable, in its unit.

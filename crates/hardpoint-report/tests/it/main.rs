@@ -7,6 +7,7 @@ mod files;
 mod mesh;
 mod opening;
 mod rockers;
+mod shapes;
 mod shown;
 mod weight;
 mod whatif;

@@ -4,9 +4,9 @@
 //! change its features there, where its acceleration jumps.
 
 use crate::clearance::PlacedShapes;
-use crate::design::BodyFixed;
+use crate::design::{BodyFixed, ShapeGeometry};
 use crate::measure::{with_rates, with_sensitivity};
-use crate::model::{Clearance, Model, ShapeId, ShapePair};
+use crate::model::{BodyId, Clearance, ClearanceId, Model, PointId, Shape, ShapeId, ShapeKind, ShapePair};
 use crate::motion::{Motion, Stop};
 use crate::number::{Dual, Jet, Rates};
 use crate::space::{Pose, Vec3};
@@ -138,7 +138,84 @@ impl Clearances {
     }
 }
 
+/// Distance of two shapes at some times of a motion that is solved already.
+#[derive(Clone, Debug)]
+pub struct PairCurve {
+    /// The shapes.
+    pub shapes: [ShapeId; 2],
+    /// At the times, in their order.
+    pub curve: Vec<ShapeDistance>,
+}
+
+/// A shape of a design, in the frames of the bodies that carry it.
+#[derive(Clone, Debug)]
+pub struct ShapeOnBodies {
+    /// Points with their bodies, m: the centre, the ends or the corners; none of a mesh.
+    pub points: Vec<(BodyId, Vec3)>,
+    /// Axis or normal, a unit vector in the frame of the first of its bodies, if it has one that points do not give.
+    pub axis: Option<Vec3>,
+    /// Radius, to the outside, m: of a ring that of the circle in the middle of its bar; 0 where there is none.
+    pub radius: f64,
+    /// Half of a tyre's width, m; otherwise 0.
+    pub half_width: f64,
+    /// Radius around the core, m.
+    pub round: f64,
+}
+
 impl Analysis<'_> {
+    /// All shapes of a design.
+    pub fn shapes_on_bodies(&self, design: &[f64]) -> Vec<ShapeOnBodies> {
+        let model = self.model();
+        let fixed: BodyFixed<f64> = self.design_map().fixed(&model.whole(design));
+        let at = |p: &PointId| (model.points[p.0].body, fixed.points[p.0]);
+        let of_shape = |(shape, numbers): (&Shape, &ShapeGeometry<f64>)| {
+            let &ShapeGeometry { axis, size, round } = numbers;
+            let (points, radius, half_width) = match &shape.kind {
+                ShapeKind::Sphere { centre } => (vec![at(centre)], round, 0.0),
+                ShapeKind::Capsule { ends } => (ends.iter().map(at).collect(), round, 0.0),
+                ShapeKind::Ring { centre, .. } => (vec![at(centre)], size, 0.0),
+                ShapeKind::Cylinder { ends, .. } => (ends.iter().map(at).collect(), size, 0.0),
+                ShapeKind::Tyre { wheel, .. } => {
+                    let wheel = &model.wheels[wheel.0];
+                    (vec![at(&wheel.centre)], wheel.radius, 0.5 * size)
+                }
+                ShapeKind::Plane { point, .. } => (vec![at(point)], 0.0, 0.0),
+                ShapeKind::Hull { points, .. } => (points.iter().map(at).collect(), 0.0, 0.0),
+                ShapeKind::Mesh { .. } => (Vec::new(), 0.0, 0.0),
+            };
+            ShapeOnBodies { points, axis, radius, half_width, round }
+        };
+        model.shapes.iter().zip(&fixed.shapes).map(of_shape).collect()
+    }
+
+    /// Distances at these times of a solved motion of a design, of the pairs that are the nearest of their clearance at
+    /// any of them. Those of the others are never the value of a clearance.
+    pub fn nearest_pairs(&self, design: &[f64], motion: &Motion, steps: &[usize]) -> Vec<PairCurve> {
+        let model = self.model();
+        let all: Vec<[ShapeId; 2]> =
+            model.clearances.iter().flat_map(|c| &c.pairs).map(|pair| pair.shapes).collect();
+        let posed = PosedMotion::of(self, design, &all, motion);
+        let mut active: Vec<[ShapeId; 2]> = Vec::new();
+        posed.each(steps.iter().copied(), |_, placed| {
+            for (c, clearance) in model.clearances.iter().enumerate() {
+                let Some((k, _)) = placed.nearest_pair(ClearanceId(c)) else { continue };
+                let shapes = clearance.pairs[k].shapes;
+                if !active.contains(&shapes) {
+                    active.push(shapes);
+                }
+            }
+        });
+        // In the order of the clearances.
+        let mut pairs: Vec<[ShapeId; 2]> = Vec::new();
+        for shapes in all {
+            if active.contains(&shapes) && !pairs.contains(&shapes) {
+                pairs.push(shapes);
+            }
+        }
+        let samples = posed.distances(&pairs, steps.iter().copied());
+        pairs.iter().zip(samples).map(|(shapes, curve)| PairCurve { shapes: *shapes, curve }).collect()
+    }
+
     /// Solves the motion of a design, and locates all minima and contacts of the pairs of all clearances, with their
     /// derivatives by the design variables.
     pub fn clearances(&self, design: &[f64]) -> Clearances {
@@ -259,6 +336,63 @@ impl Analysis<'_> {
     }
 }
 
+/// Shapes of a design over its motion.
+struct PosedMotion<'m> {
+    model: &'m Model,
+    motion: &'m Motion,
+    fixed: BodyFixed<Rates>,
+    /// Bodies that carry the shapes.
+    bodies: Vec<usize>,
+}
+
+impl<'m> PosedMotion<'m> {
+    fn of(analysis: &'m Analysis<'_>, design: &[f64], pairs: &[[ShapeId; 2]], motion: &'m Motion) -> Self {
+        let model = analysis.model();
+        let fixed = analysis.design_map().fixed(&model.whole(design)).map(Jet::constant);
+        Self { model, motion, fixed, bodies: bodies_of(model, pairs) }
+    }
+
+    /// Calls `visit` with the shapes at each of these times.
+    fn each(
+        &self,
+        steps: impl Iterator<Item = usize>,
+        mut visit: impl FnMut(usize, PlacedShapes<'_, Rates>),
+    ) {
+        let mut poses: Vec<Pose<Rates>> = vec![Pose::IDENTITY.spread(); self.model.bodies.len()];
+        for k in steps {
+            let states = self.motion.at(k);
+            self.bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
+            visit(k, PlacedShapes { model: self.model, fixed: &self.fixed, poses: &poses });
+        }
+    }
+
+    /// Distances of pairs at these times.
+    fn distances(
+        &self,
+        pairs: &[[ShapeId; 2]],
+        steps: impl Iterator<Item = usize>,
+    ) -> Vec<Vec<ShapeDistance>> {
+        let mut samples: Vec<Vec<ShapeDistance>> = vec![Vec::new(); pairs.len()];
+        self.each(steps, |k, placed| {
+            for (p, shapes) in pairs.iter().enumerate() {
+                let near = placed.nearest(*shapes);
+                let Jet([value, rate, acceleration]) = placed.distance(*shapes, &near);
+                // An equilibrium is at rest at each time, so that nothing has a rate.
+                let at_rest = self.model.equilibrium.is_some();
+                let rates = if at_rest { [f64::NAN; 2] } else { [rate, acceleration] };
+                samples[p].push(ShapeDistance {
+                    time: self.motion.times[k],
+                    distance: [value, rates[0], rates[1]],
+                    points: near.points,
+                    is_parallel: near.is_parallel,
+                    cores_meet: near.cores_meet(CONSTANT * self.model.size()),
+                });
+            }
+        });
+        samples
+    }
+}
+
 /// Distances of all pairs at all times of a motion.
 struct Curves<'m> {
     motion: &'m Motion,
@@ -270,30 +404,8 @@ struct Curves<'m> {
 
 impl<'m> Curves<'m> {
     fn of(analysis: &Analysis<'_>, design: &[f64], pairs: &[[ShapeId; 2]], motion: &'m Motion) -> Self {
-        let model = analysis.model();
-        let fixed: BodyFixed<Rates> = analysis.design_map().fixed(&model.whole(design)).map(Jet::constant);
-        let bodies = bodies_of(model, pairs);
-        let mut poses: Vec<Pose<Rates>> = vec![Pose::IDENTITY.spread(); model.bodies.len()];
-        let mut samples: Vec<Vec<ShapeDistance>> = vec![Vec::with_capacity(motion.len()); pairs.len()];
-        for (k, &time) in motion.times.iter().enumerate() {
-            let states = motion.at(k);
-            bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
-            let placed = PlacedShapes { model, fixed: &fixed, poses: &poses };
-            for (p, shapes) in pairs.iter().enumerate() {
-                let near = placed.nearest(*shapes);
-                let Jet([value, rate, acceleration]) = placed.distance(*shapes, &near);
-                // An equilibrium is at rest at each time, so that nothing has a rate.
-                let rates = if model.equilibrium.is_some() { [f64::NAN; 2] } else { [rate, acceleration] };
-                samples[p].push(ShapeDistance {
-                    time,
-                    distance: [value, rates[0], rates[1]],
-                    points: near.points,
-                    is_parallel: near.is_parallel,
-                    cores_meet: near.cores_meet(CONSTANT * model.size()),
-                });
-            }
-        }
-        Self { motion, size: model.size(), samples }
+        let posed = PosedMotion::of(analysis, design, pairs, motion);
+        Self { motion, size: analysis.model().size(), samples: posed.distances(pairs, 0..motion.len()) }
     }
 
     /// The minima and contacts that are located, and the times at which the motion must be solved for the others.

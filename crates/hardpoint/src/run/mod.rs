@@ -23,7 +23,10 @@ mod walk;
 mod window;
 
 pub use analysis::Analysis;
-pub use clearance::{ClearanceMinimum, Clearances, Contact, MinimumPlace, PairClearance, ShapeDistance};
+pub use clearance::{
+    ClearanceMinimum, Clearances, Contact, MinimumPlace, PairClearance, PairCurve, ShapeDistance,
+    ShapeOnBodies,
+};
 pub use driver_rates::DriverRates;
 pub use gradient::{GradientMethod, Gradients};
 pub use jerk::Jerks;

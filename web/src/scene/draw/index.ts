@@ -1,5 +1,6 @@
 import type { Draw } from '../drawable'
 import { bodies } from './body'
+import { nearestLines, shapes } from './clearance'
 import { couplers } from './coupler'
 import { designVelocity } from './design_velocity'
 import { dimension } from './dimension'
@@ -20,4 +21,4 @@ import { wheels } from './wheel'
 export const matter: Draw[] = [bodies, meshes, ground, fixedLink, joints, couplers, wheels, distances, motors, paths]
 
 /** Marks on the mechanism; made anew with every choice. `mechanism.former` is the design drawn dashed. */
-export const marks: Draw[] = [formerDesign, trace, drivers, dimension, loads, designVelocity]
+export const marks: Draw[] = [formerDesign, trace, drivers, dimension, loads, designVelocity, shapes, nearestLines]
