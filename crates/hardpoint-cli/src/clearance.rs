@@ -1,8 +1,10 @@
 //! `hardpoint clearance`.
 
+use hardpoint::model::Grid;
 use hardpoint_file::ModelFile;
-use hardpoint_report::clearance::{self, ClearanceFact};
+use hardpoint_report::clearance::{self, ClearanceFact, GridClearanceFact};
 use hardpoint_report::diagnose;
+use hardpoint_study::grid::GridClearances;
 use serde_json::json;
 
 use crate::args::Clearance;
@@ -15,7 +17,45 @@ use crate::text;
 pub fn run(options: &Clearance) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, case: Option<&str>| clearance_in(&session, options, &file, case);
-    session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
+    let mut each_grid = |file: &ModelFile, grid: &Grid| clearance_over(&session, options, file, grid);
+    let of = |file| session.for_cases_of(file, &options.motions, each, Some(&mut each_grid));
+    session.read(&options.common.model).and_then(of).unwrap_or_else(|outcome| outcome)
+}
+
+fn clearance_over(
+    session: &Session,
+    options: &Clearance,
+    file: &ModelFile,
+    grid: &Grid,
+) -> Result<Outcome, Outcome> {
+    has_clearances(session, file)?;
+    // The mechanism can be driven, or the reasons are given.
+    session.plan(file, options.common.formulation())?;
+    let found = {
+        let _working = session.working("locating least distances");
+        let more = || !session.interrupted();
+        GridClearances::solve(&file.model, grid, options.common.formulation(), &[], &more)
+    };
+    let Ok(found) = found else { return Err(Outcome::CannotBeDriven) };
+    let fact = GridClearanceFact::of(&file.model, file.units, &found);
+    if options.common.json {
+        session.print_json(&json!({ "name": file.model.name, "map": fact }));
+    } else {
+        text::print(&format!("{}\n", text::bold(&format!("{}, map `{}`", file.model.name, grid.name))));
+        fact.sentences().iter().for_each(|line| text::print(&format!("{line}\n")));
+        fact.table().iter().for_each(|table| text::print(&text::section(table)));
+    }
+    let kept = if fact.kept() { Outcome::Done } else { Outcome::FellShort };
+    Ok(if found.interrupted { Outcome::Interrupted } else { kept })
+}
+
+fn has_clearances(session: &Session, file: &ModelFile) -> Result<(), Outcome> {
+    if file.model.clearances.is_empty() {
+        return Err(session.misunderstood(
+            "the model has no clearances; add `[shapes]`, and `[clearances.NAME]` with `between = [\"SHAPE\", \"SHAPE\"]`",
+        ));
+    }
+    Ok(())
 }
 
 fn clearance_in(
@@ -24,11 +64,7 @@ fn clearance_in(
     file: &ModelFile,
     case: Option<&str>,
 ) -> Result<Outcome, Outcome> {
-    if file.model.clearances.is_empty() {
-        return Err(session.misunderstood(
-            "the model has no clearances; add `[shapes]`, and `[clearances.NAME]` with `between = [\"SHAPE\", \"SHAPE\"]`",
-        ));
-    }
+    has_clearances(session, file)?;
     let analysis = session.plan(file, options.common.formulation())?;
     let folder = options.output.as_ref().map(|path| Folder::open(&of_case(path, case)));
     let folder = folder.transpose().map_err(|e| session.not_written(&e))?;

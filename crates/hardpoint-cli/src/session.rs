@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use hardpoint::model::{CaseId, VariableId};
+use hardpoint::model::{CaseId, Grid, VariableId};
 use hardpoint::motion::Execution;
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint::{Analysis, Footprint, Run, Solution};
@@ -48,6 +48,9 @@ pub struct Session {
     /// Current case.
     case: Mutex<Option<String>>,
 }
+
+/// Handler of a case that is a grid, with the whole file.
+type EachGrid<'a> = &'a mut dyn FnMut(&ModelFile, &Grid) -> Result<Outcome, Outcome>;
 
 /// Size of a window of results in bytes: small enough to be written quickly.
 const WINDOW_BYTES: usize = 4 << 20;
@@ -205,23 +208,54 @@ impl Session {
         &self,
         file: ModelFile,
         motions: &Motions,
+        each: impl FnMut(ModelFile, Option<&str>) -> Result<Outcome, Outcome>,
+    ) -> Result<Outcome, Outcome> {
+        self.for_cases_of(file, motions, each, None)
+    }
+
+    /// Same as [`Session::for_motions_of`], and calls `each_grid` for every case that is a grid, with the whole file.
+    ///
+    /// # Errors
+    /// Same as there.
+    pub fn for_cases_of(
+        &self,
+        file: ModelFile,
+        motions: &Motions,
         mut each: impl FnMut(ModelFile, Option<&str>) -> Result<Outcome, Outcome>,
+        mut each_grid: Option<EachGrid<'_>>,
     ) -> Result<Outcome, Outcome> {
         let cases: Vec<&str> = file.model.cases.iter().map(|c| c.name.as_str()).collect();
+        let grids = if each_grid.is_some() { &file.model.grids[..] } else { &[] };
         if let Some(name) = &motions.case {
+            let grid = grids.iter().find(|grid| grid.name == *name);
+            if let (Some(grid), Some(each_grid)) = (grid, &mut each_grid) {
+                return each_grid(&file, grid);
+            }
             let id = self.case(&file, name)?;
             return each(file.in_case(id), None);
         }
-        if cases.is_empty() {
+        if cases.is_empty() && grids.is_empty() {
             return each(file, None);
         }
         *self.documents() = Some(Vec::new());
         let mut outcome = Outcome::Done;
-        for (k, case) in cases.iter().enumerate() {
+        // The model's own motion has no name.
+        let own = cases.is_empty().then_some(None);
+        let motions = own.into_iter().chain((0..cases.len()).map(Some)).map(Ok);
+        for of in motions.chain(grids.iter().map(Err)) {
+            let case = match of {
+                Ok(k) => k.map(|k| cases[k]),
+                Err(grid) => Some(&*grid.name),
+            };
             let before = self.documents().as_ref().map_or(0, Vec::len);
-            *self.under_way() = Some((*case).into());
-            outcome =
-                outcome.and(each(file.in_case(CaseId(k)), Some(case)).unwrap_or_else(|outcome| outcome));
+            *self.under_way() = case.map(Into::into);
+            let found = match (of, &mut each_grid) {
+                (Ok(Some(k)), _) => each(file.in_case(CaseId(k)), case),
+                (Ok(None), _) => each(file.clone(), None),
+                (Err(grid), Some(each_grid)) => each_grid(&file, grid),
+                (Err(_), None) => Ok(Outcome::Done),
+            };
+            outcome = outcome.and(found.unwrap_or_else(|outcome| outcome));
             for document in self.documents().iter_mut().flatten().skip(before) {
                 *document = json!({ "case": case, "result": document });
             }

@@ -1,5 +1,7 @@
 //! Clearances over a motion: sentences, tables, and the rows of `clearances.csv`.
 
+mod grid;
+
 use std::io::Write;
 
 use hardpoint::model::{Clearance, Dimension, Model, ShapePair};
@@ -9,6 +11,8 @@ use hardpoint::run::{
     ProofFailure, ShapeDistance,
 };
 use hardpoint_file::Units;
+
+pub use grid::{GridClearanceFact, GridMinimumFact, GridPairFact};
 
 use crate::figures::{number, per, rounded, unit, variable_unit, with_unit};
 use crate::page::Table;
@@ -91,6 +95,23 @@ record! {
     /// Derivatives of the time by the design variables, the strongest first; empty at a grazing contact.
     sensitivities: Vec<ClearanceSensitivity> =
         sensitivities(model, units, Dimension::NUMBER.rate(-1), &found.d);
+}
+
+/// The strongest variables of a derivative in words.
+fn strongest(all: &[ClearanceSensitivity]) -> String {
+    let largest = all.first().map_or(0.0, |s| s.value.abs());
+    let named = all.iter().filter(|s| s.value.abs() > NEGLIGIBLE * largest).take(NAMED);
+    named.map(|s| format!("{} {} {}", s.variable, number(s.value), s.unit)).collect::<Vec<_>>().join(", ")
+}
+
+/// A distance below the required one, with the change of the strongest variable that would keep it.
+fn remedy(min: f64, least: f64, by: &[ClearanceSensitivity], cores_meet: bool, unit: &str) -> String {
+    let change = by.first().filter(|s| s.value != 0.0 && !cores_meet).map(|s| {
+        let by = (min - least) / s.value;
+        let sign = if by < 0.0 { "" } else { "+" };
+        format!("; {} {sign}{} would keep it, to first order", s.variable, number(by))
+    });
+    format!("  NEARER than the required {}{}", with_unit(min, unit), change.unwrap_or_default())
 }
 
 /// Allowance of a proof below the least distance, as a fraction of the mechanism's size: round-off of solved positions.
@@ -322,14 +343,6 @@ impl ClearanceFact {
             };
             lines.push(format!("{clearance}: {a} touches {b} {}; {depth}", spans.join(", ")));
         }
-        let strongest = |all: &[ClearanceSensitivity]| {
-            let largest = all.first().map_or(0.0, |s| s.value.abs());
-            let named = all.iter().filter(|s| s.value.abs() > NEGLIGIBLE * largest).take(NAMED);
-            named
-                .map(|s| format!("{} {} {}", s.variable, number(s.value), s.unit))
-                .collect::<Vec<_>>()
-                .join(", ")
-        };
         let by = strongest(&lowest.sensitivities);
         if !by.is_empty() && !lowest.cores_meet {
             lines.push(format!("  the distance changes by {by}"));
@@ -342,14 +355,7 @@ impl ClearanceFact {
             }
         }
         if let Some(min) = self.min.filter(|_| !self.kept) {
-            let asked = with_unit(min, unit);
-            let change =
-                lowest.sensitivities.first().filter(|s| s.value != 0.0 && !lowest.cores_meet).map(|s| {
-                    let by = (min - lowest.distance) / s.value;
-                    let sign = if by < 0.0 { "" } else { "+" };
-                    format!("; {} {sign}{} would keep it, to first order", s.variable, number(by))
-                });
-            lines.push(format!("  NEARER than the required {asked}{}", change.unwrap_or_default()));
+            lines.push(remedy(min, lowest.distance, &lowest.sensitivities, lowest.cores_meet, unit));
         }
         let others = self.minima.iter().filter(|m| !std::ptr::eq(*m, lowest)).count();
         if others > 0 && !self.constant {

@@ -2,6 +2,8 @@
 //!
 //! Input: the grid of a model, driver positions in m or rad. Output: a [`GridMap`] in SI.
 
+mod clearance;
+
 use std::ops::ControlFlow;
 
 use hardpoint::law::Law;
@@ -10,6 +12,8 @@ use hardpoint::model::{Case, CaseId, DriverId, Formula, Grid, LoadMode, Model, T
 use hardpoint::motion::{Stop, StopKind};
 use hardpoint::run::{Analysis, Run, Solution};
 use hardpoint::topology::{Formulation, TopologyError};
+
+pub use clearance::{GridClearances, GridMinimum, GridPair, GridPlace};
 
 use super::evaluation::StudyCost;
 
@@ -61,9 +65,8 @@ impl GridMap {
     /// Solves a grid at the design with variable k at `design[k]`. `more` is called at every position; if it returns
     /// false, the study ends.
     ///
-    /// Each row is reached from the design configuration. The second driver moves to its position in the row first.
-    /// Then the first driver moves up, and in a separate motion down. A stop on one side therefore does not affect the
-    /// other side.
+    /// Each half of a row is a motion of its own ([`each_half_row`]), so that a stop on one side of the design
+    /// configuration does not affect the other side.
     ///
     /// # Errors
     /// A [`TopologyError`] if the mechanism cannot be driven.
@@ -85,41 +88,17 @@ impl GridMap {
             stops: Vec::new(),
             cost: StudyCost { designs: 1, ..StudyCost::default() },
         };
-        for row in 0..second.len() {
-            for sign in [1.0, -1.0] {
-                // Each side runs from the middle outwards. The design position of the first driver belongs to the upper
-                // side.
-                let mut places: Vec<usize> =
-                    (0..first.len()).filter(|k| (first[*k] >= 0.0) == (sign > 0.0)).collect();
-                if sign < 0.0 {
-                    places.reverse();
-                }
-                let Some(farthest) = places.last().map(|k| first[*k]) else { continue };
-                if !more() {
-                    return Ok(map);
-                }
-                let moved = row_model(model, grid, [farthest, second[row]], places.iter().map(|k| first[*k]));
-                let analysis = Analysis::with(&moved, formulation)?;
-                let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
-                let solution = analysis.solve(Run::new().at(design).progress(go_on));
-                map.cost.motions += 1;
-                map.cost.steps += solution.motion.len();
-                map.take(row, [first, second], farthest, &places, &moved.times, &solution);
-            }
-        }
+        each_half_row(model, grid, formulation, design, more, |half| {
+            map.cost.motions += 1;
+            map.cost.steps += half.solution.motion.len();
+            map.take([first, second], half);
+        })?;
         Ok(map)
     }
 
     /// Stores the positions of one motion.
-    fn take(
-        &mut self,
-        row: usize,
-        [first, second]: [&[f64]; 2],
-        farthest: f64,
-        places: &[usize],
-        times: &[f64],
-        solution: &Solution,
-    ) {
+    fn take(&mut self, [first, second]: [&[f64]; 2], half: &HalfRow<'_>) {
+        let &HalfRow { row, farthest, solution, .. } = half;
         let interrupted = solution.stop.as_ref().is_some_and(|s| matches!(s.kind, StopKind::Interrupted));
         let stopped = solution.stop.as_ref().filter(|_| !interrupted).map(|stop| {
             let t = stop.failed_time;
@@ -129,10 +108,7 @@ impl GridMap {
             self.stops.push(GridStop { row, stop: stop.clone(), drivers });
             self.stops.len() - 1
         });
-        for place in places {
-            // Bitwise equal to the output time, which is computed by the same expression.
-            let time = time_of(first[*place], farthest);
-            let k = times.iter().position(|t| *t == time).expect("every place has its time");
+        for (place, k) in half.steps(first) {
             let found = if k < solution.motion.len() {
                 Position::Solved(self.row_of(solution, k))
             } else {
@@ -208,6 +184,65 @@ impl GridMap {
     }
 }
 
+/// Solved motion of one half of a row of a grid.
+struct HalfRow<'a> {
+    /// Index of the row.
+    row: usize,
+    /// The farthest position of the first driver, relative to the design configuration.
+    farthest: f64,
+    /// Indices of the first driver's positions, in the order of the motion.
+    places: &'a [usize],
+    /// The motion.
+    analysis: &'a Analysis<'a>,
+    solution: &'a Solution,
+}
+
+impl HalfRow<'_> {
+    /// Each place with the index of its time in the motion, which is beyond the motion's end if it was not reached.
+    fn steps(&self, first: &[f64]) -> impl Iterator<Item = (usize, usize)> {
+        let times = &self.analysis.model().times;
+        self.places.iter().map(move |place| {
+            // Bitwise equal to the output time, which is computed by the same expression.
+            let time = time_of(first[*place], self.farthest);
+            (*place, times.iter().position(|t| *t == time).expect("every place has its time"))
+        })
+    }
+}
+
+/// Solves a grid row by row, and passes each motion to `visit`. Each row is reached from the design configuration: the
+/// second driver moves to its position in the row first, then the first driver moves up, and in a separate motion down.
+fn each_half_row(
+    model: &Model,
+    grid: &Grid,
+    formulation: Formulation,
+    design: &[f64],
+    more: &(dyn Fn() -> bool + Sync),
+    mut visit: impl FnMut(&HalfRow<'_>),
+) -> Result<(), TopologyError> {
+    let [first, second] = &relative_values(model, grid);
+    for row in 0..second.len() {
+        for sign in [1.0, -1.0] {
+            // Each side runs from the middle outwards. The design position of the first driver belongs to the upper
+            // side.
+            let mut places: Vec<usize> =
+                (0..first.len()).filter(|k| (first[*k] >= 0.0) == (sign > 0.0)).collect();
+            if sign < 0.0 {
+                places.reverse();
+            }
+            let Some(farthest) = places.last().map(|k| first[*k]) else { continue };
+            if !more() {
+                return Ok(());
+            }
+            let moved = row_model(model, grid, [farthest, second[row]], places.iter().map(|k| first[*k]));
+            let analysis = Analysis::with(&moved, formulation)?;
+            let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+            let solution = analysis.solve(Run::new().at(design).progress(go_on));
+            visit(&HalfRow { row, farthest, places: &places, analysis: &analysis, solution: &solution });
+        }
+    }
+    Ok(())
+}
+
 /// Position of the first driver at a time, relative to the design configuration.
 fn sweep(farthest: f64, time: f64) -> f64 {
     farthest * (time - PHASE_ENDS[1]).max(0.0)
@@ -228,21 +263,26 @@ fn relative_values(model: &Model, grid: &Grid) -> [Vec<f64>; 2] {
 
 /// Model of one half of a row: the drivers move by `travels[0]` and `travels[1]`, m or rad.
 fn row_model(model: &Model, grid: &Grid, travels: [f64; 2], places: impl Iterator<Item = f64>) -> Model {
-    let mut laws = vec![Some(Law::constant(0.0)); model.drivers.len()];
-    let mut formulas = Vec::new();
     let [begin, first_end] = PHASE_ENDS;
     let texts = [
         format!("({:?})*max(t - {first_end:?}, 0)", travels[0]),
         format!("({:?})*min(t, {first_end:?})", travels[1]),
     ];
+    // The motion starts in the design configuration and continues from there.
+    let mut times = vec![begin];
+    times.extend(places.map(|place| time_of(place, travels[0])));
+    driven(model, grid, texts, times)
+}
+
+/// Model in which the two drivers of a grid follow these laws and the others are fixed in the design configuration.
+fn driven(model: &Model, grid: &Grid, texts: [String; 2], times: Vec<f64>) -> Model {
+    let mut laws = vec![Some(Law::constant(0.0)); model.drivers.len()];
+    let mut formulas = Vec::new();
     for (driver, text) in grid.drivers.into_iter().zip(texts) {
         let (law, formula) = law_of(model, driver, text);
         laws[driver.0] = Some(law);
         formulas.extend(formula);
     }
-    // The motion starts in the design configuration and continues from there.
-    let mut times = vec![begin];
-    times.extend(places.map(|place| time_of(place, travels[0])));
     // A grid position is static, so loads are those of the mechanism at rest.
     let load_mode = Some(LoadMode::Static);
     let force_laws = Vec::new();

@@ -13,6 +13,7 @@ mod elements;
 mod equilibrium;
 mod gallery;
 mod gallery_models;
+mod grid_clearance;
 mod grids;
 mod includes;
 mod loads;

@@ -275,14 +275,14 @@ impl Analysis<'_> {
             for event in located.events.iter().filter(|e| e.pair == p) {
                 let Some(k) = place(event.time) else { continue };
                 let at = samples[k];
-                let mut d = self.derivatives(design, *shapes, solution, k);
+                let mut d = self.distance_derivatives(design, *shapes, solution, k);
                 // At a kink both sides change, and their intersection moves in time: the part of each is that with
                 // which the rate is zero.
                 let other = event.kink.and_then(place);
                 if let Some(k) = other {
                     let rates = [at.distance[1], samples[k].distance[1]];
                     let part = rates[1] / (rates[1] - rates[0]);
-                    let beside = self.derivatives(design, *shapes, solution, k);
+                    let beside = self.distance_derivatives(design, *shapes, solution, k);
                     d.iter_mut().zip(beside).for_each(|(d, other)| *d = part * *d + (1.0 - part) * other);
                 }
                 match event.kind {
@@ -308,8 +308,26 @@ impl Analysis<'_> {
         Clearances { pairs: pairs.iter().enumerate().map(pair_of).collect(), stop: solution.stop.clone() }
     }
 
-    /// Derivatives of a distance at time k by all design variables.
-    fn derivatives(&self, design: &[f64], shapes: [ShapeId; 2], solution: &Solution, k: usize) -> Vec<f64> {
+    /// Distances of pairs of shapes at these times of a solved motion of a design, in the order of the pairs.
+    pub fn distances(
+        &self,
+        design: &[f64],
+        motion: &Motion,
+        pairs: &[[ShapeId; 2]],
+        steps: impl Iterator<Item = usize>,
+    ) -> Vec<Vec<ShapeDistance>> {
+        PosedMotion::of(self, design, pairs, motion).distances(pairs, steps)
+    }
+
+    /// Derivatives of a distance at time k of a solved motion by all design variables; NaN for those that are not
+    /// admissible.
+    pub fn distance_derivatives(
+        &self,
+        design: &[f64],
+        shapes: [ShapeId; 2],
+        solution: &Solution,
+        k: usize,
+    ) -> Vec<f64> {
         let (model, map) = (self.model(), self.design_map());
         let values = model.whole(design);
         let states = solution.motion.at(k);
