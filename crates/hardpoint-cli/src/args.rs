@@ -67,6 +67,8 @@ pub enum Command {
     Check(Check),
     /// Find the least distances of shapes over the motion, when they touch, and how both change with the design
     Clearance(Clearance),
+    /// Compute the space that a shape sweeps over the motion, as a closed surface (STL)
+    Envelope(Envelope),
     /// Export a model to a file of another program, and list its unsupported features
     Export(Export),
     /// Import a mechanism of another program as a model file, and check it
@@ -314,7 +316,8 @@ The model has `[shapes]` of its bodies, and `[clearances.NAME]` with the pairs o
 distances are located exactly, between output times too, with their derivatives by all design
 variables; so are the times at which shapes touch and part. Distances are negative where shapes
 overlap. That nothing is nearer between output times is proved with intervals; where it is not,
-the reason and the time are given.
+the reason and the time are given. Over a grid of two drivers (`grid` of a case) the least
+distance is located between the positions, and not proved.
 
 The exit code is 1 if a pair is nearer than the `min` of its clearance.
 
@@ -336,6 +339,44 @@ pub struct Clearance {
     pub no_proof: bool,
     /// Write clearances.csv into this folder: distances, rates, accelerations and nearest points
     #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
+const AFTER_ENVELOPE: &str = "\
+The envelope is the union of a shape of `[shapes]` at all positions of the motion, of all cases
+and of all grids of two drivers, unless `--case` names one: a tyre over travel and steer, for the
+wheel house. Positions between output times are added until they change the surface by less than
+half of the permitted error; triangles deviate from it by less than the other half. Both figures
+are stated, with the volume. Lengths are in the unit of the model file, like the surface.
+
+The exit code is 1 if the permitted error is not reached.
+
+Examples:
+  hardpoint envelope front.toml tyre -o wheel_house.stl
+  hardpoint envelope front.toml tyre --case ride_and_steer --error 0.5 --margin 15
+  hardpoint envelope front.toml lower_arm --relative-to knuckle";
+
+/// `hardpoint envelope`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_ENVELOPE)]
+pub struct Envelope {
+    #[command(flatten)]
+    pub common: Common,
+    /// Name of the shape
+    pub shape: String,
+    #[command(flatten)]
+    pub motions: Motions,
+    /// Body from which the shape is seen, and in whose frame the surface is [default: ground]
+    #[arg(long, value_name = "BODY")]
+    pub relative_to: Option<String>,
+    /// Permitted error, a length [default: 1/200 of the shape's extent]
+    #[arg(long, value_name = "LENGTH")]
+    pub error: Option<f64>,
+    /// Distance to add around the shape [default: 0]
+    #[arg(long, value_name = "LENGTH")]
+    pub margin: Option<f64>,
+    /// The file to write [default: SHAPE_envelope.stl]
+    #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
 

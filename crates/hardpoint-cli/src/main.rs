@@ -5,6 +5,7 @@ mod calibrate;
 mod check;
 mod clearance;
 mod compare;
+mod envelope;
 mod export;
 mod folder;
 mod import;
@@ -52,6 +53,7 @@ fn main() -> ExitCode {
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
         Command::Clearance(options) => clearance::run(&options),
+        Command::Envelope(options) => envelope::run(&options),
         Command::Export(options) => export::export(&options),
         Command::Import(options) => import::import(&options),
         Command::Verify(options) => verify::verify(&options),

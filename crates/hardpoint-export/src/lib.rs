@@ -1,5 +1,5 @@
 //! Export of Hardpoint models to files of other programs, with a list of the features that each format does not
-//! support; runs as workbooks, PDF documents, animations and long tables.
+//! support; runs as workbooks, PDF documents, animations and long tables; surfaces.
 //!
 //! ```
 //! let text = r#"
@@ -26,6 +26,7 @@ mod mjcf;
 mod names;
 mod pdf;
 mod skeleton;
+mod stl;
 mod tables;
 mod urdf;
 mod workbook;
@@ -34,6 +35,7 @@ use hardpoint_file::ModelFile;
 use serde::Serialize;
 
 pub use animation::animation;
+pub use stl::write_stl;
 pub use tables::hardpoints;
 pub use workbook::RunDocument;
 

@@ -31,6 +31,7 @@ pub mod course;
 pub mod deflection;
 pub mod diagnose;
 pub mod encoding;
+pub mod envelope;
 pub mod facts;
 pub mod gallery;
 pub mod loads;

@@ -91,14 +91,14 @@ impl GridMap {
         each_half_row(model, grid, formulation, design, more, |half| {
             map.cost.motions += 1;
             map.cost.steps += half.solution.motion.len();
-            map.take([first, second], half);
+            map.take(second, half);
         })?;
         Ok(map)
     }
 
     /// Stores the positions of one motion.
-    fn take(&mut self, [first, second]: [&[f64]; 2], half: &HalfRow<'_>) {
-        let &HalfRow { row, farthest, solution, .. } = half;
+    fn take(&mut self, second: &[f64], half: &HalfRow<'_>) {
+        let &HalfRow { row, first, farthest, solution, .. } = half;
         let interrupted = solution.stop.as_ref().is_some_and(|s| matches!(s.kind, StopKind::Interrupted));
         let stopped = solution.stop.as_ref().filter(|_| !interrupted).map(|stop| {
             let t = stop.failed_time;
@@ -108,7 +108,7 @@ impl GridMap {
             self.stops.push(GridStop { row, stop: stop.clone(), drivers });
             self.stops.len() - 1
         });
-        for (place, k) in half.steps(first) {
+        for (place, k) in half.steps() {
             let found = if k < solution.motion.len() {
                 Position::Solved(self.row_of(solution, k))
             } else {
@@ -185,25 +185,27 @@ impl GridMap {
 }
 
 /// Solved motion of one half of a row of a grid.
-struct HalfRow<'a> {
+pub(super) struct HalfRow<'a> {
     /// Index of the row.
     row: usize,
+    /// All positions of the first driver, relative to the design configuration.
+    first: &'a [f64],
     /// The farthest position of the first driver, relative to the design configuration.
     farthest: f64,
     /// Indices of the first driver's positions, in the order of the motion.
     places: &'a [usize],
     /// The motion.
-    analysis: &'a Analysis<'a>,
-    solution: &'a Solution,
+    pub analysis: &'a Analysis<'a>,
+    pub solution: &'a Solution,
 }
 
 impl HalfRow<'_> {
     /// Each place with the index of its time in the motion, which is beyond the motion's end if it was not reached.
-    fn steps(&self, first: &[f64]) -> impl Iterator<Item = (usize, usize)> {
+    pub fn steps(&self) -> impl Iterator<Item = (usize, usize)> {
         let times = &self.analysis.model().times;
         self.places.iter().map(move |place| {
             // Bitwise equal to the output time, which is computed by the same expression.
-            let time = time_of(first[*place], self.farthest);
+            let time = time_of(self.first[*place], self.farthest);
             (*place, times.iter().position(|t| *t == time).expect("every place has its time"))
         })
     }
@@ -211,7 +213,7 @@ impl HalfRow<'_> {
 
 /// Solves a grid row by row, and passes each motion to `visit`. Each row is reached from the design configuration: the
 /// second driver moves to its position in the row first, then the first driver moves up, and in a separate motion down.
-fn each_half_row(
+pub(super) fn each_half_row(
     model: &Model,
     grid: &Grid,
     formulation: Formulation,
@@ -237,7 +239,14 @@ fn each_half_row(
             let analysis = Analysis::with(&moved, formulation)?;
             let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
             let solution = analysis.solve(Run::new().at(design).progress(go_on));
-            visit(&HalfRow { row, farthest, places: &places, analysis: &analysis, solution: &solution });
+            visit(&HalfRow {
+                row,
+                first,
+                farthest,
+                places: &places,
+                analysis: &analysis,
+                solution: &solution,
+            });
         }
     }
     Ok(())

@@ -4,7 +4,8 @@
 //! - [`tolerance`]: spread of metrics and curves from tolerances of hardpoints; yields; allocation.
 //! - [`calibrate`]: fits a design to measurements, and states what the data determine.
 //! - [`sweep`]: metrics of designs drawn at random or on a grid, with sensitivity indices.
-//! - [`grid`]: outputs over a grid of driver positions.
+//! - [`grid`]: outputs and clearances over a grid of driver positions.
+//! - [`envelope`]: the space that a shape sweeps, as a closed surface.
 //! - [`verify`]: exact sensitivities against differences of re-solved designs.
 //! - [`whatif`]: outputs of changed designs, predicted and solved.
 //!
@@ -74,6 +75,7 @@
 
 pub mod calibrate;
 pub mod difference;
+pub mod envelope;
 pub mod grid;
 pub mod optimize;
 pub mod request;

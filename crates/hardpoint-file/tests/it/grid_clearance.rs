@@ -83,14 +83,8 @@ fn minima_over_a_grid_are_located_and_never_above_a_dense_grid() {
             [v[0], v[v.len() - 1]]
         });
         for ranges in [whole, around(least.drivers)] {
-            let map = GridMap::solve(
-                &model,
-                &dense(grid, ranges, 40),
-                Formulation::Relative,
-                &[],
-                &|| true,
-            )
-            .unwrap();
+            let map = GridMap::solve(&model, &dense(grid, ranges, 40), Formulation::Relative, &[], &|| true)
+                .unwrap();
             let m = output(&map, name);
             let lowest = map.places().filter_map(|at| map.value(at, m)).fold(f64::INFINITY, f64::min);
             // Positions are solved to 1e-12 of the mechanism's size.

@@ -10,6 +10,7 @@ mod docs;
 mod domain;
 mod edit;
 mod elements;
+mod envelope;
 mod equilibrium;
 mod gallery;
 mod gallery_models;

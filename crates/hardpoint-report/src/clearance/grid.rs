@@ -179,9 +179,7 @@ impl GridPairFact {
                 format!("{} {unit} deep", rounded(-lowest.distance, DIGITS))
             };
             let count = self.touching;
-            lines.push(format!(
-                "{clearance}: {a} touches {b} at {count} of {asked} positions; {depth} {at}"
-            ));
+            lines.push(format!("{clearance}: {a} touches {b} at {count} of {asked} positions; {depth} {at}"));
         } else {
             let distance = rounded(lowest.distance, DIGITS);
             lines.push(format!("{clearance}: {distance} {unit} at least, {a} against {b}, {at}"));

@@ -110,10 +110,9 @@ impl GridClearances {
             let stop = half.solution.stop.as_ref();
             ended |= stop.is_some_and(|s| matches!(s.kind, StopKind::Interrupted));
             let motion = &half.solution.motion;
-            let reached: Vec<(usize, usize)> = half.steps(first).filter(|(_, k)| *k < motion.len()).collect();
+            let reached: Vec<(usize, usize)> = half.steps().filter(|(_, k)| *k < motion.len()).collect();
             let steps = reached.iter().map(|(_, k)| *k);
-            for (p, samples) in
-                half.analysis.distances(design, motion, &pairs, steps).into_iter().enumerate()
+            for (p, samples) in half.analysis.distances(design, motion, &pairs, steps).into_iter().enumerate()
             {
                 for ((place, _), sample) in reached.iter().zip(samples) {
                     found[p][half.row * columns + place] = Some(sample.distance[0]);
@@ -318,9 +317,7 @@ fn step_within(x: [f64; 2], local: &Local, reach: f64) -> ([f64; 2], bool) {
         [false, false] => [0.0; 2],
         [true, false] => alone(0),
         [false, true] => alone(1),
-        [true, true] if *p > 0.0 && det > 0.0 => {
-            [-(r * g[0] - q * g[1]) / det, -(p * g[1] - q * g[0]) / det]
-        }
+        [true, true] if *p > 0.0 && det > 0.0 => [-(r * g[0] - q * g[1]) / det, -(p * g[1] - q * g[0]) / det],
         [true, true] => {
             let size = g[0].hypot(g[1]);
             if size > 0.0 { g.map(|g| -g / size * reach) } else { [0.0; 2] }

@@ -14,9 +14,11 @@ mod nearest;
 mod placed;
 mod separation;
 mod surface;
+mod swept;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use nearest::nearest;
 pub(crate) use placed::PlacedShapes;
 pub(crate) use separation::{Direction, EnclosedCore, direction_of, lower_bound, separations};
+pub(crate) use swept::ShapeAtPose;

@@ -66,7 +66,12 @@ const COPLANAR: f64 = 1e-11;
 impl Core {
     /// Distance of a point; negative within a cylinder and behind a plane.
     pub fn distance_from(&self, p: Vec3) -> f64 {
-        nearest(&Self::Point(p), self).distance
+        match self {
+            Self::Point(_) | Self::Segment(_) | Self::Circle(_) | Self::HalfSpace { .. } => {
+                from_point(p, self).distance
+            }
+            Self::Cylinder { middle, half_width } => around_drum(middle, *half_width).distance(p),
+        }
     }
 }
 

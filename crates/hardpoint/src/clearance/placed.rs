@@ -99,7 +99,7 @@ impl<T: Real> PlacedShapes<'_, T> {
     }
 
     /// A ball around a shape: centre and radius.
-    fn ball(&self, shape: ShapeId) -> (Vec3, f64) {
+    pub fn ball(&self, shape: ShapeId) -> (Vec3, f64) {
         let round = self.fixed.shapes[shape.0].round.value();
         let (centre, radius) = match &self.model.shapes[shape.0].kind {
             ShapeKind::Mesh { body, surface } => {
@@ -115,7 +115,8 @@ impl<T: Real> PlacedShapes<'_, T> {
         (centre, radius + round)
     }
 
-    fn points(&self, points: &[PointId]) -> Vec<Vec3> {
+    /// Points in global coordinates.
+    pub fn points(&self, points: &[PointId]) -> Vec<Vec3> {
         points.iter().map(|p| self.point(*p).value()).collect()
     }
 

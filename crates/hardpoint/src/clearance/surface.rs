@@ -67,6 +67,11 @@ impl View<'_> {
         }
     }
 
+    /// Distance of a point, negative inside.
+    pub fn distance_from(&self, p: Vec3) -> f64 {
+        self.nearest_to(p).distance
+    }
+
     /// The nearest point to a point; its distance is negative inside.
     fn nearest_to(&self, p: Vec3) -> Nearest {
         let own = Feature::Point(0.0);

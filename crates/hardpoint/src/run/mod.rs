@@ -19,6 +19,7 @@ mod request;
 mod second;
 mod sink;
 mod solution;
+mod swept;
 mod walk;
 mod window;
 
@@ -40,5 +41,6 @@ pub use request::{Progress, Run};
 pub use second::SecondDerivatives;
 pub use sink::Sink;
 pub use solution::{Solution, StreamSummary};
+pub use swept::SweptShape;
 pub(crate) use walk::{PreparedDesign, Walk};
 pub use window::{Footprint, SampledResults, Sampling};

@@ -1,0 +1,86 @@
+//! `hardpoint envelope`.
+
+use std::path::{Path, PathBuf};
+
+use hardpoint::joint::Quantity;
+use hardpoint::model::Dimension;
+use hardpoint::space::Vec3;
+use hardpoint_export::write_stl;
+use hardpoint_file::ModelFile;
+use hardpoint_report::diagnose;
+use hardpoint_report::envelope::EnvelopeFact;
+use hardpoint_study::envelope::{Envelope, EnvelopeError, Overrides, Request, envelope};
+use serde_json::json;
+
+use crate::args;
+use crate::folder::{Folder, WriteError};
+use crate::outcome::Outcome;
+use crate::session::Session;
+use crate::text;
+
+/// Computes the space that a shape sweeps, and writes its surface.
+pub fn run(options: &args::Envelope) -> Outcome {
+    let session = Session::begin(options.common.json);
+    envelope_of(&session, options).unwrap_or_else(|outcome| outcome)
+}
+
+fn envelope_of(session: &Session, options: &args::Envelope) -> Result<Outcome, Outcome> {
+    let to =
+        options.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}_envelope.stl", options.shape)));
+    session.may_save(&options.common.model, Some(&to))?;
+    let file = session.read(&options.common.model)?;
+    let length = |x: f64| file.units.to_si(Quantity::Length, x);
+    let overrides = Overrides {
+        shape: options.shape.clone(),
+        relative_to: options.relative_to.clone(),
+        case: options.motions.case.clone(),
+        error: options.error.map(length),
+        margin: options.margin.map(length),
+    };
+    let request = Request::of(&file.model, overrides).map_err(|e| session.refused(&file, &e))?;
+    // The mechanism can be driven, or the reasons are given.
+    session.plan(&file, options.common.formulation())?;
+    let found = {
+        let _working = session.working("computing the envelope");
+        let more = || !session.interrupted();
+        envelope(&file.model, options.common.formulation(), &[], &request, &more)
+    };
+    let found = found.map_err(|error| refused(session, &file, error))?;
+    write(&to, &file, &found).map_err(|e| session.not_written(&e))?;
+    let fact = EnvelopeFact::of(&file.model, file.units, &request, &found);
+    if options.common.json {
+        session.print_json(&json!({ "name": file.model.name, "envelope": fact, "file": to }));
+    } else {
+        text::print(&format!("{}\n", text::bold(&file.model.name)));
+        fact.sentences().iter().for_each(|line| text::print(&format!("{line}\n")));
+        text::print(&format!("\nwritten: {}\n", to.display()));
+    }
+    Ok(match (&found.stops[..], found.is_within_error) {
+        ([], true) => Outcome::Done,
+        ([], false) => Outcome::FellShort,
+        (_, _) => Outcome::Stopped,
+    })
+}
+
+fn refused(session: &Session, file: &ModelFile, error: EnvelopeError) -> Outcome {
+    match error {
+        EnvelopeError::Topology(_) => Outcome::CannotBeDriven,
+        EnvelopeError::Interrupted => Outcome::Interrupted,
+        EnvelopeError::NotReached(stop) => {
+            let diagnostics: Vec<_> = stop.iter().map(|stop| diagnose::stop(file, stop, 0, None)).collect();
+            session.fail(file, &diagnostics);
+            Outcome::Stopped
+        }
+    }
+}
+
+fn write(to: &Path, file: &ModelFile, found: &Envelope) -> Result<(), WriteError> {
+    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = to.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let scaled = |v: Vec3| v.map(|x| file.units.from_si(Dimension::LENGTH, x));
+    let surface = &found.surface;
+    let corners = surface.triangles.iter().map(|t| t.map(|k| scaled(surface.vertices[k as usize])));
+    let mut folder = Folder::open(parent)?;
+    folder.write(&name, |out| write_stl(corners, out))?;
+    folder.commit(&[])
+}

@@ -1,0 +1,155 @@
+//! Envelopes of shapes: closed surfaces, volumes with closed forms, and random positions between those of the envelope.
+
+use std::collections::HashMap;
+use std::f64::consts::PI;
+
+use hardpoint::model::Model;
+use hardpoint::run::{Analysis, Run};
+use hardpoint::space::Vec3;
+use hardpoint::topology::Formulation;
+use hardpoint_file::parse;
+use hardpoint_study::envelope::{Envelope, Overrides, Request, Triangles, envelope};
+
+/// A slider with a ball and a drum, and an arm on it.
+const SLIDER: &str = r#"
+name = "slider"
+units = { length = "mm", angle = "deg" }
+hardpoints = { origin = [10, 20, 30], elbow = [10, 20, 60] }
+bodies = { slider = {}, arm = {} }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = "origin", axis = [1, 2, 2] }
+joints.hinge = { type = "revolute", bodies = ["slider", "arm"], at = "elbow", axis = [1, 2, 2] }
+drivers.push = { joint = "slide", law = "90*t" }
+drivers.turn = { joint = "hinge", law = "360*t" }
+time = { end = 1.0, steps = 3 }
+[shapes]
+ball = { body = "slider", sphere = "origin", radius = 15 }
+drum = { body = "slider", cylinder = [[10, 20, 30], [16, 32, 42]], radius = 25, round = 6 }
+stick = { body = "arm", capsule = [[10, 20, 60], [50, 0, 60]], radius = 5 }
+[cases.along]
+other_drivers = "as_in_model"
+[cases.both]
+grid = { push = { from = -40, to = 50, steps = 3 }, turn = { from = -60, to = 60, steps = 3 } }
+"#;
+
+fn slider() -> Model {
+    parse(SLIDER, "slider.toml").unwrap_or_else(|e| panic!("{e}")).model
+}
+
+fn envelope_of(model: &Model, overrides: Overrides) -> Envelope {
+    let request = Request::of(model, overrides).unwrap_or_else(|e| panic!("{e}"));
+    envelope(model, Formulation::Relative, &[], &request, &|| true).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+fn overrides(shape: &str, case: &str, error: f64) -> Overrides {
+    Overrides { shape: shape.into(), case: Some(case.into()), error: Some(error), ..Overrides::default() }
+}
+
+/// Every edge of a closed surface belongs to two triangles, which pass it in opposite directions.
+fn assert_closed(surface: &Triangles) {
+    let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
+    for &[a, b, c] in &surface.triangles {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            assert_ne!(from, to);
+            *edges.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+        }
+    }
+    assert!(!edges.is_empty() && edges.values().all(|sum| *sum == 0));
+}
+
+/// Volume of a capsule.
+fn capsule(radius: f64, length: f64) -> f64 {
+    PI * radius * radius * (length + 4.0 / 3.0 * radius)
+}
+
+#[test]
+fn the_envelope_of_a_ball_on_a_line_is_a_capsule() {
+    let model = slider();
+    for (case, margin) in [("along", 0.0), ("both", 0.0), ("along", 0.004)] {
+        let found = envelope_of(&model, Overrides { margin: Some(margin), ..overrides("ball", case, 2e-4) });
+        assert!(found.is_within_error && found.stops.is_empty());
+        assert_closed(&found.surface);
+        // The slide is 90 mm in both.
+        let exact = capsule(0.015 + margin, 0.09);
+        let within = found.surface.area() * found.error;
+        let volume = found.surface.volume();
+        assert!((volume - exact).abs() < within, "{case}: {volume} {exact} {within}");
+        // A ball's own positions have concave notches between them: the volume is below, by far less than permitted.
+        assert!(volume > 0.99 * exact && volume < 1.001 * exact, "{case}: {volume} {exact}");
+    }
+}
+
+#[test]
+fn a_shape_does_not_move_in_the_frame_of_its_own_body() {
+    let model = slider();
+    let found = envelope_of(
+        &model,
+        Overrides { relative_to: Some("slider".into()), ..overrides("drum", "along", 2e-4) },
+    );
+    assert_closed(&found.surface);
+    assert!(found.between_poses < 1e-9, "{}", found.between_poses);
+    // A cylinder of radius 25 and width 18 with edges rounded by 6: a core, a ring around it by Pappus, and caps.
+    let (core, half, round) = (0.019, 0.003, 0.006);
+    let ring = PI * round * round / 2.0 * 2.0 * PI * (core + 4.0 * round / (3.0 * PI));
+    let exact = PI * core * core * (2.0 * half + 2.0 * round)
+        + ring
+        + 2.0 * half * PI * ((core + round) * (core + round) - core * core);
+    let volume = found.surface.volume();
+    assert!((volume - exact).abs() < 2e-3 * exact, "{volume} {exact}");
+}
+
+#[test]
+fn all_positions_of_a_shape_are_within_its_envelope_and_its_error() {
+    let model = slider();
+    let found = envelope_of(&model, overrides("stick", "along", 5e-4));
+    assert_closed(&found.surface);
+    let own = model.in_case(model.case("along").unwrap());
+    // Times that are none of the envelope's.
+    let times: Vec<f64> = (0..137).map(|k| (f64::from(k) + 0.377) / 137.5).collect();
+    let moved = Model { times, ..own };
+    let analysis = Analysis::with(&moved, Formulation::Relative).unwrap();
+    let solution = analysis.solve(Run::new());
+    let arm = model.bodies.iter().position(|b| b.name == "arm").unwrap();
+    let mut beyond = 0.0_f64;
+    for k in 0..solution.motion.len() {
+        let state = solution.motion.at(k).body(arm);
+        for n in 0..=10 {
+            // Middle line of the stick.
+            let s = f64::from(n) / 10.0;
+            let p = state.r + state.rotation * Vec3::new(0.01 + 0.04 * s, 0.02 - 0.02 * s, 0.06);
+            let near =
+                found.surface.corners().map(|c| distance_from_triangle(p, c)).fold(f64::INFINITY, f64::min);
+            // The surface is at least its radius away.
+            beyond = beyond.max(0.005 - near);
+        }
+    }
+    assert!(beyond < found.error, "{beyond} {}", found.error);
+}
+
+/// Distance of a point from a triangle, by its own formula: the plane, or the edges.
+fn distance_from_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let inside = [[a, b], [b, c], [c, a]].iter().all(|[q, r]| (*r - *q).cross(p - *q).dot(normal) >= 0.0);
+    if inside {
+        return (normal.dot(p - a) / normal.norm()).abs();
+    }
+    let from_edge = |q: Vec3, r: Vec3| {
+        let e = r - q;
+        let t = (e.dot(p - q) / e.dot(e)).clamp(0.0, 1.0);
+        (p - q - e * t).norm()
+    };
+    from_edge(a, b).min(from_edge(b, c)).min(from_edge(c, a))
+}
+
+#[test]
+fn requests_without_an_envelope_are_refused_with_a_remedy() {
+    let text = format!("{SLIDER}")
+        .replace("ball = {", "wall = { body = \"ground\", plane = [0, 0, 0], normal = \"z\" }\nball = {");
+    let model = parse(&text, "slider.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    let refused = |overrides: Overrides| Request::of(&model, overrides).unwrap_err().to_string();
+    assert!(refused(overrides("wall", "along", 1e-3)).contains("plane"));
+    assert!(refused(overrides("bal", "along", 1e-3)).contains("`ball`"));
+    assert!(refused(overrides("ball", "alon", 1e-3)).contains("`along`"));
+    assert!(refused(overrides("ball", "along", 0.0)).contains("not positive"));
+    let unknown = Overrides { relative_to: Some("rim".into()), ..overrides("ball", "along", 1e-3) };
+    assert!(refused(unknown).contains("rim"));
+}

@@ -1,0 +1,69 @@
+//! A shape at one pose, in the frame of another body: distances of points from it.
+
+use std::sync::Arc;
+
+use crate::model::{ShapeId, ShapeKind, with_core};
+use crate::space::{Pose, Surface, Vec3};
+
+use super::core::Core;
+use super::placed::PlacedShapes;
+use super::surface::{View, moved};
+
+/// A shape at one pose.
+#[derive(Clone, Debug)]
+pub(crate) struct ShapeAtPose {
+    solid: Solid,
+    /// Radius around the core, m.
+    round: f64,
+    /// Centre and radius of a ball around it.
+    ball: (Vec3, f64),
+}
+
+#[derive(Clone, Debug)]
+enum Solid {
+    Core(Core),
+    Hull {
+        points: Vec<Vec3>,
+        facets: Vec<[u32; 3]>,
+    },
+    /// With the pose of the reference in the frame of the mesh.
+    Mesh {
+        surface: Arc<Surface>,
+        inverse: Pose,
+    },
+}
+
+impl ShapeAtPose {
+    /// A shape where its body is, in the frame of a body with the pose `reference`.
+    pub fn of(placed: &PlacedShapes<'_, f64>, shape: ShapeId, reference: Pose) -> Self {
+        let into = reference.inverse();
+        let solid = match &placed.model.shapes[shape.0].kind {
+            ShapeKind::Hull { points, facets } => {
+                let points = placed.points(points).into_iter().map(|p| into.point(p)).collect();
+                Solid::Hull { points, facets: facets.clone() }
+            }
+            ShapeKind::Mesh { body, surface } => {
+                let inverse = into.compose(placed.poses[body.0]).inverse();
+                Solid::Mesh { surface: Arc::clone(surface), inverse }
+            }
+            with_core!() => Solid::Core(moved(&placed.core(shape).expect("it is no surface"), into)),
+        };
+        let (centre, radius) = placed.ball(shape);
+        Self { solid, round: placed.fixed.shapes[shape.0].round, ball: (into.point(centre), radius) }
+    }
+
+    /// Centre and radius of a ball around it.
+    pub fn ball(&self) -> (Vec3, f64) {
+        self.ball
+    }
+
+    /// Distance of a point, negative inside; it changes by no more than the point moves.
+    pub fn distance_from(&self, p: Vec3) -> f64 {
+        let of_core = match &self.solid {
+            Solid::Core(core) => core.distance_from(p),
+            Solid::Hull { points, facets } => View::Hull { points, facets }.distance_from(p),
+            Solid::Mesh { surface, inverse } => View::Mesh(surface).distance_from(inverse.point(p)),
+        };
+        of_core - self.round
+    }
+}
