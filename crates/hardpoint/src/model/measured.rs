@@ -26,3 +26,10 @@ pub struct Measurements {
     /// Readings in the postures.
     pub readings: Vec<Reading>,
 }
+
+impl Measurements {
+    /// Values of the laws of given forces in a posture.
+    pub fn forces_in(&self, posture: usize) -> &[(ElementId, f64)] {
+        self.forces.get(posture).map_or(&[], Vec::as_slice)
+    }
+}
