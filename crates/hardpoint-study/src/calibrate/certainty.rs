@@ -19,6 +19,8 @@ pub struct Certainty {
     pub sigmas: Vec<Option<f64>>,
     /// Standard deviation of each fitted parameter by the priors alone; `None` without a prior.
     pub prior_sigmas: Vec<Option<f64>>,
+    /// Mean of the own prior of each fitted parameter, as a change from the nominal design; `None` without one.
+    pub prior_means: Vec<Option<f64>>,
     /// Bounds that the fitted parameters are at.
     pub bounds: Vec<Option<BoundSide>>,
     /// Covariance of the fitted variables over the reported directions.
@@ -79,9 +81,7 @@ impl FitWorkspace<'_> {
                 directions.unidentifiable.push((unit, Some(sigma * length)));
                 continue;
             }
-            if !self.priors.is_empty()
-                && information(&search.at, &search.weights, &v) < OF_READINGS * s * s
-            {
+            if !self.priors.is_empty() && information(&search.at, &search.weights, &v) < OF_READINGS * s * s {
                 by_prior.push(v.iter().map(|x| x / length).collect());
             }
             directions.reported.push((v, sigma));
@@ -117,16 +117,19 @@ impl FitWorkspace<'_> {
         let own = if self.has_sigmas { 1.0 } else { search.scale };
         let scatter = (freedom > 0).then(|| own * (chi_square / freedom as f64).sqrt());
         // Estimated from the residuals of the readings alone
-        let scatter = scatter.map(|s| if self.has_sigmas || self.priors.is_empty() { s } else { search.scale });
+        let scatter =
+            scatter.map(|s| if self.has_sigmas || self.priors.is_empty() { s } else { search.scale });
         let spread = |v: &[f64]| {
             let cv: Vec<f64> = in_steps.iter().map(|row| dot(row, v)).collect();
             (dot(&cv, v) / dot(v, v)).max(0.0).sqrt()
         };
         let by_prior = directions.by_prior.iter().map(|v| unidentifiable(&(v.clone(), Some(spread(v)))));
-        let prior_sigmas = self.priors.sigmas(n).into_iter().zip(&self.steps).map(|(s, step)| Some(s? * step));
+        let prior_sigmas =
+            self.priors.sigmas(n).into_iter().zip(&self.steps).map(|(s, step)| Some(s? * step));
         Certainty {
             sigmas,
             prior_sigmas: prior_sigmas.collect(),
+            prior_means: self.parameters.iter().map(|p| self.request.prior_mean(self.model, *p)).collect(),
             bounds: search.active.clone(),
             by_prior: by_prior.collect(),
             unidentifiable: directions.unidentifiable.iter().map(unidentifiable).collect(),

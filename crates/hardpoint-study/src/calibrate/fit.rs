@@ -404,8 +404,7 @@ impl<'b> FitWorkspace<'b> {
                 status = Status::Interrupted;
                 break;
             }
-            let Some((next, rows)) =
-                step.filter(|(_, rows)| Self::squares(rows, &weights, scale) < before)
+            let Some((next, rows)) = step.filter(|(_, rows)| Self::squares(rows, &weights, scale) < before)
             else {
                 status = Status::Found;
                 break;

@@ -217,8 +217,7 @@ pub fn values_in_postures(
     postures: &[Vec<f64>],
     formulation: Formulation,
 ) -> Result<Vec<Result<Vec<f64>, String>>, TopologyError> {
-    let models: Vec<Model> =
-        postures.iter().map(|p| posture::posture_model(model, p, &[], &[])).collect();
+    let models: Vec<Model> = postures.iter().map(|p| posture::posture_model(model, p, &[], &[])).collect();
     let values = |analysis: &Analysis<'_>| {
         let solved = posture::solve_posture(analysis, design, &mut StudyCost::default());
         let values =

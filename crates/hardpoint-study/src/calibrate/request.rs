@@ -6,7 +6,8 @@ use hardpoint::model::{
 };
 use hardpoint::topology::Formulation;
 
-use super::{Loss, Prior};
+use super::prior::parameters_of;
+use super::{FittedParameter, Loss, Prior};
 use crate::random::moments;
 use crate::request::{RequestError, named, variable};
 
@@ -114,6 +115,19 @@ impl<'a> Request<'a> {
         let keep_bounds = settings.is_some() || !prior.is_empty();
         let Overrides { loss, formulation, validation, .. } = *overrides;
         Ok(Self { measured, validation, variables, prior, keep_bounds, loss, formulation, iterations })
+    }
+
+    /// Mean of the own prior of a parameter; `None` without one.
+    pub(super) fn prior_mean(&self, model: &Model, parameter: FittedParameter) -> Option<f64> {
+        match parameter {
+            FittedParameter::Variable(v) => {
+                self.prior.variables.iter().find(|p| p.variable == v).map(|p| p.mean)
+            }
+            FittedParameter::Driver(_) | FittedParameter::Output(_) => {
+                let of = |o: &&Offset| parameters_of(model, std::slice::from_ref(*o)).contains(&parameter);
+                self.prior.offsets.iter().find(of).and_then(|o| o.sigma).map(|_| 0.0)
+            }
+        }
     }
 
     /// Drivers whose offsets are fitted.

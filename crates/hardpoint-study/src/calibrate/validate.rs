@@ -50,12 +50,10 @@ impl FitWorkspace<'_> {
         for reading in &data.readings {
             let compared = reached[reading.posture].as_ref().and_then(|posture| {
                 let value = posture.value(reading.output) + self.offset_of(reading.output, &search.x);
-                let by =
-                    |(p, step): (&FittedParameter, &f64)| self.d(posture, reading.output, *p) * step;
+                let by = |(p, step): (&FittedParameter, &f64)| self.d(posture, reading.output, *p) * step;
                 let g: Vec<f64> = self.parameters.iter().zip(&self.steps).map(by).collect();
                 // g' C g = sum (g . v s)^2
-                let of_fit: f64 =
-                    directions.reported.iter().map(|(v, s)| (dot(&g, v) * s).powi(2)).sum();
+                let of_fit: f64 = directions.reported.iter().map(|(v, s)| (dot(&g, v) * s).powi(2)).sum();
                 let own = reading.sigma.unwrap_or(if self.has_sigmas { 0.0 } else { search.scale });
                 let sigma = (own * own + of_fit).sqrt();
                 (value.is_finite() && sigma.is_finite()).then_some(ValidatedReading { value, sigma })
