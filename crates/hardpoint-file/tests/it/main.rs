@@ -29,6 +29,7 @@ mod parameters;
 mod path;
 mod planar;
 mod prescribed;
+mod priors;
 mod proof;
 mod published;
 mod requests;
