@@ -477,7 +477,9 @@ fn stiffnesses_are_found_from_toe_and_camber_under_load() {
             measured.readings.push(Reading { posture, output, value, sigma: Some(sigma) });
         }
     };
-    ["lateral_in_phase", "aligning_out_of_phase", "braking", "opposite_travel"].map(&mut measure);
+    for case in ["lateral_in_phase", "aligning_out_of_phase", "braking", "opposite_travel"] {
+        measure(case);
+    }
     let request = Request { variables: fitted.to_vec(), ..request(&model, &measured) };
     let found = calibrated(&model, &request).unwrap_or_else(|e| panic!("{e:?}"));
     assert_eq!(
@@ -570,7 +572,9 @@ fn posterior_intervals_cover_hidden_stewart_platforms() {
     let joints = ["base_1", "top_1", "base_4", "top_5"];
     let joint = |of: &str| format!("{of} = {{ move = \"{of}\", along = \"xyz\", fixed_length = true }}\n");
     let design: String = joints.map(joint).concat();
-    let text = format!("{}[design]\n{design}\n{}", &text[..start], &text[end..]);
+    // The motion matters for proposed readings only.
+    let text =
+        format!("{}[design]\n{design}\n{}", &text[..start], &text[end..]).replace("steps = 120", "steps = 1");
     let model = model_of(&text);
     let n = model.variables.len();
     assert_eq!(n, 12);
