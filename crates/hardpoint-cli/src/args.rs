@@ -645,8 +645,8 @@ pub struct Tolerance {
 }
 
 const AFTER_CALIBRATE: &str = "\
-The measured file is a CSV table. Its first line names drivers, outputs (measures, and
-points as P.x) and their standard deviations (`sigma toe`); each line below is a posture,
+The measured file is a CSV table. Its first line names drivers, given forces, outputs (measures,
+and points as P.x) and their standard deviations (`sigma toe`); each line below is a posture,
 in the units of the model file. Empty cells were not measured; a name that begins with #
 leaves its column out. Values of a driver have the zero, sign and unit of its law; a driver
 without a column is at its position in the design configuration. If no reading has a standard
@@ -654,7 +654,7 @@ deviation, it is estimated from the residuals (docs/calibration.md).
 
 Prior knowledge is in `[calibrate]` of the model file: standard deviations of variables, groups
 of variables that deviate alike, and offsets of drivers and sensors. --prior, --priors and
---offset add to it. With either of them the bounds of variables are kept.
+--offset add to it. With such a table or with priors the bounds of variables are kept.
 
 With --output it writes into the folder:
   residuals.csv    a row for each reading: measured, nominal, fitted, difference

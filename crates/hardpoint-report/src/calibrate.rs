@@ -612,7 +612,7 @@ impl CalibrateFacts {
             v.sigma.filter(|s| *s > 0.0).map_or(String::new(), |s| rounded((v.end - v.start) / s, 3))
         };
         let sigma = |v: &CalibratedVariable| {
-            v.sigma.map_or("undetermined".into(), |s| format!("± {}", with_unit(s, &v.unit)))
+            v.sigma.map_or(v.source.into(), |s| format!("± {}", with_unit(s, &v.unit)))
         };
         let has_source = self.priors > 0 || self.variables.iter().any(|v| v.source.starts_with("at its"));
         let tables = [

@@ -4,7 +4,9 @@
 use std::path::Path;
 
 use hardpoint::Analysis;
-use hardpoint::model::{Measurements, Model, Offset, OffsetSource, Reading, VariableId, VariablePrior};
+use hardpoint::model::{
+    ElementId, Measurements, Model, Offset, OffsetSource, Reading, VariableId, VariablePrior,
+};
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
 use hardpoint_study::calibrate::{
@@ -493,6 +495,31 @@ fn stiffnesses_are_found_from_toe_and_camber_under_load() {
         println!("{}: {} +- {sigma}, hidden {}", names[k], found.estimates[k], hidden_by[k]);
         assert!(close(found.estimates[k], hidden_by[k], 1e-2, sigma), "{:?}", found.estimates);
         assert!(sigma < 0.1 * model.nominal_value(fitted[k]));
+    }
+}
+
+#[test]
+fn columns_of_forces_are_the_values_of_their_laws() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-cli/templates/k-and-c.toml");
+    let file = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("measured.csv");
+    let read = |text: &str| {
+        std::fs::write(&table, text).unwrap();
+        file.measured(&table, &[])
+    };
+    let found = read("left_side,left.toe\n1000,0.1\n-500,0.2\n").unwrap_or_else(|e| panic!("{e}"));
+    let element = |name: &str| ElementId(file.model.elements.iter().position(|e| e.name == name).unwrap());
+    let forces = |value: f64| vec![(element("left_side"), value)];
+    assert_eq!(found.measurements.forces, [forces(1000.0), forces(-500.0)]);
+    for (text, words) in [
+        ("left_side [kN],left.toe\n1,0.1\n", "the law of a force has no unit"),
+        ("left_side,left.toe\n,0.1\n", "line 2, column 1 (`left_side`) is missing"),
+        ("left_sid,left.toe\n1,0.1\n", "did you mean `left_side`?"),
+        ("left_spring,left.toe\n1,0.1\n", "neither a driver, a force nor an output"),
+    ] {
+        let shown = read(text).unwrap_err().render(false);
+        assert!(shown.contains(words), "{shown}");
     }
 }
 

@@ -1,15 +1,15 @@
 //! Checks of the calibration: fitted variables, priors, groups and offsets.
 
-use std::collections::BTreeSet;
-
-use crate::draft::{CalibrationSettingsDraft, OffsetDraft, PriorDraft, PriorGroupDraft, Section};
+use crate::draft::{
+    CalibrationSettingsDraft, OffsetDraft, PriorDraft, PriorGroupDraft, Section, did_you_mean, some_of,
+};
 use crate::joint::Quantity;
 use crate::model::{
     CalibrationSettings, Dimension, DriverId, Offset, OffsetSource, PriorGroup, VariableId, VariablePrior,
 };
 
 use super::optimization::per_si;
-use super::{Checker, Here};
+use super::{Checker, Here, LISTED_NAMES};
 
 const HERE: Here = Here { section: Section::Calibrate, index: 0 };
 
@@ -115,9 +115,10 @@ impl Checker<'_> {
             return Some(given);
         }
         let code = if here.section == Section::PriorGroups { "HP0272" } else { "HP0270" };
-        let help = match here.section {
-            Section::Priors => "give a number above zero; to fix the variable, leave it out of `fit`",
-            _ => "give a number above zero",
+        let help = if here.section == Section::Priors {
+            "give a number above zero; to fix the variable, leave it out of `fit`"
+        } else {
+            "give a number above zero"
         };
         self.fault(code, here.key(key), format!("`{key}` of {what} cannot be {given}"))
             .note(format!("`{key}` is a standard deviation"))
@@ -194,9 +195,13 @@ impl Checker<'_> {
             None => {
                 let faults = self.faults.len();
                 let found = self.output(name, here.key("of"));
-                let drivers: BTreeSet<&str> = self.draft.drivers.iter().map(|d| d.name.as_str()).collect();
-                let near = crate::draft::did_you_mean(name, drivers);
+                let drivers: Vec<&str> = self.draft.drivers.iter().map(|d| d.name.as_str()).collect();
+                let near = did_you_mean(name, drivers.iter().copied());
                 if let Some(fault) = self.faults.get_mut(faults) {
+                    if !drivers.is_empty() {
+                        let drivers: Vec<String> = drivers.iter().map(|d| format!("`{d}`")).collect();
+                        fault.note(format!("drivers: {}", some_of(&drivers, ", ", LISTED_NAMES)));
+                    }
                     fault.message = format!("there is no driver, measure or point component named `{name}`");
                     if let Some(near) = near {
                         fault.help(format!("did you mean `{near}`?"));
