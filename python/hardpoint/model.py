@@ -291,10 +291,12 @@ class Model:
         validate: Any = None,
         progress: Progress = None,
     ) -> Study:
-        """Fits the design to measured data: a CSV file (docs/calibration.md lists its columns), or a pandas table with the same columns.
+        """Fits the design to measured data: a CSV file (docs/calibration.md lists its columns), or a pandas table with
+        the same columns.
 
-        `prior` has standard deviations of variables about their nominal values, `priors="tolerances"` takes their tolerances,
-        `offsets` names drivers and measures with an unknown offset, and `validate` is a table that is compared, but not fitted.
+        `prior` has standard deviations of variables about their nominal values, `priors="tolerances"` takes their
+        tolerances, `offsets` names drivers and measures with an unknown offset, and `validate` is a table that is
+        compared, but not fitted.
         """
         with contextlib.ExitStack() as stack:
             text, design = self._native.calibrate(

@@ -142,7 +142,9 @@ impl Model {
     }
 
     /// Fits the design to measured data: the result, and the fitted design.
-    #[pyo3(signature = (measured, sigmas, variables, loss, iterations, priors, priors_from, offsets, validate, progress=None))]
+    #[pyo3(signature = (
+        measured, sigmas, variables, loss, iterations, priors, priors_from, offsets, validate, progress=None
+    ))]
     #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn calibrate(
         &self,

@@ -81,8 +81,8 @@ fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     (0..n).map(|k| b[k].iter().map(|x| x / a[k][k]).collect()).collect()
 }
 
-/// Priors of the linear slider in `unit`, of which a metre has `scale` / 1000: a 100.2 +- 0.3 mm, c +- 0.5 mm, and b and
-/// c within 0.1 mm.
+/// Priors of the linear slider in a unit of which a millimetre has `scale`: a 100.2 +- 0.3 mm, c +- 0.5 mm, and b and c
+/// within 0.1 mm.
 fn linear_priors(scale: f64) -> String {
     format!(
         r#"

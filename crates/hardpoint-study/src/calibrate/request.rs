@@ -62,8 +62,8 @@ impl<'a> Request<'a> {
     /// Highest maximum number of iterations.
     pub const MOST: u32 = 100_000;
 
-    /// Request for a fit of a model to measurements: the settings of the file with the options of the caller. Bounds are
-    /// kept if the file has settings or the caller gives priors.
+    /// Request for a fit of a model to measurements: the settings of the file with the options of the caller. Bounds
+    /// are kept if the file has settings or the caller gives priors.
     ///
     /// # Errors
     /// A [`RequestError`] if the model has no variables, or an option is invalid.
