@@ -56,7 +56,17 @@ class Model:
     ) -> str: ...
     def drawn_designs(self, numbers: list[int], seed: int | None = None) -> _Array: ...
     def calibrate(
-        self, measured: str, sigmas: list[tuple[str, float]], variables: list[str], loss: str, iterations: int | None, progress: _Progress = None
+        self,
+        measured: str,
+        sigmas: list[tuple[str, float]],
+        variables: list[str],
+        loss: str,
+        iterations: int | None,
+        priors: list[tuple[str, float]],
+        priors_from: str | None,
+        offsets: list[str],
+        validate: str | None,
+        progress: _Progress = None,
     ) -> tuple[str, list[float]]: ...
     def what_if(self, case: int, design: list[float]) -> str: ...
     def verify(self, case: int, progress: _Progress = None) -> str: ...

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -283,24 +285,32 @@ class Model:
         variables: Iterable[str] = (),
         loss: str = "squares",
         iterations: int | None = None,
+        prior: Mapping[str, float] | None = None,
+        priors: str | None = None,
+        offsets: Iterable[str] = (),
+        validate: Any = None,
         progress: Progress = None,
     ) -> Study:
-        """Fits the design to measured data: a CSV file (docs/calibration.md lists its columns), or a pandas table with the same columns."""
-        path, temporary = measured, None
-        if not isinstance(measured, (str, os.PathLike)):
-            import tempfile
+        """Fits the design to measured data: a CSV file (docs/calibration.md lists its columns), or a pandas table with
+        the same columns.
 
-            handle, temporary = tempfile.mkstemp(suffix=".csv")
-            with os.fdopen(handle, "w", encoding="utf-8", newline="") as out:
-                measured.to_csv(out, index=False)
-            path = temporary
-        try:
+        `prior` has standard deviations of variables about their nominal values, `priors="tolerances"` takes their
+        tolerances, `offsets` names drivers and measures with an unknown offset, and `validate` is a table that is
+        compared, but not fitted.
+        """
+        with contextlib.ExitStack() as stack:
             text, design = self._native.calibrate(
-                os.fspath(path), list((sigma or {}).items()), list(variables), loss, iterations, listener(progress)
+                _table(measured, stack),
+                list((sigma or {}).items()),
+                list(variables),
+                loss,
+                iterations,
+                list((prior or {}).items()),
+                priors,
+                list(offsets),
+                None if validate is None else _table(validate, stack),
+                listener(progress),
             )
-        finally:
-            if temporary:
-                os.unlink(temporary)
         return outcome(self, text, design, design)
 
     def sweep(self, *, workers: int | None = None, progress: Progress = None, **asked) -> SweepResult:
@@ -456,3 +466,14 @@ def _restored(text: str, file: str, files: tuple, added: tuple[bool, bool], case
         return Model(_restored(text, file, files, added, None)._native, case, added)
     native = _native.parse(text, file, files=dict(files))
     return Model(native.with_variables(*added) if any(added) else native, None, added)
+
+
+def _table(data: Any, stack: contextlib.ExitStack) -> str:
+    """Path of a CSV file: a given one, or a temporary one of a table of pandas."""
+    if isinstance(data, (str, os.PathLike)):
+        return os.fspath(data)
+    handle, path = tempfile.mkstemp(suffix=".csv")
+    stack.callback(os.unlink, path)
+    with os.fdopen(handle, "w", encoding="utf-8", newline="") as out:
+        data.to_csv(out, index=False)
+    return path

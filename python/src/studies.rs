@@ -21,10 +21,11 @@ use hardpoint_study::calibrate::{self, Loss, calibrate};
 use hardpoint_study::difference::DifferenceScheme;
 use hardpoint_study::grid::GridMap;
 use hardpoint_study::optimize::{self, optimize};
+use hardpoint_study::request::variable;
 use hardpoint_study::tolerance::{self, tolerance, toleranced_designs};
 use hardpoint_study::verify::{self, verify};
 use hardpoint_study::whatif::what_if;
-use hardpoint_study::{Control, Progress, validity};
+use hardpoint_study::{Control, Progress, RequestError, validity};
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde_json::json;
@@ -141,7 +142,9 @@ impl Model {
     }
 
     /// Fits the design to measured data: the result, and the fitted design.
-    #[pyo3(signature = (measured, sigmas, variables, loss, iterations, progress=None))]
+    #[pyo3(signature = (
+        measured, sigmas, variables, loss, iterations, priors, priors_from, offsets, validate, progress=None
+    ))]
     #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn calibrate(
         &self,
@@ -151,13 +154,33 @@ impl Model {
         variables: Vec<String>,
         loss: &str,
         iterations: Option<usize>,
+        priors: Vec<(String, f64)>,
+        priors_from: Option<String>,
+        offsets: Vec<String>,
+        validate: Option<&str>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(String, Vec<f64>)> {
         let file = &self.whole;
         let table = file.measured(Path::new(measured), &sigmas).map_err(|found| Failure::of_text(&found))?;
         let loss = Loss::named(loss).map_err(Failure::from)?;
         let formulation = Formulation::Relative;
-        let overrides = calibrate::Overrides { variables, loss, formulation, iterations };
+        let others = validate.map(|path| file.measured(Path::new(path), &sigmas)).transpose();
+        let others = others.map_err(|found| Failure::of_text(&found))?;
+        let prior = |(name, sigma): (String, f64)| {
+            let variable = variable(&file.model, &name)?;
+            Ok((variable, file.units.to_si(file.model.variables[variable.0].quantity, sigma)))
+        };
+        let priors = priors.into_iter().map(prior).collect::<Result<_, RequestError>>();
+        let overrides = calibrate::Overrides {
+            variables,
+            priors: priors.map_err(Failure::from)?,
+            priors_from,
+            offsets,
+            validation: others.as_ref().map(|data| &data.measurements),
+            loss,
+            formulation,
+            iterations,
+        };
         let request =
             calibrate::Request::of(&file.model, &table.measurements, &overrides).map_err(Failure::from)?;
         let found = patiently(py, progress, |watch| {
@@ -176,6 +199,7 @@ impl Model {
             file,
             measured: &table,
             data: measured,
+            validation: others.as_ref().zip(validate),
             loss,
             found: &found,
         });

@@ -67,6 +67,9 @@ def test_calibrate(command, tmp_path):
     pandas = pytest.importorskip("pandas")
     again = model.calibrate(pandas.read_csv(data, comment="#"))
     assert again.design == study.design
+    known = model.calibrate(data, prior={"strut_top_y": 0.2}, offsets=["half_track"])
+    same(known, printed(command("calibrate", path, data, "--prior", "strut_top_y=0.2", "--offset", "half_track", "--json")))
+    assert known.facts["variables"][1]["source"] == "still your prior"
 
 
 def test_sweep(command, tmp_path):
@@ -140,6 +143,9 @@ def test_the_page_is_that_of_the_command_line(strut, command, tmp_path):
         (["tolerance", "macpherson.toml"], lambda m: m.tolerance()),
         (["optimize", "studies/strut_toe.toml", "--starts", 100001], lambda m: m.optimize(starts=100001)),
         (["calibrate", "studies/strut_calibrate.toml", "{data}", "--variable", "outer_q"], lambda m: m.calibrate(DATA, variables=["outer_q"])),
+        (["calibrate", "studies/strut_calibrate.toml", "{data}", "--prior", "strut_top_x=0"], lambda m: m.calibrate(DATA, prior={"strut_top_x": 0})),
+        (["calibrate", "studies/strut_calibrate.toml", "{data}", "--validate", "{data}"], lambda m: m.calibrate(DATA, validate=DATA)),
+        (["calibrate", "studies/strut_calibrate.toml", "{data}", "--offset", "to"], lambda m: m.calibrate(DATA, offsets=["to"])),
         (["sweep", "studies/strut_sweep.toml", "--range", "lca_front_z=5..-5"], lambda m: m.sweep(ranges={"lca_front_z": (5, -5)})),
         (["sweep", "studies/strut_sweep.toml", "--range", "lca_fron_z=-5..5"], lambda m: m.sweep(ranges={"lca_fron_z": (-5, 5)})),
         (["sweep", "studies/strut_sweep.toml", "--curves", "tow"], lambda m: m.sweep(curves=["tow"])),

@@ -686,12 +686,16 @@ pub struct Tolerance {
 }
 
 const AFTER_CALIBRATE: &str = "\
-The measured file is a CSV table. Its first line names drivers, outputs (measures, and
-points as P.x) and their standard deviations (`sigma toe`); each line below is a posture,
+The measured file is a CSV table. Its first line names drivers, given forces, outputs (measures,
+and points as P.x) and their standard deviations (`sigma toe`); each line below is a posture,
 in the units of the model file. Empty cells were not measured; a name that begins with #
 leaves its column out. Values of a driver have the zero, sign and unit of its law; a driver
 without a column is at its position in the design configuration. If no reading has a standard
 deviation, it is estimated from the residuals (docs/calibration.md).
+
+Prior knowledge is in `[calibrate]` of the model file: standard deviations of variables, groups
+of variables that deviate alike, and offsets of drivers and sensors. --prior, --priors and
+--offset add to it. With such a table or with priors the bounds of variables are kept.
 
 With --output it writes into the folder:
   residuals.csv    a row for each reading: measured, nominal, fitted, difference
@@ -701,6 +705,8 @@ With --output it writes into the folder:
 
 Examples:
   hardpoint calibrate models/studies/strut_calibrate.toml models/studies/strut_measured.csv -o results/strut
+  hardpoint calibrate models/studies/strut_calibrate.toml models/studies/strut_measured.csv --prior strut_top_x=0.5
+  hardpoint calibrate models/five_link.toml measured.csv --priors tolerances --offset toe --validate other.csv
   hardpoint calibrate models/five_link.toml measured.csv --sigma toe=0.02 --sigma camber=0.02 --loss huber
   hardpoint calibrate models/stewart.toml poses.csv --variable base_1_x --variable base_1_y --save as_built.toml";
 
@@ -722,6 +728,18 @@ pub struct Calibrate {
     /// Standard deviation of readings without one, in their unit; may be repeated
     #[arg(long, value_name = "NAME=SIGMA")]
     pub sigma: Vec<String>,
+    /// Prior of a design variable: its standard deviation about the nominal value, in its unit; may be repeated
+    #[arg(long, value_name = "NAME=SIGMA")]
+    pub prior: Vec<String>,
+    /// Priors of all other variables: `tolerances`, their own
+    #[arg(long, value_name = "SOURCE")]
+    pub priors: Option<String>,
+    /// Fit an unknown offset of this driver or measure; may be repeated
+    #[arg(long, value_name = "NAME")]
+    pub offset: Vec<String>,
+    /// Compare the fitted design with these readings, which are not fitted: a CSV table
+    #[arg(long, value_name = "FILE")]
+    pub validate: Option<PathBuf>,
     /// Loss function of large residuals
     #[arg(long, value_enum, default_value_t = LossKind::Squares)]
     pub loss: LossKind,

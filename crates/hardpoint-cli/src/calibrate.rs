@@ -3,11 +3,13 @@
 use std::io::Write;
 use std::num::NonZero;
 
+use hardpoint::model::VariableId;
 use hardpoint::{Analysis, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::calibrate::{CalibrateFacts, CalibrationInputs};
 use hardpoint_report::figures::number;
 use hardpoint_study::calibrate::{Calibration, Error, Loss, Overrides, Request, Status, calibrate};
+use hardpoint_study::request::variable;
 use hardpoint_study::{Control, Progress, Step};
 
 use crate::args::{Calibrate, LossKind};
@@ -33,8 +35,17 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
         session.not_read(&found);
         Outcome::BadModel
     })?;
+    let validation = options.validate.as_ref().map(|path| file.measured(path, &sigmas)).transpose();
+    let validation = validation.map_err(|found| {
+        session.not_read(&found);
+        Outcome::BadModel
+    })?;
     let overrides = Overrides {
         variables: options.variable.clone(),
+        priors: options.prior.iter().map(|text| prior(session, &file, text)).collect::<Result<_, _>>()?,
+        priors_from: options.priors.clone(),
+        offsets: options.offset.clone(),
+        validation: validation.as_ref().map(|data| &data.measurements),
         loss: options.loss.of(),
         formulation: options.common.formulation(),
         iterations: Some(options.iterations.get()),
@@ -49,7 +60,10 @@ fn calibrate_in(session: &Session, options: &Calibrate) -> Result<Outcome, Outco
     let found = search(session, &file, &request)?;
     let loss = request.loss;
     let data = options.measured.display().to_string();
-    let calibrated = CalibrationInputs { file: &file, measured: &measured, data: &data, loss, found: &found };
+    let validated = options.validate.as_ref().map(|path| path.display().to_string());
+    let validation = validation.as_ref().zip(validated.as_deref());
+    let calibrated =
+        CalibrationInputs { file: &file, measured: &measured, data: &data, validation, loss, found: &found };
     let mut facts = CalibrateFacts::of(&calibrated);
     facts.seconds = session.seconds();
     let mut saved = Ok(None);
@@ -106,6 +120,21 @@ fn sigmas(session: &Session, given: &[String]) -> Result<Vec<(String, f64)>, Out
             })
         })
         .collect()
+}
+
+/// `NAME=SIGMA`, in the unit of the variable.
+fn prior(session: &Session, file: &ModelFile, text: &str) -> Result<(VariableId, f64), Outcome> {
+    let Some((name, sigma)) = text.split_once('=') else {
+        return Err(session
+            .misunderstood(&format!("`--prior {text}`: write it as `NAME=SIGMA`, like `--prior rod=0.5`")));
+    };
+    let variable = variable(&file.model, name.trim()).map_err(|error| session.refused(file, &error))?;
+    let Ok(sigma) = sigma.trim().parse::<f64>() else {
+        return Err(session.misunderstood(&format!(
+            "`--prior {text}`: the standard deviation is a number without a unit, in that of the variable"
+        )));
+    };
+    Ok((variable, file.units.to_si(file.model.variables[variable.0].quantity, sigma)))
 }
 
 /// Fits the design and reports every iteration.

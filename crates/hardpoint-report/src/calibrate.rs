@@ -2,13 +2,12 @@
 
 use std::io::Write;
 
-use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
-use hardpoint::model::Reading;
-use hardpoint::model::{DriverId, Model};
+use hardpoint::model::{Dimension, DriverId, ElementId, Model, Reading};
 use hardpoint_file::{MeasuredData, ModelFile, Units};
 use hardpoint_study::calibrate::{
-    Calibration, FittedReading, Loss, NextReading, Status, UnidentifiableChange,
+    BoundSide, Calibration, FittedParameter, FittedReading, Loss, NextReading, Status, UnidentifiableChange,
+    ValidatedReading, Validation,
 };
 use hardpoint_table::csv::CsvWriter;
 use serde::Serialize;
@@ -26,6 +25,9 @@ const LISTED: usize = 10;
 const TOGETHER: f64 = 0.95;
 /// Number of standard errors within which the scatter of residuals agrees with the given standard deviations.
 const FITS: f64 = 4.0;
+/// Largest posterior standard deviation, as a fraction of the prior one, of a variable that is learnt from the data:
+/// its variance is then at most half of the prior's, so that the data carry at least as much information as the prior.
+const LEARNT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Components of an unidentifiable direction below this fraction are not shown.
 const SLIGHT: f64 = 1e-4;
 
@@ -43,7 +45,7 @@ record! {
     CalibrateFacts::without_message(of: &CalibrationInputs<'_>) {
         let (model, units, found) = (of.model(), of.units(), of.found);
         let certainty = &found.certainty;
-        let variables = (0..found.variables.len()).map(|k| CalibratedVariable::of(of, k));
+        let variables = (0..found.parameters.len()).map(|k| CalibratedVariable::of(of, k));
         let variables: Vec<CalibratedVariable> = variables.collect();
         let line = |posture: usize| of.measured.lines[posture];
         let mut far_off: Vec<LargeResidual> = of
@@ -54,9 +56,7 @@ record! {
         far_off.sort_by(|a, b| b.residual.abs().total_cmp(&a.residual.abs()));
         let far_off_count = far_off.len();
         far_off.truncate(LISTED);
-        let names = |list: &[hardpoint::model::VariableId]| {
-            list.iter().map(|v| model.variables[v.0].name.clone()).collect::<Vec<_>>()
-        };
+        let names = |list: &[FittedParameter]| list.iter().map(|p| of.name_of(*p)).collect::<Vec<_>>();
         let readings = of.compared().count();
         let mut postures: Vec<usize> = of.compared().map(|(r, _)| r.posture).collect();
         postures.dedup();
@@ -88,7 +88,7 @@ record! {
     /// Status in words, with an instruction.
     message: String = String::new();
     /// Objective of the nominal and the fitted design: sum of squared residuals, or of the loss, in standard
-    /// deviations.
+    /// deviations, with those of the priors.
     objective: [f64; 2] = found.objective;
     /// Cost of the search.
     evaluations: Evaluations = Evaluations::of(found.cost);
@@ -96,19 +96,23 @@ record! {
     readings: usize = readings;
     /// Number of postures of these readings.
     postures: usize = postures.len();
-    /// Degrees of freedom: readings minus determined directions.
+    /// Degrees of freedom: readings and priors minus determined directions.
     freedom: usize = certainty.freedom;
     /// Standard deviation of the residuals: relative to the given standard deviations, where 1 is expected, otherwise
     /// in `scatter_unit`.
     scatter: Option<f64> = certainty.scatter.map(|s| scatter_of.map_or(s, |m| of.shown(m, s)));
     /// Unit of `scatter`; empty if standard deviations are given.
     scatter_unit: String = scatter_of.map_or(String::new(), |m| of.unit_of(m));
-    /// Fitted variables.
+    /// Fitted variables, then offsets.
     variables: Vec<CalibratedVariable> = variables;
+    /// Number of fitted variables and offsets with a prior.
+    priors: usize = certainty.prior_sigmas.iter().flatten().count();
     /// Pairs of variables that the readings hardly distinguish, with their correlation.
     together: Vec<(String, String, f64)> = together;
     /// Changes that the readings do not determine.
     untold: Vec<UnidentifiableFact> = certainty.unidentifiable.iter().map(|u| UnidentifiableFact::of(of, u)).collect();
+    /// Changes that the priors determine rather than the readings.
+    by_prior: Vec<UnidentifiableFact> = certainty.by_prior.iter().map(|u| UnidentifiableFact::of(of, u)).collect();
     /// Variables that the mechanism cannot follow. They keep their design values.
     left_out: Vec<String> = names(&found.left_out);
     /// Drivers without a column in the measurement file. They stay in the design configuration.
@@ -123,6 +127,8 @@ record! {
     not_reached: Vec<NotReachedFact> = not_reached.collect();
     /// Proposed further readings, the most informative first.
     next: Vec<NextFact> = next;
+    /// Residuals of data that were not fitted; `null` without such data.
+    validation: Option<ValidationFact> = of.validation.zip(found.validation.as_ref()).map(|(data, v)| ValidationFact::of(of, data, v));
     /// Written files.
     files: Vec<String> = Vec::new();
     /// Duration, s.
@@ -130,38 +136,59 @@ record! {
 }
 
 record! {
-    /// Fitted variable.
+    /// Fitted variable, or offset.
     CalibratedVariable::of(of: &CalibrationInputs<'_>, k: usize) {
-        let (model, units, v) = (of.model(), of.units(), of.found.variables[k]);
-        let variable = &model.variables[v.0];
-        let shown = |x: f64| units.from_si(variable.quantity, x);
-        let start = model.nominal_value(v);
+        let (parameter, certainty) = (of.found.parameters[k], &of.found.certainty);
+        let shown = |x: f64| of.units().from_si(of.dimension_of(parameter), x);
+        let start = match parameter {
+            FittedParameter::Variable(v) => of.model().nominal_value(v),
+            FittedParameter::Driver(_) | FittedParameter::Output(_) => 0.0,
+        };
+        let by = of.found.estimates[k];
+        let prior = certainty.prior_sigmas[k];
+        let ratio = certainty.sigmas[k].zip(prior).map(|(s, p)| s / p);
+        let source = match (certainty.bounds[k], certainty.sigmas[k], ratio) {
+            (Some(BoundSide::Lower), ..) => "at its lower bound",
+            (Some(BoundSide::Upper), ..) => "at its upper bound",
+            (None, None, _) => "undetermined",
+            (None, Some(_), None) => "no prior",
+            (None, Some(_), Some(ratio)) if ratio <= LEARNT => "learnt from data",
+            (None, Some(_), Some(_)) => "still your prior",
+        };
     }
     /// Name.
-    name: String = variable.name.clone();
+    name: String = of.name_of(parameter);
     /// Unit.
-    unit: String = variable_unit(model, units, variable);
-    /// Nominal value: the value of a parameter, 0 for all other variables.
+    unit: String = of.unit_of_parameter(parameter);
+    /// Nominal value: the value of a parameter, 0 for all other variables and offsets.
     start: f64 = shown(start);
     /// Fitted value: the value of a parameter, the change of all other variables.
-    end: f64 = shown(start + of.found.design[v.0]);
-    /// Standard deviation; `null` if the readings do not determine it.
-    sigma: Option<f64> = of.found.certainty.sigmas[k].map(shown);
+    end: f64 = shown(start + by);
+    /// Standard deviation; `null` if the readings and priors do not determine it, or it is at a bound.
+    sigma: Option<f64> = certainty.sigmas[k].map(shown);
+    /// Mean of its prior; `null` without a prior of its own.
+    prior_mean: Option<f64> = certainty.prior_means[k].map(|mean| shown(start + mean));
+    /// Standard deviation by the priors alone; `null` without a prior.
+    prior_sigma: Option<f64> = prior.map(shown);
+    /// Fitted value minus mean of the prior, in standard deviations of the prior.
+    pull: Option<f64> = certainty.prior_means[k].zip(prior).map(|(mean, p)| (by - mean) / p);
+    /// Source of the result: `learnt from data`, `still your prior`, `no prior`, `undetermined`, `at its lower bound`
+    /// or `at its upper bound`.
+    source: &'static str = source;
 }
 
 record! {
     /// A change that the readings do not determine.
     UnidentifiableFact::of(of: &CalibrationInputs<'_>, untold: &UnidentifiableChange) {
-        let (model, units) = (of.model(), of.units());
         let shown = |k: usize| {
-            let variable = &model.variables[of.found.variables[k].0];
-            (variable, units.from_si(variable.quantity, untold.direction[k]))
+            let parameter = of.found.parameters[k];
+            (parameter, of.units().from_si(of.dimension_of(parameter), untold.direction[k]))
         };
         let all = 0..untold.direction.len();
         let most = all.clone().map(|k| shown(k).1.abs()).fold(0.0, f64::max);
         let part = |k: usize| {
-            let (variable, by) = shown(k);
-            (variable.name.clone(), by / most, variable_unit(model, units, variable))
+            let (parameter, by) = shown(k);
+            (of.name_of(parameter), by / most, of.unit_of_parameter(parameter))
         };
         let variables = all.map(part).filter(|(_, by, _)| by.abs() > SLIGHT).collect();
     }
@@ -194,8 +221,8 @@ record! {
         let improves = next.improves.as_ref();
         let variable = improves.map(|i| &variables[i.variable]);
         let in_units = |i: &hardpoint_study::calibrate::Improvement| {
-            let quantity: Quantity = of.model().variables[of.found.variables[i.variable].0].quantity;
-            [i.before, i.after].map(|s| of.units().from_si(quantity, s))
+            let dimension = of.dimension_of(of.found.parameters[i.variable]);
+            [i.before, i.after].map(|s| of.units().from_si(dimension, s))
         };
     }
     /// Reading to take.
@@ -204,8 +231,8 @@ record! {
     sigma: f64 = of.shown(next.output, next.sigma);
     /// Unit of `sigma`.
     unit: String = of.unit_of(next.output);
-    /// Values of the drivers: name, value, unit.
-    drivers: Vec<(String, f64, String)> = of.driver_values(&next.drivers);
+    /// Values of the drivers, and of the laws of given forces: name, value, unit.
+    drivers: Vec<(String, f64, String)> = of.place(&next.drivers, &next.forces);
     /// Number of the unidentifiable change, from 1, that the reading would determine.
     tells: Option<usize> = next.determines.map(|k| k + 1);
     /// Variable whose standard deviation it reduces most.
@@ -214,6 +241,62 @@ record! {
     sigmas: Option<[f64; 2]> = improves.map(in_units);
     /// Unit of the variable.
     variable_unit: Option<String> = variable.map(|v| v.unit.clone());
+}
+
+record! {
+    /// Residuals of data that were not fitted.
+    ValidationFact::of(of: &CalibrationInputs<'_>, data: (&MeasuredData, &str), found: &Validation) {
+        let (data, name) = data;
+        let compared: Vec<(&Reading, &ValidatedReading)> = data.measurements.readings.iter().zip(&found.readings)
+            .filter_map(|(r, v)| Some((r, v.as_ref()?))).collect();
+        let standard: Vec<f64> = compared.iter().filter(|(_, v)| v.sigma > 0.0).map(|(r, v)| (v.value - r.value) / v.sigma).collect();
+        let mut outputs: Vec<usize> = compared.iter().map(|(r, _)| r.output).collect();
+        outputs.sort_unstable();
+        outputs.dedup();
+        let measures = outputs.into_iter().map(|m| {
+            let of_output = compared.iter().filter(|(r, _)| r.output == m).copied().collect::<Vec<_>>();
+            ValidatedMeasure::of(of, m, &of_output)
+        });
+        let not_reached = found.not_reached.iter();
+        let not_reached = not_reached.map(|n| NotReachedFact { line: data.lines[n.posture], why: n.why.clone() });
+    }
+    /// Name of the file.
+    data: String = name.into();
+    /// Number of compared readings.
+    readings: usize = compared.len();
+    /// Root mean square of the residuals, in predicted standard deviations, where 1 is expected; `null` if there are
+    /// none.
+    scatter: Option<f64> = root_mean_square(&standard);
+    /// Residuals of each measure.
+    measures: Vec<ValidatedMeasure> = measures.collect();
+    /// Postures that the fitted design does not reach.
+    not_reached: Vec<NotReachedFact> = not_reached.collect();
+}
+
+record! {
+    /// Residuals of a measure in data that were not fitted, in its unit.
+    ValidatedMeasure::of(of: &CalibrationInputs<'_>, m: usize, compared: &[(&Reading, &ValidatedReading)]) {
+        let residuals: Vec<f64> = compared.iter().map(|(r, v)| of.shown(m, v.value - r.value)).collect();
+        let sigmas: Vec<f64> = compared.iter().map(|(_, v)| of.shown(m, v.sigma)).collect();
+    }
+    /// Name.
+    name: String = of.output(m).name.clone();
+    /// Unit.
+    unit: String = of.unit_of(m);
+    /// Number of readings.
+    readings: usize = residuals.len();
+    /// Mean of fitted minus measured values.
+    mean: f64 = residuals.iter().sum::<f64>() / residuals.len() as f64;
+    /// Root mean square of the residuals.
+    rms: f64 = root_mean_square(&residuals).unwrap_or_default();
+    /// Residual of the largest magnitude.
+    largest: f64 = residuals.iter().copied().fold(0.0, |most: f64, r| if r.abs() > most.abs() { r } else { most });
+    /// Predicted root mean square: that of the readings and of the fitted variables.
+    predicted: f64 = root_mean_square(&sigmas).unwrap_or_default();
+}
+
+fn root_mean_square(x: &[f64]) -> Option<f64> {
+    (!x.is_empty()).then(|| (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt())
 }
 
 /// Inputs of [`CalibrateFacts`].
@@ -225,6 +308,8 @@ pub struct CalibrationInputs<'a> {
     pub measured: &'a MeasuredData,
     /// Name of the measurement file.
     pub data: &'a str,
+    /// Measurements that were not fitted, with the name of their file.
+    pub validation: Option<(&'a MeasuredData, &'a str)>,
     /// Loss function of the residuals.
     pub loss: Loss,
     /// Result of the calibration.
@@ -252,6 +337,35 @@ impl CalibrationInputs<'_> {
         self.units().from_si(self.output(m).dimension, x)
     }
 
+    /// Name of a fitted parameter.
+    fn name_of(&self, parameter: FittedParameter) -> String {
+        match parameter {
+            FittedParameter::Variable(v) => self.model().variables[v.0].name.clone(),
+            FittedParameter::Driver(d) => format!("offset of {}", self.model().drivers[d.0].name),
+            FittedParameter::Output(m) => format!("offset of {}", self.output(m).name),
+        }
+    }
+
+    fn dimension_of(&self, parameter: FittedParameter) -> Dimension {
+        let model = self.model();
+        match parameter {
+            FittedParameter::Variable(v) => model.variables[v.0].quantity.into(),
+            FittedParameter::Driver(d) => model.driven(&model.drivers[d.0]).quantity.into(),
+            FittedParameter::Output(m) => self.output(m).dimension,
+        }
+    }
+
+    fn unit_of_parameter(&self, parameter: FittedParameter) -> String {
+        let model = self.model();
+        match parameter {
+            FittedParameter::Variable(v) => variable_unit(model, self.units(), &model.variables[v.0]),
+            FittedParameter::Driver(d) => {
+                symbol(self.units(), model.driven(&model.drivers[d.0]).quantity).into()
+            }
+            FittedParameter::Output(m) => self.unit_of(m),
+        }
+    }
+
     fn has_sigmas(&self) -> bool {
         self.measured.measurements.readings.iter().all(|r| r.sigma.is_some())
     }
@@ -271,6 +385,13 @@ impl CalibrationInputs<'_> {
             (driver.name.clone(), shown, symbol(self.units(), quantity).to_owned())
         };
         model.drivers.iter().zip(places).map(of).collect()
+    }
+
+    /// Values of the drivers, and of the laws of forces.
+    fn place(&self, drivers: &[f64], forces: &[(ElementId, f64)]) -> Vec<(String, f64, String)> {
+        let force =
+            |(e, value): &(ElementId, f64)| (self.model().elements[e.0].name.clone(), *value, String::new());
+        self.driver_values(drivers).into_iter().chain(forces.iter().map(force)).collect()
     }
 
     /// Plot of the residuals over the driver positions.
@@ -356,19 +477,12 @@ impl CalibrationInputs<'_> {
     /// # Errors
     /// If `out` cannot be written.
     pub fn write_covariance(&self, out: impl Write) -> csv::Result<()> {
-        let (model, units) = (self.model(), self.units());
-        let name = |v: &hardpoint::model::VariableId| {
-            let variable = &model.variables[v.0];
-            format!("{} [{}]", variable.name, variable_unit(model, units, variable))
-        };
-        let names: Vec<String> = self.found.variables.iter().map(name).collect();
+        let name = |p: &FittedParameter| format!("{} [{}]", self.name_of(*p), self.unit_of_parameter(*p));
+        let names: Vec<String> = self.found.parameters.iter().map(name).collect();
         let mut writer = CsvWriter::new(out);
         let header = std::iter::once("covariance").chain(names.iter().map(String::as_str));
         writer.row(header)?;
-        let scale = |k: usize| {
-            let v = self.found.variables[k];
-            units.from_si(model.variables[v.0].quantity, 1.0)
-        };
+        let scale = |k: usize| self.units().from_si(self.dimension_of(self.found.parameters[k]), 1.0);
         for (i, row) in self.found.certainty.covariance.iter().enumerate() {
             let row: Vec<f64> = row.iter().enumerate().map(|(j, c)| c * scale(i) * scale(j)).collect();
             let cells = row.iter().map(|x| format!("{x:?}"));
@@ -403,12 +517,22 @@ impl CalibrateFacts {
         };
         match self.status {
             "found" => {
-                format!("found: the readings determine all {}{fit}", count(self.variables.len(), "variable"))
+                let by = if self.priors > 0 { "readings and the priors" } else { "readings" };
+                let has_offsets =
+                    of.found.parameters.iter().any(|p| !matches!(p, FittedParameter::Variable(_)));
+                let what = if has_offsets { "parameter" } else { "variable" };
+                let of_priors = match self.by_prior.len() {
+                    0 => String::new(),
+                    1 => "; 1 direction is determined by the priors".into(),
+                    n => format!("; {n} directions are determined by the priors"),
+                };
+                format!("found: the {by} determine all {}{of_priors}{fit}", count(self.variables.len(), what))
             }
             "not_told" => format!(
-                "found, but {} of the design {} not determined by the readings{fit}",
+                "found, but {} of the design {} not determined by the readings{}{fit}",
                 count(self.untold.len(), "direction"),
-                if self.untold.len() == 1 { "is" } else { "are" }
+                if self.untold.len() == 1 { "is" } else { "are" },
+                if self.priors > 0 { " and the priors" } else { "" }
             ),
             "interrupted" => "interrupted: the best design so far".into(),
             _ => "the iteration limit was reached before the best fit: increase `--iterations`".into(),
@@ -436,6 +560,20 @@ impl CalibrateFacts {
                     count(free, "degree of freedom").replace("degree of freedoms", "degrees of freedom")
                 ),
             ));
+        }
+        let at_bounds = self.variables.iter().filter(|v| v.source.starts_with("at its"));
+        let at_bounds: Vec<String> = at_bounds.map(|v| format!("{} {}", v.name, v.source)).collect();
+        if !at_bounds.is_empty() {
+            rows.push(("bounds", format!("{}: the fit would leave its bounds", some_of(&at_bounds, ", "))));
+        }
+        if let Some(validation) = &self.validation {
+            let scatter = validation.scatter.map_or(String::new(), |s| {
+                format!(", residuals {} of the predicted standard deviations", rounded(s, 3))
+            });
+            rows.push(("validated", format!("{}{scatter}", count(validation.readings, "reading"))));
+            for n in validation.not_reached.iter().take(LISTED) {
+                rows.push(("not reached", format!("validation data, line {}: {}", n.line, n.why)));
+            }
         }
         if !self.left_out.is_empty() {
             let names = some_of(&self.left_out, ", ");
@@ -474,9 +612,61 @@ impl CalibrateFacts {
             v.sigma.filter(|s| *s > 0.0).map_or(String::new(), |s| rounded((v.end - v.start) / s, 3))
         };
         let sigma = |v: &CalibratedVariable| {
-            v.sigma.map_or("undetermined".into(), |s| format!("± {}", with_unit(s, &v.unit)))
+            v.sigma.map_or(v.source.into(), |s| format!("± {}", with_unit(s, &v.unit)))
         };
+        let has_source = self.priors > 0 || self.variables.iter().any(|v| v.source.starts_with("at its"));
         let tables = [
+            Table::of(
+                "Prior and posterior",
+                "Learnt from data: the posterior standard deviation is at most 0.71 of the prior one.",
+                &[
+                    ("variable", &|v: &&CalibratedVariable| v.name.clone()),
+                    ("prior", &|v| match (v.prior_mean, v.prior_sigma) {
+                        (Some(mean), Some(sigma)) => format!("{} ± {}", number(mean), with_unit(sigma, &v.unit)),
+                        (None, Some(sigma)) => format!("± {}", with_unit(sigma, &v.unit)),
+                        (_, None) => "none".into(),
+                    }),
+                    ("posterior", &|v| match v.sigma {
+                        Some(sigma) => format!("{} ± {}", number(v.end), with_unit(sigma, &v.unit)),
+                        None => with_unit(v.end, &v.unit),
+                    }),
+                    ("ratio", &|v| {
+                        let ratio = v.sigma.zip(v.prior_sigma).map(|(s, p)| s / p);
+                        ratio.map_or(String::new(), |ratio| rounded(ratio, 3))
+                    }),
+                    ("from prior / sigma", &|v| v.pull.map_or(String::new(), |p| rounded(p, 3))),
+                    ("source", &|v| v.source.into()),
+                ],
+                self.variables.iter().filter(|_| has_source),
+            )
+            .if_any(),
+            Table::of(
+                "Determined by priors",
+                "Changes of the design about which the priors contain more information than the readings.",
+                &[
+                    ("", &|u: &(usize, &UnidentifiableFact)| (u.0 + 1).to_string()),
+                    ("change by", &|u| parts(&u.1.variables, signed)),
+                    ("standard deviation", &|u| {
+                        u.1.sigma.map_or("none".into(), |s| format!("± {} times that", rounded(s, 3)))
+                    }),
+                ],
+                self.by_prior.iter().take(LISTED).enumerate(),
+            )
+            .if_any(),
+            Table::of(
+                "Validation",
+                "Readings that were not fitted: fitted minus measured.",
+                &[
+                    ("measurement", &|m: &&ValidatedMeasure| m.name.clone()),
+                    ("readings", &|m| m.readings.to_string()),
+                    ("mean", &|m| with_unit(m.mean, &m.unit)),
+                    ("root mean square", &|m| with_unit(m.rms, &m.unit)),
+                    ("predicted", &|m| with_unit(m.predicted, &m.unit)),
+                    ("largest", &|m| with_unit(m.largest, &m.unit)),
+                ],
+                self.validation.iter().flat_map(|v| &v.measures),
+            )
+            .if_any(),
             Table::of(
                 "Design",
                 "",

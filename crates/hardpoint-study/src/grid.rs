@@ -288,7 +288,7 @@ fn driven(model: &Model, grid: &Grid, texts: [String; 2], times: Vec<f64>) -> Mo
     let mut laws = vec![Some(Law::constant(0.0)); model.drivers.len()];
     let mut formulas = Vec::new();
     for (driver, text) in grid.drivers.into_iter().zip(texts) {
-        let (law, formula) = law_of(model, driver, text);
+        let (law, formula) = law_of(model, driver, text, &[]);
         laws[driver.0] = Some(law);
         formulas.extend(formula);
     }
@@ -303,7 +303,14 @@ fn driven(model: &Model, grid: &Grid, texts: [String; 2], times: Vec<f64>) -> Mo
 /// Law from a text that is valid by construction. If the driver's laws count from zero and its design position depends
 /// on the design variables, the law also compensates the shift of the design position during the first phase. The
 /// driver is then at the grid's value in every design.
-pub(super) fn law_of(model: &Model, driver: DriverId, text: String) -> (Law, Option<Formula>) {
+///
+/// `own` are the parameters of the text. They follow that shift.
+pub(super) fn law_of(
+    model: &Model,
+    driver: DriverId,
+    text: String,
+    own: &[(&str, f64)],
+) -> (Law, Option<Formula>) {
     let [_, first_end] = PHASE_ENDS;
     let law =
         |text: &str, with: &[(&str, f64)]| Law::parse_with(text, with).expect("a law that is written here");
@@ -315,10 +322,12 @@ pub(super) fn law_of(model: &Model, driver: DriverId, text: String) -> (Law, Opt
         Some((value, shift))
     });
     match follows {
-        None => (law(&text, &[]), None),
+        None => (law(&text, own), None),
         Some((value, formula)) => {
             let text = format!("{text} + ({value:?} - as_drawn)*min(t, {first_end:?})");
-            (law(&text, &[("as_drawn", value)]), Some(formula))
+            let parameters: Vec<(&str, f64)> =
+                std::iter::once(("as_drawn", value)).chain(own.iter().copied()).collect();
+            (law(&text, &parameters), Some(formula))
         }
     }
 }

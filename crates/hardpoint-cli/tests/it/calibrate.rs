@@ -71,6 +71,84 @@ fn the_strut_that_was_measured_is_found_although_one_reading_is_a_slip() {
     assert!((before - after).abs() < 1e-3 * before, "{before} {after}");
 }
 
+/// Fitted values and standard deviations of the strut without priors, mm, by the version before there were any.
+const WITHOUT_PRIORS: [(f64, f64); 6] = [
+    (0.7613084699071467, 0.21540693021337445),
+    (0.22870500358871457, 0.5131622349920765),
+    (-0.11434009239114633, 0.1396965556995077),
+    (-2.3596436429975927, 0.5633527521755661),
+    (-1.2907031462142347, 0.6799404394448727),
+    (-0.4195290180332288, 0.03365770576605202),
+];
+/// Round-off of a fit on other processors, in standard deviations.
+const PROCESSORS: f64 = 1e-6;
+
+#[test]
+fn priors_change_nothing_but_what_they_are_about() {
+    let bench = bench();
+    let run = |arguments: &[&str]| -> serde_json::Value {
+        let all: Vec<&str> = ["calibrate", "strut_calibrate.toml", "strut_measured.csv", "--json"]
+            .into_iter()
+            .chain(arguments.iter().copied())
+            .collect();
+        let output = bench.run(&all);
+        serde_json::from_slice(&output.stdout)
+            .unwrap_or_else(|e| panic!("{e}: {}", String::from_utf8_lossy(&output.stderr)))
+    };
+    let without = run(&[]);
+    for (variable, (end, sigma)) in without["variables"].as_array().unwrap().iter().zip(WITHOUT_PRIORS) {
+        let [e, s] = ["end", "sigma"].map(|key| variable[key].as_f64().unwrap());
+        assert!((e - end).abs() < PROCESSORS * sigma && (s - sigma).abs() < PROCESSORS * sigma, "{variable}");
+        assert_eq!(
+            (&variable["source"], &variable["prior_sigma"]),
+            (&"no prior".into(), &serde_json::Value::Null)
+        );
+    }
+    // Half of the data are fitted with priors, and compared with the other half.
+    let text = bench.text("strut_measured.csv");
+    let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+    let half = |odd: usize| {
+        let rows = lines[1..].iter().enumerate().filter(|(k, _)| k % 2 == odd).map(|(_, line)| *line);
+        std::iter::once(lines[0]).chain(rows).collect::<Vec<_>>().join("\n")
+    };
+    bench.put("even.csv", &half(0));
+    bench.put("odd.csv", &half(1));
+    let arguments = [
+        "calibrate",
+        "strut_calibrate.toml",
+        "even.csv",
+        "--validate",
+        "odd.csv",
+        "--loss",
+        "huber",
+        "--prior",
+        "strut_top_y=0.2",
+        "--prior",
+        "strut_top_x=2",
+        "--offset",
+        "half_track",
+    ];
+    let output = bench.run(&arguments);
+    let printed = String::from_utf8(output.stdout).unwrap();
+    for words in [
+        "the readings and the priors determine all 7 parameters",
+        "Prior and posterior",
+        "still your prior",
+        "learnt from data",
+        "offset of half_track",
+        "Validation",
+    ] {
+        assert!(printed.contains(words), "{words}: {printed}");
+    }
+    let facts: serde_json::Value =
+        serde_json::from_slice(&bench.run(&[&arguments[..], &["--json"]].concat()).stdout).unwrap();
+    let sources: Vec<&str> =
+        facts["variables"].as_array().unwrap().iter().map(|v| v["source"].as_str().unwrap()).collect();
+    assert_eq!(sources[..3], ["learnt from data", "still your prior", "no prior"]);
+    assert_eq!((&facts["priors"], &facts["validation"]["data"]), (&2.into(), &"odd.csv".into()));
+    assert!(facts["validation"]["measures"][0]["rms"].as_f64().unwrap() > 0.0);
+}
+
 #[test]
 fn invalid_calibrations_are_rejected() {
     let bench = bench();
@@ -85,6 +163,13 @@ fn invalid_calibrations_are_rejected() {
     assert_rejected(&["nowhere.csv"], 3, "`nowhere.csv` cannot be read");
     assert_rejected(&["strut_measured.csv", "--variable", "strut_top"], 2, "did you mean `strut_top_x`?");
     assert_rejected(&["strut_measured.csv", "--sigma", "toe"], 2, "--sigma toe=0.02");
+    assert_rejected(&["strut_measured.csv", "--prior", "strut_top_x"], 2, "--prior rod=0.5");
+    assert_rejected(&["strut_measured.csv", "--prior", "strut_top_x=0"], 2, "give a number above zero");
+    assert_rejected(&["strut_measured.csv", "--priors", "tolerance"], 2, "did you mean `tolerances`?");
+    assert_rejected(&["strut_measured.csv", "--offset", "to"], 2, "driver, measure or point component");
+    assert_rejected(&["strut_measured.csv", "--validate", "strut_measured.csv"], 2, "are the fitted data");
+    bench.put("odd.csv", "strut_drive,tow\n0,0.2\n");
+    assert_rejected(&["strut_measured.csv", "--validate", "odd.csv"], 3, "did you mean `toe`?");
     assert_rejected(&["strut_measured.csv", "--save", "strut_calibrate.toml"], 2, "the model file itself");
     bench.put("few.csv", "strut_drive,toe\n0,0.2\n10,0.1\n");
     assert_rejected(&["few.csv"], 2, "give standard deviations (`sigma`)");

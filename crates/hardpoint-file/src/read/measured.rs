@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use hardpoint::measure::outputs;
-use hardpoint::model::{Dimension, DriverId, Measurements, Reading};
+use hardpoint::model::{Dimension, DriverId, ElementId, Measurements, Reading};
 
 use crate::values::{DataError, Diagnostics, Source, closest, shown};
 
@@ -26,6 +26,8 @@ pub struct MeasuredData {
 enum Holds {
     /// Values of a driver.
     Driver(usize),
+    /// Values of the law of a given force.
+    Force(usize),
     /// Readings of an output.
     Output(usize),
     /// Standard deviations of an output's readings.
@@ -33,8 +35,9 @@ enum Holds {
 }
 
 impl ModelFile {
-    /// Reads measurements from a CSV file at any place: the first line names drivers, outputs (measures, and points as
-    /// `P.x`) and standard deviations (`sigma toe`); each line below is a posture, in the units of the model file.
+    /// Reads measurements from a CSV file at any place: the first line names drivers, given forces, outputs (measures,
+    /// and points as `P.x`) and standard deviations (`sigma toe`); each line below is a posture, in the units of the
+    /// model file.
     /// `sigmas` are those of outputs without a cell for it, in their units. Empty cells were not measured.
     ///
     /// # Errors
@@ -67,14 +70,16 @@ impl ModelFile {
                 format!("`{file}`, line {line}, column {} (`{}`)", column + 1, shown(&table.names[column].0))
             };
             let mut positions = drawn.clone();
+            let mut forces = Vec::new();
             let posture = found.lines.len();
             for (column, (holds, cell)) in holds.iter().zip(cells).enumerate() {
                 match (holds, cell) {
                     (Some(Holds::Driver(d)), Some(x)) => {
                         positions[*d] = self.units.to_si(self.model.driven(&drivers[*d]).quantity, *x);
                     }
-                    (Some(Holds::Driver(_)), None) => {
-                        let help = "give the value of every driver of the first line";
+                    (Some(Holds::Force(e)), Some(x)) => forces.push((ElementId(*e), *x)),
+                    (Some(Holds::Driver(_) | Holds::Force(_)), None) => {
+                        let help = "give the value of every driver and force of the first line";
                         return Err(DataError::new("HP0112", format!("{} is missing", here(column)), help));
                     }
                     (Some(Holds::Sigma(_)), Some(x)) if !(*x > 0.0) => {
@@ -97,6 +102,9 @@ impl ModelFile {
                 }
             }
             found.measurements.postures.push(positions);
+            if holds.iter().any(|h| matches!(h, Some(Holds::Force(_)))) {
+                found.measurements.forces.push(forces);
+            }
             found.lines.push(*line);
         }
         self.can_be_compared(&found, file)?;
@@ -113,9 +121,18 @@ impl ModelFile {
                 continue;
             }
             let holds = self.held(name).map_err(|help| {
-                let message = format!("`{}` is neither a driver nor an output", shown(name));
+                let message = format!("`{}` is neither a driver, a force nor an output", shown(name));
                 DataError::new("HP0248", message, help).note(note.clone())
             })?;
+            if let (Holds::Force(_), Some(unit)) = (holds, unit.as_deref()) {
+                let message =
+                    format!("`{}` is in `{}`, and the law of a force has no unit", shown(name), shown(unit));
+                let help = format!(
+                    "head the column `{}`, and give values of the law, which multiplies the force of the model file",
+                    shown(name)
+                );
+                return Err(DataError::new("HP0248", message, help).note(note));
+            }
             if let Some((unit, expected)) = unit.as_deref().zip(self.unit_of(holds)).filter(|(a, b)| a != b) {
                 let message =
                     format!("`{}` is in `{}`, and the model file has {expected}", shown(name), shown(unit));
@@ -158,11 +175,14 @@ impl ModelFile {
         if let Some(d) = self.model.drivers.iter().position(|d| d.name == name) {
             return Ok(Holds::Driver(d));
         }
+        let elements = &self.model.elements;
+        let force = || elements.iter().position(|e| e.name == name && e.kind.has_law()).map(Holds::Force);
         let all = self.model.drivers.iter().map(|d| d.name.as_str());
         let known = all.chain(outputs.iter().map(|o| o.name.as_str()));
-        of(name).map(Holds::Output).ok_or_else(|| match closest(name, known) {
+        let known = known.chain(elements.iter().filter(|e| e.kind.has_law()).map(|e| e.name.as_str()));
+        of(name).map(Holds::Output).or_else(force).ok_or_else(|| match closest(name, known) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => "name a driver, a measure, a point's component like `P.x`, or a standard deviation like `sigma toe`; \
+            None => "name a driver, a given force, a measure, a point's component like `P.x`, or a standard deviation like `sigma toe`; \
                      a name that begins with `#` leaves its column out"
                 .into(),
         })
@@ -172,6 +192,7 @@ impl ModelFile {
     fn unit_of(&self, holds: Holds) -> Option<&'static str> {
         let dimension = match holds {
             Holds::Driver(d) => self.model.driven(&self.model.drivers[d]).quantity.into(),
+            Holds::Force(_) => return None,
             Holds::Output(m) | Holds::Sigma(m) => outputs(&self.model)[m].dimension,
         };
         match dimension {

@@ -1,6 +1,7 @@
 //! The sections of a model, each from its table to its part of the draft.
 
 mod bodies;
+mod calibrate;
 mod cases;
 mod couplers;
 mod data;

@@ -13,8 +13,8 @@ use hardpoint_table::{AngleUnit, LengthUnit};
 use super::elements::{LOAD_MODES, LOADS};
 use super::raw::Raw;
 use super::{
-    bodies, cases, couplers, design, drivers, elements, equilibrium, hardpoints, joints, measures, metrics,
-    optimize, page, parameters, points, shapes, sweep, times, tolerance, wheels,
+    bodies, calibrate, cases, couplers, design, drivers, elements, equilibrium, hardpoints, joints, measures,
+    metrics, optimize, page, parameters, points, shapes, sweep, times, tolerance, wheels,
 };
 
 /// The file as a whole.
@@ -88,6 +88,8 @@ pub(crate) const MODEL: Table = table! {
     may "tolerance": Shape::Table(&tolerance::TOLERANCE), "{ variables = { B_x = 0.1 } }";
     /// Designs of a sweep, and the results that are stored.
     may "sweep": Shape::Table(&sweep::SWEEP), "{ variables = { B_x = [-5, 5] } }";
+    /// Fitted variables of a calibration, and prior knowledge about them.
+    may "calibrate": Shape::Table(&calibrate::CALIBRATE), "{ variables = { rod = 0.5 } }";
     /// Named designs: values of design variables, for comparison.
     may "designs": Shape::Entries("a design", &page::DESIGN), "{ softer = { B_x = 2.5 } }";
     /// Contents of the report's page.
@@ -125,7 +127,7 @@ const UNIT_WORDS: [(&str, &str); 12] = [
 ];
 /// Tables of `docs/file-format.md`, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 44] {
+pub(crate) fn tables() -> [(&'static str, Shape); 48] {
     use super::{declared, law, mesh};
     use crate::compose::INCLUDE_TABLE;
 
@@ -172,6 +174,10 @@ pub(crate) fn tables() -> [(&'static str, Shape); 44] {
         ("limits of tolerances", Shape::Table(&tolerance::LIMIT)),
         ("sweep", Shape::Table(&sweep::SWEEP)),
         ("ranges of variables", Shape::Table(&sweep::RANGE)),
+        ("calibrate", Shape::Table(&calibrate::CALIBRATE)),
+        ("priors of variables", Shape::Table(&calibrate::PRIOR)),
+        ("groups of priors", Shape::Table(&calibrate::GROUP)),
+        ("offsets", Shape::Table(&calibrate::OFFSET)),
         ("page", Shape::Table(&page::PAGE)),
         ("plots", Shape::Table(&page::PLOT)),
     ]
@@ -220,6 +226,7 @@ pub(crate) fn model<'a>(
     optimize::optimize(r, &fields, &mut raw);
     tolerance::tolerance(r, &fields, &mut raw);
     sweep::sweep(r, &fields, &mut raw);
+    calibrate::calibrate(r, &fields, &mut raw);
     page::designs(r, &fields, &mut raw);
     page::page(r, &fields, &mut raw);
     raw

@@ -9,11 +9,13 @@ use hardpoint::model::{Measurements, Reading};
 use hardpoint::model::{Model, Scatter, VariableId};
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
-use hardpoint_study::calibrate::{Calibration, Error, Loss, Request, Status, calibrate, values_in_postures};
+use hardpoint_study::calibrate::{
+    Calibration, Error, Loss, Prior, Request, Status, calibrate, values_in_postures,
+};
 use hardpoint_study::{Control, design_stream, draw};
 
 /// A slider-crank: `x = r cos a + sqrt(l^2 - (r sin a - e)^2)`.
-const CRANK: &str = r#"
+pub(crate) const CRANK: &str = r#"
 name = "slider-crank"
 units = { length = "mm", angle = "deg" }
 parameters.rod = { value = 300, unit = "length", design = true }
@@ -41,7 +43,7 @@ fn gallery(name: &str) -> Model {
     hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model
 }
 
-fn crank() -> Model {
+pub(crate) fn crank() -> Model {
     parse(CRANK, "crank.toml").unwrap_or_else(|e| panic!("{e}")).model
 }
 
@@ -56,13 +58,26 @@ fn fitted_by(
     loss: Loss,
 ) -> Result<Calibration, Error> {
     let variables = variables.to_vec();
-    let request = Request { measured, variables, loss, formulation: Formulation::Relative, iterations: 50 };
+    let request = Request {
+        measured,
+        validation: None,
+        variables,
+        prior: Prior::default(),
+        keep_bounds: false,
+        loss,
+        formulation: Formulation::Relative,
+        iterations: 50,
+    };
+    calibrated(model, &request)
+}
+
+pub(crate) fn calibrated(model: &Model, request: &Request<'_>) -> Result<Calibration, Error> {
     let control = Control {
         threads: NonZero::<usize>::MIN,
         progress: &mut |_| ControlFlow::Continue(()),
         more: &|| true,
     };
-    calibrate(model, &request, control)
+    calibrate(model, request, control)
 }
 
 fn fitted(model: &Model, measured: &Measurements) -> Calibration {
@@ -70,7 +85,7 @@ fn fitted(model: &Model, measured: &Measurements) -> Calibration {
 }
 
 /// Numbers of the standard normal distribution.
-fn noise(seed: u64) -> impl FnMut() -> f64 {
+pub(crate) fn noise(seed: u64) -> impl FnMut() -> f64 {
     let mut stream = design_stream(seed, 1);
     move || {
         let mut one = [0.0];
@@ -80,7 +95,7 @@ fn noise(seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// Readings of some outputs of a hidden design, with noise of standard deviation `sigma`, m or rad.
-fn readings(
+pub(crate) fn readings(
     model: &Model,
     hidden: &[f64],
     postures: &[Vec<f64>],
@@ -89,7 +104,7 @@ fn readings(
     noise: &mut impl FnMut() -> f64,
 ) -> Measurements {
     let values = values_in_postures(model, hidden, postures, Formulation::Relative).unwrap();
-    let mut measured = Measurements { postures: postures.to_vec(), readings: Vec::new() };
+    let mut measured = Measurements { postures: postures.to_vec(), ..Measurements::default() };
     for (posture, values) in values.iter().enumerate() {
         let values = values.as_ref().unwrap_or_else(|why| panic!("{why}"));
         for &output in outputs {
@@ -279,7 +294,7 @@ fn a_posture_out_of_reach_is_left_out_and_reported() {
         .replace("[300, \"offset\"", "[150, \"offset\"");
     let short = parse(&text, "short.toml").unwrap_or_else(|e| panic!("{e}")).model;
     let postures = [vec![0.1], vec![0.2], vec![1.2], vec![0.05]];
-    let mut measured = Measurements { postures: postures.to_vec(), readings: Vec::new() };
+    let mut measured = Measurements { postures: postures.to_vec(), ..Measurements::default() };
     for posture in 0..4 {
         measured.readings.push(Reading { posture, output: 0, value: 0.15, sigma: Some(1e-3) });
     }
@@ -323,7 +338,7 @@ fn recovered(
 }
 
 /// `e' C^-1 e` by Cholesky's factors of C with its diagonal scaled to ones.
-fn mahalanobis(c: &[Vec<f64>], e: &[f64]) -> f64 {
+pub(crate) fn mahalanobis(c: &[Vec<f64>], e: &[f64]) -> f64 {
     let n = e.len();
     let s: Vec<f64> = (0..n).map(|k| c[k][k].sqrt()).collect();
     let mut l = vec![vec![0.0; n]; n];
@@ -340,7 +355,7 @@ fn mahalanobis(c: &[Vec<f64>], e: &[f64]) -> f64 {
 
 /// Errors are those that the covariance states: chi squares have their mean and variance, and intervals cover what they
 /// should.
-fn assert_covered(name: &str, variables: usize, (errors, chis): (Vec<f64>, Vec<f64>)) {
+pub(crate) fn assert_covered(name: &str, variables: usize, (errors, chis): (Vec<f64>, Vec<f64>)) {
     let (n, v) = (chis.len() as f64, variables as f64);
     let mean = chis.iter().sum::<f64>() / n;
     // Four standard deviations of the mean of n chi squares of v degrees of freedom.

@@ -670,3 +670,52 @@ fn measures_that_all_leaves_out_are_named_with_the_reason() {
     assert!(text.contains("`bump` is missing: 2 drivers") && text.contains("`bump_steer`"), "{text}");
     assert!(text.contains("= help: "), "{text}");
 }
+
+/// A four-bar with two lengths and a plain number, and a calibration of them.
+fn calibration(name: &str, table: &str) {
+    let variables = "[design.lean]\ntilt = \"J4\"\nabout = \"x\"\n";
+    assert!(VALID.contains(variables));
+    broken(name, &[(variables, &format!("{variables}\n{table}\n"))]);
+}
+
+#[test]
+fn invalid_priors_are_reported_with_their_places() {
+    calibration("calibrate_sigma_of_zero", "[calibrate.variables]\nB_x = 0\n");
+    calibration("calibrate_negative_sigma", "[calibrate.variables]\nB_x = { sigma = -1, mean = 2 }\n");
+    calibration("calibrate_without_sigma", "[calibrate.variables]\nB_x = { mean = 2 }\n");
+    calibration("calibrate_unknown_variable", "[calibrate.variables]\nB_w = 1\n");
+    calibration(
+        "calibrate_prior_of_a_variable_that_is_not_fitted",
+        "[calibrate]\nfit = [\"B_x\", \"B_y\"]\nvariables = { B_z = 1 }\n",
+    );
+    calibration("calibrate_fit_twice", "[calibrate]\nfit = [\"B_x\", \"B_x\"]\n");
+    calibration("calibrate_without_tolerances", "[calibrate]\npriors = \"tolerances\"\n");
+    calibration("calibrate_misspelt_source", "[calibrate]\npriors = \"tolerance\"\n");
+    calibration("calibrate_group_of_one", "[calibrate.groups.g]\nvariables = [\"B_x\"]\nwithin = 0.1\n");
+    calibration(
+        "calibrate_group_of_two_units",
+        "[calibrate.groups.g]\nvariables = [\"B_x\", \"lean\"]\nwithin = 0.1\n",
+    );
+    calibration(
+        "calibrate_group_twice_the_same",
+        "[calibrate.groups.g]\nvariables = [\"B_x\", \"B_x\"]\nwithin = 0.1\n",
+    );
+    calibration(
+        "calibrate_group_within_zero",
+        "[calibrate.groups.g]\nvariables = [\"B_x\", \"B_y\"]\nwithin = 0\n",
+    );
+    calibration(
+        "calibrate_group_of_a_variable_that_is_not_fitted",
+        "[calibrate]\nfit = [\"B_x\"]\n[calibrate.groups.g]\nvariables = [\"B_x\", \"B_y\"]\nwithin = 1\n",
+    );
+    calibration("calibrate_offset_unknown", "[calibrate]\noffsets = [\"trun\"]\n");
+    calibration(
+        "calibrate_offset_twice",
+        "[calibrate]\noffsets = [\"turn\", { of = \"turn\", sigma = 1 }]\n",
+    );
+    calibration(
+        "calibrate_offset_of_negative_sigma",
+        "[calibrate]\noffsets = [{ of = \"turn\", sigma = -1 }]\n",
+    );
+    calibration("calibrate_offset_of_no_name", "[calibrate]\noffsets = [3]\n");
+}

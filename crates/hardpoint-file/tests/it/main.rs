@@ -31,6 +31,7 @@ mod parameters;
 mod path;
 mod planar;
 mod prescribed;
+mod priors;
 mod proof;
 mod published;
 mod requests;

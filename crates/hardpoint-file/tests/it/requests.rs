@@ -165,7 +165,7 @@ fn a_tolerance_study_is_that_of_the_file_with_overrides() {
 fn a_calibration_is_of_all_variables_or_of_those_that_are_named() {
     use calibrate::{Loss, Overrides, Request};
     let (model, measured) = (whole(), Measurements::default());
-    let of = |overrides: &Overrides| Request::of(&model, &measured, overrides);
+    let of = |overrides: &Overrides<'static>| Request::of(&model, &measured, overrides);
     let all = of(&Overrides::default()).unwrap();
     assert_eq!((all.variables.len(), all.loss, all.iterations), (2, Loss::Squares, Request::ITERATIONS));
     let named = |names: &[&str]| {

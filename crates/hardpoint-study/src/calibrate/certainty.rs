@@ -1,27 +1,40 @@
 //! Accuracy of the fitted variables: covariance, and changes that cannot be identified.
 
-use super::fit::{FitWorkspace, SearchResult, weighed};
+use super::fit::{FitWorkspace, SearchResult, information};
+use super::{BoundSide, dot};
 
 /// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not reported.
 const VAGUE: f64 = 1.0;
 /// Largest component of a variable in unreported directions at which its accuracy is still reported.
 const PART: f64 = 1e-6;
 
-/// Accuracy of the variables, SI.
+/// The readings determine a direction if at least this part of the information about it is theirs, otherwise the
+/// priors do: the larger of the two.
+const OF_READINGS: f64 = 0.5;
+
+/// Accuracy of the fitted parameters, SI.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Certainty {
-    /// Standard deviation of each fitted variable; `None` if the readings do not determine it.
+    /// Standard deviation of each fitted parameter; `None` if it is not determined, or at a bound.
     pub sigmas: Vec<Option<f64>>,
+    /// Standard deviation of each fitted parameter by the priors alone; `None` without a prior.
+    pub prior_sigmas: Vec<Option<f64>>,
+    /// Mean of the own prior of each fitted parameter, as a change from the nominal design; `None` without one.
+    pub prior_means: Vec<Option<f64>>,
+    /// Bounds that the fitted parameters are at.
+    pub bounds: Vec<Option<BoundSide>>,
     /// Covariance of the fitted variables over the reported directions.
     pub covariance: Vec<Vec<f64>>,
     /// Changes that the readings do not determine.
     pub unidentifiable: Vec<UnidentifiableChange>,
-    /// Degrees of freedom: number of compared readings minus number of reported directions.
+    /// Changes that the priors determine rather than the readings.
+    pub by_prior: Vec<UnidentifiableChange>,
+    /// Degrees of freedom: number of compared readings and of priors minus number of reported directions.
     pub freedom: usize,
     /// Standard deviation of the residuals, relative to the given standard deviations, where 1 is expected; in SI if
     /// none are given. `None` if there are no more readings than directions.
     pub scatter: Option<f64>,
-    /// Sum of squared residuals, in standard deviations, weighted by the loss.
+    /// Sum of squared residuals of readings, weighted by the loss, and of priors, in standard deviations.
     pub chi_square: f64,
 }
 
@@ -41,6 +54,8 @@ pub(super) struct Directions {
     pub reported: Vec<(Vec<f64>, f64)>,
     /// Unreported directions, with their standard deviations if they have any.
     pub unidentifiable: Vec<(Vec<f64>, Option<f64>)>,
+    /// Directions that the priors determine, unit vectors.
+    pub by_prior: Vec<Vec<f64>>,
 }
 
 impl Directions {
@@ -53,33 +68,41 @@ impl Directions {
 impl FitWorkspace<'_> {
     /// Splits the directions at the end of a search by their accuracy.
     pub(super) fn directions(&self, search: &SearchResult) -> Directions {
-        let (found, reported) = weighed(&search.at.d, &search.weights, self.variables.len());
+        let free: Vec<usize> = (0..self.parameters.len()).filter(|k| search.active[*k].is_none()).collect();
+        let found = self.determined(&search.at, &search.weights, search.scale, &free);
         let mut directions = Directions::default();
-        let mut nothing = Vec::new();
-        for (k, (s, v)) in found.values.into_iter().zip(found.directions).enumerate() {
+        let mut by_prior = Vec::new();
+        for (v, s) in found.directions {
             let sigma = search.scale / s;
-            if k >= reported {
-                nothing.push(v);
-            } else if self.has_sigmas && sigma > VAGUE {
-                directions.unidentifiable.push((v, Some(sigma)));
-            } else {
-                directions.reported.push((v, sigma));
+            // Directions of a fit with priors are not of unit length.
+            let length = if self.priors.is_empty() { 1.0 } else { dot(&v, &v).sqrt() };
+            if self.has_sigmas && sigma * length > VAGUE {
+                let unit = v.iter().map(|x| x / length).collect();
+                directions.unidentifiable.push((unit, Some(sigma * length)));
+                continue;
             }
+            if !self.priors.is_empty() && information(&search.at, &search.weights, &v) < OF_READINGS * s * s {
+                by_prior.push(v.iter().map(|x| x / length).collect());
+            }
+            directions.reported.push((v, sigma));
         }
-        directions.unidentifiable.extend(few_at_a_time(nothing).into_iter().map(|v| (v, None)));
+        directions.by_prior = few_at_a_time(by_prior);
+        let nothing = few_at_a_time(found.nothing);
+        directions.unidentifiable.extend(nothing.into_iter().map(|v| (v, None)));
         directions
     }
 
-    /// Accuracy of the variables at the end of a search.
+    /// Accuracy of the parameters at the end of a search.
     pub(super) fn certainty(&self, search: &SearchResult, directions: &Directions) -> Certainty {
-        let n = self.variables.len();
+        let n = self.parameters.len();
         let unidentifiable_part =
             |k: usize| directions.unidentifiable.iter().map(|(v, _)| v[k].abs()).fold(0.0, f64::max);
         let in_steps = directions.covariance(n);
         let covariance = (0..n)
             .map(|i| (0..n).map(|j| in_steps[i][j] * self.steps[i] * self.steps[j]).collect::<Vec<f64>>())
             .collect::<Vec<_>>();
-        let sigma = |k: usize| (unidentifiable_part(k) <= PART).then(|| covariance[k][k].sqrt());
+        let is_known = |k: usize| unidentifiable_part(k) <= PART && search.active[k].is_none();
+        let sigma = |k: usize| is_known(k).then(|| covariance[k][k].sqrt());
         let sigmas = (0..n).map(sigma).collect();
         let unidentifiable = |(v, sigma): &(Vec<f64>, Option<f64>)| {
             let most = v.iter().map(|x| x.abs()).fold(0.0, f64::max);
@@ -87,13 +110,28 @@ impl FitWorkspace<'_> {
             UnidentifiableChange { direction, sigma: sigma.map(|s| s * most) }
         };
         let reported = directions.reported.len();
-        let freedom = search.at.r.len().saturating_sub(reported);
+        let freedom = (search.at.r.len() + search.at.priors.len()).saturating_sub(reported);
         let rows = search.at.r.iter().zip(&search.weights);
-        let chi_square = rows.map(|(r, w)| w * (r / search.scale).powi(2)).sum::<f64>();
+        let of_readings = rows.map(|(r, w)| w * (r / search.scale).powi(2)).sum::<f64>();
+        let chi_square = of_readings + search.at.priors.iter().map(|r| r * r).sum::<f64>();
         let own = if self.has_sigmas { 1.0 } else { search.scale };
         let scatter = (freedom > 0).then(|| own * (chi_square / freedom as f64).sqrt());
+        // Estimated from the residuals of the readings alone
+        let scatter =
+            scatter.map(|s| if self.has_sigmas || self.priors.is_empty() { s } else { search.scale });
+        let spread = |v: &[f64]| {
+            let cv: Vec<f64> = in_steps.iter().map(|row| dot(row, v)).collect();
+            (dot(&cv, v) / dot(v, v)).max(0.0).sqrt()
+        };
+        let by_prior = directions.by_prior.iter().map(|v| unidentifiable(&(v.clone(), Some(spread(v)))));
+        let prior_sigmas =
+            self.priors.sigmas(n).into_iter().zip(&self.steps).map(|(s, step)| Some(s? * step));
         Certainty {
             sigmas,
+            prior_sigmas: prior_sigmas.collect(),
+            prior_means: self.parameters.iter().map(|p| self.request.prior_mean(self.model, *p)).collect(),
+            bounds: search.active.clone(),
+            by_prior: by_prior.collect(),
             unidentifiable: directions.unidentifiable.iter().map(unidentifiable).collect(),
             covariance,
             freedom,

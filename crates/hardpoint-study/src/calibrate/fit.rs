@@ -6,15 +6,19 @@ use basin::DenseMatrix;
 
 use crate::evaluation::StudyCost;
 use crate::request::RequestError;
-use crate::svd::{Singular, singular};
+use crate::svd::singular;
 use crate::trust_region::{Recent, TrustRegion};
-use hardpoint::measure::Output;
-use hardpoint::model::{Model, VariableId};
+use hardpoint::joint::Quantity;
+use hardpoint::measure::{Output, outputs};
+use hardpoint::model::{Dimension, DriverId, Model, VariableId};
 use hardpoint::run::Analysis;
 
+use super::bounded::bounded_least_squares;
 use super::posture::{ReachedPosture, solve_posture};
+use super::prior::{PriorRows, parameters_of};
 use super::{
-    Calibration, Certainty, FittedReading, Loss, NextReading, Reading, Request, Status, UnreachedPosture,
+    BoundSide, Calibration, Certainty, FittedParameter, FittedReading, Loss, NextReading, Reading, Request,
+    Status, UnreachedPosture, Validation, dot,
 };
 
 /// Maximum change of a variable from the nominal design, in natural steps (each about the mechanism's size or a
@@ -26,17 +30,28 @@ const ROUND_OFF: f64 = 1e-9;
 const SETTLED: f64 = 1e-12;
 /// Median absolute value of normal residuals, as a fraction of their standard deviation.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
+/// Damping of a step within bounds that does not improve the fit: first value, as a fraction of the largest column, and
+/// factor of the next ones (Levenberg and Marquardt).
+const DAMPING: [f64; 2] = [1e-4, 10.0];
+/// Number of damped trials before a point counts as the best one: the last step is shorter than round-off.
+const MOST_TRIALS: usize = 14;
 
 /// Data of a fit.
 pub(super) struct FitWorkspace<'b> {
     pub model: &'b Model,
     pub analyses: &'b [Analysis<'b>],
     pub request: &'b Request<'b>,
-    /// Fitted variables, without those that the mechanism cannot follow.
-    pub variables: Vec<VariableId>,
-    left_out: Vec<VariableId>,
-    /// Natural step of each fitted variable.
+    /// Fitted parameters, without those that the mechanism cannot follow.
+    pub parameters: Vec<FittedParameter>,
+    left_out: Vec<FittedParameter>,
+    /// Drivers with a fitted offset, in the order of their variables in the models of the postures.
+    pub offset_drivers: Vec<DriverId>,
+    /// Natural step of each fitted parameter.
     pub steps: Vec<f64>,
+    /// Bounds of each fitted parameter, in natural steps.
+    bounds: Vec<[f64; 2]>,
+    /// Rows of the prior knowledge.
+    pub priors: PriorRows,
     not_reached: Vec<UnreachedPosture>,
     /// Indices of the compared readings.
     pub compared: Vec<usize>,
@@ -55,17 +70,30 @@ pub(super) struct SearchResult {
     pub at: Rows,
     /// Weight of each residual.
     pub weights: Vec<f64>,
+    /// Active bounds.
+    pub active: Vec<Option<BoundSide>>,
     /// Estimated standard deviation of the residuals; 1 if standard deviations are given.
     pub scale: f64,
     pub objective: [f64; 2],
     iterations: Vec<f64>,
 }
 
-/// Residuals and their derivatives.
+/// Residuals of the readings with their derivatives, and residuals of the priors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
     pub r: Vec<f64>,
     pub d: Vec<Vec<f64>>,
+    /// Residuals of the priors, in their standard deviations.
+    pub priors: Vec<f64>,
+}
+
+/// Directions over the free parameters, in natural steps.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Determined {
+    /// Determined directions, with the singular value of each.
+    pub directions: Vec<(Vec<f64>, f64)>,
+    /// Directions whose singular values are round-off.
+    pub nothing: Vec<Vec<f64>>,
 }
 
 impl<'b> FitWorkspace<'b> {
@@ -74,9 +102,12 @@ impl<'b> FitWorkspace<'b> {
             model,
             analyses,
             request,
-            variables: request.variables.to_vec(),
+            parameters: parameters_of_request(model, request),
             left_out: Vec::new(),
+            offset_drivers: request.offset_drivers(),
             steps: Vec::new(),
+            bounds: Vec::new(),
+            priors: PriorRows::default(),
             not_reached: Vec::new(),
             compared: Vec::new(),
             has_sigmas: request.measured.readings.iter().all(|r| r.sigma.is_some()),
@@ -99,15 +130,20 @@ impl<'b> FitWorkspace<'b> {
             self.nominal.push(found.ok());
         }
         let reached = || self.nominal.iter().flatten();
-        let follows = |v: &VariableId| reached().all(|p| p.follows(*v));
-        (self.variables, self.left_out) = self.variables.iter().partition(|v| follows(v));
-        if self.variables.is_empty() {
+        let follows = |p: &FittedParameter| {
+            self.variable_in_postures(*p).is_none_or(|v| reached().all(|posture| posture.follows(v)))
+        };
+        (self.parameters, self.left_out) = self.parameters.iter().partition(|p| follows(p));
+        if self.parameters.is_empty() {
             return Err(RequestError::model(
                 "the mechanism can follow none of the fitted variables",
                 "fit variables that it can follow",
             ));
         }
-        self.steps = self.variables.iter().map(|v| self.model.natural_step(*v)).collect();
+        self.steps = self.parameters.iter().map(|p| self.natural_step(*p)).collect();
+        let bounds = self.parameters.iter().zip(&self.steps).map(|(p, step)| self.bounds_of(*p, *step));
+        self.bounds = bounds.collect();
+        self.priors = PriorRows::of(self.model, &self.request.prior, &self.parameters, &self.steps);
         let is_known =
             |r: &Reading| self.nominal[r.posture].as_ref().is_some_and(|s| s.value(r.output).is_finite());
         self.compared = (0..self.readings().len()).filter(|k| is_known(&self.readings()[*k])).collect();
@@ -118,8 +154,10 @@ impl<'b> FitWorkspace<'b> {
                 "measure postures that the nominal design reaches",
             ));
         }
-        let (readings, variables) = (self.compared.len(), self.variables.len());
-        if !self.has_sigmas && readings <= variables {
+        // A parameter with a prior takes no reading.
+        let with_prior = self.priors.sigmas(self.parameters.len()).iter().flatten().count();
+        let (readings, variables) = (self.compared.len(), self.parameters.len());
+        if !self.has_sigmas && readings + with_prior <= variables {
             return Err(RequestError::model(
                 format!(
                     "{readings} readings without standard deviations do not determine {variables} variables and their accuracy"
@@ -130,13 +168,94 @@ impl<'b> FitWorkspace<'b> {
         Ok(())
     }
 
-    /// Design at changes from the nominal design in natural steps.
+    /// Variable of a parameter in the models of the postures; `None` for an offset of readings.
+    pub fn variable_in_postures(&self, parameter: FittedParameter) -> Option<VariableId> {
+        match parameter {
+            FittedParameter::Variable(v) => Some(v),
+            FittedParameter::Driver(driver) => {
+                let place = self.offset_drivers.iter().position(|d| *d == driver);
+                place.map(|k| VariableId(self.model.variables.len() + k))
+            }
+            FittedParameter::Output(_) => None,
+        }
+    }
+
+    /// Natural step of a parameter: of a variable that moves the mechanism, about its size or a radian; of a stiffness
+    /// or another plain number that moves nothing by itself, its typical or nominal value.
+    fn natural_step(&self, parameter: FittedParameter) -> f64 {
+        let size = self.model.size();
+        match parameter {
+            FittedParameter::Variable(v) => {
+                let (step, variable) = (self.model.natural_step(v), &self.model.variables[v.0]);
+                let value = variable.typical.unwrap_or(self.model.nominal_value(v).abs());
+                let moves_nothing = variable.quantity == Quantity::Number && step == size;
+                if moves_nothing && value > 0.0 { value } else { step }
+            }
+            FittedParameter::Driver(driver) => {
+                match self.model.driven(&self.model.drivers[driver.0]).quantity {
+                    Quantity::Length => size,
+                    Quantity::Angle | Quantity::Number => 1.0,
+                }
+            }
+            FittedParameter::Output(m) => match outputs(self.model)[m].dimension {
+                Dimension::LENGTH => size,
+                Dimension::ANGLE => 1.0,
+                _ => {
+                    let of = self.readings().iter().filter(|r| r.output == m);
+                    let largest = of.map(|r| r.value.abs()).fold(0.0, f64::max);
+                    if largest > 0.0 { largest } else { 1.0 }
+                }
+            },
+        }
+    }
+
+    /// Bounds of a parameter in natural steps; infinite if it has none, or bounds are not kept.
+    fn bounds_of(&self, parameter: FittedParameter, step: f64) -> [f64; 2] {
+        let of = |v: VariableId| self.model.variables[v.0].bounds.filter(|_| self.request.keep_bounds);
+        let bounds = match parameter {
+            FittedParameter::Variable(v) => of(v),
+            FittedParameter::Driver(_) | FittedParameter::Output(_) => None,
+        };
+        bounds.map_or([f64::NEG_INFINITY, f64::INFINITY], |b| b.map(|x| x / step))
+    }
+
+    fn is_bounded(&self) -> bool {
+        self.bounds.iter().flatten().any(|x| x.is_finite())
+    }
+
+    fn active_bounds(&self, x: &[f64]) -> Vec<Option<BoundSide>> {
+        let side = |(x, [low, high]): (&f64, &[f64; 2])| match x {
+            x if x <= low => Some(BoundSide::Lower),
+            x if x >= high => Some(BoundSide::Upper),
+            _ => None,
+        };
+        x.iter().zip(&self.bounds).map(side).collect()
+    }
+
+    /// Changes of all variables of the posture models, from changes in natural steps: the design, then the offsets of
+    /// drivers.
     pub fn design(&self, x: &[f64]) -> Vec<f64> {
-        let mut design = vec![0.0; self.model.variables.len()];
-        for ((v, step), x) in self.variables.iter().zip(&self.steps).zip(x) {
-            design[v.0] = step * x;
+        let mut design = vec![0.0; self.model.variables.len() + self.offset_drivers.len()];
+        for ((p, step), x) in self.parameters.iter().zip(&self.steps).zip(x) {
+            if let Some(v) = self.variable_in_postures(*p) {
+                design[v.0] = step * x;
+            }
         }
         design
+    }
+
+    /// Offset of the readings of an output.
+    pub fn offset_of(&self, output: usize, x: &[f64]) -> f64 {
+        let all = self.parameters.iter().zip(&self.steps).zip(x);
+        all.map(|((p, step), x)| if *p == FittedParameter::Output(output) { step * x } else { 0.0 }).sum()
+    }
+
+    /// Derivative of an output in a reached posture by a fitted parameter.
+    pub fn d(&self, posture: &ReachedPosture, output: usize, parameter: FittedParameter) -> f64 {
+        match self.variable_in_postures(parameter) {
+            Some(v) => posture.d(output, v),
+            None => f64::from(u8::from(parameter == FittedParameter::Output(output))),
+        }
     }
 
     /// Solves a design in all postures that the nominal design reaches; `None` if one is not reached, or the caller
@@ -156,16 +275,17 @@ impl<'b> FitWorkspace<'b> {
         self.analyses.iter().zip(&self.nominal).map(of).collect()
     }
 
-    fn rows(&self, postures: &[Option<ReachedPosture>]) -> Rows {
-        let mut rows = Rows::default();
+    fn rows(&self, postures: &[Option<ReachedPosture>], x: &[f64]) -> Rows {
+        let mut rows = Rows { priors: self.priors.residuals(x), ..Rows::default() };
         for k in &self.compared {
             let reading = &self.readings()[*k];
             let posture =
                 postures[reading.posture].as_ref().expect("only postures that are reached are compared");
             let sigma = self.unit(reading);
-            let by = |(v, step): (&VariableId, &f64)| posture.d(reading.output, *v) * step / sigma;
-            rows.r.push((posture.value(reading.output) - reading.value) / sigma);
-            rows.d.push(self.variables.iter().zip(&self.steps).map(by).collect());
+            let by = |(p, step): (&FittedParameter, &f64)| self.d(posture, reading.output, *p) * step / sigma;
+            let value = posture.value(reading.output) + self.offset_of(reading.output, x);
+            rows.r.push((value - reading.value) / sigma);
+            rows.d.push(self.parameters.iter().zip(&self.steps).map(by).collect());
         }
         rows
     }
@@ -177,17 +297,17 @@ impl<'b> FitWorkspace<'b> {
 
     /// Residuals of a design; `None` if a posture is not reached, or the mechanism does not follow all variables.
     fn rows_at(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Rows> {
-        let rows = self.rows(&self.solve_postures(x, more)?);
+        let rows = self.rows(&self.solve_postures(x, more)?, x);
         rows.r.iter().chain(rows.d.iter().flatten()).all(|x| x.is_finite()).then_some(rows)
     }
 
     /// Standard deviation of the residuals, estimated if none are given.
-    fn scale_of(&self, r: &[f64], determined: usize) -> f64 {
+    fn scale_of(&self, r: &[f64], determined: f64) -> f64 {
         if self.has_sigmas {
             return 1.0;
         }
         let found = if self.request.loss == Loss::Squares {
-            let free = r.len().saturating_sub(determined).max(1) as f64;
+            let free = (r.len() as f64 - determined).max(1.0);
             (r.iter().map(|r| r * r).sum::<f64>() / free).sqrt()
         } else {
             let mut sizes: Vec<f64> = r.iter().map(|r| r.abs()).collect();
@@ -201,38 +321,101 @@ impl<'b> FitWorkspace<'b> {
         r.iter().map(|r| self.request.loss.weight(r / scale)).collect()
     }
 
+    /// Directions over the free parameters that the readings and the priors determine.
+    pub fn determined(&self, at: &Rows, weights: &[f64], scale: f64, free: &[usize]) -> Determined {
+        let n = self.parameters.len();
+        let whole = |v: &Vec<f64>, columns: &[Vec<f64>]| {
+            let mut whole = vec![0.0; n];
+            for (by, column) in v.iter().zip(columns) {
+                whole.iter_mut().zip(column).for_each(|(w, c)| *w += by * c);
+            }
+            whole
+        };
+        let weighted = |columns: &dyn Fn(&Vec<f64>) -> Vec<f64>| -> Vec<Vec<f64>> {
+            let row = |(row, w): (&Vec<f64>, &f64)| columns(row).into_iter().map(|x| w.sqrt() * x).collect();
+            at.d.iter().zip(weights).map(row).collect()
+        };
+        let (found, whitening) = if self.priors.is_empty() {
+            (singular(&weighted(&|row| free.iter().map(|k| row[*k]).collect()), free.len()), None)
+        } else {
+            let columns = self.priors.whitening(free, n);
+            let over = |row: &Vec<f64>| columns.iter().map(|c| dot(row, c)).collect::<Vec<f64>>();
+            let mut rows = weighted(&over);
+            rows.extend(self.priors.a.iter().map(|a| over(a).into_iter().map(|x| scale * x).collect()));
+            (singular(&rows, free.len()), Some(columns))
+        };
+        let least = ROUND_OFF * found.values.first().copied().unwrap_or_default();
+        let mut determined = Determined::default();
+        for (s, v) in found.values.into_iter().zip(&found.directions) {
+            let v = match &whitening {
+                Some(columns) => whole(v, columns),
+                None => {
+                    let mut whole = vec![0.0; n];
+                    free.iter().zip(v).for_each(|(k, v)| whole[*k] = *v);
+                    whole
+                }
+            };
+            if s > least {
+                determined.directions.push((v, s));
+            } else {
+                determined.nothing.push(v);
+            }
+        }
+        determined
+    }
+
+    /// Number of parameters that the readings determine, as the trace of their part of the information:
+    /// `sum |J v|^2 / s^2`; the number of directions without priors.
+    fn effective(&self, at: &Rows, weights: &[f64], directions: &[(Vec<f64>, f64)]) -> f64 {
+        if self.priors.is_empty() {
+            return directions.len() as f64;
+        }
+        directions.iter().map(|(v, s)| information(at, weights, v) / (s * s)).sum()
+    }
+
+    /// Sum of weighted squares of readings and priors, in squares of the scale.
+    fn squares(at: &Rows, weights: &[f64], scale: f64) -> f64 {
+        let readings = at.r.iter().zip(weights).map(|(r, w)| w * r * r).sum::<f64>();
+        readings + at.priors.iter().map(|r| (scale * r).powi(2)).sum::<f64>()
+    }
+
     /// Fits from the nominal design until no small change improves the fit.
     pub fn search(&self, progress: &mut dyn FnMut(usize, f64), more: &dyn Fn() -> bool) -> SearchResult {
-        let n = self.variables.len();
+        let n = self.parameters.len();
+        let all: Vec<usize> = (0..n).collect();
         let mut x = vec![0.0; n];
-        let mut at = self.rows(&self.nominal);
-        let mut scale = self.scale_of(&at.r, n);
+        let mut at = self.rows(&self.nominal, &x);
+        let mut scale = self.scale_of(&at.r, n as f64);
         let mut weights = self.weights(&at.r, scale);
-        let squares = |at: &Rows, w: &[f64]| at.r.iter().zip(w).map(|(r, w)| w * r * r).sum::<f64>();
         let mut status = Status::IterationLimit;
         let mut iterations = Vec::new();
         let first = at.clone();
-        progress(0, squares(&at, &weights) / (scale * scale));
+        progress(0, Self::squares(&at, &weights, scale) / (scale * scale));
         while iterations.len() < self.request.iterations {
-            let before = squares(&at, &weights);
-            let (Singular { mut directions, .. }, determined) = weighed(&at.d, &weights, n);
-            directions.truncate(determined);
-            let step = self.step(&x, &at, &weights, &directions, more);
+            let before = Self::squares(&at, &weights, scale);
+            let found = self.determined(&at, &weights, scale, &all).directions;
+            let step = if self.is_bounded() {
+                self.bounded_step(&x, &at, &weights, scale, more)
+            } else {
+                let directions: Vec<Vec<f64>> = found.iter().map(|(v, _)| v.clone()).collect();
+                self.step(&x, &at, &weights, scale, &directions, more)
+            };
             if !more() {
                 status = Status::Interrupted;
                 break;
             }
-            let Some((next, rows)) = step.filter(|(_, rows)| squares(rows, &weights) < before) else {
+            let Some((next, rows)) = step.filter(|(_, rows)| Self::squares(rows, &weights, scale) < before)
+            else {
                 status = Status::Found;
                 break;
             };
-            let after = squares(&rows, &weights);
+            let after = Self::squares(&rows, &weights, scale);
             (x, at) = (next, rows);
             let scaled_before = scale;
-            scale = self.scale_of(&at.r, directions.len());
+            scale = self.scale_of(&at.r, self.effective(&at, &weights, &found));
             let old = std::mem::replace(&mut weights, self.weights(&at.r, scale));
             let settled = weights.iter().zip(&old).all(|(a, b)| (a - b).abs() <= SETTLED.sqrt());
-            iterations.push(squares(&at, &weights) / (scale * scale));
+            iterations.push(Self::squares(&at, &weights, scale) / (scale * scale));
             progress(iterations.len(), *iterations.last().expect("it was just put there"));
             if before - after <= SETTLED * before
                 && settled
@@ -242,9 +425,10 @@ impl<'b> FitWorkspace<'b> {
                 break;
             }
         }
-        let of = |at: &Rows| self.loss_of(&at.r, scale);
+        let of = |at: &Rows| self.loss_of(&at.r, scale) + at.priors.iter().map(|r| r * r).sum::<f64>();
         let objective = [of(&first), of(&at)];
-        SearchResult { status, x, at, weights, scale, objective, iterations }
+        let active = self.active_bounds(&x);
+        SearchResult { status, x, at, weights, active, scale, objective, iterations }
     }
 
     /// Sum of the loss over all residuals.
@@ -253,12 +437,76 @@ impl<'b> FitWorkspace<'b> {
         r.iter().map(|r| r / scale).map(|r| weight(r) * r * r).sum()
     }
 
+    /// Better point within the bounds: the solution of the linearised problem, damped until the fit improves; `None` if
+    /// it does not.
+    fn bounded_step(
+        &self,
+        x: &[f64],
+        at: &Rows,
+        weights: &[f64],
+        scale: f64,
+        more: &dyn Fn() -> bool,
+    ) -> Option<(Vec<f64>, Rows)> {
+        let before = Self::squares(at, weights, scale);
+        let n = x.len();
+        let mut rows: Vec<Vec<f64>> =
+            at.d.iter().zip(weights).map(|(row, w)| row.iter().map(|d| w.sqrt() * d).collect()).collect();
+        let mut right: Vec<f64> = at.r.iter().zip(weights).map(|(r, w)| w.sqrt() * r).collect();
+        rows.extend(self.priors.a.iter().map(|row| row.iter().map(|a| scale * a).collect()));
+        right.extend(at.priors.iter().map(|r| scale * r));
+        let columns: Vec<f64> =
+            (0..n).map(|k| rows.iter().map(|row| row[k] * row[k]).sum::<f64>().sqrt()).collect();
+        let undamped = |free: &[usize]| self.determined(at, weights, scale, free).directions;
+        let first = bounded_least_squares(x, &rows, &right, &self.bounds, &undamped);
+        let better = |x: Vec<f64>| {
+            let rows = self.rows_at(&x, more)?;
+            (Self::squares(&rows, weights, scale) < before).then_some((x, rows))
+        };
+        if let Some(found) = better(first) {
+            return Some(found);
+        }
+        let read = rows.len();
+        rows.extend((0..n).map(|k| {
+            let mut row = vec![0.0; n];
+            row[k] = 1.0;
+            row
+        }));
+        right.extend(vec![0.0; n]);
+        let mut damping = DAMPING[0];
+        for _ in 0..MOST_TRIALS {
+            for (k, row) in rows[read..].iter_mut().enumerate() {
+                row[k] = damping * if columns[k] > 0.0 { columns[k] } else { 1.0 };
+            }
+            let damped = |free: &[usize]| {
+                let part: Vec<Vec<f64>> =
+                    rows.iter().map(|row| free.iter().map(|k| row[*k]).collect()).collect();
+                let found = singular(&part, free.len());
+                let whole = |(s, v): (f64, &Vec<f64>)| {
+                    let mut whole = vec![0.0; n];
+                    free.iter().zip(v).for_each(|(k, v)| whole[*k] = *v);
+                    (whole, s)
+                };
+                found.values.into_iter().zip(&found.directions).map(whole).collect()
+            };
+            let next = bounded_least_squares(x, &rows, &right, &self.bounds, &damped);
+            if let Some(found) = better(next) {
+                return Some(found);
+            }
+            if !more() {
+                return None;
+            }
+            damping *= DAMPING[1];
+        }
+        None
+    }
+
     /// Best fit with fixed weights over some directions, starting at x; `None` if there is none.
     fn step(
         &self,
         x: &[f64],
         at: &Rows,
         weights: &[f64],
+        prior_scale: f64,
         directions: &[Vec<f64>],
         more: &dyn Fn() -> bool,
     ) -> Option<(Vec<f64>, Rows)> {
@@ -266,7 +514,9 @@ impl<'b> FitWorkspace<'b> {
             return None;
         }
         let roots: Vec<f64> = weights.iter().map(|w| w.sqrt()).collect();
-        let size = at.r.iter().zip(&roots).map(|(r, w)| (w * r).powi(2)).sum::<f64>().sqrt();
+        let (readings, priors) = (roots.len(), at.priors.len());
+        let of_readings = at.r.iter().zip(&roots).map(|(r, w)| (w * r).powi(2)).sum::<f64>();
+        let size = (of_readings + at.priors.iter().map(|r| (prior_scale * r).powi(2)).sum::<f64>()).sqrt();
         let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
         let n = directions.len();
         let place = |z: &[f64]| along(x, directions, z);
@@ -280,8 +530,11 @@ impl<'b> FitWorkspace<'b> {
                 z,
                 || find(z),
                 |rows| match rows {
-                    Some(rows) => rows.r.iter().zip(&roots).map(residual).collect(),
-                    None => vec![f64::NAN; roots.len()],
+                    Some(rows) => {
+                        let of_priors = rows.priors.iter().map(|r| scale * prior_scale * r);
+                        rows.r.iter().zip(&roots).map(residual).chain(of_priors).collect()
+                    }
+                    None => vec![f64::NAN; readings + priors],
                 },
             )
         };
@@ -290,7 +543,10 @@ impl<'b> FitWorkspace<'b> {
                 z,
                 || find(z),
                 |rows| {
-                    DenseMatrix::from_fn(roots.len(), n, |i, j| {
+                    DenseMatrix::from_fn(readings + priors, n, |i, j| {
+                        if i >= readings {
+                            return scale * prior_scale * dot(&self.priors.a[i - readings], &directions[j]);
+                        }
                         let by = |rows: &Rows| {
                             rows.d[i].iter().zip(&directions[j]).map(|(d, v)| d * v).sum::<f64>()
                         };
@@ -299,7 +555,9 @@ impl<'b> FitWorkspace<'b> {
                 },
             )
         };
-        let bounds = [-FARTHEST, FARTHEST];
+        // Directions are as long as their priors are narrow.
+        let farthest = FARTHEST * self.priors.strongest(self.parameters.len());
+        let bounds = [-farthest, farthest];
         let mut solver = TrustRegion::new(none.clone(), bounds, Box::new(residuals), Box::new(derivatives))?;
         // A robust loss needs new weights after every iteration; squares keep theirs.
         let most = if self.request.loss == Loss::Squares { self.request.iterations } else { 1 };
@@ -314,6 +572,7 @@ impl<'b> FitWorkspace<'b> {
         search: SearchResult,
         certainty: Certainty,
         next: Vec<NextReading>,
+        validation: Option<Validation>,
         outputs: Vec<Output>,
     ) -> Calibration {
         let mut fitted = vec![None; self.readings().len()];
@@ -329,10 +588,14 @@ impl<'b> FitWorkspace<'b> {
                 weight: search.weights[row],
             });
         }
+        let mut design = self.design(&search.x);
+        design.truncate(self.model.variables.len());
         Calibration {
             status: search.status,
-            design: self.design(&search.x),
-            variables: self.variables,
+            design,
+            estimates: search.x.iter().zip(&self.steps).map(|(x, step)| x * step).collect(),
+            parameters: self.parameters,
+            validation,
             left_out: self.left_out,
             outputs,
             fitted,
@@ -346,15 +609,15 @@ impl<'b> FitWorkspace<'b> {
     }
 }
 
-/// Singular value decomposition of weighted rows: the directions, their singular values, and the number of singular
-/// values above round-off.
-pub(super) fn weighed(rows: &[Vec<f64>], weights: &[f64], n: usize) -> (Singular, usize) {
-    let weighted: Vec<Vec<f64>> =
-        rows.iter().zip(weights).map(|(row, w)| row.iter().map(|x| w.sqrt() * x).collect()).collect();
-    let found = singular(&weighted, n);
-    let least = ROUND_OFF * found.values.first().copied().unwrap_or_default();
-    let determined = found.values.iter().filter(|s| **s > least).count();
-    (found, determined)
+/// Part of the readings in the information about a direction: `sum w (J v)^2`.
+pub(super) fn information(at: &Rows, weights: &[f64], v: &[f64]) -> f64 {
+    at.d.iter().zip(weights).map(|(row, w)| w * dot(row, v).powi(2)).sum()
+}
+
+/// Fitted variables of a request, then its offsets.
+fn parameters_of_request(model: &Model, request: &Request<'_>) -> Vec<FittedParameter> {
+    let variables = request.variables.iter().map(|v| FittedParameter::Variable(*v));
+    variables.chain(parameters_of(model, &request.prior.offsets)).collect()
 }
 
 fn along(x: &[f64], directions: &[Vec<f64>], z: &[f64]) -> Vec<f64> {

@@ -11,19 +11,23 @@
 //! covariance = (J' W J)^-1,    W = the weights of the loss
 //! ```
 //!
-//! over the directions that the readings determine. All other directions are reported and keep their design values
-//! (`docs/theory.md`, section 13).
+//! over the directions that the readings determine. Gaussian priors and groups of variables are further rows, so that
+//! the same formula is the covariance of the posterior (Tarantola, Inverse Problem Theory, 2005, section 3.2). All
+//! other directions are reported and keep their design values (`docs/theory.md`, section 13).
 
+mod bounded;
 mod certainty;
 mod fit;
 mod next;
 mod posture;
+mod prior;
 mod request;
+mod validate;
 
 use std::cell::Cell;
 
 use hardpoint::measure::{Output, outputs};
-use hardpoint::model::{Model, Reading, VariableId};
+use hardpoint::model::{DriverId, Model, Reading, VariableId};
 use hardpoint::run::Analysis;
 use hardpoint::topology::{Formulation, TopologyError};
 
@@ -33,7 +37,9 @@ use super::request::{RequestError, named};
 
 pub use certainty::{Certainty, UnidentifiableChange};
 pub use next::{Improvement, NextReading};
+pub use prior::Prior;
 pub use request::{Overrides, Request};
+pub use validate::{ValidatedReading, Validation};
 
 /// Loss function of residuals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,6 +89,26 @@ pub enum Status {
     Interrupted,
 }
 
+/// Parameter that is fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FittedParameter {
+    /// A design variable.
+    Variable(VariableId),
+    /// Offset of a driver: its real position minus that of the table.
+    Driver(DriverId),
+    /// Offset of an output, by its column in [`outputs`]: reading minus value.
+    Output(usize),
+}
+
+/// Bound that a variable is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoundSide {
+    /// Lower bound.
+    Lower,
+    /// Upper bound.
+    Upper,
+}
+
 /// Posture that the nominal design does not reach. Its readings are left out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnreachedPosture {
@@ -110,10 +136,12 @@ pub struct FittedReading {
 pub struct Calibration {
     /// Status at the end of the fit.
     pub status: Status,
-    /// Fitted variables.
-    pub variables: Vec<VariableId>,
-    /// Variables that the mechanism cannot follow. They keep their design values.
-    pub left_out: Vec<VariableId>,
+    /// Fitted parameters.
+    pub parameters: Vec<FittedParameter>,
+    /// Change of each fitted parameter from the nominal design, SI.
+    pub estimates: Vec<f64>,
+    /// Parameters that the mechanism cannot follow. They keep their nominal values.
+    pub left_out: Vec<FittedParameter>,
     /// Fitted design: change of every variable of the model.
     pub design: Vec<f64>,
     /// Columns of the outputs.
@@ -122,15 +150,18 @@ pub struct Calibration {
     pub fitted: Vec<Option<FittedReading>>,
     /// Postures whose readings were left out.
     pub not_reached: Vec<UnreachedPosture>,
-    /// Objective of the nominal and the fitted design: sum of squared residuals in standard deviations, or of the loss.
+    /// Objective of the nominal and the fitted design: sum of squared residuals in standard deviations, or of the loss,
+    /// and of squared residuals of the priors.
     /// Without given standard deviations, estimated ones are used.
     pub objective: [f64; 2],
     /// Objective after each iteration.
     pub iterations: Vec<f64>,
-    /// Accuracy of the variables.
+    /// Accuracy of the fitted parameters.
     pub certainty: Certainty,
     /// Proposed further readings, the most informative first.
     pub next: Vec<NextReading>,
+    /// Residuals of the validation data, if there are any.
+    pub validation: Option<Validation>,
     /// Cost of the study.
     pub cost: StudyCost,
 }
@@ -157,9 +188,11 @@ pub fn calibrate(model: &Model, request: &Request<'_>, control: Control<'_>) -> 
         ended.set(ended.get() || progress(progressed).is_break());
     };
     let more = || !ended.get() && more();
-    let models: Vec<Model> =
-        request.measured.postures.iter().map(|p| posture::posture_model(model, p)).collect();
+    let offsets = request.offset_drivers();
+    let models = posture::posture_models(model, request.measured, &offsets);
     let analyses = posture::planned(&models, request.formulation).map_err(Error::Topology)?;
+    let others = request.validation.map_or(Vec::new(), |data| posture::posture_models(model, data, &offsets));
+    let others = posture::planned(&others, request.formulation).map_err(Error::Topology)?;
     let mut workspace = fit::FitWorkspace::new(model, &analyses, request);
     workspace.evaluate_nominal().map_err(Error::Request)?;
     let search = workspace.search(&mut progress, &more);
@@ -169,7 +202,8 @@ pub fn calibrate(model: &Model, request: &Request<'_>, control: Control<'_>) -> 
         Status::Found => workspace.next(&search, &directions, &certainty),
         Status::IterationLimit | Status::Interrupted => Vec::new(),
     };
-    Ok(workspace.calibration(search, certainty, next, outputs(model)))
+    let validation = request.validation.map(|data| workspace.validate(data, &others, &search, &directions));
+    Ok(workspace.calibration(search, certainty, next, validation, outputs(model)))
 }
 
 /// Values of all outputs of a design in postures of the drivers, SI; the reason for each posture that is not reached.
@@ -183,7 +217,7 @@ pub fn values_in_postures(
     postures: &[Vec<f64>],
     formulation: Formulation,
 ) -> Result<Vec<Result<Vec<f64>, String>>, TopologyError> {
-    let models: Vec<Model> = postures.iter().map(|p| posture::posture_model(model, p)).collect();
+    let models: Vec<Model> = postures.iter().map(|p| posture::posture_model(model, p, &[], &[])).collect();
     let values = |analysis: &Analysis<'_>| {
         let solved = posture::solve_posture(analysis, design, &mut StudyCost::default());
         let values =
@@ -191,4 +225,8 @@ pub fn values_in_postures(
         solved.map(values).map_err(|stop| stop.headline(analysis.model()))
     };
     Ok(posture::planned(&models, formulation)?.iter().map(values).collect())
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

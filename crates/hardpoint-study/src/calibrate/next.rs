@@ -1,13 +1,13 @@
 //! Proposed further readings.
 
 use hardpoint::measure::outputs;
-use hardpoint::model::{DriverId, Model, VariableId};
+use hardpoint::model::{DriverId, ElementId, Model};
 use hardpoint::run::{Analysis, Run};
 
-use super::Certainty;
 use super::certainty::Directions;
 use super::fit::{FitWorkspace, SearchResult};
 use super::posture::derivative;
+use super::{Certainty, FittedParameter};
 
 /// Maximum number of proposed readings.
 const PROPOSED: usize = 5;
@@ -24,6 +24,8 @@ pub struct NextReading {
     pub output: usize,
     /// Values of the drivers, in the coordinate of their laws, m or rad.
     pub drivers: Vec<f64>,
+    /// Values of the laws of given forces; all others keep their own.
+    pub forces: Vec<(ElementId, f64)>,
     /// Assumed standard deviation.
     pub sigma: f64,
     /// Index of the unidentifiable change that the reading determines best; `None` if it determines none.
@@ -36,13 +38,16 @@ pub struct NextReading {
 /// Effect of a further reading on a variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Improvement {
-    /// Index among the fitted variables.
+    /// Index among the fitted parameters.
     pub variable: usize,
     /// Standard deviation without the reading, SI.
     pub before: f64,
     /// Standard deviation with the reading, SI.
     pub after: f64,
 }
+
+/// Values of the drivers and of the laws of forces.
+type Place = (Vec<f64>, Vec<(ElementId, f64)>);
 
 /// Possible reading: its derivatives by natural steps, in standard deviations.
 struct Candidate {
@@ -58,7 +63,7 @@ impl FitWorkspace<'_> {
         directions: &Directions,
         certainty: &Certainty,
     ) -> Vec<NextReading> {
-        let covariance = directions.covariance(self.variables.len());
+        let covariance = directions.covariance(self.parameters.len());
         let mut best: Vec<Option<(f64, NextReading)>> = vec![None; outputs(self.model).len()];
         for candidate in self.candidates(search) {
             let (worth, next) = self.rate(candidate, directions, &covariance, certainty);
@@ -130,19 +135,23 @@ impl FitWorkspace<'_> {
             .collect();
         let mut found = Vec::new();
         let design = self.design(&search.x);
-        let mut at = |analysis: &Analysis<'_>, places: &dyn Fn(usize) -> Option<Vec<f64>>| {
-            let solution = analysis.solve(Run::new().at(&design));
+        let mut at = |analysis: &Analysis<'_>, places: &dyn Fn(usize) -> Option<Place>| {
+            let solution = analysis.solve(Run::new().at(&design[..analysis.model().variables.len()]));
             for k in 0..solution.motion.len() {
-                let Some(drivers) = places(k) else { continue };
+                let Some((drivers, forces)) = places(k) else { continue };
                 for (output, sigma) in sigmas.iter().enumerate() {
                     let Some(sigma) = *sigma else { continue };
-                    let by =
-                        |(v, step): (&VariableId, &f64)| derivative(&solution, k, output, *v) * step / sigma;
-                    let g: Vec<f64> = self.variables.iter().zip(&self.steps).map(by).collect();
+                    let d = |p: FittedParameter| match self.variable_in_postures(p) {
+                        Some(v) => derivative(&solution, k, output, v),
+                        None => f64::from(u8::from(p == FittedParameter::Output(output))),
+                    };
+                    let by = |(p, step): (&FittedParameter, &f64)| d(*p) * step / sigma;
+                    let g: Vec<f64> = self.parameters.iter().zip(&self.steps).map(by).collect();
                     if g.iter().all(|g| g.is_finite()) {
                         let next = NextReading {
                             output,
                             drivers: drivers.clone(),
+                            forces: forces.clone(),
                             sigma,
                             determines: None,
                             improves: None,
@@ -152,17 +161,23 @@ impl FitWorkspace<'_> {
                 }
             }
         };
-        for (analysis, drivers) in self.analyses.iter().zip(&self.request.measured.postures) {
-            at(analysis, &|k| (k > 0).then(|| drivers.clone()));
+        let measured = self.request.measured;
+        for (posture, (analysis, drivers)) in self.analyses.iter().zip(&measured.postures).enumerate() {
+            let forces = measured.forces_in(posture);
+            at(analysis, &|k| (k > 0).then(|| (drivers.clone(), forces.to_vec())));
         }
-        for model in self.model.motions() {
+        // The motions of the model have no offsets of drivers.
+        let motions = if self.offset_drivers.is_empty() { self.model.motions() } else { Vec::new() };
+        for (case, model) in motions.into_iter().enumerate() {
             let every = model.times.len().div_ceil(MAX_POSTURES).max(1);
             let few = Model { times: model.times.iter().step_by(every).copied().collect(), ..model };
             if let Ok(analysis) = Analysis::with(&few, self.request.formulation) {
+                let force_laws = self.model.cases.get(case).map_or(&[][..], |c| &c.force_laws[..]);
                 let drivers_at = |k: usize| {
                     let place =
                         |d: usize| few.drivers[d].law.at(few.times[k]).value() + few.as_drawn(DriverId(d));
-                    Some((0..few.drivers.len()).map(place).collect())
+                    let forces = force_laws.iter().map(|(e, law)| (*e, law.at(few.times[k]).value()));
+                    Some(((0..few.drivers.len()).map(place).collect(), forces.collect()))
                 };
                 at(&analysis, &drivers_at);
             }

@@ -3,10 +3,14 @@
 
 use crate::evaluation::StudyCost;
 use crate::grid::{PHASE_ENDS, law_of};
-use hardpoint::model::{Case, CaseId, DriverId, LoadMode, Model, VariableId};
+use hardpoint::law::Law;
+use hardpoint::model::{Case, CaseId, DriverId, ElementId, LoadMode, Measurements, Model, VariableId};
 use hardpoint::motion::Stop;
 use hardpoint::run::{Analysis, Run, Solution};
 use hardpoint::topology::{Formulation, TopologyError};
+
+/// Parameter of a law: the offset of its driver.
+const OFFSET: &str = "offset";
 
 /// Reached posture: the last output time of its motion.
 #[derive(Clone, Debug)]
@@ -39,26 +43,53 @@ pub(super) fn derivative(solution: &Solution, k: usize, output: usize, variable:
     if followed { solution.measured.d(k, variable, output)[0] } else { f64::NAN }
 }
 
-/// Model in which every driver moves from the design configuration to its position in a posture.
-pub(super) fn posture_model(model: &Model, places: &[f64]) -> Model {
+/// Model in which every driver moves from the design configuration to its position in a posture, and forces grow to
+/// their values there. Drivers with an offset have a further variable each, after those of the model.
+pub(super) fn posture_model(
+    model: &Model,
+    places: &[f64],
+    forces: &[(ElementId, f64)],
+    offsets: &[DriverId],
+) -> Model {
     let [begin, end] = PHASE_ENDS;
     let mut laws = Vec::new();
     let mut formulas = Vec::new();
     for (d, place) in places.iter().enumerate() {
-        let by = place - model.as_drawn(DriverId(d));
-        let (law, formula) = law_of(model, DriverId(d), format!("({by:?})*min(t, {end:?})"));
+        let driver = DriverId(d);
+        let by = place - model.as_drawn(driver);
+        let offset = offsets.contains(&driver);
+        let by = if offset { format!("({by:?} + {OFFSET})") } else { format!("({by:?})") };
+        let own: &[(&str, f64)] = if offset { &[(OFFSET, 0.0)] } else { &[] };
+        let (law, formula) = law_of(model, driver, format!("{by}*min(t, {end:?})"), own);
         laws.push(Some(law));
         formulas.extend(formula);
     }
+    let force_law = |(force, value): &(ElementId, f64)| {
+        let law = Law::parse(&format!("({value:?})*min(t, {end:?})")).expect("a law that is written here");
+        (*force, law)
+    };
     let case = Case {
         name: "posture".into(),
         laws,
-        force_laws: Vec::new(),
+        force_laws: forces.iter().map(force_law).collect(),
         formulas,
         times: vec![begin, end],
         load_mode: Some(LoadMode::Static),
     };
-    Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0))
+    let mut posture = Model { cases: vec![case], ..model.clone() }.in_case(CaseId(0));
+    for driver in offsets {
+        let parameters = posture.drivers[driver.0].law.parameters();
+        let place = parameters.iter().position(|p| p.name == OFFSET).expect("a law with an offset");
+        let name = format!("offset of {}", posture.drivers[driver.0].name);
+        posture.add_law_variable(&name, *driver, place);
+    }
+    posture
+}
+
+/// Models of all postures of measurements.
+pub(super) fn posture_models(model: &Model, measured: &Measurements, offsets: &[DriverId]) -> Vec<Model> {
+    let of = |(k, places): (usize, &Vec<f64>)| posture_model(model, places, measured.forces_in(k), offsets);
+    measured.postures.iter().enumerate().map(of).collect()
 }
 
 /// Solves a posture of a design.

@@ -1,5 +1,6 @@
 //! Check of a draft: resolves all references, reports all errors, and builds the model.
 
+mod calibrating;
 mod cases;
 mod design;
 mod driven;
@@ -89,6 +90,7 @@ impl Model {
         c.add_optimization();
         c.add_tolerancing();
         c.add_sweeping();
+        c.add_calibrating();
         c.add_plots();
         c.add_designs();
         c.faults.retain(|f| !draft.unread.has(f.at.section, f.at.index, f.at.key));
@@ -233,6 +235,7 @@ impl<'a> Checker<'a> {
             optimization: None,
             tolerancing: None,
             sweeping: None,
+            calibrating: None,
             plots: Vec::new(),
             designs: Vec::new(),
         };
@@ -308,7 +311,7 @@ impl<'a> Checker<'a> {
     /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
     fn check_names(&mut self) {
         let d = self.draft;
-        let lists: [(Section, &str, Vec<&str>); 24] = [
+        let lists: [(Section, &str, Vec<&str>); 26] = [
             (Section::Parameters, "parameter", d.parameters.iter().map(|x| x.name.as_str()).collect()),
             (Section::Hardpoints, "hardpoint", d.hardpoints.iter().map(|x| x.name.as_str()).collect()),
             (Section::Bodies, "body", d.bodies.iter().map(|x| x.name.as_str()).collect()),
@@ -352,6 +355,16 @@ impl<'a> Checker<'a> {
                 Section::ToleranceLimits,
                 "limit",
                 d.tolerancing.iter().flat_map(|t| &t.limits).map(|x| x.name.as_str()).collect(),
+            ),
+            (
+                Section::Priors,
+                "prior",
+                d.calibrating.iter().flat_map(|c| &c.priors).map(|x| x.name.as_str()).collect(),
+            ),
+            (
+                Section::PriorGroups,
+                "group",
+                d.calibrating.iter().flat_map(|c| &c.groups).map(|x| x.name.as_str()).collect(),
             ),
         ];
         for (section, what, names) in lists {

@@ -95,6 +95,14 @@ pub enum Section {
     Sweep,
     /// [`super::SweepSettingsDraft::ranges`].
     SweepRanges,
+    /// [`super::Draft::calibrating`].
+    Calibrate,
+    /// [`super::CalibrationSettingsDraft::priors`].
+    Priors,
+    /// [`super::CalibrationSettingsDraft::groups`].
+    PriorGroups,
+    /// [`super::CalibrationSettingsDraft::offsets`].
+    Offsets,
     /// [`super::Draft::plots`].
     Plots,
     /// [`super::Draft::designs`].
@@ -142,9 +150,12 @@ impl fmt::Display for Section {
             Self::Goals => "goals",
             Self::Limits | Self::ToleranceLimits => "limits",
             Self::Tolerance => "tolerance",
-            Self::Tolerances | Self::SweepRanges => "variables",
+            Self::Tolerances | Self::SweepRanges | Self::Priors => "variables",
             Self::Correlations => "correlations",
             Self::Sweep => "sweep",
+            Self::Calibrate => "calibrate",
+            Self::PriorGroups => "groups",
+            Self::Offsets => "offsets",
             Self::Plots => "plots",
             Self::Designs => "designs",
         })

@@ -70,6 +70,7 @@ impl Model {
             optimization: None,
             tolerancing: None,
             sweeping: None,
+            calibrating: None,
             ..self.clone()
         };
         model.name = format!("{}, {name}", self.name);
@@ -106,7 +107,7 @@ impl Model {
     #[must_use]
     pub fn with_case_only(&self, case: CaseId) -> Self {
         let cases = vec![self.cases[case.0].clone()];
-        let none = Self { tolerancing: None, sweeping: None, ..self.clone() };
+        let none = Self { tolerancing: None, sweeping: None, calibrating: None, ..self.clone() };
         let mut model = Self { cases, grids: Vec::new(), ..none };
         model.metrics.retain(|m| m.case.is_none_or(|of| of == case));
         model.metrics.iter_mut().for_each(|m| m.case = m.case.map(|_| CaseId(0)));

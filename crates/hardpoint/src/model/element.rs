@@ -778,6 +778,11 @@ impl ElementKind {
         if dimension == Dimension::MOMENT { force / model.size() } else { force }
     }
 
+    /// True if a law multiplies it, which a case or a measured posture may replace: a given force or moment, or a tyre.
+    pub fn has_law(&self) -> bool {
+        self.clone().law_mut().is_some()
+    }
+
     /// Place of the law of a given force or moment; `None` for elements that have none.
     pub(crate) fn law_mut(&mut self) -> Option<&mut Option<Law>> {
         match self {

@@ -1,5 +1,7 @@
 //! Measurements of a real mechanism, which calibration fits a design to.
 
+use super::ElementId;
+
 /// Measured value of one output in a posture, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
@@ -18,6 +20,16 @@ pub struct Reading {
 pub struct Measurements {
     /// Values of the drivers in each posture, in the coordinate of their laws, m or rad.
     pub postures: Vec<Vec<f64>>,
+    /// Values of the laws of given forces in each posture; a force that a posture does not list keeps its own law. No
+    /// posture lists any if this is empty.
+    pub forces: Vec<Vec<(ElementId, f64)>>,
     /// Readings in the postures.
     pub readings: Vec<Reading>,
+}
+
+impl Measurements {
+    /// Values of the laws of given forces in a posture.
+    pub fn forces_in(&self, posture: usize) -> &[(ElementId, f64)] {
+        self.forces.get(posture).map_or(&[], Vec::as_slice)
+    }
 }

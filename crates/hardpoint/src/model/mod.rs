@@ -3,6 +3,7 @@
 //! [`Model::from_draft`] makes it of a [`Draft`](crate::draft::Draft). A model never changes; a changed design is a
 //! [`Geometry`](crate::design::Geometry) made from it.
 
+mod calibrating;
 mod case;
 pub mod change;
 mod coupler;
@@ -22,6 +23,7 @@ mod sweeping;
 mod tolerancing;
 mod wheel;
 
+pub use calibrating::{CalibrationSettings, Offset, OffsetSource, PriorGroup, VariablePrior};
 pub use case::{Case, Grid, LoadMode};
 pub use change::{Change, ChangeText, End};
 pub use coupler::{Coupler, CouplerTerm, Transmission};
@@ -168,6 +170,8 @@ pub struct Model {
     pub tolerancing: Option<ToleranceSettings>,
     /// Settings of the sweep, if the file has them.
     pub sweeping: Option<SweepSettings>,
+    /// Settings of the calibration, if the file has them.
+    pub calibrating: Option<CalibrationSettings>,
     /// Plots that a page opens with, in the order of the file; by default those that suit the mechanism.
     pub plots: Vec<Plot>,
     /// Named designs, in the order of the file.
