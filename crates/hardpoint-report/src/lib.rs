@@ -33,6 +33,7 @@ pub mod diagnose;
 pub mod encoding;
 pub mod facts;
 pub mod gallery;
+pub mod joint_limits;
 pub mod loads;
 pub mod maps;
 pub mod margin;

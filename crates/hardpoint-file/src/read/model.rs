@@ -125,7 +125,7 @@ const UNIT_WORDS: [(&str, &str); 12] = [
 ];
 /// Tables of `docs/file-format.md`, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 44] {
+pub(crate) fn tables() -> [(&'static str, Shape); 45] {
     use super::{declared, law, mesh};
     use crate::compose::INCLUDE_TABLE;
 
@@ -136,6 +136,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 44] {
         ("frames", Shape::Kinds(&bodies::FRAME)),
         ("meshes", Shape::Table(&mesh::MESH_TABLE)),
         ("joints", Shape::Table(&joints::JOINT)),
+        ("limits of joints", Shape::Table(&joints::LIMIT)),
         ("curves", Shape::Table(&joints::CURVE)),
         ("couplers", Shape::Kinds(&couplers::COUPLER)),
         ("terms", Shape::Table(&couplers::TERM)),
@@ -198,6 +199,7 @@ pub(crate) fn model<'a>(
     joints::joints(r, &fields, &mut raw);
     couplers::couplers(r, &fields, &mut raw);
     measures::measures(r, &fields, &mut raw);
+    joints::limit_measures(&mut raw);
     drivers::drivers(r, &fields, &mut raw);
     design::design(r, &fields, &mut raw, twins);
     points::points(r, &fields, &mut raw);
@@ -213,6 +215,7 @@ pub(crate) fn model<'a>(
     equilibrium::equilibrium(r, &fields, &mut raw);
     metrics::metrics(r, &fields, &mut raw);
     shapes::least(r, &mut raw);
+    joints::limit_metrics(r, &mut raw);
     times::time(r, &fields, &mut raw);
     let word = r.word_of(&fields, "at_change_points");
     raw.draft.at_change_points = word.map_or(ChangePointPolicy::default(), |k| ChangePointPolicy::WORDS[k].1);

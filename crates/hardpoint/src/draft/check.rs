@@ -7,6 +7,7 @@ mod elements;
 mod equilibrium;
 mod formulas;
 mod grids;
+mod joint_limits;
 mod joints;
 mod measures;
 mod motion;
@@ -81,6 +82,7 @@ impl Model {
         c.add_cases();
         c.add_grids();
         c.add_measures();
+        c.add_joint_limits();
         c.add_equilibrium();
         c.add_metrics();
         c.add_variables();
@@ -224,6 +226,7 @@ impl<'a> Checker<'a> {
             load_mode: draft.load_mode,
             equilibrium: None,
             measures: Vec::new(),
+            joint_limits: Vec::new(),
             metrics: Vec::new(),
             idle: Vec::new(),
             times: draft.times.clone(),
