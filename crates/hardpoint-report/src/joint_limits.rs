@@ -56,7 +56,7 @@ record! {
         let shown = |x: f64| units.from_si(of, x);
         let extremum = |end: LimitEnd| {
             let extremum = found.extremum(end);
-            let margin = limit.margin(end, extremum.value);
+            let margin = limit.margin(model, end, extremum.value);
             LimitExtremumFact::of(model, units, of, margin, extremum)
         };
         let is_exceeded = |end: LimitEnd| limit.exceeded(model, found.extremum(end).value).is_some();

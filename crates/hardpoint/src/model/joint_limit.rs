@@ -62,15 +62,17 @@ impl JointLimit {
         }
     }
 
-    /// Distance of a value from an end, positive within the range, m or rad.
-    pub fn margin(&self, end: LimitEnd, value: f64) -> Option<f64> {
-        self.end(end).map(|bound| end.sign() * (bound - value))
+    /// Distance of a value from an end, positive within the range, m or rad; 0 within round-off.
+    pub fn margin(&self, model: &Model, end: LimitEnd, value: f64) -> Option<f64> {
+        let margin = end.sign() * (self.end(end)? - value);
+        Some(if margin.abs() <= self.tolerance(model) { 0.0 } else { margin })
     }
 
     /// Returns the end that a value is beyond, by more than round-off.
     pub fn exceeded(&self, model: &Model, value: f64) -> Option<LimitEnd> {
-        let least = -self.tolerance(model);
-        LimitEnd::ALL.into_iter().find(|end| self.margin(*end, value).is_some_and(|margin| margin < least))
+        LimitEnd::ALL
+            .into_iter()
+            .find(|end| self.margin(model, *end, value).is_some_and(|margin| margin < 0.0))
     }
 
     /// Round-off of a value at an end, m or rad.

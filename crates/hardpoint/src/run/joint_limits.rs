@@ -120,7 +120,9 @@ impl Analysis<'_> {
         if let Some((end, _)) = found.stop(model) {
             // The motion ends there.
             found.located.retain(|c| c.time <= end);
-            times.retain(|t| *t <= end);
+            times.retain(|t| *t < end);
+            times.push(end);
+            found.solution = self.beyond_stops(&times, design, false);
         }
         let mut extrema = Vec::new();
         for _ in 0..MOST_PASSES {
@@ -282,7 +284,10 @@ fn locate(
         std::iter::once(times[0]).chain(nodes.iter().map(|k| times[*k])).chain([times[last]]).collect();
     let is_beyond: Vec<bool> = ends.windows(2).map(|part| farthest(part[0], part[1]) > tolerance).collect();
     let changes = nodes.iter().zip(is_beyond.windows(2)).filter(|(_, sides)| sides[0] != sides[1]);
-    changes.map(|(k, sides)| (times[*k], sides[1])).collect()
+    // A last step of Newton's method; the motion is solved again at these times.
+    let exact =
+        |k: usize| times[k] - Some(beyond(k) / rate(k)).filter(|step| step.is_finite()).unwrap_or(0.0);
+    changes.map(|(k, sides)| (exact(*k).clamp(times[0], times[last]), sides[1])).collect()
 }
 
 /// Times of the least and the greatest value of each limit up to the last of some times, which are the first ones of
