@@ -15,6 +15,7 @@ mod gallery;
 mod gallery_models;
 mod grids;
 mod includes;
+mod joint_limits;
 mod loads;
 mod measures;
 mod meshes;

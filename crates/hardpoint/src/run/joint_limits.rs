@@ -362,7 +362,7 @@ fn results(model: &Model, extrema: &[[f64; 2]], found: &Crossings, solution: &So
             let k = place(c.time)?;
             let rate = measured.value(k, m)[1];
             let rate = if rate.abs() * span > GRAZING * range { rate } else { f64::NAN };
-            // dt/db = -dx/db / x.                                                                       (L1)
+            // t_b = -x_b / x.                                                              docs/theory.md (62)
             let d = derivatives(k, m).iter().map(|d| -d / rate).collect();
             Some(LimitCrossing { time: c.time, end: c.end, leaves: c.leaves, d })
         });
