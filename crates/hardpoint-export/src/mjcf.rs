@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use hardpoint::constraint::Row;
 use hardpoint::joint::{Freedom, JointType};
-use hardpoint::model::{JointLimit, MeasureKind, Model};
+use hardpoint::model::{JointLimit, Model};
 use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 
@@ -242,8 +242,8 @@ fn joints(model: &Model, number: usize, backward: bool, indent: &str, out: &mut 
 
 /// True if a limit is that of the whole rotation of a ball joint.
 fn limits_rotation(model: &Model, limit: &JointLimit) -> bool {
-    let kind = &model.measures[limit.measure].kind;
-    matches!(kind, MeasureKind::Articulation { axis: None, .. }) && model.joints[limit.joint.0].kind.is_ball()
+    let own = model.measures[limit.measure].kind.tilting_joint();
+    own.is_some_and(|joint| model.joints[joint.0].kind.is_ball())
 }
 
 /// Reports the limits of joints that are not written.
@@ -253,9 +253,9 @@ fn unsupported_limits(tree: &Skeleton<'_>, out: &mut ExportedModel) {
         let (joint, kind) = (limit.joint.0, &model.joints[limit.joint.0].kind);
         let has_freedom = |c: usize| kind.coordinates[c].freedom.is_some() && freedoms(kind).is_some();
         let is_written = tree.is_carrier(joint)
-            && match model.measures[limit.measure].kind {
-                MeasureKind::Coordinate { coordinate, .. } => has_freedom(coordinate),
-                _ => limits_rotation(model, limit) && limit.min.is_none(),
+            && match limit.coordinate {
+                Some(coordinate) => has_freedom(coordinate),
+                None => limits_rotation(model, limit) && limit.min.is_none(),
             };
         if !is_written {
             let why = "MJCF limits coordinates of tree joints, and the whole rotation of balls";

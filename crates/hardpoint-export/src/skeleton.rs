@@ -1,7 +1,7 @@
 //! Spanning tree of a mechanism for robot formats: the joint that carries each body, and the joints that close loops.
 
 use hardpoint::joint::JointType;
-use hardpoint::model::{Joint, JointLimit, MeasureKind, Model};
+use hardpoint::model::{Joint, JointLimit, Model};
 use hardpoint::space::Vec3;
 
 use crate::ExportedModel;
@@ -134,10 +134,7 @@ impl<'m> Skeleton<'m> {
 
 /// Ends of the range of a coordinate of a joint, SI; infinite where the range is open, `None` without a limit.
 pub fn range_of(model: &Model, joint: usize, coordinate: usize) -> Option<[f64; 2]> {
-    let is_it = |limit: &&JointLimit| match model.measures[limit.measure].kind {
-        MeasureKind::Coordinate { joint: of, coordinate: c } => of.0 == joint && c == coordinate,
-        _ => false,
-    };
+    let is_it = |limit: &&JointLimit| limit.joint.0 == joint && limit.coordinate == Some(coordinate);
     model.joint_limits.iter().find(is_it).map(ends)
 }
 

@@ -159,7 +159,10 @@ fn limits(r: &mut Reader<'_>, joint: &Fields<'_>, name: &str, kind: Option<&str>
             max: None,
             stop: false,
         };
+        let before = r.found.len();
         let fields = r.entry("limit", &(limit.name(), entry.1.clone(), entry.2), LIMIT.keys());
+        // An unknown key may be meant as one of its ends.
+        let has_unknown_keys = r.found.len() > before;
         let mut place = EntryPlace::of(&fields);
         let is_articulation = limit.of == JointLimitDraft::ARTICULATION;
         let own = kind.and_then(|kind| kind.quantity_of(Some(&limit.of)));
@@ -172,7 +175,7 @@ fn limits(r: &mut Reader<'_>, joint: &Fields<'_>, name: &str, kind: Option<&str>
             r.out_of_place(&fields, "axis", "only an articulation is the angle of a direction");
         }
         let axis = r.line_of(&fields, "axis", &mut place);
-        let is_unread = !r.unread.is_empty();
+        let is_unread = has_unknown_keys || !r.unread.is_empty();
         if is_unread {
             r.unread.push("");
         }

@@ -9,6 +9,8 @@ pub struct JointLimit {
     pub name: String,
     /// The joint.
     pub joint: JointId,
+    /// Index of the coordinate in the joint's type; `None` for the articulation.
+    pub coordinate: Option<usize>,
     /// Index of the measure of its value.
     pub measure: usize,
     /// Lower end, m or rad.

@@ -718,7 +718,7 @@ impl MeasureKind {
     }
 
     /// Joint whose own axis tilts by the measure.
-    pub(crate) fn tilting_joint(&self) -> Option<JointId> {
+    pub fn tilting_joint(&self) -> Option<JointId> {
         match self {
             Self::Articulation { joint, axis: None } => Some(*joint),
             Self::Articulation { axis: Some(_), .. }

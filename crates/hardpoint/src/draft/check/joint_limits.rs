@@ -73,6 +73,7 @@ impl Checker<'_> {
             self.fault("HP0204", here.key("name"), message).help("add the measure, or rename the other one");
             return None;
         };
-        Some(JointLimit { name, joint, measure, min, max, stop })
+        let coordinate = kind.coordinate(&written.of).map(|(k, _)| k);
+        Some(JointLimit { name, joint, coordinate, measure, min, max, stop })
     }
 }
