@@ -73,8 +73,8 @@ pub(super) const LIMIT: Table = table! {
     may "max": NUMBER, "60";
     /// True for an end stop: the motion ends where the limit is reached.
     or("false") "stop": Shape::Flag, "true";
-    /// For an articulation: the direction in the design configuration that is fixed in both bodies, such as the stud of
-    /// a ball joint. Default: the axis of the joint; without any, the whole rotation counts.
+    /// Direction of an articulation in the design configuration, such as the stud of a ball joint. Default: the joint's
+    /// axis; without any, the whole rotation counts.
     may "axis": LINE, "\"z\"";
 };
 const JOINT_TYPE: Shape =
@@ -226,13 +226,12 @@ pub(super) fn limit_metrics(r: &Reader<'_>, raw: &mut Raw) {
     }
 }
 
+/// End of the limit of a joint (or an empty name if it has one only), its metric and the bounds of that.
+pub(super) type LimitedEnd = (&'static str, LimitTargetDraft, [Option<f64>; 2]);
+
 /// Ends of the limit of a joint with the names of their metrics, in the units of the file, for limits of studies.
 /// HP0204 if there is no such limit.
-pub(super) fn ends_of_limit(
-    r: &mut Reader<'_>,
-    fields: &Fields<'_>,
-    raw: &Raw,
-) -> Option<Vec<(&'static str, LimitTargetDraft, [Option<f64>; 2])>> {
+pub(super) fn ends_of_limit(r: &mut Reader<'_>, fields: &Fields<'_>, raw: &Raw) -> Option<Vec<LimitedEnd>> {
     let name = r.name_of(fields, "joint")?;
     let limits = &raw.draft.joint_limits;
     let Some(limit) = limits.iter().find(|limit| limit.name() == name) else {

@@ -12,8 +12,8 @@ use super::{Analysis, PreparedDesign, Run, Solution};
 /// A crossing is located if a step of Newton's method is below this fraction of the motion: positions are solved to
 /// 1e-12 of the mechanism's size.
 const LOCATED: f64 = 1e-11;
-/// An extremum is located if the motion is solved nearer to its time than this fraction of the motion: its value is then
-/// known to round-off. Crossings nearer to each other are the same one.
+/// An extremum is located if the motion is solved nearer to its time than this fraction of the motion: its value is
+/// then known to round-off. Crossings nearer to each other are the same one.
 const SAME_TIME: f64 = 1e-8;
 /// Time by which an interval of a motion without rates is narrowed around an extremum, as a fraction of the motion.
 const AT_REST: f64 = 1e-6;
