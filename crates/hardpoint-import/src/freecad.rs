@@ -484,7 +484,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             other => join(&mut self.m, self.notes, source, other, [i, j]),
         };
         let Some(number) = number else { return };
-        for (of, range) in self.limits(joint, type_name, &i, &j) {
+        let limits = self.limits(joint, type_name, &i, &j);
+        let enabled = ["EnableLengthMin", "EnableLengthMax", "EnableAngleMin", "EnableAngleMax"];
+        let object = &self.objects[joint];
+        if limits.is_empty() && enabled.iter().any(|key| object.text_of(key) == Some("true")) {
+            let why = "it has no number, or its joint has no such coordinate";
+            self.notes.refused("limits", label, at, why);
+        }
+        for (of, range) in limits {
             self.m.joints[number].limit(of, range);
             self.notes.taken("limits", label, at);
         }
