@@ -186,15 +186,18 @@ fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: 
     }
 }
 
+/// Joint of MJCF: its type, axis of the marker, range, and the ending of its name.
+type Part = (&'static str, Option<usize>, Option<[f64; 2]>, String);
+
 /// Writes the MJCF joints of a body for its tree joint; `backward` if the body is body i of the joint.
 fn joints(model: &Model, number: usize, backward: bool, indent: &str, out: &mut ExportedModel) {
     let joint = &model.joints[number];
     // The whole rotation of a ball, or the coordinate of a freedom.
     let range = |n: usize, freedom: &Freedom| match freedom {
         Freedom::Ball => {
-            let of_joint = model.joint_limits.iter().filter(|limit| limit.joint.0 == number);
-            let most = of_joint.filter_map(|limit| limit.max.filter(|_| limits_rotation(model, limit)));
-            most.last().map(|most| [0.0, most])
+            let mut of_joint = model.joint_limits.iter().filter(|limit| limit.joint.0 == number);
+            let most = of_joint.find_map(|limit| limit.max.filter(|_| limits_rotation(model, limit)));
+            most.map(|most| [0.0, most])
         }
         Freedom::Turn(_) | Freedom::Slide(_) => {
             let coordinate = joint.kind.coordinates.iter().position(|c| c.freedom == Some(n));
@@ -215,7 +218,7 @@ fn joints(model: &Model, number: usize, backward: bool, indent: &str, out: &mut 
         };
         (kind, along, range(n, freedom), ending)
     });
-    let mut parts: Vec<(&str, Option<usize>, Option<[f64; 2]>, String)> = parts.collect();
+    let mut parts: Vec<Part> = parts.collect();
     if let [(.., ending)] = &mut parts[..] {
         ending.clear();
     }

@@ -235,7 +235,7 @@ fn markers_that_are_turned_against_each_other_are_assembled() {
 fn limits_of_freecad_and_ondsel_become_limits_of_the_joints() {
     let limits = |name: &str| {
         let imported = import(&folder().join(name)).unwrap_or_else(|e| panic!("{e}"));
-        let limits = crate::model(&imported).model.joint_limits;
+        let limits = model(&imported).model.joint_limits;
         limits.into_iter().map(|limit| (limit.name, limit.min, limit.max)).collect::<Vec<_>>()
     };
     // A length of 40 mm at most; the frames of the joint coincide in the design configuration.
