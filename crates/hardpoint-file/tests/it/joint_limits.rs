@@ -335,7 +335,7 @@ fn limits_of_studies_keep_the_limit_of_a_joint() {
         assert_near(max.most.unwrap(), 0.03, EXACT, "max");
         assert_eq!((min.most, max.least), (None, None));
     }
-    // The largest crank that keeps both: the ram goes by r + l - x and x + r - l.
+    // The largest crank that keeps both: the ram moves by r + l - x and by x + r - l.
     let found = crate::searches::searched(&file, model.optimization.as_ref().unwrap());
     let best = crate::searches::best(&found).found.as_ref().unwrap();
     let found = Analysis::new(model).unwrap().joint_limits(&best.design).remove(0);
