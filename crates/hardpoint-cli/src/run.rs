@@ -17,6 +17,7 @@ use hardpoint_report::course::Course;
 use hardpoint_report::deflection::DeflectionFact;
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::{error, number, seconds, some_of, with_unit};
+use hardpoint_report::joint_limits::JointLimitFact;
 use hardpoint_report::maps::MapFact;
 use hardpoint_report::metric::{CaseMetrics, MetricFact};
 use hardpoint_report::page::Table;
@@ -615,8 +616,14 @@ fn summary_text(summary: &Summary) -> String {
     let mut out = format!("{}\n{}{}", text::bold(&model.name), text::pairs(&rows), text::notes(summary));
     let assembly = summary.assembly.iter().flat_map(|a| a.tables());
     let metrics = MetricFact::table(&summary.metrics).into_iter();
+    let limits = JointLimitFact::table(&summary.joint_limits).into_iter();
     let trusted = summary.validity_table().into_iter();
-    for table in assembly.chain(metrics).chain(trusted).chain(largest(summary).filter(|_| steps.solved > 0)) {
+    for table in assembly
+        .chain(limits)
+        .chain(metrics)
+        .chain(trusted)
+        .chain(largest(summary).filter(|_| steps.solved > 0))
+    {
         out += &text::section(&table);
     }
     out

@@ -120,7 +120,8 @@ impl ExportedModel {
         }
         let rest = [
             ("design variables", file.model.variables.len()),
-            ("measures", file.model.measures.len()),
+            // Those of limits are written with them, or reported.
+            ("measures", file.model.measures.len() - file.model.joint_limits.len()),
             ("wheels", file.model.wheels.len()),
             ("meshes", file.drawing.bodies.len()),
         ];

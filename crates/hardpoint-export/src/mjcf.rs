@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use hardpoint::constraint::Row;
 use hardpoint::joint::{Freedom, JointType};
-use hardpoint::model::Joint;
+use hardpoint::model::{JointLimit, Model};
 use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 
-use crate::skeleton::{Carrier, Skeleton, axis, followers, is_closed, joint_points};
+use crate::skeleton::{Carrier, Skeleton, axis, bounded, followers, is_closed, joint_points, range_of};
 use crate::{ExportedModel, Format, escaped, number, numbers};
 
 /// MJCF format.
@@ -71,6 +71,7 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
         let _ = write!(out.text, "  <equality>\n{equalities}  </equality>\n");
     }
     out.text += "</mujoco>\n";
+    unsupported_limits(&tree, out);
     out.without_motions(file, "MJCF");
 }
 
@@ -173,7 +174,7 @@ fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: 
         let name = escaped(&tree.model.bodies[body].name);
         let _ = writeln!(out.text, "{indent}<body name=\"{name}\" pos=\"{}\">", numbers(place.to_array()));
         match tree.carrier[body] {
-            Some(Carrier::Joint(k, backward)) => joints(&tree.model.joints[k], backward, &indent, out),
+            Some(Carrier::Joint(k, backward)) => joints(tree.model, k, backward, &indent, out),
             _ => {
                 let _ = writeln!(out.text, "{indent}  <freejoint/>");
             }
@@ -185,20 +186,39 @@ fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: 
     }
 }
 
+/// Joint of MJCF: its type, axis of the marker, range, and the ending of its name.
+type Part = (&'static str, Option<usize>, Option<[f64; 2]>, String);
+
 /// Writes the MJCF joints of a body for its tree joint; `backward` if the body is body i of the joint.
-fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut ExportedModel) {
+fn joints(model: &Model, number: usize, backward: bool, indent: &str, out: &mut ExportedModel) {
+    let joint = &model.joints[number];
+    // The whole rotation of a ball, or the coordinate of a freedom.
+    let range = |n: usize, freedom: &Freedom| match freedom {
+        Freedom::Ball => {
+            let mut of_joint = model.joint_limits.iter().filter(|limit| limit.joint.0 == number);
+            let most = of_joint.find_map(|limit| limit.max.filter(|_| limits_rotation(model, limit)));
+            most.map(|most| [0.0, most])
+        }
+        Freedom::Turn(_) | Freedom::Slide(_) => {
+            let coordinate = joint.kind.coordinates.iter().position(|c| c.freedom == Some(n));
+            coordinate.and_then(|c| range_of(model, number, c))
+        }
+    };
     let parts = freedoms(joint.kind).unwrap_or_default();
     let count = |is: fn(&Freedom) -> bool| parts.iter().filter(|f| is(f)).count();
     let slides = count(|f| matches!(f, Freedom::Slide(_)));
     let hinges = count(|f| matches!(f, Freedom::Turn(_)));
-    let parts = parts.iter().enumerate().map(|(n, freedom)| match freedom {
-        Freedom::Slide(k) if slides > 1 => ("slide", Some(*k), format!("_{}", ["x", "y", "z"][*k])),
-        Freedom::Slide(k) => ("slide", Some(*k), "_slide".into()),
-        Freedom::Turn(k) if hinges > 1 => ("hinge", Some(*k), format!("_{}", n + 1)),
-        Freedom::Turn(k) => ("hinge", Some(*k), "_hinge".into()),
-        Freedom::Ball => ("ball", None, String::new()),
+    let parts = parts.iter().enumerate().map(|(n, freedom)| {
+        let (kind, along, ending) = match freedom {
+            Freedom::Slide(k) if slides > 1 => ("slide", Some(*k), format!("_{}", ["x", "y", "z"][*k])),
+            Freedom::Slide(k) => ("slide", Some(*k), "_slide".into()),
+            Freedom::Turn(k) if hinges > 1 => ("hinge", Some(*k), format!("_{}", n + 1)),
+            Freedom::Turn(k) => ("hinge", Some(*k), "_hinge".into()),
+            Freedom::Ball => ("ball", None, String::new()),
+        };
+        (kind, along, range(n, freedom), ending)
     });
-    let mut parts: Vec<(&str, Option<usize>, String)> = parts.collect();
+    let mut parts: Vec<Part> = parts.collect();
     if let [(.., ending)] = &mut parts[..] {
         ending.clear();
     }
@@ -206,16 +226,44 @@ fn joints(joint: &Joint, backward: bool, indent: &str, out: &mut ExportedModel) 
         // Seen from body j, the order is reversed.
         parts.reverse();
     }
-    for (kind, along, ending) in &parts {
+    for (kind, along, range, ending) in &parts {
         let name = escaped(&joint.name);
         let axis = along.map(|k| if k == 2 { axis(joint) } else { joint.frames[1].cols[k] });
         let axis = axis.map(|axis| if backward { -axis } else { axis });
         let axis = axis.map_or_else(String::new, |axis| format!(" axis=\"{}\"", numbers(axis.to_array())));
-        let _ = writeln!(out.text, "{indent}  <joint name=\"{name}{ending}\" type=\"{kind}\"{axis}/>");
+        let range = range.map_or_else(String::new, |range| {
+            let [low, high] = range.map(bounded);
+            format!(" limited=\"true\" range=\"{low} {high}\"")
+        });
+        let _ = writeln!(out.text, "{indent}  <joint name=\"{name}{ending}\" type=\"{kind}\"{axis}{range}/>");
     }
     if parts.len() > 1 {
         let why = format!("written as a chain of {} equivalent joints", parts.len());
         out.report_unsupported("joint", &joint.name, why);
+    }
+}
+
+/// True if a limit is that of the whole rotation of a ball joint.
+fn limits_rotation(model: &Model, limit: &JointLimit) -> bool {
+    let own = model.measures[limit.measure].kind.tilting_joint();
+    own.is_some_and(|joint| model.joints[joint.0].kind.is_ball())
+}
+
+/// Reports the limits of joints that are not written.
+fn unsupported_limits(tree: &Skeleton<'_>, out: &mut ExportedModel) {
+    let model = tree.model;
+    for limit in &model.joint_limits {
+        let (joint, kind) = (limit.joint.0, &model.joints[limit.joint.0].kind);
+        let has_freedom = |c: usize| kind.coordinates[c].freedom.is_some() && freedoms(kind).is_some();
+        let is_written = tree.is_carrier(joint)
+            && match limit.coordinate {
+                Some(coordinate) => has_freedom(coordinate),
+                None => limits_rotation(model, limit) && limit.min.is_none(),
+            };
+        if !is_written {
+            let why = "MJCF limits coordinates of tree joints, and the whole rotation of balls";
+            out.report_unsupported("limit", &limit.name, why);
+        }
     }
 }
 

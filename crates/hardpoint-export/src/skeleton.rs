@@ -1,7 +1,7 @@
 //! Spanning tree of a mechanism for robot formats: the joint that carries each body, and the joints that close loops.
 
 use hardpoint::joint::JointType;
-use hardpoint::model::{Joint, Model};
+use hardpoint::model::{Joint, JointLimit, Model};
 use hardpoint::space::Vec3;
 
 use crate::ExportedModel;
@@ -130,6 +130,25 @@ impl<'m> Skeleton<'m> {
         }
         .unwrap_or_else(Vec3::zero)
     }
+}
+
+/// Ends of the range of a coordinate of a joint, SI; infinite where the range is open, `None` without a limit.
+pub fn range_of(model: &Model, joint: usize, coordinate: usize) -> Option<[f64; 2]> {
+    let is_it = |limit: &&JointLimit| limit.joint.0 == joint && limit.coordinate == Some(coordinate);
+    model.joint_limits.iter().find(is_it).map(ends)
+}
+
+/// Both ends of a range, infinite where it is open.
+pub fn ends(limit: &JointLimit) -> [f64; 2] {
+    [limit.min.unwrap_or(f64::NEG_INFINITY), limit.max.unwrap_or(f64::INFINITY)]
+}
+
+/// Magnitude that represents an open end: importers take it as none.
+const OPEN: f64 = 1e16;
+
+/// A number with an open end as a large number.
+pub fn bounded(x: f64) -> String {
+    crate::number(x.clamp(-OPEN, OPEN))
 }
 
 /// Returns true if the points of a joint on both bodies coincide in the design configuration.

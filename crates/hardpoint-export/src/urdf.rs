@@ -5,7 +5,7 @@ use std::fmt::Write;
 use hardpoint::joint::{Freedom, JointType};
 use hardpoint_file::ModelFile;
 
-use crate::skeleton::{Carrier, Skeleton, axis, followers, joint_points};
+use crate::skeleton::{Carrier, Skeleton, axis, bounded, ends, followers, joint_points, range_of};
 use crate::{ExportedModel, Format, escaped, numbers};
 
 /// URDF format.
@@ -58,6 +58,8 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
         let joint = &model.joints[k];
         let outer = tree.outer(body);
         let kind = urdf_type(joint.kind).unwrap_or("fixed");
+        let range = range_of(model, k, 0).filter(|_| ["continuous", "prismatic"].contains(&kind));
+        let kind = if range.is_some() && kind == "continuous" { "revolute" } else { kind };
         let _ = writeln!(text, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&joint.name));
         let _ =
             writeln!(text, "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>", name(outer), name(body));
@@ -67,9 +69,13 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             let axis = if backward { -axis(joint) } else { axis(joint) };
             let _ = writeln!(text, "    <axis xyz=\"{}\"/>", numbers(axis.to_array()));
         }
-        if kind == "prismatic" {
-            // URDF requires a limit; this one is not effective.
-            text += "    <limit lower=\"-1e9\" upper=\"1e9\" effort=\"1e9\" velocity=\"1e9\"/>\n";
+        if ["prismatic", "revolute"].contains(&kind) {
+            // URDF requires a limit; where the model has none, it is not effective.
+            let [lower, upper] = range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]).map(bounded);
+            let _ = writeln!(
+                text,
+                "    <limit lower=\"{lower}\" upper=\"{upper}\" effort=\"1e9\" velocity=\"1e9\"/>"
+            );
         }
         for (n, f) in follow.iter().filter(|f| f.own == k).enumerate() {
             if n > 0 {
@@ -111,6 +117,13 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
             &joint.name,
             "it closes a loop: written as `loop_joint`, which some programs do not read",
         );
+    }
+    for limit in &model.joint_limits {
+        let is_written =
+            tree.is_carrier(limit.joint.0) && range_of(model, limit.joint.0, 0) == Some(ends(limit));
+        if !is_written {
+            out.report_unsupported("limit", &limit.name, "URDF limits the only coordinate of a tree joint");
+        }
     }
     for coupler in &others {
         out.report_unsupported("coupler", coupler, "a mimic joint depends on one other tree joint");

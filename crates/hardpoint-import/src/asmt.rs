@@ -11,7 +11,7 @@ use crate::markers::{
     ElementSource, Marker, MarkerJoint, carrying_joint, coordinate_sign, couple_screw, equals_nominal, join,
     join_by_link, offset, relative_to_nominal,
 };
-use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism, Times};
+use crate::mechanism::{Coordinate, Drives, GROUND, Joint, JointLimit, Law, Mechanism, Times};
 use crate::report::{ImportLog, SourceSpan};
 use crate::series::{Series, StoredPose};
 use crate::turn::{home, none, sequence};
@@ -670,15 +670,46 @@ impl Reader<'_> {
         found.copied().map(Some).ok_or_else(|| "no joint connects its two markers".into())
     }
 
+    /// Reads one end of the range of a joint coordinate.
+    fn limit(&mut self, limit: &Node<'_>) -> Result<(), String> {
+        let (of, is_angle) = match limit.text {
+            "RotationLimit" => ("angle", true),
+            "TranslationLimit" => ("displacement", false),
+            _ => return Err("its type is unknown".into()),
+        };
+        let path = limit.value("MotionJoint").map_or("", |(path, _)| path);
+        let wanted = path.rsplit('/').next().unwrap_or_default();
+        let joint = self.joints.get(wanted).copied();
+        let joint = joint.ok_or_else(|| format!("the joint `{path}` does not exist or is not supported"))?;
+        let kind = hardpoint::joint::ALL.iter().find(|k| k.name == joint.kind);
+        if !kind.is_some_and(|k| k.coordinates.iter().any(|c| c.name == of)) {
+            return Err(format!("a joint of type {} has no {of}", joint.kind));
+        }
+        let bound = limit.value("Limit").and_then(|(word, _)| number(word));
+        let bound = bound.ok_or("its `Limit` is not a number")?;
+        let nominal = offset(&joint.markers[0], &joint.markers[1]);
+        let bound = bound - if is_angle { nominal.angle } else { nominal.displacement };
+        let end = match limit.value("Type").map_or("", |(word, _)| word) {
+            "=>" | ">=" => 0,
+            "=<" | "<=" => 1,
+            other => return Err(format!("its type `{other}` is unknown")),
+        };
+        let limits = &mut self.m.joints[joint.number].limits;
+        let k = limits.iter().position(|known| known.of == of).unwrap_or_else(|| {
+            limits.push(JointLimit { of, range: [f64::NEG_INFINITY, f64::INFINITY] });
+            limits.len() - 1
+        });
+        limits[k].range[end] = bound;
+        Ok(())
+    }
+
     fn rest(&mut self, assembly: &Node<'_>) {
         let sets = assembly.child("ConstraintSets");
         for limit in sets.and_then(|c| c.child("Limits")).map_or(&[][..], |p| &p.children) {
-            self.notes.refused(
-                limit.text,
-                limit.name(),
-                Some(limit.at),
-                "limits are not supported: drivers prescribe the motion",
-            );
+            match self.limit(limit) {
+                Ok(()) => self.notes.taken(limit.text, limit.name(), Some(limit.at)),
+                Err(why) => self.notes.refused(limit.text, limit.name(), Some(limit.at), why),
+            }
         }
         for set in sets.and_then(|c| c.child("GeneralConstraintSets")).map_or(&[][..], |p| &p.children) {
             self.notes.refused(set.text, set.name(), Some(set.at), "general constraints have no equivalent");

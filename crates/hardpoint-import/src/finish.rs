@@ -335,10 +335,12 @@ fn freedom(m: &Mechanism, notes: &ImportLog) -> Result<FreeMotions, Box<Diagnost
     }
 }
 
-/// Parses the model without its meshes, which are separate files.
+/// Parses the model without its meshes, which are separate files, and without limits of joints, which do not change
+/// the motion.
 fn parsed(m: &Mechanism) -> Result<hardpoint_file::ModelFile, String> {
     let mut bare = m.clone();
     bare.bodies.iter_mut().for_each(|b| b.mesh = None);
+    bare.joints.iter_mut().for_each(|j| j.limits.clear());
     hardpoint_file::parse(&write::explicit(&bare, ""), "import").map_err(|d| {
         d.list()
             .first()
@@ -453,7 +455,7 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     let Some(driver) = m.drivers.len().checked_sub(1) else { return };
     let name = m.drivers[driver].name.clone();
     let (is_angle, limits) = match m.drivers[driver].drives {
-        Drives::Coordinate(c) => (c.name.starts_with("angle"), m.joints[c.joint].limits),
+        Drives::Coordinate(c) => (c.name.starts_with("angle"), m.joints[c.joint].range_of(c.name)),
         Drives::Translation { .. } => (false, None),
         Drives::Rotation { .. } => (true, None),
     };

@@ -445,8 +445,6 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 self.notes.not_understood("property", label, at, why);
             }
         }
-        let limited = ["EnableLengthMin", "EnableLengthMax", "EnableAngleMin", "EnableAngleMax"];
-        let has_limits = limited.iter().any(|k| object.text_of(k) == Some("true"));
         let distance = object.number("Distance");
         if ["RackPinion", "Gears", "Belt", "Screw"].contains(&kind.as_str()) {
             return;
@@ -486,29 +484,42 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             other => join(&mut self.m, self.notes, source, other, [i, j]),
         };
         let Some(number) = number else { return };
-        self.m.joints[number].limits = self.limits(joint, type_name, &i, &j);
-        if has_limits {
-            self.notes.refused("limits", label, at, "limits are not supported: drivers prescribe the motion");
+        let limits = self.limits(joint, type_name, &i, &j);
+        let enabled = ["EnableLengthMin", "EnableLengthMax", "EnableAngleMin", "EnableAngleMax"];
+        let object = &self.objects[joint];
+        if limits.is_empty() && enabled.iter().any(|key| object.text_of(key) == Some("true")) {
+            let why = "it has no number, or its joint has no such coordinate";
+            self.notes.refused("limits", label, at, why);
+        }
+        for (of, range) in limits {
+            self.m.joints[number].limit(of, range);
+            self.notes.taken("limits", label, at);
         }
         self.joints.insert(joint, MarkerJoint { number, kind: type_name, markers: [i, j] });
     }
 
     /// Returns the limits of a hinge or slide, relative to the design configuration.
-    fn limits(&self, joint: &'a str, kind: &str, i: &Marker, j: &Marker) -> Option<[f64; 2]> {
+    fn limits(&self, joint: &'a str, kind: &str, i: &Marker, j: &Marker) -> Vec<(&'static str, [f64; 2])> {
         let object = &self.objects[joint];
         let nominal = offset(i, j);
-        let (what, nominal, per_unit) = match kind {
-            "revolute" => ("Angle", nominal.angle, 1_f64.to_radians()),
-            "translational" => ("Length", nominal.displacement, 1.0),
-            _ => return None,
+        let angle = ("angle", "Angle", nominal.angle, 1_f64.to_radians());
+        let displacement = ("displacement", "Length", nominal.displacement, 1.0);
+        let limited = match kind {
+            "revolute" => vec![angle],
+            "translational" => vec![displacement],
+            "cylindrical" => vec![displacement, angle],
+            _ => Vec::new(),
         };
-        let limit = |end: &str| {
-            let is_set = object.text_of(&format!("Enable{what}{end}")) == Some("true");
-            Some(object.number(&format!("{what}{end}")).filter(|_| is_set)? * per_unit - nominal)
+        let range = |(of, what, nominal, per_unit): (&'static str, &str, f64, f64)| {
+            let limit = |end: &str| {
+                let is_set = object.text_of(&format!("Enable{what}{end}")) == Some("true");
+                Some(object.number(&format!("{what}{end}")).filter(|_| is_set)? * per_unit - nominal)
+            };
+            let ends = [limit("Min"), limit("Max")];
+            let open = [f64::NEG_INFINITY, f64::INFINITY];
+            (ends != [None, None]).then(|| (of, [0, 1].map(|k| ends[k].unwrap_or(open[k]))))
         };
-        let ends = [limit("Min"), limit("Max")];
-        let open = [f64::NEG_INFINITY, f64::INFINITY];
-        (ends != [None, None]).then(|| [0, 1].map(|k| ends[k].unwrap_or(open[k])))
+        limited.into_iter().filter_map(range).collect()
     }
 
     /// Returns the element at an end of a joint: `Face`, `Edge` or `Vertex`, or an empty text for a whole part.

@@ -249,10 +249,19 @@ pub struct Joint {
     pub lead: Option<f64>,
     /// Length of a rod, if the source specifies another one than in the design configuration.
     pub length: Option<f64>,
-    /// Limits of its coordinate in the source.
-    pub limits: Option<[f64; 2]>,
+    /// Limits of its coordinates in the source.
+    pub limits: Vec<JointLimit>,
     /// Shape in drawings.
     pub draw: Option<&'static str>,
+}
+
+/// Limit of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointLimit {
+    /// Name of the coordinate, or `articulation`.
+    pub of: &'static str,
+    /// Both ends, relative to the design configuration; infinite where the range is open.
+    pub range: [f64; 2],
 }
 
 /// Coordinate of a joint.
@@ -540,8 +549,20 @@ impl Joint {
             axis2: None,
             lead: None,
             length: None,
-            limits: None,
+            limits: Vec::new(),
             draw: None,
+        }
+    }
+
+    /// Returns the range of a coordinate, if it has limits.
+    pub fn range_of(&self, coordinate: &str) -> Option<[f64; 2]> {
+        self.limits.iter().find(|limit| limit.of == coordinate).map(|limit| limit.range)
+    }
+
+    /// Adds a limit, unless the range is empty or open at both ends.
+    pub fn limit(&mut self, of: &'static str, range: [f64; 2]) {
+        if range[0] < range[1] && range.iter().any(|x| x.is_finite()) {
+            self.limits.push(JointLimit { of, range });
         }
     }
 

@@ -629,7 +629,13 @@ impl<'d, 'n> Reader<'d, 'n> {
             let [zero] = self.numbers::<1>(element, "ref", class).unwrap_or_default();
             let range = self.range(element, class);
             let scaled = |x: f64| if coordinate == Some("angle") { self.angle(x - zero) } else { x - zero };
-            self.m.joints[number].limits = range.map(|ends| ends.map(scaled));
+            let limit = match (range, coordinate) {
+                (Some(ends), Some(of)) => Some((of, ends.map(scaled))),
+                // The range of a ball is that of its rotation from the design configuration, from 0 on.
+                (Some([_, most]), None) => Some(("articulation", [f64::NEG_INFINITY, self.angle(most)])),
+                (None, _) => None,
+            };
+            limit.into_iter().for_each(|(of, range)| self.m.joints[number].limit(of, range));
         }
         let coordinate = coordinate.map(|name| Coordinate { joint: number, name });
         self.spring(element, class, source, coordinate);

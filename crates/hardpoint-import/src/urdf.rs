@@ -424,7 +424,11 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         else {
             return;
         };
-        self.m.joints[number].limits = j.limits.map(|ends| ends.map(|x| x - nominal));
+        let coordinate = self.joints.get(&j.name).filter(|c| c.joint == number && j.kind != "continuous");
+        if let (Some(coordinate), Some(ends)) = (coordinate, j.limits) {
+            let of = coordinate.name;
+            self.m.joints[number].limit(of, ends.map(|x| x - nominal));
+        }
         if j.kind == "screw" {
             self.m.joints[number].lead = j.pitch.filter(|p| *p != 0.0);
             if self.m.joints[number].lead.is_none() {

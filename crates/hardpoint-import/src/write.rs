@@ -249,6 +249,10 @@ impl<'m> Writer<'m> {
             if let Some(draw) = joint.draw {
                 t["draw"] = value(draw);
             }
+            if !joint.limits.is_empty() {
+                let limits = joint.limits.iter().map(|limit| (limit.of, Value::from(range(limit.range))));
+                t["limits"] = value(limits.collect::<InlineTable>());
+            }
             decorate(&mut t, &joint.note);
             table[&joint.name] = Item::Table(t);
         }
@@ -559,6 +563,12 @@ fn decorate(table: &mut Table, note: &str) {
 fn comment(note: &str) -> String {
     let note: String = note.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     if note.is_empty() { String::new() } else { format!("# {note}\n") }
+}
+
+/// Writes a range whose open ends are infinite.
+fn range(ends: [f64; 2]) -> InlineTable {
+    let ends = ["min", "max"].into_iter().zip(ends).filter(|(_, x)| x.is_finite());
+    ends.map(|(key, x)| (key, Value::from(x))).collect()
 }
 
 fn clean(x: f64, nothing: f64) -> f64 {

@@ -43,7 +43,12 @@ record! {
 }
 
 /// Derivatives by all variables that the mechanism follows, the strongest first.
-fn sensitivities(model: &Model, units: Units, of: Dimension, d: &[f64]) -> Vec<ClearanceSensitivity> {
+pub(crate) fn sensitivities(
+    model: &Model,
+    units: Units,
+    of: Dimension,
+    d: &[f64],
+) -> Vec<ClearanceSensitivity> {
     let mut all: Vec<_> = (0..d.len())
         .filter(|v| d[*v].is_finite())
         .map(|v| ClearanceSensitivity::of(model, units, of, v, d[v]))
@@ -228,7 +233,7 @@ record! {
 }
 
 /// Values of the drivers that move, in words.
-fn drivers(model: &Model, units: Units, time: f64) -> String {
+pub(crate) fn drivers(model: &Model, units: Units, time: f64) -> String {
     let moves = |law: &hardpoint::law::Law| {
         let ends = [model.times.first(), model.times.last()].map(|t| t.copied().unwrap_or_default());
         law.over(ends[0], ends[1]).value.reach_from(law.at(ends[0]).value()) > 0.0

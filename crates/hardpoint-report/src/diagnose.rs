@@ -15,9 +15,11 @@ use hardpoint::{
 use hardpoint_file::{Diagnostic, ModelFile, Severity};
 
 use crate::assembly::GapFact;
+use crate::clearance::drivers;
 use crate::course::Course;
 use crate::facts::{Facts, VariableAdmissibility};
-use crate::figures::{names, number, quoted, rounded, some_in_words, symbol, variable_unit, with_unit};
+use crate::figures::{names, number, quoted, rounded, some_in_words, symbol, unit, variable_unit, with_unit};
+use crate::joint_limits::JointLimitFact;
 use crate::margin::{MarginFact, named};
 use crate::summary::{Summary, driver_values};
 
@@ -34,6 +36,7 @@ pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option
     if ended.as_ref().is_none_or(|s| s.kind == StopKind::Interrupted) {
         list.extend(summary.margin.as_ref().and_then(|m| margin(file, m)));
     }
+    list.extend(JointLimitFact::warnings(&summary.joint_limits, file));
     list.extend(residual(file, &summary.model, summary.effort.worst_residual_si));
     list.extend(loads(file, course));
     list.extend(ended.as_ref().map(|s| stop(file, s, course.steps, outputs)));
@@ -82,6 +85,7 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
         StopKind::Locked { joint, .. } => Some((Section::Joints, joint.0)),
         StopKind::LawNotFinite { driver } => Some((Section::Drivers, driver.0)),
         StopKind::Interrupted => None,
+        StopKind::JointLimit { limit, .. } => Some((Section::JointLimits, limit)),
         StopKind::DoesNotAssemble => stop.remains.first().map(|gap| match gap.of {
             Closing::Joint(j) => (Section::Joints, j.0),
             Closing::Driver(d) => (Section::Drivers, d.0),
@@ -89,12 +93,27 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
         }),
         _ => stop.joints.first().map(|j| (Section::Joints, j.0)),
     };
-    let severity = if stop.kind == StopKind::Interrupted { Severity::Warning } else { Severity::Error };
+    // An end stop ends a motion as the user wants.
+    let is_requested =
+        matches!(stop.kind, StopKind::Interrupted | StopKind::JointLimit { begins_beyond: false, .. });
+    let severity = if is_requested { Severity::Warning } else { Severity::Error };
     let mut headline = who.to_owned() + &stop.headline(model);
     if let (StopKind::DoesNotAssemble, Some(gap)) = (stop.kind, stop.remains.first()) {
         headline += &format!(" by {} at best", GapFact::new(model, units, gap).size_text());
     }
     let mut d = file.diagnostic(severity, stop.code(), headline, place);
+    if let StopKind::JointLimit { limit, end, .. } = stop.kind {
+        let limit = &model.joint_limits[limit];
+        let of = model.dimension(OutputSource::Measure(limit.measure));
+        let bound = with_unit(units.from_si(of, limit.end(end).unwrap_or(f64::NAN)), &unit(units, of));
+        let there = drivers(model, units, stop.failed_time);
+        let there = if there.is_empty() { String::new() } else { format!(", with {there}") };
+        d = d.note(format!(
+            "its {} is {bound}; it is reached at t = {} s{there}",
+            end.noun(),
+            rounded(stop.failed_time, 7)
+        ));
+    }
     if let Some(closed) = stop.closed {
         d = gap_notes(file, stop, closed).into_iter().fold(d, Diagnostic::note);
     } else {

@@ -34,6 +34,7 @@ pub mod encoding;
 pub mod envelope;
 pub mod facts;
 pub mod gallery;
+pub mod joint_limits;
 pub mod loads;
 pub mod maps;
 pub mod margin;

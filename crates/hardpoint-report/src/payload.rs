@@ -36,6 +36,7 @@ use crate::deflection::DeflectionFact;
 use crate::encoding::{packed, size_in_page};
 use crate::facts::{Facts, VariableAdmissibility};
 use crate::figures::{error, number, order_unit, rounded, seconds, symbol};
+use crate::joint_limits::JointLimitFact;
 use crate::metric::MetricFact;
 use crate::page::{
     self, Admissibility, Curve, Design, Detail, Fact, FiniteDifference, Margin, ModelText, NamedChange,
@@ -252,6 +253,7 @@ fn composed(
             .iter()
             .flat_map(|a| a.tables())
             .chain(DeflectionFact::table(&deflections))
+            .chain(JointLimitFact::table(&summary.joint_limits))
             .chain(distances.and_then(|facts| ClearanceFact::table(&facts)))
             .chain(summary.validity_table())
             .chain(summary.model.tables())

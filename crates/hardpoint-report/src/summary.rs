@@ -12,6 +12,7 @@ use crate::assembly::{AssemblyFact, GapFact};
 use crate::course::Course;
 use crate::facts::Facts;
 use crate::figures::{order_unit, per, some_of, symbol, variable_unit, with_unit};
+use crate::joint_limits::JointLimitFact;
 use crate::maps::MapLine;
 use crate::margin::{MarginFact, named};
 use crate::metric::MetricFact;
@@ -42,6 +43,8 @@ pub struct Summary {
     pub validity: Vec<ValidityFact>,
     /// Values of the metrics.
     pub metrics: Vec<MetricFact>,
+    /// Limits of joints: ranges over the motion, margins, and the times at which they are reached.
+    pub joint_limits: Vec<JointLimitFact>,
     /// Maps: drivers, number of positions reached, and reasons for unreached ones.
     pub maps: Vec<MapLine>,
     /// The largest sensitivities of every measure.
@@ -261,6 +264,10 @@ impl Summary {
             assembly: solution.motion.assembly.as_ref().map(|a| AssemblyFact::new(model, file.units, a)),
             stop: StopFact::of(file, solution),
             validity: Vec::new(),
+            joint_limits: match course.steps {
+                0 => Vec::new(),
+                _ => JointLimitFact::all(file, topology.formulation),
+            },
             maps: Vec::new(),
             metrics: MetricFact::all(model, file.units, course.curves(), &rigid_metrics),
             rigid,

@@ -7,6 +7,7 @@ mod dxf;
 mod gltf;
 mod golden;
 mod import;
+mod joint_limits;
 mod new;
 mod optimize;
 mod pdf;

@@ -58,6 +58,45 @@ fn same(a: &ModelFile, b: &ModelFile) {
     }
 }
 
+/// Limits of joints to ten digits, in order of their names.
+fn limits(file: &ModelFile) -> Vec<(String, [Option<String>; 2])> {
+    let shown = |end: Option<f64>| end.map(|x| format!("{x:.10}"));
+    let of = |limit: &hardpoint::model::JointLimit| (limit.name.clone(), [limit.min, limit.max].map(shown));
+    let mut list: Vec<_> = file.model.joint_limits.iter().map(of).collect();
+    list.sort();
+    list
+}
+
+#[test]
+fn limits_of_joints_come_back_and_those_that_do_not_are_listed() {
+    let text = "name = \"arm\"\nunits = { length = \"mm\", angle = \"deg\" }\n\
+        [hardpoints]\nA = [0, 0, 0]\nB = [0, 0, 100]\nC = [0, 0, 200]\nD = [0, 0, 300]\n\
+        [bodies]\na = {}\nb = {}\nc = {}\nd = {}\n\
+        [joints]\n\
+        A = { type = \"revolute\", bodies = [\"ground\", \"a\"], at = \"A\", axis = \"y\", limits = { angle = { min = -30, max = 50 } } }\n\
+        B = { type = \"translational\", bodies = [\"b\", \"a\"], at = \"B\", axis = \"z\", limits = { displacement = { max = 20 } } }\n\
+        C = { type = \"spherical\", bodies = [\"b\", \"c\"], at = \"C\", limits = { articulation = { max = 40 } } }\n\
+        D = { type = \"universal\", bodies = [\"c\", \"d\"], at = \"D\", axis = \"x\", axis2 = \"y\", limits = { articulation = { max = 30 } } }\n\
+        [drivers]\nA = { joint = \"A\", law = 0 }\nB = { joint = \"B\", law = 0 }\n\
+        x = { body = \"c\", relative_to = \"b\", about = \"x\", law = 0 }\n\
+        y = { body = \"c\", relative_to = \"b\", about = \"y\", law = 0 }\n\
+        z = { body = \"c\", relative_to = \"b\", about = \"z\", law = 0 }\n\
+        one = { joint = \"D\", coordinate = \"angle\", law = 0 }\ntwo = { joint = \"D\", coordinate = \"angle2\", law = 0 }\n\
+        [time]\nend = 1\nsteps = 2\n";
+    let first = model(text);
+    let all = limits(&first);
+    for (format, file, lost) in [("mjcf", "again.xml", 1), ("urdf", "again.urdf", 2)] {
+        let exported = Format::named(format).unwrap().export(&first);
+        let listed: Vec<&str> =
+            exported.unsupported.iter().filter(|u| u.kind == "limit").map(|u| u.name.as_str()).collect();
+        assert_eq!(listed, &["C.articulation", "D.articulation"][2 - lost..], "{format}");
+        let again = hardpoint_import::import(exported.text.as_bytes(), file, &|_| None);
+        let again = limits(&model(&again.unwrap_or_else(|e| panic!("{e}")).text));
+        let kept: Vec<_> = all.iter().filter(|limit| !listed.contains(&limit.0.as_str())).cloned().collect();
+        assert_eq!(again, kept, "{format}");
+    }
+}
+
 fn there_and_back(name: &str, format: &str, file: &str) {
     let first = model(&source(name));
     let exported = Format::named(format).unwrap().export(&first);
@@ -66,6 +105,7 @@ fn there_and_back(name: &str, format: &str, file: &str) {
     let second = model(&again.text);
     same(&first, &second);
     assert_eq!(first.model.couplers.len(), second.model.couplers.len());
+    assert_eq!(limits(&first), limits(&second), "{name}");
     // Only names that the format does not allow change on the first export.
     let names = |f: &ModelFile| {
         f.model.bodies.iter().map(|b| b.name.clone()).collect::<std::collections::BTreeSet<_>>()

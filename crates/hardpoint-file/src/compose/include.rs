@@ -378,7 +378,7 @@ fn renamed(format: &'static Table, part: &mut Both<'_>, prefix: &str, own: &Hash
     let rename = |shape: Shape, value: &mut Value<'_>| {
         walk("", shape, value, &mut |_, leaf| match leaf {
             // Cases belong to the whole model, even if another entry of the file has such a name.
-            Leaf::Name("a column" | "a parameter of the law" | "a case", _) => {}
+            Leaf::Name("a column" | "a parameter of the law" | "a case" | "a coordinate", _) => {}
             Leaf::Name(_, name) => *name = say(name).map_or(Cow::Owned(name.to_string()), Cow::Owned),
             Leaf::Expression(text) => in_expression(text, say),
             _ => {}

@@ -127,7 +127,7 @@ const UNIT_WORDS: [(&str, &str); 12] = [
 ];
 /// Tables of `docs/file-format.md`, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 48] {
+pub(crate) fn tables() -> [(&'static str, Shape); 49] {
     use super::{declared, law, mesh};
     use crate::compose::INCLUDE_TABLE;
 
@@ -138,6 +138,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 48] {
         ("frames", Shape::Kinds(&bodies::FRAME)),
         ("meshes", Shape::Table(&mesh::MESH_TABLE)),
         ("joints", Shape::Table(&joints::JOINT)),
+        ("limits of joints", Shape::Table(&joints::LIMIT)),
         ("curves", Shape::Table(&joints::CURVE)),
         ("couplers", Shape::Kinds(&couplers::COUPLER)),
         ("terms", Shape::Table(&couplers::TERM)),
@@ -204,6 +205,7 @@ pub(crate) fn model<'a>(
     joints::joints(r, &fields, &mut raw);
     couplers::couplers(r, &fields, &mut raw);
     measures::measures(r, &fields, &mut raw);
+    joints::limit_measures(&mut raw);
     drivers::drivers(r, &fields, &mut raw);
     design::design(r, &fields, &mut raw, twins);
     points::points(r, &fields, &mut raw);
@@ -219,6 +221,7 @@ pub(crate) fn model<'a>(
     equilibrium::equilibrium(r, &fields, &mut raw);
     metrics::metrics(r, &fields, &mut raw);
     shapes::least(r, &mut raw);
+    joints::limit_metrics(r, &mut raw);
     times::time(r, &fields, &mut raw);
     let word = r.word_of(&fields, "at_change_points");
     raw.draft.at_change_points = word.map_or(ChangePointPolicy::default(), |k| ChangePointPolicy::WORDS[k].1);

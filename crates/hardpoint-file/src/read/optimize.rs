@@ -8,6 +8,7 @@ use crate::values::{
     Table, VARIABLE, keys, table,
 };
 
+use super::joints;
 use super::raw::Raw;
 
 pub(crate) const OPTIMIZE: Table = table! {
@@ -134,6 +135,20 @@ static LIMITS: &[(Table, Read)] = &[
             // The core reports an unknown clearance.
             let asked = asked.map(|x| x * r.units.length.per_metre());
             Some(vec![("", of, [asked.or(Some(0.0)), None])])
+        },
+    ),
+    (
+        limit! {
+            /// The limit of a joint: its own `min` and `max` are kept.
+            "LimitOfJoint":
+            /// The limit's name: those of the joint and its coordinate.
+            must "joint": Shape::Name("a limit of a joint"), "\"slide.displacement\"";
+        },
+        |r, fields, raw| {
+            for key in ["min", "max", "equal"] {
+                r.out_of_place(fields, key, "the limit of the joint has its own `min` and `max`");
+            }
+            joints::ends_of_limit(r, fields, raw)
         },
     ),
 ];

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use hardpoint::draft::{Draft, Section};
+use hardpoint::draft::{Draft, MeasureDraft, Section};
 use hardpoint::joint::{self, JointType, Quantity};
 use hardpoint::law::Law;
 
@@ -27,6 +27,8 @@ pub(crate) struct Raw {
     pub driven: Vec<Quantity>,
     /// Clearances that have a measure of their name by themselves.
     pub measured_clearances: Vec<String>,
+    /// Measures of limits of joints, with their places, and true if the limit could not be read.
+    pub limit_measures: Vec<(MeasureDraft, EntryPlace, bool)>,
     /// Drivers without a law of their own, whose laws are in the cases, by their indices in the draft.
     pub without_law: Vec<usize>,
 }

@@ -11,6 +11,7 @@ use crate::values::{
     EntryPlace, Fields, METRIC, NUMBER, OUTPUT, Reader, Shape, Subject, Table, VARIABLE, shown, table,
 };
 
+use super::joints;
 use super::raw::Raw;
 
 pub(crate) const TOLERANCE: Table = table! {
@@ -76,10 +77,13 @@ pub(super) const CORRELATION: Table = table! {
     must "coefficient": NUMBER, "0.9";
 };
 pub(super) const LIMIT: Table = table! {
-    /// Limit of a metric: at least one of `min` and `max`.
+    /// Limit of a metric: at least one of `min` and `max`; or the limit of a joint.
     "ToleranceLimit":
     /// The metric's name. Default: the limit's own name.
     may "metric": METRIC, "\"toe_range\"";
+    /// Instead: the name of the limit of a joint, those of the joint and its coordinate; its own `min` and `max` are
+    /// kept.
+    may "joint": Shape::Name("a limit of a joint"), "\"slide.displacement\"";
     /// It must not be less than this, in its own unit.
     may "min": NUMBER, "-0.2";
     /// It must not be more than this.
@@ -188,6 +192,23 @@ fn limits_of_tolerances(r: &mut Reader<'_>, tolerance: &Fields<'_>, raw: &mut Ra
     for entry in r.entries_below(tolerance, "tolerance.", "limits", "limit") {
         let fields = r.entry("limit", &entry, LIMIT.keys());
         let place = EntryPlace::of(&fields);
+        if fields.get("joint").is_some() {
+            for key in ["metric", "min", "max"] {
+                r.out_of_place(&fields, key, "the limit of the joint has its own metrics, `min` and `max`");
+            }
+            let ends = joints::ends_of_limit(r, &fields, raw).unwrap_or_else(|| {
+                r.unread.push("");
+                vec![("", LimitTargetDraft::Unread, [None; 2])]
+            });
+            let unread = std::mem::take(&mut r.unread);
+            for (end, of, [least, most]) in ends {
+                r.unread.clone_from(&unread);
+                raw.push(r, Section::ToleranceLimits, place.clone());
+                let name = if end.is_empty() { entry.0.clone() } else { format!("{}.{end}", entry.0) };
+                found.push(LimitDraft { name, of, least, most, per_metre, per_radian });
+            }
+            continue;
+        }
         let metric = r.name_of(&fields, "metric");
         let [least, most] = ["min", "max"].map(|key| r.number_of(&fields, key));
         if !fields.lost && fields.get("min").is_none() && fields.get("max").is_none() {

@@ -17,6 +17,7 @@ mod gallery_models;
 mod grid_clearance;
 mod grids;
 mod includes;
+mod joint_limits;
 mod loads;
 mod measures;
 mod meshes;

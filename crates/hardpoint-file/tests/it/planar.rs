@@ -361,6 +361,7 @@ fn the_planar_shorthand_of_every_measure_equals_its_long_form() {
                 "from = <0.2 1>, to = [\"p\", { body = \"a\", at = <-200 300> }]<about>",
                 "from = [\"p\", { body = \"a\", at = <-200 300> }], to = { body = \"b\", axis = <1 0.3> }<about>",
             ],
+            "articulation" => &["joint = \"pin\", axis = <1 0.3>"],
             "orientation" => &["body = \"b\", angle = \"yaw\"", "body = \"b\", angle = \"cardan_3\""],
             "transmission_angle" => {
                 &["from = [\"p\", { body = \"a\", at = <-200 300> }], to = { body = \"b\", axis = <1 0.3> }"]

@@ -699,6 +699,7 @@ pub(crate) fn measures(hold: Hold<'_>) {
                 ("body = \"left_b\", angle = \"cardan_2\"", &[0, 2]),
                 ("body = \"left_b\", angle = \"yaw\"", &[0, 1]),
             ],
+            "articulation" => vec![("joint = \"left_hinge\", axis = [0.3, 0.2, 0.9]", &[])],
             "transmission_angle" => {
                 vec![("from = [\"left_p\", { body = \"left_a\", at = \"left_H\" }], to = [0, 0.3, 1]", &[])]
             }

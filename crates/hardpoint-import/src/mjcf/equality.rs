@@ -324,7 +324,12 @@ impl<'d> Reader<'d, '_> {
         };
         let is_limited = self.attribute(element, "limited", None).is_none_or(|(value, _)| value != "false");
         if self.attribute(element, "range", None).is_some() && is_limited {
-            self.notes.refused(kind, name, at, "its limits are not supported: drivers prescribe the motion");
+            self.notes.refused(
+                kind,
+                name,
+                at,
+                "limits of tendons have no equivalent: limit the joints that they span",
+            );
         }
         robot::friction(self.notes, name, at, list(self, "frictionloss").first().copied().unwrap_or(0.0));
         let mut coefficient = |key: &str| match list(self, key)[..] {

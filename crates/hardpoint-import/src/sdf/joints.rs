@@ -179,13 +179,22 @@ impl<'d> Reader<'d, '_> {
         let ends = [(i.body, axis), (j.body, second)].map(|(body, axis)| Marker::along(body, frame.r, axis));
         let [Some(i), Some(j)] = ends else { return };
         let Some(number) = join(&mut self.m, self.notes, source, type_name, [i, j]) else { return };
-        let limit = child(joint, "axis").and_then(|a| child(a, "limit"));
-        let ends = ["lower", "upper"].map(|key| {
-            let n = limit.and_then(|l| child(l, key))?;
-            xml::bound(n.text().unwrap_or_default(), &format!("`{key}`"), xml::at(text, n), self.notes)
-        });
-        if let [Some(low), Some(high)] = ends {
-            self.m.joints[number].limits = xml::range(low, high);
+        let limited: &[(&str, &'static str)] = match type_name {
+            "revolute" | "screw" => &[("axis", "angle")],
+            "translational" => &[("axis", "displacement")],
+            "universal" => &[("axis", "angle"), ("axis2", "angle2")],
+            _ => &[],
+        };
+        for &(key, of) in limited.iter().filter(|_| kind != "continuous") {
+            let Some(limit) = child(joint, key).and_then(|a| child(a, "limit")) else { continue };
+            let open = [("lower", f64::NEG_INFINITY), ("upper", f64::INFINITY)];
+            let [low, high] = open.map(|(key, open)| {
+                let Some(n) = child(limit, key) else { return Some(open) };
+                xml::bound(n.text().unwrap_or_default(), &format!("`{key}`"), xml::at(text, n), self.notes)
+            });
+            if let Some(range) = low.zip(high).and_then(|(low, high)| xml::range(low, high)) {
+                self.m.joints[number].limit(of, range);
+            }
         }
         if type_name == "screw" {
             let number_of = |reader: &mut Self, key: &'static str| {

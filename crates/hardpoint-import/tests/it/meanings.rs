@@ -230,3 +230,24 @@ fn markers_that_are_turned_against_each_other_are_assembled() {
         }
     }
 }
+
+#[test]
+fn limits_of_freecad_and_ondsel_become_limits_of_the_joints() {
+    let limits = |name: &str| {
+        let imported = import(&folder().join(name)).unwrap_or_else(|e| panic!("{e}"));
+        let limits = model(&imported).model.joint_limits;
+        limits.into_iter().map(|limit| (limit.name, limit.min, limit.max)).collect::<Vec<_>>()
+    };
+    // A length of 40 mm at most; the frames of the joint coincide in the design configuration.
+    let [(name, min, max)] = &limits("freecad/vise")[..] else { panic!("one limit") };
+    assert_eq!((name.as_str(), *min), ("Cylindrical.displacement", None));
+    let reach = VISE_DEPTH - max.unwrap();
+    assert!(reach.abs() < SAME, "{max:?}");
+    // An angle of 1.57 at most, of which the parts have turned some already.
+    let [(name, min, max)] = &limits("asmt/slider_crank.asmt")[..] else { panic!("one limit") };
+    assert_eq!((name.as_str(), *min), ("Joint.angle", None));
+    assert!(max.unwrap() <= 1.57, "{max:?}");
+}
+
+/// Greatest displacement of the vise's screw, m.
+const VISE_DEPTH: f64 = 0.04;

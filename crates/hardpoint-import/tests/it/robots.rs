@@ -373,3 +373,70 @@ fn equalities_of_mjcf_hold_free_bodies_make_hinges_and_rods() {
         read("m.xml", &text.replace("<connect name=\"b\" body1=\"plate\" anchor=\"0 0.5 0\"/>", ""));
     assert_eq!(joint(&file, "a").kind.name, "spherical");
 }
+
+/// Limits of a model: name, minimum and maximum, SI.
+type Limits = Vec<(String, Option<f64>, Option<f64>)>;
+
+fn limits(file: &ModelFile) -> Limits {
+    file.model.joint_limits.iter().map(|limit| (limit.name.clone(), limit.min, limit.max)).collect()
+}
+
+fn assert_limits(found: &Limits, expected: &[(&str, Option<f64>, Option<f64>)]) {
+    let names: Vec<&str> = found.iter().map(|limit| limit.0.as_str()).collect();
+    assert_eq!(names, expected.iter().map(|limit| limit.0).collect::<Vec<_>>());
+    let is_same = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() <= SAME,
+        (a, b) => a == b,
+    };
+    for (found, expected) in found.iter().zip(expected) {
+        assert!(is_same(found.1, expected.1) && is_same(found.2, expected.2), "{found:?} {expected:?}");
+    }
+}
+
+#[test]
+fn limits_of_joints_are_relative_to_the_design_configuration_in_every_format() {
+    let urdf = r#"<robot name="arm"><link name="base"/><link name="upper"/><link name="lower"/><link name="tip"/><link name="wheel"/>
+        <joint name="A" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
+          <limit lower="-0.5" upper="1.25" effort="1" velocity="1"/></joint>
+        <joint name="B" type="prismatic"><parent link="upper"/><child link="lower"/><origin xyz="0.2 0 0"/><axis xyz="1 0 0"/>
+          <limit upper="0.3" effort="1" velocity="1"/></joint>
+        <joint name="C" type="revolute"><parent link="lower"/><child link="tip"/><origin xyz="0.2 0 0"/><axis xyz="0 1 0"/>
+          <limit lower="-1" upper="2" effort="1" velocity="1"/><mimic joint="A" multiplier="2" offset="0.25"/></joint>
+        <joint name="D" type="continuous"><parent link="tip"/><child link="wheel"/><origin xyz="0.1 0 0"/><axis xyz="0 1 0"/>
+          <limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"#;
+    let (imported, file) = read("arm.urdf", urdf);
+    let expected = [
+        ("A.angle", Some(-0.5), Some(1.25)),
+        ("B.displacement", Some(0.0), Some(0.3)),
+        ("C.angle", Some(-1.25), Some(1.75)),
+    ];
+    assert_limits(&limits(&file), &expected);
+    assert!(imported.text.contains("limits = { angle = { min = -0.5, max = 1.25 } }"), "{}", imported.text);
+
+    let sdf = r#"<sdf version="1.9"><model name="arm"><link name="a"/><link name="b"/><link name="c"/>
+        <joint name="foot" type="fixed"><parent>world</parent><child>a</child></joint>
+        <joint name="A" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 1 0</xyz>
+          <limit><lower>-0.5</lower><upper>1e16</upper></limit></axis></joint>
+        <joint name="U" type="universal"><parent>b</parent><child>c</child>
+          <axis><xyz>1 0 0</xyz><limit><lower>-0.3</lower><upper>0.4</upper></limit></axis>
+          <axis2><xyz>0 1 0</xyz><limit><upper>0.6</upper></limit></axis2></joint></model></sdf>"#;
+    let (_, file) = read("arm.sdf", sdf);
+    let expected =
+        [("A.angle", Some(-0.5), None), ("U.angle", Some(-0.3), Some(0.4)), ("U.angle2", None, Some(0.6))];
+    assert_limits(&limits(&file), &expected);
+
+    let mjcf = r#"<mujoco><compiler angle="degree" autolimits="true"/><worldbody><body name="a">
+        <joint name="A" type="hinge" axis="0 1 0" range="-30 60" ref="10"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+        <body name="b" pos="0 0 1"><joint name="B" type="slide" axis="0 0 1" range="-0.1 0.2"/>
+          <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+          <body name="c" pos="0 0 1"><joint name="C" type="ball" range="0 45"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+            <body name="d" pos="0 0 1"><joint name="D" type="hinge" axis="0 1 0" limited="false" range="-1 1"/>
+              <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></body></body></body></worldbody></mujoco>"#;
+    let (_, file) = read("arm.xml", mjcf);
+    let expected = [
+        ("A.angle", Some(-40_f64.to_radians()), Some(50_f64.to_radians())),
+        ("B.displacement", Some(-0.1), Some(0.2)),
+        ("C.articulation", None, Some(45_f64.to_radians())),
+    ];
+    assert_limits(&limits(&file), &expected);
+}

@@ -19,8 +19,7 @@ use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerV
 use crate::law::Law;
 use crate::model::{
     BodyId, Change, DesignVariable, Direction, DriverId, ElementId, HardpointId, Joint, JointId, Length,
-    Measure, MeasureKind, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target,
-    VariableId,
+    Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target, VariableId,
 };
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
@@ -109,7 +108,7 @@ impl<'m> DesignMap<'m> {
     pub(crate) fn fixed<T: Real>(&self, values: &[T]) -> BodyFixed<T> {
         let (model, design) = (self.model(), PlacedDesign::new(self, values.to_vec()));
         let markers = |m: &Measure| {
-            let MeasureKind::Coordinate { joint, .. } = m.kind else { return None };
+            let joint = m.kind.joint_value()?;
             Some([0, 1].map(|e| design.marker(joint.0, e)))
         };
         BodyFixed {

@@ -8,6 +8,7 @@ mod elements;
 mod equilibrium;
 mod formulas;
 mod grids;
+mod joint_limits;
 mod joints;
 mod measures;
 mod motion;
@@ -82,6 +83,7 @@ impl Model {
         c.add_cases();
         c.add_grids();
         c.add_measures();
+        c.add_joint_limits();
         c.add_equilibrium();
         c.add_metrics();
         c.add_variables();
@@ -226,6 +228,7 @@ impl<'a> Checker<'a> {
             load_mode: draft.load_mode,
             equilibrium: None,
             measures: Vec::new(),
+            joint_limits: Vec::new(),
             metrics: Vec::new(),
             idle: Vec::new(),
             times: draft.times.clone(),

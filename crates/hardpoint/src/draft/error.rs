@@ -69,6 +69,8 @@ pub enum Section {
     Equilibrium,
     /// [`super::Draft::measures`].
     Measures,
+    /// [`super::Draft::joint_limits`].
+    JointLimits,
     /// [`super::Draft::metrics`].
     Metrics,
     /// [`super::Draft::times`].
@@ -148,7 +150,7 @@ impl fmt::Display for Section {
             Self::Cases | Self::Grids => "cases",
             Self::Optimize => "optimize",
             Self::Goals => "goals",
-            Self::Limits | Self::ToleranceLimits => "limits",
+            Self::JointLimits | Self::Limits | Self::ToleranceLimits => "limits",
             Self::Tolerance => "tolerance",
             Self::Tolerances | Self::SweepRanges | Self::Priors => "variables",
             Self::Correlations => "correlations",

@@ -229,6 +229,7 @@ macro_rules! not_drivable {
             | MeasureKindDraft::Rate { .. }
             | MeasureKindDraft::Slope { .. }
             | MeasureKindDraft::Clearance { .. }
+            | MeasureKindDraft::Articulation { .. }
             | MeasureKindDraft::Combination { .. }
             | MeasureKindDraft::Camber { .. }
             | MeasureKindDraft::DriverForce { .. }

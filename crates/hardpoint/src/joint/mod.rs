@@ -328,6 +328,16 @@ impl JointType {
         self.freedoms == Some(&[Freedom::Ball]) && self.tree_rows.is_empty()
     }
 
+    /// True if it is a cross of two pins.
+    pub fn is_cross(&self) -> bool {
+        self.coordinates.iter().any(|c| c.row == Row::AngleOnJ)
+    }
+
+    /// True if its axis may tilt between the two bodies, which a point, a line or a plane holds together.
+    pub fn articulates(&self) -> bool {
+        self.is_cross() || self.freedoms.is_some_and(|f| f.contains(&Freedom::Ball))
+    }
+
     /// True if the two bodies have no relative rotation, and at most one relative translation.
     pub fn turns_as_one(&self) -> bool {
         matches!(self.freedoms, Some([] | [Freedom::Slide(_)]))
@@ -402,6 +412,11 @@ mod tests {
             ALL.iter().copied().filter(|t| is(t)).map(|t| t.name).collect()
         };
         assert_eq!(those(JointType::is_ball), ["spherical"]);
+        assert_eq!(those(JointType::is_cross), ["universal"]);
+        assert_eq!(
+            those(JointType::articulates),
+            ["spherical", "universal", "constant_velocity", "inline", "inplane"]
+        );
         assert_eq!(those(JointType::turns_as_one), ["fixed", "translational"]);
         assert_eq!(
             those(JointType::slides),

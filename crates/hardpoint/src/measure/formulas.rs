@@ -124,6 +124,7 @@ impl<'a, T: Real> Instant<'a, T> {
                 let Self { model, fixed, poses, .. } = *self;
                 PlacedShapes { model, fixed, poses }.clearance(*of)
             }
+            MeasureKind::Articulation { joint, axis } => self.articulation(k, *joint, axis.is_some()),
             MeasureKind::Rate { of } => self.output(*of).rate(),
             MeasureKind::Combination { expression } => expression.at(|source| self.output(source)),
             MeasureKind::Toe { body, spin_axis } => {
@@ -251,6 +252,27 @@ impl<'a, T: Real> Instant<'a, T> {
     fn direction(&self, k: usize, d: usize, body: BodyId) -> Vec3<T> {
         // a = A a'
         self.poses[body.0].rot * self.fixed.directions[k][d].expect("a measure with directions")
+    }
+
+    /// Angle between both images of a direction that is fixed in the bodies of a joint.
+    fn articulation(&self, k: usize, joint: JointId, by_axis: bool) -> T {
+        let j = &self.model.joints[joint.0];
+        // atan2(abs(a_i x a_j), a_i . a_j)
+        let between = |[a, b]: [Vec3<T>; 2]| a.cross(b).norm().atan2(a.dot(b));
+        if by_axis {
+            return between([0, 1].map(|end| self.direction(k, end, j.bodies[end])));
+        }
+        let markers = self.fixed.markers[k].expect("a measure of a joint");
+        let axis = |end: usize, c: usize| self.poses[j.bodies[end].0].rot * markers[end].rot.cols[c];
+        if j.axis.is_some() {
+            // The shafts of a cross are perpendicular to both pins.
+            let along = if j.kind.is_cross() { 1 } else { 2 };
+            return between([0, 1].map(|end| axis(end, along)));
+        }
+        // sum a_i x a_j = 2 sin(angle) n,   sum a_i . a_j = 1 + 2 cos(angle),   over x, y and z
+        let pairs = [0, 1, 2].map(|c| (axis(0, c), axis(1, c)));
+        let [x, y, z] = pairs.map(|(a, b)| (a.cross(b), a.dot(b)));
+        (x.0 + y.0 + z.0).norm().atan2(x.1 + y.1 + z.1 - T::constant(1.0))
     }
 
     /// A joint's coordinate between its two markers, whether the joint is cut or not.

@@ -184,6 +184,19 @@ macro_rules! measures {
         of: String => ClearanceId,
     } |_, w| Dimension::LENGTH, POSITIONS, format!("least distance of clearance `{}`", w.model.clearances[of.0].name);
 
+    /// Angle between the axis of a joint on its two bodies; of a universal joint between its shafts, of a ball joint
+    /// without an `axis` the whole rotation.
+    Articulation "articulation" [Polar, normal: false] {
+        /// The joint's name.
+        joint: String => JointId,
+        /// Direction in the design configuration that is fixed in both bodies, in place of the joint's axis: the stud
+        /// of a ball joint.
+        axis: Option<DirectionDraft> => Option<Direction>,
+    } |_, MeasureWords { model, .. }|
+        Dimension::ANGLE,
+        POSITIONS,
+        format!("articulation of joint `{}`", model.joints[joint.0].name);
+
     /// Toe of a wheel, positive for toe-in. It is a left wheel where its spin axis points to +y in the design
     /// configuration, else a right one.
     Toe "toe" [Polar, normal: false] {
@@ -402,7 +415,16 @@ measures!(in_models);
 macro_rules! of_bodies {
     () => {
         MeasureKind::Coordinate { .. }
-            | MeasureKind::Distance { .. }
+            | MeasureKind::Articulation { .. }
+            | $crate::model::of_bodies_but_joints!()
+    };
+}
+pub(crate) use of_bodies;
+
+/// Pattern of those of them that are no values of joints.
+macro_rules! of_bodies_but_joints {
+    () => {
+        MeasureKind::Distance { .. }
             | MeasureKind::Coordinates { .. }
             | MeasureKind::Angle { .. }
             | MeasureKind::Orientation { .. }
@@ -418,7 +440,7 @@ macro_rules! of_bodies {
             | MeasureKind::Clearance { .. }
     };
 }
-pub(crate) use of_bodies;
+pub(crate) use of_bodies_but_joints;
 
 /// Pattern of the measures that are loads: what drives the mechanism, or what its parts carry.
 macro_rules! loads {
@@ -508,6 +530,7 @@ impl OnBodies for OrientationAngle {}
 impl OnBodies for Vec3 {}
 impl OnBodies for Option<Vec3> {}
 impl OnBodies for Direction {}
+impl OnBodies for Option<Direction> {}
 impl OnBodies for DriverId {}
 impl OnBodies for Option<DriverId> {}
 impl OnBodies for OutputSource {}
@@ -610,7 +633,7 @@ impl MeasureKind {
     pub fn distance_from_kink(&self, value: f64) -> Option<f64> {
         use std::f64::consts::{FRAC_PI_2, PI};
         match self {
-            Self::Angle { about: None, .. } => Some(value.min(PI - value)),
+            Self::Angle { about: None, .. } | Self::Articulation { .. } => Some(value.min(PI - value)),
             Self::TransmissionAngle { .. } => Some(value.min(FRAC_PI_2 - value)),
             Self::Distance { .. }
             | Self::SpringForce { .. }
@@ -674,9 +697,38 @@ impl MeasureKind {
             | Self::Rate { .. }
             | Self::Combination { .. }
             | Self::Clearance { .. }
+            | Self::Articulation { .. }
             | Self::Slope { .. }
             | Self::Compliance { .. }
             | loads!() => "",
+        }
+    }
+
+    /// Joint whose coordinate or articulation it is.
+    pub fn joint_value(&self) -> Option<JointId> {
+        match self {
+            Self::Coordinate { joint, .. } | Self::Articulation { joint, .. } => Some(*joint),
+            of_bodies_but_joints!()
+            | loads!()
+            | Self::Slope { .. }
+            | Self::Compliance { .. }
+            | Self::Wheel { .. }
+            | Self::Axle { .. } => None,
+        }
+    }
+
+    /// Joint whose own axis tilts by the measure.
+    pub fn tilting_joint(&self) -> Option<JointId> {
+        match self {
+            Self::Articulation { joint, axis: None } => Some(*joint),
+            Self::Articulation { axis: Some(_), .. }
+            | Self::Coordinate { .. }
+            | of_bodies_but_joints!()
+            | loads!()
+            | Self::Slope { .. }
+            | Self::Compliance { .. }
+            | Self::Wheel { .. }
+            | Self::Axle { .. } => None,
         }
     }
 
@@ -718,6 +770,7 @@ impl MeasureKind {
             | Self::Acceleration { .. }
             | Self::Curvature { .. }
             | Self::Clearance { .. }
+            | Self::Articulation { .. }
             | Self::Toe { .. }
             | Self::Camber { .. }
             | Self::Wheel { .. }
@@ -1074,7 +1127,11 @@ impl Model {
                     Ray::Fixed { body, axis } => Some((body, axis)),
                     Ray::Between(_) => None,
                 }),
-            MeasureKind::Coordinate { .. }
+            MeasureKind::Articulation { joint, axis: Some(axis) } => {
+                self.joints[joint.0].bodies.map(|body| Some((body, axis)))
+            }
+            MeasureKind::Articulation { axis: None, .. }
+            | MeasureKind::Coordinate { .. }
             | MeasureKind::Distance { .. }
             | MeasureKind::Coordinates { .. }
             | MeasureKind::Orientation { .. }

@@ -10,6 +10,7 @@ mod coupler;
 mod curve;
 pub mod element;
 mod formula;
+mod joint_limit;
 mod measure;
 mod measured;
 mod metric;
@@ -36,11 +37,12 @@ pub use element::{
 };
 pub(crate) use element::{each_number, elements, if_mass};
 pub use formula::{Formula, NamedNumber, Source, Target};
+pub use joint_limit::{JointLimit, LimitEnd};
 pub use measure::{
     Combination, Dimension, KnownOrders, Measure, MeasureKind, OrientationAngle, OutputSource, Ray,
     ReactionPart,
 };
-pub(crate) use measure::{UnitForce, loads, measures, of_bodies};
+pub(crate) use measure::{UnitForce, loads, measures, of_bodies, of_bodies_but_joints};
 pub use measured::{Measurements, Reading};
 pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
@@ -151,6 +153,8 @@ pub struct Model {
     pub equilibrium: Option<Equilibrium>,
     /// Measures, in the order of the file.
     pub measures: Vec<Measure>,
+    /// Limits of joints, in the order of the file.
+    pub joint_limits: Vec<JointLimit>,
     /// Metrics, in the order of the file.
     pub metrics: Vec<Metric>,
     /// Idle spins, which are held at rest.

@@ -1,7 +1,7 @@
 //! Reason why a motion ended before its last output time.
 
 use crate::joint::Quantity;
-use crate::model::{BodyId, DriverId, JointId, Model};
+use crate::model::{BodyId, DriverId, JointId, LimitEnd, Model};
 use crate::topology::BlockId;
 
 use super::gap::{Gap, SINGULAR_DRAWING};
@@ -56,6 +56,16 @@ pub enum StopKind {
     TooFar {
         /// The driver.
         driver: DriverId,
+    },
+    /// A joint reaches its limit, which ends the motion (HP0268); or it is beyond the limit at the first output time
+    /// (HP0267).
+    JointLimit {
+        /// Index in [`Model::joint_limits`].
+        limit: usize,
+        /// The end that is reached.
+        end: LimitEnd,
+        /// True if the motion begins beyond the limit.
+        begins_beyond: bool,
     },
     /// The caller asked to stop (HP0405).
     Interrupted,
@@ -117,6 +127,8 @@ impl Stop {
             StopKind::BranchChange => "HP0402",
             StopKind::Locked { .. } => "HP0403",
             StopKind::LawNotFinite { .. } => "HP0404",
+            StopKind::JointLimit { begins_beyond: true, .. } => "HP0267",
+            StopKind::JointLimit { begins_beyond: false, .. } => "HP0268",
             StopKind::Interrupted => "HP0405",
             StopKind::DoesNotAssemble => "HP0406",
             StopKind::TooFar { .. } => "HP0408",
@@ -164,6 +176,10 @@ impl Stop {
                     model.drivers[driver.0].name
                 )
             }
+            StopKind::JointLimit { .. } => {
+                let at = if self.begins_beyond_limit() { "" } else { ", which ends the motion" };
+                format!("{} at t = {t:.6} s{at}", self.happened(model))
+            }
             StopKind::Interrupted => format!("interrupted at t = {t:.6} s"),
             StopKind::NothingHolds { direction } => format!("nothing holds {}", direction.words(model)),
             StopKind::LimitLoad { part } => format!(
@@ -192,6 +208,10 @@ impl Stop {
             StopKind::TooFar { driver } => {
                 format!("driver `{}` moves too far to be followed", model.drivers[driver.0].name)
             }
+            StopKind::JointLimit { limit, end, begins_beyond } => {
+                let does = if begins_beyond { "is beyond" } else { "reaches" };
+                format!("`{}` {does} its {}", model.joint_limits[limit].name, end.noun())
+            }
             StopKind::Interrupted => "interrupted".into(),
             StopKind::NoEquilibrium => "there is no further equilibrium near by".into(),
             StopKind::Unstable { direction } => {
@@ -202,6 +222,11 @@ impl Stop {
             | StopKind::DoesNotAssemble
             | StopKind::Locked { .. } => self.headline(model),
         }
+    }
+
+    /// True if the motion begins beyond the limit of a joint that ends it.
+    fn begins_beyond_limit(&self) -> bool {
+        matches!(self.kind, StopKind::JointLimit { begins_beyond: true, .. })
     }
 
     /// Returns true if the mechanism does not assemble because its design configuration is in or near a singular
@@ -238,6 +263,13 @@ impl Stop {
             StopKind::TooFar { .. } => {
                 "the limit between two output times is 100,000 rad (about 16,000 turns), or 100,000 sizes of the mechanism: \
                  request more output times, or make the law slower"
+            }
+            StopKind::JointLimit { begins_beyond: true, .. } => {
+                "begin the motion within the limit, or correct its `min` or `max`: values are those of the joint's \
+                 coordinate, which counts from the design configuration"
+            }
+            StopKind::JointLimit { begins_beyond: false, .. } => {
+                "shorten the sweep of the drivers, or remove `stop = true` to follow the motion beyond the limit"
             }
             StopKind::Interrupted => return None,
             StopKind::NothingHolds { .. } => {

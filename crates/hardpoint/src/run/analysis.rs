@@ -9,7 +9,7 @@ use crate::equilibrium::{Released, release};
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
 use crate::measure::{self, MeasureResults, Slopes, StepValues};
-use crate::model::{BodyId, DriverId, MeasureKind, Model, SharedModel};
+use crate::model::{BodyId, DriverId, JointLimit, MeasureKind, Model, SharedModel};
 use crate::motion::advance;
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
@@ -225,7 +225,17 @@ impl<'m> Analysis<'m> {
         self.with_model(|model| Model { times: times.clone(), metrics: Vec::new(), ..model.clone() })
     }
 
-    /// Analysis of a model that differs only in its output times and metrics.
+    /// Analysis of the same model at other output times, without metrics, whose motion no limit of a joint ends.
+    pub(super) fn without_stops(&self, times: Vec<f64>) -> Analysis<'static> {
+        self.with_model(|model| {
+            let joint_limits =
+                model.joint_limits.iter().map(|limit| JointLimit { stop: false, ..limit.clone() });
+            let joint_limits = joint_limits.collect();
+            Model { times: times.clone(), metrics: Vec::new(), joint_limits, ..model.clone() }
+        })
+    }
+
+    /// Analysis of a model that differs only in its output times, metrics and stops.
     fn with_model(&self, changed: impl Fn(&Model) -> Model) -> Analysis<'static> {
         let equilibrium = self.equilibrium.as_ref().map(|open| {
             let OpenModel { user, openings, kinds } = &**open;

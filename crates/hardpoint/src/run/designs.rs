@@ -176,8 +176,8 @@ impl Analysis<'_> {
     /// Batch solver for this number of designs, if that is possible and saves time; stores results if requested.
     fn design_batch(&self, designs: usize, sensitivities: bool, keeps: bool) -> Option<DesignBatch<'_>> {
         let pays = designs > 1 && self.programs_pay(designs);
-        // All designs must have the same laws.
-        if !pays || self.design_map().laws_change() {
+        // All designs must have the same laws, and the same output times.
+        if !pays || self.design_map().laws_change() || self.model().stops_at_limits() {
             return None;
         }
         let program = move |corrections| {

@@ -10,6 +10,7 @@ mod designs;
 mod driver_rates;
 mod gradient;
 mod jerk;
+mod joint_limits;
 mod loads;
 mod metric;
 mod nearest;
@@ -31,6 +32,7 @@ pub use clearance::{
 pub use driver_rates::DriverRates;
 pub use gradient::{GradientMethod, Gradients};
 pub use jerk::Jerks;
+pub use joint_limits::{LimitCrossing, LimitExtremum, LimitRange};
 pub use metric::{
     MetricParts, MetricValue, metric_number, metric_numbers, metrics, metrics_beside, misfits, peaks,
     place_of,

@@ -63,6 +63,8 @@ pub(crate) struct Walk<'a> {
     pub equilibrium: Option<EquilibriumSolver<'a>>,
     /// Per body: true if its results are requested.
     wanted: Vec<bool>,
+    /// Stop at the limit of a joint, which ends the output times.
+    at_limit: Option<Stop>,
     /// Output times solved.
     pub done: usize,
 }
@@ -112,6 +114,7 @@ impl<'a> Walk<'a> {
             loads: None,
             equilibrium,
             wanted,
+            at_limit: analysis.stop_at_limit(design),
             done: 0,
         }
     }
@@ -157,7 +160,7 @@ impl<'a> Walk<'a> {
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         mut then: impl FnMut(&mut S, SolvedSteps<'_, 'a>, usize, Option<&SensitivitySolver>),
     ) -> Option<Stop> {
-        let times = &self.analysis.model().times;
+        let times = self.times();
         let mut stop = None;
         while self.done < times.len() && stop.is_none() {
             let k = self.done;
@@ -184,7 +187,18 @@ impl<'a> Walk<'a> {
             then(sink, solved, count, self.solver.as_ref());
             self.done += count;
         }
-        stop
+        stop.or_else(|| self.at_limit.clone())
+    }
+
+    /// Output times up to the limit of a joint that ends the motion.
+    fn times(&self) -> &'a [f64] {
+        let times = &self.analysis.model().times[..];
+        match &self.at_limit {
+            Some(Stop { last_time, .. }) => {
+                &times[..times.partition_point(|t| last_time.is_some_and(|last| *t <= last))]
+            }
+            None => times,
+        }
     }
 
     /// Solves output time k alone.

@@ -43,7 +43,7 @@ impl<'n> Rule<'n> {
         let mut named = false;
         let axes = ["x", "y", "z"];
         walk("", shape, value, &mut |key, leaf| match leaf {
-            Leaf::Name("a column" | "a parameter" | "a parameter of the law", _)
+            Leaf::Name("a column" | "a parameter" | "a parameter of the law" | "a coordinate", _)
             | Leaf::File(_)
             | Leaf::Pair(_) => {}
             Leaf::Name(_, name) => {

@@ -105,6 +105,7 @@ impl<'a> Side<'_, 'a> {
         let Some(table) = table_of(value) else { return named };
         match section {
             "joints" => {
+                self.limits(joint, table);
                 table.get_mut("lead").into_iter().for_each(|v| turn_sign(v, self.rule.numbers));
                 // It is at the first point of its axis, for both directions.
                 if let (Some(at), false) =
@@ -174,6 +175,23 @@ impl<'a> Side<'_, 'a> {
             _ => {}
         }
         named
+    }
+
+    /// Exchanges the ends of limits of coordinates with the opposite sign in the mirror.
+    fn limits(&self, joint: Option<&JointType>, table: &mut DeTable<'a>) {
+        let Some(kind) = joint else { return };
+        let limits = table.get_mut("limits").and_then(table_of);
+        for (coordinate, limit) in limits.into_iter().flat_map(|limits| limits.iter_mut()) {
+            let is_reversed =
+                kind.coordinate(coordinate.get_ref()).is_some_and(|(_, c)| kind.is_reversed_in_mirror(c));
+            let Some(limit) = table_of(limit).filter(|_| is_reversed) else { continue };
+            let ends = [("min", "max"), ("max", "min")].map(|(from, to)| (to, limit.remove(from)));
+            for (key, value) in ends {
+                let Some(mut value) = value else { continue };
+                turn_sign(&mut value, self.rule.numbers);
+                put(limit, key, value);
+            }
+        }
     }
 
     /// Changes the signs of an element's numbers that refer to a coordinate with the opposite sign in the mirror.

@@ -71,6 +71,7 @@ impl Checker<'_> {
                 | MeasureKind::Orientation { .. }
                 | MeasureKind::TransmissionAngle { .. }
                 | MeasureKind::Clearance { .. }
+                | MeasureKind::Articulation { .. }
                 | MeasureKind::Combination { .. }
                 | MeasureKind::Camber { .. }
                 | MeasureKind::Toe { .. }

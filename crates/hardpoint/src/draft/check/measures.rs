@@ -33,6 +33,7 @@ impl Checker<'_> {
     fn one_measure(&mut self, m: &MeasureDraft, here: Here) -> Option<MeasureKind> {
         let kind = m.kind.resolve(&mut MeasureCheck::new(self, &m.name, here))?;
         self.check_load(&kind, m, here);
+        self.check_articulation(&kind, here);
         if let MeasureKind::Distance { from, to } = kind {
             let [a, b] = [from, to].map(|p| self.model.points[p.0].clone());
             let at_one_place = self.separation(a.at, b.at) == Some(None);
@@ -47,6 +48,25 @@ impl Checker<'_> {
             }
         }
         Some(kind)
+    }
+
+    /// HP0265: the articulation of a joint whose axis does not tilt.
+    fn check_articulation(&mut self, kind: &MeasureKind, here: Here) {
+        let Some(joint) = kind.tilting_joint().map(|joint| &self.model.joints[joint.0]) else { return };
+        if joint.kind.articulates() {
+            return;
+        }
+        let coordinates: Vec<String> =
+            joint.kind.coordinates.iter().map(|c| format!("`{}`", c.name)).collect();
+        let note = format!("type of `{}`: {} ({})", joint.name, joint.kind.name, joint.kind.summary);
+        let message = format!("the axis of joint `{}` does not tilt: it has no articulation", joint.name);
+        let help = match coordinates.is_empty() {
+            true => {
+                "name a ball joint, a universal or constant-velocity joint, an inline or inplane joint".into()
+            }
+            false => format!("name one of its coordinates: {}", coordinates.join(", ")),
+        };
+        self.fault("HP0265", here.key("joint"), message).note(note).help(help);
     }
 
     /// HP0250: loads or compliances of a model without any. HP0251: reactions on a body that the joint does not

@@ -738,6 +738,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
     for m in &mut d.measures {
         match &mut m.kind {
             MeasureKindDraft::Coordinate { .. } | MeasureKindDraft::Unread => {}
+            MeasureKindDraft::Articulation { axis, .. } => axis.iter_mut().for_each(&line),
             MeasureKindDraft::Distance { from, to } => {
                 point(from);
                 point(to);

@@ -1,0 +1,373 @@
+//! Limits of joints over a motion: ranges of their values, and the times at which they are reached, located exactly.
+//!
+//! Times are found on motions that are solved anew at them, like those of clearances; the polynomials between solved
+//! times only predict them.
+
+use crate::model::{JointLimit, LimitEnd, Model, OutputSource, VariableId};
+use crate::motion::{Stop, StopKind};
+
+use super::curve::{SampledCurve, crossing};
+use super::{Analysis, PreparedDesign, Run, Solution};
+
+/// A crossing is located if a step of Newton's method is below this fraction of the motion: positions are solved to
+/// 1e-12 of the mechanism's size.
+const LOCATED: f64 = 1e-11;
+/// An extremum is located if the motion is solved nearer to its time than this fraction of the motion: its value is
+/// then known to round-off. Crossings nearer to each other are the same one.
+const SAME_TIME: f64 = 1e-8;
+/// Time by which an interval of a motion without rates is narrowed around an extremum, as a fraction of the motion.
+const AT_REST: f64 = 1e-6;
+/// Rate below which a crossing is grazing, as a fraction of the largest rate: its time has no derivative.
+const GRAZING: f64 = 1e-6;
+/// Maximum number of times that the motion is solved again; each pass is nearer to the times by several digits, or
+/// halves an interval.
+const MOST_PASSES: usize = 40;
+/// Pieces of an interval of a motion without rates, in which an extremum is looked for.
+const PIECES: usize = 4;
+
+/// Least or greatest value over a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LimitExtremum {
+    /// Time, s.
+    pub time: f64,
+    /// Value, m or rad.
+    pub value: f64,
+    /// Derivative of the value by every design variable; NaN for those that are not admissible.
+    pub d: Vec<f64>,
+}
+
+/// Time at which a value leaves its range, or returns to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LimitCrossing {
+    /// Time, s.
+    pub time: f64,
+    /// End of the range.
+    pub end: LimitEnd,
+    /// True if the value leaves the range there, false if it returns.
+    pub leaves: bool,
+    /// Derivative of the time by every design variable, s per m, rad or plain; NaN where the crossing is grazing, and
+    /// for variables that are not admissible.
+    pub d: Vec<f64>,
+}
+
+/// Value of a limited coordinate or articulation over a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LimitRange {
+    /// The least value.
+    pub least: LimitExtremum,
+    /// The greatest value.
+    pub greatest: LimitExtremum,
+    /// End of the range that the value is beyond at the first output time.
+    pub begins_beyond: Option<LimitEnd>,
+    /// All crossings of both ends, in order of time.
+    pub crossings: Vec<LimitCrossing>,
+}
+
+impl LimitRange {
+    /// Value that is nearest to an end of the range, or farthest beyond it.
+    pub fn extremum(&self, end: LimitEnd) -> &LimitExtremum {
+        match end {
+            LimitEnd::Min => &self.least,
+            LimitEnd::Max => &self.greatest,
+        }
+    }
+}
+
+/// Crossing that is located.
+#[derive(Clone, Copy, Debug)]
+struct Located {
+    limit: usize,
+    time: f64,
+    end: LimitEnd,
+    leaves: bool,
+}
+
+/// Crossings of a motion, with the motion that was solved at them.
+struct Crossings {
+    solution: Solution,
+    /// Per limit, the end that it is beyond at the first output time.
+    begins_beyond: Vec<Option<LimitEnd>>,
+    /// In order of time.
+    located: Vec<Located>,
+}
+
+impl Crossings {
+    /// Returns the first time at which a limit ends the motion.
+    fn stop(&self, model: &Model) -> Option<(f64, StopKind)> {
+        let stops = |k: &usize| model.joint_limits[*k].stop;
+        let begins = (0..self.begins_beyond.len()).filter(stops).find_map(|limit| {
+            let kind = StopKind::JointLimit { limit, end: self.begins_beyond[limit]?, begins_beyond: true };
+            Some((self.solution.motion.times[0], kind))
+        });
+        begins.or_else(|| {
+            let first = self.located.iter().find(|c| c.leaves && model.joint_limits[c.limit].stop)?;
+            let kind = StopKind::JointLimit { limit: first.limit, end: first.end, begins_beyond: false };
+            Some((first.time, kind))
+        })
+    }
+}
+
+impl Analysis<'_> {
+    /// Solves the motion of a design up to its stop, and locates the ranges of all limits of joints and the times at
+    /// which they are reached, with their derivatives by the design variables. Empty if no output time is solved.
+    pub fn joint_limits(&self, design: &[f64]) -> Vec<LimitRange> {
+        let model = self.model();
+        if model.joint_limits.is_empty() {
+            return Vec::new();
+        }
+        let Some(mut found) = self.crossings(design, |_| true) else { return Vec::new() };
+        let mut times = found.solution.motion.times.clone();
+        if let Some((end, _)) = found.stop(model) {
+            // The motion ends there.
+            found.located.retain(|c| c.time <= end);
+            times.retain(|t| *t < end);
+            times.push(end);
+            found.solution = self.beyond_stops(&times, design, false);
+        }
+        let mut extrema = Vec::new();
+        for _ in 0..MOST_PASSES {
+            let (at, add) = extrema_of(model, &times, &found.solution);
+            extrema = at;
+            if add.is_empty() {
+                break;
+            }
+            times.extend(add);
+            times.sort_by(f64::total_cmp);
+            times.dedup();
+            found.solution = self.beyond_stops(&times, design, false);
+        }
+        let of_extrema = extrema.iter().flatten().copied();
+        let of_crossings = found.located.iter().map(|c| c.time);
+        let mut events: Vec<f64> = of_extrema.chain(of_crossings).chain(times.first().copied()).collect();
+        events.sort_by(f64::total_cmp);
+        events.dedup();
+        let solution = self.beyond_stops(&events, design, true);
+        if solution.motion.len() < events.len() {
+            return Vec::new();
+        }
+        results(model, &extrema, &found, &solution)
+    }
+
+    /// Returns the stop of a design at the limit of a joint, if there is one.
+    pub(super) fn stop_at_limit(&self, design: &PreparedDesign) -> Option<Stop> {
+        let model = self.model();
+        if !model.stops_at_limits() {
+            return None;
+        }
+        let (failed_time, kind) = self.crossings(&design.values, |limit| limit.stop)?.stop(model)?;
+        let begins_beyond = matches!(kind, StopKind::JointLimit { begins_beyond: true, .. });
+        let span = model.times.last().zip(model.times.first()).map_or(0.0, |(last, first)| last - first);
+        // An output time at which the limit is reached belongs to the motion.
+        let solved = |t: &&f64| !begins_beyond && **t <= failed_time + LOCATED * span;
+        let last_time = model.times.iter().take_while(solved).last().copied();
+        let at = last_time.unwrap_or(failed_time);
+        Some(Stop {
+            kind,
+            last_time,
+            failed_time,
+            drivers: design.laws.iter().take(model.drivers.len()).map(|law| law.at(at).value()).collect(),
+            block: None,
+            pivot_ratio: 1.0,
+            joints: Vec::new(),
+            remains: Vec::new(),
+            closed: None,
+        })
+    }
+
+    /// Solution at other times of the motion that no limit ends, with measures.
+    fn beyond_stops(&self, times: &[f64], design: &[f64], sensitivities: bool) -> Solution {
+        let run = Run::new().at(design);
+        let run = if sensitivities { run } else { run.without_sensitivities() };
+        self.without_stops(times.to_vec()).solve(run)
+    }
+
+    /// Locates all crossings of some limits; `None` if no output time is solved.
+    fn crossings(&self, design: &[f64], counts: impl Fn(&JointLimit) -> bool) -> Option<Crossings> {
+        let model = self.model();
+        let mut times = self.times_within();
+        let mut solution = Solution::default();
+        let mut located = Vec::new();
+        for _ in 0..MOST_PASSES {
+            solution = self.beyond_stops(&times, design, false);
+            let mut add = Vec::new();
+            located.clear();
+            for (k, limit) in model.joint_limits.iter().enumerate().filter(|(_, limit)| counts(limit)) {
+                let Some(curve) = curve_of(limit, &solution) else { continue };
+                for end in LimitEnd::ALL {
+                    if let Some(bound) = limit.end(end) {
+                        let mut found = locate(&curve, bound, end, limit.tolerance(model), &mut add);
+                        located.extend(found.drain(..).map(|(time, leaves)| Located {
+                            limit: k,
+                            time,
+                            end,
+                            leaves,
+                        }));
+                    }
+                }
+            }
+            if add.is_empty() {
+                break;
+            }
+            times.truncate(solution.motion.len());
+            times.extend(add);
+            times.sort_by(f64::total_cmp);
+            times.dedup();
+        }
+        if solution.motion.is_empty() {
+            return None;
+        }
+        located.sort_by(|a, b| a.time.total_cmp(&b.time));
+        let at_start = |limit: &JointLimit| limit.exceeded(model, curve_of(limit, &solution)?.values[0][0]);
+        let begins_beyond = model.joint_limits.iter().map(at_start).collect();
+        Some(Crossings { solution, begins_beyond, located })
+    }
+}
+
+/// Curve of a limited value at the times of a solution.
+fn curve_of<'s>(limit: &JointLimit, solution: &'s Solution) -> Option<SampledCurve<'s, f64>> {
+    let measured = &solution.measured;
+    let m = measured.outputs.iter().position(|o| o.source == OutputSource::Measure(limit.measure))?;
+    let values: Vec<[f64; 3]> = (0..measured.len()).map(|k| measured.value(k, m)).collect();
+    let orders = measured.outputs[m].known.orders;
+    (!values.is_empty()).then_some(SampledCurve { times: &solution.motion.times, orders, values })
+}
+
+/// Crossings of an end of a range that are located, each with true if the value leaves the range there; times at which
+/// the motion must be solved to locate the others are added.
+fn locate(
+    curve: &SampledCurve<'_, f64>,
+    bound: f64,
+    end: LimitEnd,
+    tolerance: f64,
+    add: &mut Vec<f64>,
+) -> Vec<(f64, bool)> {
+    let (times, last) = (curve.times, curve.values.len() - 1);
+    let span = times[last] - times[0];
+    // Positive beyond the end.
+    let beyond = |k: usize| end.sign() * (curve.values[k][0] - bound);
+    let rate = |k: usize| end.sign() * curve.values[k][1];
+    let mut nodes: Vec<usize> = Vec::new();
+    let first = add.len();
+    for k in 0..last {
+        let width = times[k + 1] - times[k];
+        for part in SampledCurve::monotone(times, Some(curve), k) {
+            let Some(t) = crossing(Some(curve), k, part, bound) else { continue };
+            let t = if part[0] <= t && t <= part[1] { t } else { 0.5 * (part[0] + part[1]) };
+            let near = if t - times[k] <= times[k + 1] - t { k } else { k + 1 };
+            let step = beyond(near).abs() <= LOCATED * span * rate(near).abs();
+            if step || beyond(near) == 0.0 || width <= LOCATED * span {
+                if nodes.last().is_none_or(|n| times[near] - times[*n] > SAME_TIME * span) {
+                    nodes.push(near);
+                }
+            } else {
+                add.push(t);
+                if !rate(near).is_finite() {
+                    add.push(0.5 * (times[k] + times[k + 1]));
+                }
+            }
+        }
+    }
+    if add.len() > first {
+        return Vec::new();
+    }
+    // Value farthest beyond the end between two times.
+    let farthest = |from: f64, to: f64| {
+        let within = |t: &f64| from <= *t && *t <= to;
+        let solved = (0..=last).filter(|k| within(&times[*k])).map(beyond);
+        let between = (0..last).filter(|k| times[*k] <= to && from <= times[k + 1]);
+        let turns = between.flat_map(|k| curve.turns(k).into_iter().filter(within).map(move |t| (k, t)));
+        let turns = turns.map(|(k, t)| end.sign() * (curve.number(k, t) - bound));
+        solved.chain(turns).fold(f64::NEG_INFINITY, f64::max)
+    };
+    // Parts between crossings, each within the range or beyond it by more than round-off.
+    let ends: Vec<f64> =
+        std::iter::once(times[0]).chain(nodes.iter().map(|k| times[*k])).chain([times[last]]).collect();
+    let is_beyond: Vec<bool> = ends.windows(2).map(|part| farthest(part[0], part[1]) > tolerance).collect();
+    let changes = nodes.iter().zip(is_beyond.windows(2)).filter(|(_, sides)| sides[0] != sides[1]);
+    // A last step of Newton's method; the motion is solved again at these times.
+    let exact =
+        |k: usize| times[k] - Some(beyond(k) / rate(k)).filter(|step| step.is_finite()).unwrap_or(0.0);
+    changes.map(|(k, sides)| (exact(*k).clamp(times[0], times[last]), sides[1])).collect()
+}
+
+/// Times of the least and the greatest value of each limit up to the last of some times, which are the first ones of
+/// the solution; and times at which the motion must be solved to locate them.
+fn extrema_of(model: &Model, times: &[f64], solution: &Solution) -> (Vec<[f64; 2]>, Vec<f64>) {
+    let mut add = Vec::new();
+    let mut of_limit = |limit: &JointLimit| {
+        let Some(mut curve) = curve_of(limit, solution) else { return [times[0]; 2] };
+        curve.values.truncate(times.len());
+        [-1.0, 1.0].map(|sign| extremum(&curve, sign, &mut add))
+    };
+    let found = model.joint_limits.iter().map(&mut of_limit).collect();
+    (found, add)
+}
+
+/// Solved time of the greatest value (sign 1) or the least one (-1); times are added at which the motion must be solved
+/// to locate it.
+fn extremum(curve: &SampledCurve<'_, f64>, sign: f64, add: &mut Vec<f64>) -> f64 {
+    let (times, last) = (curve.times, curve.values.len() - 1);
+    let span = times[last] - times[0];
+    let value = |k: usize| sign * curve.values[k][0];
+    let finite = (0..=last).filter(|k| value(*k).is_finite());
+    let Some(best) = finite.reduce(|a, b| if value(b) > value(a) { b } else { a }) else { return times[0] };
+    if curve.known(best) == 1 {
+        // Without rates, the intervals on both sides are divided.
+        for [a, b] in [[best.saturating_sub(1), best], [best, (best + 1).min(last)]] {
+            let [from, to] = [times[a], times[b]];
+            if to - from > AT_REST * span {
+                add.extend((1..PIECES).map(|n| from + (to - from) * n as f64 / PIECES as f64));
+            }
+        }
+        return times[best];
+    }
+    let turns = (0..last).flat_map(|k| curve.turns(k).into_iter().map(move |t| (k, t)));
+    let turns = turns.map(|(k, t)| (k, t, sign * curve.number(k, t)));
+    let higher = turns.filter(|turn| turn.2 > value(best)).max_by(|a, b| a.2.total_cmp(&b.2));
+    if let Some((k, t, _)) = higher {
+        let near = [k, k + 1].into_iter().find(|end| (t - times[*end]).abs() <= SAME_TIME * span);
+        match near {
+            Some(near) => return times[near],
+            None => add.push(t),
+        }
+    }
+    times[best]
+}
+
+/// Results at the located times, of a motion that is solved at them.
+fn results(model: &Model, extrema: &[[f64; 2]], found: &Crossings, solution: &Solution) -> Vec<LimitRange> {
+    let times = &solution.motion.times;
+    let (measured, sensitivities) = (&solution.measured, &solution.sensitivities);
+    let derivatives = |k: usize, m: usize| -> Vec<f64> {
+        let variables = (0..model.variables.len()).map(VariableId);
+        let d = variables.map(|b| match sensitivities.at(k, b.0).is_some() {
+            true => measured.derivative(k, b, m, 0),
+            false => f64::NAN,
+        });
+        d.collect()
+    };
+    let of_limit = |(number, limit): (usize, &JointLimit)| {
+        let m = measured.outputs.iter().position(|o| o.source == OutputSource::Measure(limit.measure))?;
+        let place = |time: f64| times.iter().position(|t| *t == time);
+        let extremum = |time: f64| {
+            let k = place(time)?;
+            Some(LimitExtremum { time, value: measured.value(k, m)[0], d: derivatives(k, m) })
+        };
+        let [least, greatest] = extrema[number].map(extremum);
+        let (least, greatest) = (least?, greatest?);
+        // Scale of the rate: the range of the value over the time of the motion.
+        let range = greatest.value - least.value;
+        let span = found.solution.motion.times.last()? - times[0];
+        let crossings = found.located.iter().filter(|c| c.limit == number).filter_map(|c| {
+            let k = place(c.time)?;
+            let rate = measured.value(k, m)[1];
+            let rate = if rate.abs() * span > GRAZING * range { rate } else { f64::NAN };
+            // t_b = -x_b / x.                                                              docs/theory.md (62)
+            let d = derivatives(k, m).iter().map(|d| -d / rate).collect();
+            Some(LimitCrossing { time: c.time, end: c.end, leaves: c.leaves, d })
+        });
+        let crossings = crossings.collect();
+        Some(LimitRange { least, greatest, begins_beyond: found.begins_beyond[number], crossings })
+    };
+    model.joint_limits.iter().enumerate().map(of_limit).collect::<Option<_>>().unwrap_or_default()
+}
