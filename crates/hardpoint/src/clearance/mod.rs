@@ -19,6 +19,6 @@ mod swept;
 mod tests;
 
 pub(crate) use nearest::nearest;
-pub(crate) use placed::PlacedShapes;
+pub(crate) use placed::{NearestPair, PlacedShapes};
 pub(crate) use separation::{Direction, EnclosedCore, direction_of, lower_bound, separations};
 pub(crate) use swept::ShapeAtPose;

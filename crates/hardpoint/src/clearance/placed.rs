@@ -10,6 +10,9 @@ use super::feature::{Feature, Placed};
 use super::nearest::{Nearest, nearest};
 use super::surface::{View, core_and_surface, moved, surfaces};
 
+/// The pair of a clearance whose shapes are nearest, and where they are; `None` if the clearance has no pairs.
+pub(crate) type NearestPair = Option<(usize, Nearest)>;
+
 /// The shapes of a model where its bodies are.
 #[derive(Clone, Copy)]
 pub(crate) struct PlacedShapes<'a, T> {
@@ -172,7 +175,7 @@ impl<T: Real> PlacedShapes<'_, T> {
     }
 
     /// The pair of a clearance whose shapes are nearest, and where they are; `None` if it has no pairs.
-    pub fn nearest_pair(&self, clearance: ClearanceId) -> Option<(usize, Nearest)> {
+    pub fn nearest_pair(&self, clearance: ClearanceId) -> NearestPair {
         let pairs = &self.model.clearances[clearance.0].pairs;
         if let [only] = &pairs[..] {
             return Some((0, self.nearest(only.shapes)));
@@ -201,10 +204,11 @@ impl<T: Real> PlacedShapes<'_, T> {
         least
     }
 
-    /// The least distance of the pairs of a clearance; NaN if it has none.
-    pub fn clearance(&self, clearance: ClearanceId) -> T {
+    /// The distance of the nearest pair of a clearance; NaN if it has none.
+    pub fn clearance_between(&self, clearance: ClearanceId, nearest: &NearestPair) -> T {
         let pairs = &self.model.clearances[clearance.0].pairs;
-        self.nearest_pair(clearance)
-            .map_or_else(|| T::constant(f64::NAN), |(k, near)| self.distance(pairs[k].shapes, &near))
+        nearest
+            .as_ref()
+            .map_or_else(|| T::constant(f64::NAN), |(k, near)| self.distance(pairs[*k].shapes, near))
     }
 }

@@ -55,10 +55,10 @@ impl View<'_> {
         }
     }
 
-    /// Visits the triangles that may be nearest; `each` returns their distances.
-    fn search(&self, apart: &dyn Fn(Vec3) -> f64, each: &mut dyn FnMut(usize) -> f64) {
+    /// Visits the triangles that may be nearer than `least`; `each` returns their distances.
+    fn search(&self, least: f64, apart: &dyn Fn(Vec3) -> f64, each: &mut dyn FnMut(usize) -> f64) {
         match self {
-            Self::Mesh(surface) => surface.search(apart, each),
+            Self::Mesh(surface) => surface.search(least, apart, each),
             Self::Hull { facets, .. } => {
                 for t in 0..facets.len() {
                     each(t);
@@ -89,8 +89,11 @@ impl View<'_> {
             }
         }
         let mut best: Option<(f64, Vec3, TrianglePart)> = None;
-        self.search(&|q| (q - p).norm(), &mut |t| {
+        self.search(f64::INFINITY, &|q| (q - p).norm(), &mut |t| {
             let (corners, ids) = self.triangle(t);
+            if let Some((apart, ..)) = best.filter(|(apart, q, _)| is_behind(&[p], corners, p - *q, *apart)) {
+                return apart;
+            }
             let (q, part) = nearest_of_triangle(p, corners, ids);
             let apart = (q - p).norm();
             if best.is_none_or(|best| apart < best.0) {
@@ -103,12 +106,7 @@ impl View<'_> {
             return found([own, Feature::Vertex(0)], [p, p], f64::NAN);
         };
         let inside = matches!(self, Self::Mesh(surface) if surface.is_inside(p, part, q));
-        let feature = match part {
-            TrianglePart::Vertex(k) => Feature::Vertex(k),
-            TrianglePart::Edge(ends) => Feature::Edge(ends),
-            TrianglePart::Face(corners) => Feature::Facet(corners),
-        };
-        found([own, feature], [p, q], if inside { -apart } else { apart })
+        found([own, of_part(part)], [p, q], if inside { -apart } else { apart })
     }
 
     /// The nearest points of a triangle's edges and a core; `core_and_edge` is given both ends of an edge.
@@ -120,6 +118,23 @@ impl View<'_> {
             Nearest { features: [near.features[0], of_edge(near.features[1], [ids[k], ids[next]])], ..near }
         }))
     }
+}
+
+/// Feature of a surface, by the part of a triangle.
+fn of_part(part: TrianglePart) -> Feature {
+    match part {
+        TrianglePart::Vertex(k) => Feature::Vertex(k),
+        TrianglePart::Edge(ends) => Feature::Edge(ends),
+        TrianglePart::Face(corners) => Feature::Facet(corners),
+    }
+}
+
+/// True if all corners of a triangle are at least this far from some points along n, whose length is that distance: the
+/// triangle is no nearer.
+fn is_behind(points: &[Vec3], corners: [Vec3; 3], n: Vec3, distance: f64) -> bool {
+    let lowest = points.iter().map(|p| n.dot(*p)).fold(f64::INFINITY, f64::min);
+    let highest = corners.iter().map(|v| n.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+    distance > 0.0 && lowest - highest >= distance * distance
 }
 
 /// Feature of a surface, by that of one of its edges as a segment.
@@ -150,7 +165,7 @@ pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
             });
             let drum = around_drum(middle, *half_width);
             let mut best = nearer(rims);
-            view.search(&|q| drum.distance(q), &mut |t| {
+            view.search(best.distance, &|q| drum.distance(q), &mut |t| {
                 let near = view.edges(t, |edge| segment_and_cylinder(edge, &drum).reversed());
                 if near.distance < best.distance {
                     best = near;
@@ -176,25 +191,27 @@ pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
 /// The nearest points of a segment and a surface; of one that is partly inside, its deepest point.
 fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
     let at = |t: f64| a + (b - a) * t;
-    let ends = [0.0, 1.0].map(|t| {
-        let near = view.nearest_to(at(t));
-        Nearest { features: [Feature::Point(t), near.features[1]], ..near }
-    });
-    let [first, second] = &ends;
-    if !(first.distance.is_finite() && second.distance.is_finite()) {
-        return ends[0];
+    let first = view.nearest_to(a);
+    if !first.distance.is_finite() {
+        return first;
     }
-    let mut pierces = view.is_closed() && ends.iter().any(|near| near.distance < 0.0);
-    let mut best = nearer(ends);
+    let mut pierces = view.is_closed() && first.distance < 0.0;
+    let mut best = first;
     if !pierces {
         let reach = Core::Segment([a, b]);
-        view.search(&|q| reach.distance_from(q), &mut |t| {
-            let (corners, _) = view.triangle(t);
+        view.search(best.distance, &|q| reach.distance_from(q), &mut |t| {
+            let (corners, ids) = view.triangle(t);
+            let [p, q] = best.points;
+            if is_behind(&[a, b], corners, p - q, best.distance) {
+                return best.distance;
+            }
             if is_pierced([a, b], corners) {
                 pierces = true;
                 return 0.0;
             }
-            let near = view.edges(t, |edge| segments([a, b], edge));
+            let (q, part) = nearest_of_triangle(b, corners, ids);
+            let end = found([Feature::Point(1.0), of_part(part)], [b, q], (q - b).norm());
+            let near = nearer([end, view.edges(t, |edge| segments([a, b], edge))]);
             if near.distance < best.distance {
                 best = near;
             }
@@ -253,12 +270,7 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
         };
         let corner = |p: Vec3, id: u32, corners: [Vec3; 3], ids: [u32; 3]| {
             let (q, part) = nearest_of_triangle(p, corners, ids);
-            let feature = match part {
-                TrianglePart::Vertex(k) => Feature::Vertex(k),
-                TrianglePart::Edge(ends) => Feature::Edge(ends),
-                TrianglePart::Face(corners) => Feature::Facet(corners),
-            };
-            found([Feature::Vertex(id), feature], [p, q], (q - p).norm())
+            found([Feature::Vertex(id), of_part(part)], [p, q], (q - p).norm())
         };
         let near = nearer([
             nearer([0, 1, 2].map(edges)),
@@ -275,13 +287,13 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
         (View::Mesh(p), View::Hull { facets, .. }) => {
             let (centre, radius) = b.ball();
             let centre = place.point(centre);
-            p.search(&|x| (x - centre).norm() - radius, &mut |s| {
+            p.search(f64::INFINITY, &|x| (x - centre).norm() - radius, &mut |s| {
                 (0..facets.len()).map(|t| each(s, t)).fold(f64::INFINITY, f64::min)
             });
         }
         (View::Hull { facets, .. }, View::Mesh(q)) => {
             let (centre, radius) = a.ball();
-            q.search(&|x| (place.point(x) - centre).norm() - radius, &mut |t| {
+            q.search(f64::INFINITY, &|x| (place.point(x) - centre).norm() - radius, &mut |t| {
                 (0..facets.len()).map(|s| each(s, t)).fold(f64::INFINITY, f64::min)
             });
         }

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use hardpoint_tape::LANES;
 
+use crate::clearance::{NearestPair, PlacedShapes};
 use crate::design::{BodyFixed, DesignMap};
 use crate::law::Law;
-use crate::model::{Model, VariableId};
+use crate::model::{ClearanceId, Model, VariableId};
 use crate::motion::Motion;
 use crate::number::{Dual, Jet, Rates};
 use crate::sensitivity::{Admissibility, Sensitivities};
@@ -15,7 +16,7 @@ use crate::topology::Topology;
 
 use super::StepValues;
 use super::bodies::{with_rates, with_sensitivity};
-use super::formulas::{Instant, bodies_asked_for, is_formula};
+use super::formulas::{Instant, bodies_asked_for, bodies_of_outputs, is_formula};
 use super::program::{MeasureProgram, MeasureRun};
 use super::storage::{MeasureResults, Output, dense, outputs};
 use super::turns::{Turns, placed_turns, unwrap_angles};
@@ -64,8 +65,8 @@ pub(crate) fn evaluate(
             run.turns().for_each(|(_, lanes)| *lanes = [lanes[LANES - 1]; LANES]);
         }
     }
-    let FormulaEvaluator { left, counted, .. } = formulas;
-    let more = Context { slopes, whole_turns: &counted };
+    let FormulaEvaluator { left, counted, nearest, .. } = formulas;
+    let more = Context { slopes, whole_turns: &counted, nearest: &nearest };
     let outputs = measured.outputs.clone();
     derivatives(design, &outputs, &left, (motion, sensitivities), &more, |k, b, m, numbers| {
         measured.set_d(k, VariableId(b), m, numbers);
@@ -107,6 +108,8 @@ struct FormulaEvaluator<'a> {
     left: Vec<(usize, usize)>,
     /// By time and measure, where any counts: the whole turns.
     counted: Vec<f64>,
+    /// By time and clearance: the nearest pair, where formulas are evaluated.
+    nearest: Vec<NearestPair>,
     /// Room for the slopes and the whole turns of one output time.
     given: Vec<Rates>,
     whole_turns: Vec<Rates>,
@@ -134,6 +137,7 @@ impl<'a> FormulaEvaluator<'a> {
             counts: (0..model.measures.len()).any(|m| is_formula(model, m)),
             left: Vec::new(),
             counted: Vec::new(),
+            nearest: Vec::new(),
             given: Vec::new(),
             whole_turns: Vec::new(),
         }
@@ -151,6 +155,7 @@ impl<'a> FormulaEvaluator<'a> {
         let begins = self.left.partition_point(|(block, _)| *block < first);
         self.left.truncate(begins);
         self.counted.truncate(first * self.model.measures.len());
+        self.nearest.truncate(first * self.model.clearances.len());
         let fits = |m: &usize| run.is_some_and(|run| run.fits(*m, times.len()));
         let model = self.model;
         let is_given = |m: &usize| *m < model.measures.len() && model.depends_on_step(*m);
@@ -162,7 +167,7 @@ impl<'a> FormulaEvaluator<'a> {
 
     /// The same at output time k, for the outputs that are left from `begins` on.
     fn fill_one(&mut self, k: usize, begins: usize, measured: &mut MeasureResults) {
-        let Self { model, motion, fixed, bodies, poses, left, given, whole_turns, .. } = self;
+        let Self { model, motion, fixed, bodies, poses, left, given, whole_turns, nearest, .. } = self;
         let left = &left[begins..];
         let place = |poses: &mut [Pose<Rates>]| {
             let states = motion.at(k);
@@ -175,7 +180,16 @@ impl<'a> FormulaEvaluator<'a> {
         if !left.is_empty() {
             given.extend(self.slopes.at(k).map(only));
         }
-        let instant = Instant { slopes: given, ..Instant::new(model, fixed, poses) };
+        // The features of a clearance are selected once, and serve its derivatives too.
+        let begins = nearest.len();
+        if left.is_empty() {
+            nearest.resize(begins + model.clearances.len(), None);
+        } else {
+            let placed = PlacedShapes { model, fixed, poses };
+            nearest.extend((0..model.clearances.len()).map(|c| placed.nearest_pair(ClearanceId(c))));
+        }
+        let nearest = &nearest[begins..];
+        let instant = Instant { slopes: given, nearest, ..Instant::new(model, fixed, poses) };
         for &(_, m) in left {
             measured.set(k, m, instant.output(measured.outputs[m].source).0);
         }
@@ -205,6 +219,8 @@ pub(crate) struct Context<'a> {
     pub slopes: &'a StepValues,
     /// By time and measure: the whole turns of its angle, rad; empty if no formula uses them.
     pub whole_turns: &'a [f64],
+    /// By time and clearance: the nearest pair; empty where these are not known.
+    pub nearest: &'a [NearestPair],
 }
 
 /// A number whose rates are not known.
@@ -225,7 +241,10 @@ pub(crate) fn derivatives(
     mut out: impl FnMut(usize, usize, usize, [f64; 3]),
 ) {
     let &MeasuredDesign { model, design_map, values, .. } = design;
-    let bodies = bodies_asked_for(model);
+    let mut named: Vec<usize> = listed.iter().map(|(_, m)| *m).collect();
+    named.sort_unstable();
+    named.dedup();
+    let bodies = bodies_of_outputs(model, named.into_iter().map(|m| outputs[m].source));
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
@@ -253,9 +272,12 @@ pub(crate) fn derivatives(
                         .take(model.measures.len())
                         .map(|turns| Dual::constant(Rates::constant(*turns))),
                 );
+                let clearances = model.clearances.len();
+                let nearest = more.nearest.get(k * clearances..(k + 1) * clearances).unwrap_or_default();
                 let instant = Instant {
                     slopes: &given,
                     whole_turns: &whole_turns,
+                    nearest,
                     ..Instant::new(model, &fixed, &poses)
                 };
                 for &(_, m) in listed {

@@ -1,6 +1,6 @@
 //! Formulas of measures, over any number type. Signs are in `docs/measures.md`; loads are in `load/measures.rs`.
 
-use crate::clearance::PlacedShapes;
+use crate::clearance::{NearestPair, PlacedShapes};
 use crate::constraint::Row;
 use crate::design::BodyFixed;
 use crate::model::{
@@ -22,12 +22,14 @@ pub(crate) struct Instant<'a, T> {
     pub(super) slopes: &'a [T],
     /// Per measure: the whole turns, rad, that its angle has made; empty where they are not counted.
     pub(super) whole_turns: &'a [T],
+    /// Per clearance: its nearest pair; empty where these are not known.
+    pub(super) nearest: &'a [NearestPair],
 }
 
 impl<'a, T: Real> Instant<'a, T> {
     /// Outputs of bodies at these poses.
     pub fn new(model: &'a Model, fixed: &'a BodyFixed<T>, poses: &'a [Pose<T>]) -> Self {
-        Self { model, fixed, poses, slopes: &[], whole_turns: &[] }
+        Self { model, fixed, poses, slopes: &[], whole_turns: &[], nearest: &[] }
     }
 
     /// All outputs, in the order of [`outputs`].
@@ -122,7 +124,11 @@ impl<'a, T: Real> Instant<'a, T> {
             }
             MeasureKind::Clearance { of } => {
                 let Self { model, fixed, poses, .. } = *self;
-                PlacedShapes { model, fixed, poses }.clearance(*of)
+                let placed = PlacedShapes { model, fixed, poses };
+                match self.nearest.get(of.0) {
+                    Some(pair) => placed.clearance_between(*of, pair),
+                    None => placed.clearance_between(*of, &placed.nearest_pair(*of)),
+                }
             }
             MeasureKind::Articulation { joint, axis } => self.articulation(k, *joint, axis.is_some()),
             MeasureKind::Rate { of } => self.output(*of).rate(),
@@ -351,6 +357,21 @@ fn outer_by_ackermann<T: Real>(i: T, track_by_wheelbase: T) -> T {
 pub(crate) fn bodies_asked_for(model: &Model) -> Vec<usize> {
     let mut bodies: Vec<usize> = model.points.iter().map(|p| p.body.0).collect();
     bodies.extend(model.measures.iter().flat_map(|m| model.bodies_of(m)).map(|b| b.0));
+    bodies.sort_unstable();
+    bodies.dedup();
+    bodies
+}
+
+/// The bodies that these outputs are formulas of.
+pub(crate) fn bodies_of_outputs<'m>(
+    model: &'m Model,
+    outputs: impl Iterator<Item = OutputSource> + 'm,
+) -> Vec<usize> {
+    let of = |output: OutputSource| match output {
+        OutputSource::Measure(k) => model.bodies_of(&model.measures[k]),
+        OutputSource::Point(p, _) => vec![model.points[p.0].body],
+    };
+    let mut bodies: Vec<usize> = outputs.flat_map(of).map(|b| b.0).collect();
     bodies.sort_unstable();
     bodies.dedup();
     bodies

@@ -143,7 +143,7 @@ impl Analysis<'_> {
             self.solve(Run::new().at(design).without_measures());
         let PreparedDesign { values, laws, .. } = &self.design(design);
         let at = measure::MeasuredDesign { model: self.model(), design_map: self.design_map(), values, laws };
-        let more = Context { slopes: &StepValues::default(), whole_turns: &[] };
+        let more = Context { slopes: &StepValues::default(), whole_turns: &[], nearest: &[] };
         let (asked, variables) = (outputs.len(), self.model().variables.len());
         let mut d = vec![[f64::NAN; 3]; motion.len() * asked * variables];
         let blocks = (0..motion.len()).step_by(LANES);

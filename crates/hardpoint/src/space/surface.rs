@@ -95,10 +95,9 @@ impl Surface {
         self.triangles[triangle].map(|k| self.vertices[k as usize])
     }
 
-    /// Visits the triangles that may be nearer to something than the nearest one so far. `apart` is the distance of
-    /// that thing from a point; `each` is given a triangle, and returns its distance.
-    pub fn search(&self, apart: &dyn Fn(Vec3) -> f64, each: &mut dyn FnMut(usize) -> f64) {
-        let mut least = f64::INFINITY;
+    /// Visits the triangles that may be nearer to something than `least`, or than the nearest one so far. `apart` is
+    /// the distance of that thing from a point; `each` is given a triangle, and returns its distance.
+    pub fn search(&self, mut least: f64, apart: &dyn Fn(Vec3) -> f64, each: &mut dyn FnMut(usize) -> f64) {
         let bound = |k: usize| apart(self.nodes[k].centre) - self.nodes[k].radius;
         let mut open: Vec<(f64, usize)> = Vec::with_capacity(64);
         open.extend((!self.nodes.is_empty()).then(|| (bound(0), 0)));
