@@ -7,6 +7,7 @@
 //!
 //! `docs/theory.md`, section 16.
 
+mod bodies;
 mod circle;
 mod core;
 mod feature;
@@ -18,6 +19,7 @@ mod swept;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use bodies::{ChangingBodies, MovingBodies};
 pub(crate) use nearest::nearest;
 pub(crate) use placed::{NearestPair, PlacedShapes};
 pub(crate) use separation::{Direction, EnclosedCore, direction_of, lower_bound, separations};

@@ -4,6 +4,7 @@ use crate::design::{BodyFixed, ShapeGeometry};
 use crate::model::{BodyId, ClearanceId, Model, PointId, ShapeId, ShapeKind, with_core};
 use crate::space::{Pose, Real, Vec3};
 
+use super::bodies::Bodies;
 use super::circle::Circle;
 use super::core::Core;
 use super::feature::{Feature, Placed};
@@ -14,22 +15,21 @@ use super::surface::{View, core_and_surface, moved, surfaces};
 pub(crate) type NearestPair = Option<(usize, Nearest)>;
 
 /// The shapes of a model where its bodies are.
-#[derive(Clone, Copy)]
-pub(crate) struct PlacedShapes<'a, T> {
+pub(crate) struct PlacedShapes<'a, T, B: ?Sized = [Pose<T>]> {
     pub model: &'a Model,
     pub fixed: &'a BodyFixed<T>,
-    /// Per body; those that carry shapes count.
-    pub poses: &'a [Pose<T>],
+    /// Those that carry shapes count.
+    pub bodies: &'a B,
 }
 
-impl<T: Real> PlacedShapes<'_, T> {
+impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
     fn point(&self, p: PointId) -> Vec3<T> {
-        self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
+        self.bodies.point(self.model.points[p.0].body, self.fixed.points[p.0])
     }
 
     fn axis(&self, shape: ShapeId, body: BodyId) -> Vec3<T> {
         let axis = self.fixed.shapes[shape.0].axis.expect("a shape with an axis");
-        self.poses[body.0].rot * axis
+        self.bodies.direction(body, axis)
     }
 
     /// Core of a shape, in global coordinates; `None` for a surface.
@@ -81,7 +81,7 @@ impl<T: Real> PlacedShapes<'_, T> {
         let vertex = |k: u32| match &self.model.shapes[shape.0].kind {
             ShapeKind::Hull { points, .. } => self.point(points[k as usize]),
             ShapeKind::Mesh { body, surface } => {
-                self.poses[body.0].point(surface.vertices()[k as usize].spread())
+                self.bodies.point(*body, surface.vertices()[k as usize].spread())
             }
             with_core!() => unreachable!("only surfaces have vertices"),
         };
@@ -107,7 +107,7 @@ impl<T: Real> PlacedShapes<'_, T> {
         let (centre, radius) = match &self.model.shapes[shape.0].kind {
             ShapeKind::Mesh { body, surface } => {
                 let (centre, radius) = surface.ball();
-                (self.poses[body.0].value().point(centre), radius)
+                (self.bodies.pose(*body).point(centre), radius)
             }
             ShapeKind::Hull { points, facets } => {
                 let points = self.points(points);
@@ -138,7 +138,7 @@ impl<T: Real> PlacedShapes<'_, T> {
         });
         // Surfaces in the frame in which their points are known, and that frame.
         let views = [0, 1].map(|k| match kinds[k] {
-            ShapeKind::Mesh { body, surface } => Some((View::Mesh(surface), self.poses[body.0].value())),
+            ShapeKind::Mesh { body, surface } => Some((View::Mesh(surface), self.bodies.pose(*body))),
             ShapeKind::Hull { facets, .. } => {
                 Some((View::Hull { points: &corners[k], facets }, Pose::IDENTITY))
             }

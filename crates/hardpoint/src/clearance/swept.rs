@@ -43,7 +43,7 @@ impl ShapeAtPose {
                 Solid::Hull { points, facets: facets.clone() }
             }
             ShapeKind::Mesh { body, surface } => {
-                let inverse = into.compose(placed.poses[body.0]).inverse();
+                let inverse = into.compose(placed.bodies[body.0]).inverse();
                 Solid::Mesh { surface: Arc::clone(surface), inverse }
             }
             with_core!() => Solid::Core(moved(&placed.core(shape).expect("it is no surface"), into)),

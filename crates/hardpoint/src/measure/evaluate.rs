@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use hardpoint_tape::LANES;
 
-use crate::clearance::{NearestPair, PlacedShapes};
+use crate::clearance::{ChangingBodies, MovingBodies, NearestPair, PlacedShapes};
 use crate::design::{BodyFixed, DesignMap};
 use crate::law::Law;
 use crate::model::{ClearanceId, Model, VariableId};
@@ -16,7 +16,7 @@ use crate::topology::Topology;
 
 use super::StepValues;
 use super::bodies::{with_rates, with_sensitivity};
-use super::formulas::{Instant, bodies_asked_for, bodies_of_outputs, is_formula};
+use super::formulas::{Instant, bodies_asked_for, bodies_of_outputs, clearance_of, is_formula};
 use super::program::{MeasureProgram, MeasureRun};
 use super::storage::{MeasureResults, Output, dense, outputs};
 use super::turns::{Turns, placed_turns, unwrap_angles};
@@ -173,7 +173,7 @@ impl<'a> FormulaEvaluator<'a> {
             let states = motion.at(k);
             bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
         };
-        if !left.is_empty() {
+        if left.iter().any(|(_, m)| clearance_of(model, measured.outputs[*m].source).is_none()) {
             place(poses);
         }
         given.clear();
@@ -182,16 +182,21 @@ impl<'a> FormulaEvaluator<'a> {
         }
         // The features of a clearance are selected once, and serve its derivatives too.
         let begins = nearest.len();
+        let shapes = PlacedShapes { model, fixed, bodies: &MovingBodies(motion.at(k)) };
         if left.is_empty() {
             nearest.resize(begins + model.clearances.len(), None);
         } else {
-            let placed = PlacedShapes { model, fixed, poses };
-            nearest.extend((0..model.clearances.len()).map(|c| placed.nearest_pair(ClearanceId(c))));
+            nearest.extend((0..model.clearances.len()).map(|c| shapes.nearest_pair(ClearanceId(c))));
         }
         let nearest = &nearest[begins..];
         let instant = Instant { slopes: given, nearest, ..Instant::new(model, fixed, poses) };
         for &(_, m) in left {
-            measured.set(k, m, instant.output(measured.outputs[m].source).0);
+            let source = measured.outputs[m].source;
+            let value = match clearance_of(model, source) {
+                Some(of) => shapes.clearance_between(of, &nearest[of.0]),
+                None => instant.output(source),
+            };
+            measured.set(k, m, value.0);
         }
         if whole_turns.len() != model.measures.len() {
             whole_turns.resize(model.measures.len(), Jet([0.0; 3]));
@@ -244,7 +249,9 @@ pub(crate) fn derivatives(
     let mut named: Vec<usize> = listed.iter().map(|(_, m)| *m).collect();
     named.sort_unstable();
     named.dedup();
-    let bodies = bodies_of_outputs(model, named.into_iter().map(|m| outputs[m].source));
+    let named = named.into_iter().map(|m| outputs[m].source);
+    // Clearances need the points of shapes only, not all of the poses.
+    let bodies = bodies_of_outputs(model, named.filter(|source| clearance_of(model, *source).is_none()));
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
@@ -280,8 +287,16 @@ pub(crate) fn derivatives(
                     nearest,
                     ..Instant::new(model, &fixed, &poses)
                 };
+                let shapes = PlacedShapes { model, fixed: &fixed, bodies: &ChangingBodies { states, d } };
                 for &(_, m) in listed {
-                    out(k, b, m, instant.output(outputs[m].source).d.0);
+                    let value = match clearance_of(model, outputs[m].source) {
+                        Some(of) => match nearest.get(of.0) {
+                            Some(pair) => shapes.clearance_between(of, pair),
+                            None => shapes.clearance_between(of, &shapes.nearest_pair(of)),
+                        },
+                        None => instant.output(outputs[m].source),
+                    };
+                    out(k, b, m, value.d.0);
                 }
             }
         }

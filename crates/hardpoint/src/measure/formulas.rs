@@ -4,7 +4,8 @@ use crate::clearance::{NearestPair, PlacedShapes};
 use crate::constraint::Row;
 use crate::design::BodyFixed;
 use crate::model::{
-    ArmPlane, AxleMeasure, BodyId, JointId, MeasureKind, Model, OutputSource, PointId, Ray, WheelId, loads,
+    ArmPlane, AxleMeasure, BodyId, ClearanceId, JointId, MeasureKind, Model, OutputSource, PointId, Ray,
+    WheelId, loads,
 };
 use crate::number::Real;
 use crate::space::{Pose, Vec3};
@@ -124,7 +125,7 @@ impl<'a, T: Real> Instant<'a, T> {
             }
             MeasureKind::Clearance { of } => {
                 let Self { model, fixed, poses, .. } = *self;
-                let placed = PlacedShapes { model, fixed, poses };
+                let placed = PlacedShapes { model, fixed, bodies: poses };
                 match self.nearest.get(of.0) {
                     Some(pair) => placed.clearance_between(*of, pair),
                     None => placed.clearance_between(*of, &placed.nearest_pair(*of)),
@@ -351,6 +352,12 @@ fn outer_by_ackermann<T: Real>(i: T, track_by_wheelbase: T) -> T {
     let (sin, cos) = i.sin_cos();
     // r = atan2(sin i, cos i + sin i track / wheelbase)
     sin.atan2(cos + sin * track_by_wheelbase)
+}
+
+/// The clearance that an output is, if it is one.
+pub(super) fn clearance_of(model: &Model, output: OutputSource) -> Option<ClearanceId> {
+    let OutputSource::Measure(k) = output else { return None };
+    if let MeasureKind::Clearance { of } = model.measures[k].kind { Some(of) } else { None }
 }
 
 /// The bodies that measures and named points are fixed in.

@@ -16,7 +16,7 @@ mod storage;
 mod turns;
 mod wheel;
 
-pub(crate) use bodies::{with_rates, with_sensitivity};
+pub(crate) use bodies::with_rates;
 pub(crate) use evaluate::{Context, MeasuredDesign, derivatives, evaluate};
 pub(crate) use formulas::{Instant, bodies_asked_for};
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};

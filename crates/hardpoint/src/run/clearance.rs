@@ -3,13 +3,12 @@
 //! Times are found on motions that are solved anew at them, never on polynomials between output times: a distance may
 //! change its features there, where its acceleration jumps.
 
-use crate::clearance::PlacedShapes;
+use crate::clearance::{ChangingBodies, MovingBodies, PlacedShapes};
 use crate::design::{BodyFixed, ShapeGeometry};
-use crate::measure::{with_rates, with_sensitivity};
 use crate::model::{BodyId, Clearance, ClearanceId, Model, PointId, Shape, ShapeId, ShapeKind, ShapePair};
 use crate::motion::{Motion, Stop};
 use crate::number::{Dual, Jet, Rates};
-use crate::space::{Pose, Vec3};
+use crate::space::Vec3;
 
 use super::curve::SampledCurve;
 use super::{Analysis, Run, Solution};
@@ -194,7 +193,7 @@ impl Analysis<'_> {
         let model = self.model();
         let all: Vec<[ShapeId; 2]> =
             model.clearances.iter().flat_map(|c| &c.pairs).map(|pair| pair.shapes).collect();
-        let posed = PosedMotion::of(self, design, &all, motion);
+        let posed = PosedMotion::of(self, design, motion);
         let mut active: Vec<[ShapeId; 2]> = Vec::new();
         posed.each(steps.iter().copied(), |_, placed| {
             for (c, clearance) in model.clearances.iter().enumerate() {
@@ -316,7 +315,7 @@ impl Analysis<'_> {
         pairs: &[[ShapeId; 2]],
         steps: impl Iterator<Item = usize>,
     ) -> Vec<Vec<ShapeDistance>> {
-        PosedMotion::of(self, design, pairs, motion).distances(pairs, steps)
+        PosedMotion::of(self, design, motion).distances(pairs, steps)
     }
 
     /// Derivatives of a distance at time k of a solved motion by all design variables; NaN for those that are not
@@ -331,9 +330,6 @@ impl Analysis<'_> {
         let (model, map) = (self.model(), self.design_map());
         let values = model.whole(design);
         let states = solution.motion.at(k);
-        let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
-        let bodies: Vec<usize> =
-            shapes.iter().flat_map(|s| model.shapes[s.0].bodies(model)).map(|b| b.0).collect();
         (0..model.variables.len())
             .map(|b| {
                 let Some(d) =
@@ -344,8 +340,7 @@ impl Analysis<'_> {
                 let mut duals: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
                 duals[b] = Dual::variable(values[b]);
                 let fixed = map.fixed(&duals).map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
-                bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
-                let placed = PlacedShapes { model, fixed: &fixed, poses: &poses };
+                let placed = PlacedShapes { model, fixed: &fixed, bodies: &ChangingBodies { states, d } };
                 let near = placed.nearest(shapes);
                 let distance: Dual<Rates> = placed.distance(shapes, &near);
                 distance.d.0[0]
@@ -359,28 +354,24 @@ struct PosedMotion<'m> {
     model: &'m Model,
     motion: &'m Motion,
     fixed: BodyFixed<Rates>,
-    /// Bodies that carry the shapes.
-    bodies: Vec<usize>,
 }
 
 impl<'m> PosedMotion<'m> {
-    fn of(analysis: &'m Analysis<'_>, design: &[f64], pairs: &[[ShapeId; 2]], motion: &'m Motion) -> Self {
+    fn of(analysis: &'m Analysis<'_>, design: &[f64], motion: &'m Motion) -> Self {
         let model = analysis.model();
         let fixed = analysis.design_map().fixed(&model.whole(design)).map(Jet::constant);
-        Self { model, motion, fixed, bodies: bodies_of(model, pairs) }
+        Self { model, motion, fixed }
     }
 
     /// Calls `visit` with the shapes at each of these times.
     fn each(
         &self,
         steps: impl Iterator<Item = usize>,
-        mut visit: impl FnMut(usize, PlacedShapes<'_, Rates>),
+        mut visit: impl FnMut(usize, PlacedShapes<'_, Rates, MovingBodies<'_>>),
     ) {
-        let mut poses: Vec<Pose<Rates>> = vec![Pose::IDENTITY.spread(); self.model.bodies.len()];
         for k in steps {
-            let states = self.motion.at(k);
-            self.bodies.iter().for_each(|&b| poses[b] = with_rates(&states.body(b)));
-            visit(k, PlacedShapes { model: self.model, fixed: &self.fixed, poses: &poses });
+            let bodies = MovingBodies(self.motion.at(k));
+            visit(k, PlacedShapes { model: self.model, fixed: &self.fixed, bodies: &bodies });
         }
     }
 
@@ -422,7 +413,7 @@ struct Curves<'m> {
 
 impl<'m> Curves<'m> {
     fn of(analysis: &Analysis<'_>, design: &[f64], pairs: &[[ShapeId; 2]], motion: &'m Motion) -> Self {
-        let posed = PosedMotion::of(analysis, design, pairs, motion);
+        let posed = PosedMotion::of(analysis, design, motion);
         Self { motion, size: analysis.model().size(), samples: posed.distances(pairs, 0..motion.len()) }
     }
 
@@ -584,12 +575,4 @@ enum EventKind {
     Minimum(MinimumPlace),
     /// True if the shapes touch from there on.
     Contact(bool),
-}
-
-fn bodies_of(model: &Model, pairs: &[[ShapeId; 2]]) -> Vec<usize> {
-    let mut bodies: Vec<usize> =
-        pairs.iter().flatten().flat_map(|s| model.shapes[s.0].bodies(model)).map(|b| b.0).collect();
-    bodies.sort_unstable();
-    bodies.dedup();
-    bodies
 }

@@ -285,12 +285,12 @@ impl PairProof<'_, '_> {
     fn rounds(&self) -> Interval {
         let ClearanceProver { model, constants, .. } = &*self.prover;
         let poses: &[Pose<TimeJet<Interval>>] = &[];
-        PlacedShapes { model, fixed: constants, poses }.rounds(self.shapes).value()
+        PlacedShapes { model, fixed: constants, bodies: poses }.rounds(self.shapes).value()
     }
 
     fn cores(&self, poses: &[Pose<TimeJet<Interval>>]) -> [EnclosedCore; 2] {
         let ClearanceProver { model, constants, .. } = &*self.prover;
-        let placed = PlacedShapes { model, fixed: constants, poses };
+        let placed = PlacedShapes { model, fixed: constants, bodies: poses };
         self.shapes.map(|shape| placed.core(shape).expect(HAS_CORE))
     }
 
@@ -311,7 +311,7 @@ impl PairProof<'_, '_> {
             })
             .collect();
         let ClearanceProver { model, moving, .. } = &*self.prover;
-        let placed = PlacedShapes { model, fixed: moving, poses: &plain };
+        let placed = PlacedShapes { model, fixed: moving, bodies: &plain[..] };
         let cores_at = self.shapes.map(|shape| placed.core(shape).expect(HAS_CORE));
         let values = cores_at.each_ref().map(|core| core.value());
         let near = nearest(&values[0], &values[1]);

@@ -41,7 +41,7 @@ impl SweptShape {
                 let state = states.body(b.0);
                 poses[b.0] = Pose { rot: state.rotation, r: state.r };
             }
-            let placed = PlacedShapes { model, fixed: &fixed, poses: &poses };
+            let placed = PlacedShapes { model, fixed: &fixed, bodies: &poses[..] };
             self.poses.push(ShapeAtPose::of(&placed, self.shape, poses[self.relative_to.0]));
         }
     }

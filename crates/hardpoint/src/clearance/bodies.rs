@@ -1,0 +1,100 @@
+//! Bodies that carry shapes: their points and directions with the derivatives of a number type.
+
+use crate::model::BodyId;
+use crate::motion::{BodyState, States};
+use crate::number::{Dual, Jet, Rates};
+use crate::sensitivity::{BodySensitivity, Derivatives};
+use crate::space::{Pose, Real, Vec3};
+
+/// Bodies at one time.
+pub(crate) trait Bodies<T> {
+    /// Point of a body, in global coordinates.
+    fn point(&self, body: BodyId, s: Vec3<T>) -> Vec3<T>;
+    /// Direction that is fixed in a body, in global components.
+    fn direction(&self, body: BodyId, e: Vec3<T>) -> Vec3<T>;
+    /// The body's pose in plain numbers.
+    fn pose(&self, body: BodyId) -> Pose;
+}
+
+impl<T: Real> Bodies<T> for [Pose<T>] {
+    fn point(&self, body: BodyId, s: Vec3<T>) -> Vec3<T> {
+        self[body.0].point(s)
+    }
+
+    fn direction(&self, body: BodyId, e: Vec3<T>) -> Vec3<T> {
+        self[body.0].rot * e
+    }
+
+    fn pose(&self, body: BodyId) -> Pose {
+        self[body.0].value()
+    }
+}
+
+/// Bodies of a motion, with rates. Body-fixed data are constant over time, so that points need a fraction of the
+/// arithmetic of poses with rates.
+pub(crate) struct MovingBodies<'m>(pub States<'m>);
+
+impl Bodies<Rates> for MovingBodies<'_> {
+    fn point(&self, body: BodyId, s: Vec3<Rates>) -> Vec3<Rates> {
+        let state = self.0.body(body.0);
+        let [y, v, a] = rates_of(&state, state.rotation * s.value());
+        zip([state.r + y, state.v + v, state.a + a])
+    }
+
+    fn direction(&self, body: BodyId, e: Vec3<Rates>) -> Vec3<Rates> {
+        let state = self.0.body(body.0);
+        zip(rates_of(&state, state.rotation * e.value()))
+    }
+
+    fn pose(&self, body: BodyId) -> Pose {
+        let state = self.0.body(body.0);
+        Pose { rot: state.rotation, r: state.r }
+    }
+}
+
+/// The same with the derivatives by one design variable.
+pub(crate) struct ChangingBodies<'m, 's> {
+    pub states: States<'m>,
+    pub d: Derivatives<'s>,
+}
+
+impl ChangingBodies<'_, '_> {
+    /// Vector from the origin of a body to a point, with rates, and the derivatives of all of it.
+    fn vector(&self, body: BodyId, s: Vec3<Dual<Rates>>) -> ([[Vec3; 3]; 2], BodyState, BodySensitivity) {
+        let (state, d) = (self.states.body(body.0), self.d.body(body.0));
+        let y = state.rotation * s.map(|x| x.v.0[0]);
+        let [_, v, a] = rates_of(&state, y);
+        // (A s)_b = A s_b + pi' x y,    v_b = omega_b x y + omega x y_b,
+        // a_b = alpha_b x y + alpha x y_b + omega_b x v + omega x v_b
+        let yb = state.rotation * s.map(|x| x.d.0[0]) + d.dpi.cross(y);
+        let vb = d.domega.cross(y) + state.omega.cross(yb);
+        let ab = d.dalpha.cross(y) + state.alpha.cross(yb) + d.domega.cross(v) + state.omega.cross(vb);
+        ([[y, v, a], [yb, vb, ab]], state, d)
+    }
+}
+
+impl Bodies<Dual<Rates>> for ChangingBodies<'_, '_> {
+    fn point(&self, body: BodyId, s: Vec3<Dual<Rates>>) -> Vec3<Dual<Rates>> {
+        let ([[y, v, a], [yb, vb, ab]], state, d) = self.vector(body, s);
+        zip([state.r + y, state.v + v, state.a + a]).with_derivative(zip([d.dr + yb, d.dv + vb, d.da + ab]))
+    }
+
+    fn direction(&self, body: BodyId, e: Vec3<Dual<Rates>>) -> Vec3<Dual<Rates>> {
+        let ([value, derivative], ..) = self.vector(body, e);
+        zip(value).with_derivative(zip(derivative))
+    }
+
+    fn pose(&self, body: BodyId) -> Pose {
+        MovingBodies(self.states).pose(body)
+    }
+}
+
+/// A vector that is fixed in a body, with its rates: `omega x y` and `alpha x y + omega x (omega x y)`.
+fn rates_of(state: &BodyState, y: Vec3) -> [Vec3; 3] {
+    let v = state.omega.cross(y);
+    [y, v, state.alpha.cross(y) + state.omega.cross(v)]
+}
+
+fn zip([x, xd, xdd]: [Vec3; 3]) -> Vec3<Rates> {
+    Vec3::new(Jet([x.x, xd.x, xdd.x]), Jet([x.y, xd.y, xdd.y]), Jet([x.z, xd.z, xdd.z]))
+}
