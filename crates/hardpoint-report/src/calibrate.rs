@@ -26,7 +26,7 @@ const TOGETHER: f64 = 0.95;
 /// Number of standard errors within which the scatter of residuals agrees with the given standard deviations.
 const FITS: f64 = 4.0;
 /// Largest posterior standard deviation, as a fraction of the prior one, of a variable that is learnt from the data:
-/// its variance is then at most half of the prior's, so that the data carry at least as much information as the prior.
+/// its variance is then at most half of the prior's, so that the data carry no less information than the prior.
 const LEARNT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Components of an unidentifiable direction below this fraction are not shown.
 const SLIGHT: f64 = 1e-4;

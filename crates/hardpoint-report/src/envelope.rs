@@ -40,7 +40,7 @@ record! {
     permitted: f64 = in_units(1, found.error);
     /// Largest distance between the triangles and the envelope, at their centres and the middles of their edges.
     deviation: f64 = in_units(1, found.surface.deviation);
-    /// How far the poses between half of them reach beyond the envelope of that half.
+    /// Distance by which the poses between half of them reach beyond the envelope of that half.
     between_poses: f64 = in_units(1, found.between_poses);
     /// True if both are within half of the permitted error.
     within_error: bool = found.is_within_error;

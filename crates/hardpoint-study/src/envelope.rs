@@ -54,14 +54,14 @@ impl From<TopologyError> for EnvelopeError {
 /// Envelope of a shape.
 #[derive(Clone, Debug)]
 pub struct Envelope {
-    /// Its surface, in the frame of the body from which it is seen.
+    /// The surface, in the frame of the body from which it is seen.
     pub surface: Triangles,
     /// Number of poses.
     pub poses: usize,
     /// Permitted error, m.
     pub error: f64,
-    /// How far the poses between half of them reach beyond the envelope of that half, m. All poses between those of the
-    /// envelope reach beyond it by about a quarter of that.
+    /// Distance by which the poses between half of them reach beyond the envelope of that half, m. All poses between
+    /// those of the envelope reach beyond it by about a quarter of that.
     pub between_poses: f64,
     /// False if the permitted error was not reached with the maximum numbers of poses and cells.
     pub is_within_error: bool,

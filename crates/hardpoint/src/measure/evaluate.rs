@@ -16,7 +16,7 @@ use crate::topology::Topology;
 
 use super::StepValues;
 use super::bodies::{with_rates, with_sensitivity};
-use super::formulas::{Instant, bodies_asked_for, bodies_of_outputs, clearance_of, is_formula};
+use super::formulas::{Instant, bodies_asked_for, clearance_of, is_formula};
 use super::program::{MeasureProgram, MeasureRun};
 use super::storage::{MeasureResults, Output, dense, outputs};
 use super::turns::{Turns, placed_turns, unwrap_angles};
@@ -246,12 +246,9 @@ pub(crate) fn derivatives(
     mut out: impl FnMut(usize, usize, usize, [f64; 3]),
 ) {
     let &MeasuredDesign { model, design_map, values, .. } = design;
-    let mut named: Vec<usize> = listed.iter().map(|(_, m)| *m).collect();
-    named.sort_unstable();
-    named.dedup();
-    let named = named.into_iter().map(|m| outputs[m].source);
-    // Clearances need the points of shapes only, not all of the poses.
-    let bodies = bodies_of_outputs(model, named.filter(|source| clearance_of(model, *source).is_none()));
+    // Clearances need the points of shapes only, not all poses.
+    let needs_poses = listed.iter().any(|(_, m)| clearance_of(model, outputs[*m].source).is_none());
+    let bodies = if needs_poses { bodies_asked_for(model) } else { Vec::new() };
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());

@@ -368,18 +368,3 @@ pub(crate) fn bodies_asked_for(model: &Model) -> Vec<usize> {
     bodies.dedup();
     bodies
 }
-
-/// The bodies that these outputs are formulas of.
-pub(crate) fn bodies_of_outputs<'m>(
-    model: &'m Model,
-    outputs: impl Iterator<Item = OutputSource> + 'm,
-) -> Vec<usize> {
-    let of = |output: OutputSource| match output {
-        OutputSource::Measure(k) => model.bodies_of(&model.measures[k]),
-        OutputSource::Point(p, _) => vec![model.points[p.0].body],
-    };
-    let mut bodies: Vec<usize> = outputs.flat_map(of).map(|b| b.0).collect();
-    bodies.sort_unstable();
-    bodies.dedup();
-    bodies
-}

@@ -6,7 +6,9 @@
 use hardpoint_tape::{Number, record};
 
 use crate::design::{BodyFixed, DesignMap};
-use crate::model::{AxleMeasure, DriverId, GROUND, MeasureKind, Model, WheelId, loads, of_bodies};
+use crate::model::{
+    AxleMeasure, DriverId, GROUND, Measure, MeasureKind, Model, OutputSource, WheelId, loads, of_bodies,
+};
 use crate::motion::kinematics::State;
 use crate::motion::mechanism::Mechanism;
 use crate::motion::step_program::RecordedStep;
@@ -159,7 +161,7 @@ impl<'a> Slopes<'a, Number> {
                     }
                 };
                 let RecordedValue { excess, numbers, .. } = &mut found[place];
-                if matches!(model.measures[measure].kind, MeasureKind::Slope { .. }) {
+                if slope_of(&model.measures[measure]).is_some() {
                     // A formula has another number beyond its limits; ...
                     limits.extend(holds);
                 } else {
@@ -228,6 +230,11 @@ fn drivers_of(model: &Model) -> Vec<DriverId> {
     drivers
 }
 
+/// The two outputs of a measure that is the slope of one over the other.
+fn slope_of(measure: &Measure) -> Option<[OutputSource; 2]> {
+    if let MeasureKind::Slope { of, over, .. } = measure.kind { Some([of, over]) } else { None }
+}
+
 /// Reason why the measures of a model that depend on a driver are not recorded, if they are not.
 pub(crate) fn hindrance(design_map: &DesignMap<'_>) -> Option<&'static str> {
     let model = design_map.model();
@@ -235,9 +242,7 @@ pub(crate) fn hindrance(design_map: &DesignMap<'_>) -> Option<&'static str> {
     if pairs > MOST_PAIRS {
         return Some("the program for the motion of single drivers would be too long");
     }
-    let slopes = model.measures.iter().filter_map(|m| {
-        if let MeasureKind::Slope { of, over, .. } = m.kind { Some([of, over]) } else { None }
-    });
+    let slopes = model.measures.iter().filter_map(slope_of);
     let outputs: Vec<_> = slopes.flatten().collect();
     if outputs.is_empty() {
         return None;

@@ -313,7 +313,7 @@ mod tests {
             (Vec3::new(-1.0, -1.0, -1.0), 3.0_f64.sqrt()),
         ] {
             let mut best = (f64::INFINITY, Vec3::ZERO, TrianglePart::Vertex(0));
-            cube.search(&|q| (q - p).norm(), &mut |t| {
+            cube.search(f64::INFINITY, &|q| (q - p).norm(), &mut |t| {
                 let (q, part) = nearest_of_triangle(p, cube.corners(t), cube.triangles()[t]);
                 if (q - p).norm() < best.0 {
                     best = ((q - p).norm(), q, part);
