@@ -40,7 +40,7 @@ pub enum EnvelopeError {
     /// The mechanism cannot be driven.
     Topology(TopologyError),
     /// No position was reached; the first stop.
-    NotReached(Option<Stop>),
+    NotReached(Option<Box<Stop>>),
     /// The caller ended the study.
     Interrupted,
 }
@@ -129,7 +129,7 @@ pub fn envelope(
             return Err(EnvelopeError::Interrupted);
         }
         if gathered.swept.is_empty() {
-            return Err(EnvelopeError::NotReached(gathered.stops.into_iter().next()));
+            return Err(EnvelopeError::NotReached(gathered.stops.into_iter().next().map(Box::new)));
         }
         Ok(gathered)
     };

@@ -142,7 +142,7 @@ fn distance_from_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
 
 #[test]
 fn requests_without_an_envelope_are_refused_with_a_remedy() {
-    let text = format!("{SLIDER}")
+    let text = SLIDER
         .replace("ball = {", "wall = { body = \"ground\", plane = [0, 0, 0], normal = \"z\" }\nball = {");
     let model = parse(&text, "slider.toml").unwrap_or_else(|e| panic!("{e}")).model;
     let refused = |overrides: Overrides| Request::of(&model, overrides).unwrap_err().to_string();
