@@ -75,6 +75,18 @@ describe('a mechanism with shapes', () => {
     await page.getByTestId('grip-y').press('Enter')
     await expect.poll(() => text(page, 'refusal')).toMatch(/Drag the point/)
     expect(await page.getByTestId('contacts').locator('span').count()).toBe(0)
+    // Shapes that were apart stop the way back, unless they are hidden.
+    await page.getByTestId('grip-y').fill('55')
+    await page.getByTestId('grip-y').press('Enter')
+    await expect.poll(() => text(page, 'refusal')).toMatch(/touches .* at t = 0\.\d+ s beyond this design/)
+    const stopped = Number(await page.getByTestId('grip-y').inputValue())
+    expect(stopped).toBeGreaterThan(48)
+    expect(stopped).toBeLessThan(55)
+    expect(await page.getByTestId('contacts').locator('span').count()).toBe(0)
+    await page.getByTestId('shapes').click()
+    await page.getByTestId('grip-y').fill('55')
+    await page.getByTestId('grip-y').press('Enter')
+    await expect.poll(() => text(page, 'refusal')).toMatch(/touch.* [\d.]+ mm deep at 0\.\d+ s\./)
   })
 
   test('is the only one with a button for them', async () => {

@@ -231,7 +231,7 @@ test('a design that the engine solves has its own shapes, pairs and contacts', a
   const change = [{ name: 'C.y', by: 3 }]
   const requests: Request[] = [
     { ask: 'open', model },
-    { ask: 'design', change, from: null },
+    { ask: 'design', change, from: null, solid: false },
   ]
   const input = requests.map((request) => JSON.stringify(request)).join('\n')
   const { stdout, status, stderr } = spawnSync(inject('samples').answers, {

@@ -78,7 +78,7 @@ test.each(files)('%s is understood and solved as the command does', async (file)
   const change = grips.slice(0, 1).map(({ coordinates }) => ({ name: coordinates[0].variable, by: 1e-3 * size }))
   const requests: Request[] = [
     open,
-    { ask: 'design', change, from: null },
+    { ask: 'design', change, from: null, solid: false },
     { ask: 'page', model: model(file) },
     { ask: 'text', change },
   ]

@@ -79,8 +79,8 @@ impl Engine {
                 self.open = Some(open);
                 Ok(json(&opened))
             }
-            Request::Design { change, from } => {
-                let mut reply = self.open_model()?.design(&change, from.as_deref())?;
+            Request::Design { change, from, solid } => {
+                let mut reply = self.open_model()?.design(&change, from.as_deref(), solid)?;
                 Ok(block(&mut reply))
             }
             Request::Beside { model } => {

@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
-use hardpoint::model::{HardpointId, Model};
+use hardpoint::model::{HardpointId, Model, ShapeId};
+use hardpoint::run::ShapeDistance;
 use hardpoint::space::Quat;
 use hardpoint::topology::TopologyError;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
+use hardpoint_report::figures::rounded;
 use hardpoint_report::page::{Design, Detail, ModelText};
 use hardpoint_report::payload::{self, ChangedDesign, Request};
 use hardpoint_report::summary::Summary;
@@ -39,6 +41,10 @@ pub(crate) struct OpenModel {
     shown: Detail,
     /// Solution of the last design, whose memory is reused.
     memory: Solution,
+    /// Pairs of shapes of all clearances.
+    pairs: Vec<[ShapeId; 2]>,
+    /// Values of the last design that shapes could stop, and the pairs that touch in it.
+    touching: Option<(Vec<f64>, Vec<[ShapeId; 2]>)>,
 }
 
 impl OpenModel {
@@ -83,22 +89,33 @@ impl OpenModel {
                 .collect(),
             stop,
         };
+        let mut pairs: Vec<[ShapeId; 2]> =
+            file.model.clearances.iter().flat_map(|c| &c.pairs).map(|pair| pair.shapes).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let (memory, touching) = (Solution::default(), None);
         Ok((
-            Self { all_cases, file, analysis, nominal, bare, summary, shown, memory: Solution::default() },
+            Self { all_cases, file, analysis, nominal, bare, summary, shown, memory, pairs, touching },
             opened,
         ))
     }
 
     /// Solves the design with some changes. If it cannot be reached from the solved design `from`, returns the last
-    /// design on the path between both that can be solved.
+    /// design on the path between both that can be solved; if shapes are solid, the last one before a pair touches that
+    /// is apart in `from`.
     pub fn design(
         &mut self,
         change: &[VariableSetting],
         from: Option<&[VariableSetting]>,
+        solid: bool,
     ) -> Result<DesignReply, EngineError> {
         let target = self.values(change)?;
         let start = from.map(|from| self.values(from)).transpose()?;
-        let (mut solution, mut why) = self.solve(&target);
+        let apart = match start.as_ref().filter(|_| solid && !self.pairs.is_empty()) {
+            Some(start) => self.pairs_apart(start),
+            None => Vec::new(),
+        };
+        let (mut solution, mut why) = self.solve_apart(&target, &apart);
         let mut part = 1.0;
         let mut design = target.clone();
         if let (Some(start), Some(_)) = (start, &why) {
@@ -111,7 +128,7 @@ impl OpenModel {
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (low + high);
                 self.memory = solution;
-                let (found, stop) = self.solve(&on_path(middle));
+                let (found, stop) = self.solve_apart(&on_path(middle), &apart);
                 solution = found;
                 match stop {
                     None => {
@@ -128,8 +145,56 @@ impl OpenModel {
             };
         }
         let shown = self.shown(&solution, &design);
+        if solid {
+            let touching = self.touching(&design, &solution, &self.pairs);
+            self.touching = Some((design, touching.into_iter().map(|(pair, _)| pair).collect()));
+        }
         self.memory = solution;
         Ok(DesignReply { part, design: shown, why })
+    }
+
+    /// Pairs of shapes that are apart in a design at all output times.
+    fn pairs_apart(&mut self, design: &[f64]) -> Vec<[ShapeId; 2]> {
+        let known = self.touching.take().filter(|(values, _)| values == design);
+        let (_, touching) = known.unwrap_or_else(|| {
+            let (solution, _) = self.solve(design);
+            let touching = self.touching(design, &solution, &self.pairs);
+            self.memory = solution;
+            (design.to_vec(), touching.into_iter().map(|(pair, _)| pair).collect())
+        });
+        self.pairs.iter().copied().filter(|pair| !touching.contains(pair)).collect()
+    }
+
+    /// Those of some pairs that touch in a solved design, each with the first output time of that, s.
+    fn touching(
+        &self,
+        design: &[f64],
+        solution: &Solution,
+        pairs: &[[ShapeId; 2]],
+    ) -> Vec<([ShapeId; 2], f64)> {
+        let motion = &solution.motion;
+        let curves = self.analysis.distances(design, motion, pairs, 0..motion.len());
+        let first =
+            |curve: &Vec<ShapeDistance>| curve.iter().find(|at| at.distance[0] < 0.0).map(|at| at.time);
+        pairs.iter().zip(&curves).filter_map(|(pair, curve)| Some((*pair, first(curve)?))).collect()
+    }
+
+    /// Solves a design; the diagnostic reports why its motion ends early, or the pair of shapes that touches in it.
+    fn solve_apart(
+        &mut self,
+        values: &[f64],
+        apart: &[[ShapeId; 2]],
+    ) -> (Solution, Option<DiagnosticMessage>) {
+        let (solution, stop) = self.solve(values);
+        let touch = || {
+            let all = self.touching(values, &solution, apart);
+            let ([a, b], time) = all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+            let [a, b] = [a, b].map(|shape| &self.file.model.shapes[shape.0].name);
+            let message = format!("`{a}` touches `{b}` at t = {} s beyond this design", rounded(time, 4));
+            Some(DiagnosticMessage::plain("HP0705", message, "hide the shapes to move on"))
+        };
+        let why = stop.or_else(|| if apart.is_empty() { None } else { touch() });
+        (solution, why)
     }
 
     /// Solves another model for comparison. Both models must have the same bodies, measures, metrics and output times.

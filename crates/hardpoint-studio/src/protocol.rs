@@ -31,6 +31,10 @@ pub enum Request {
         /// A solved design. If the changed design cannot be reached, the reply is the last design on the path from this
         /// one that can be solved.
         from: Option<Vec<VariableSetting>>,
+        /// True if shapes stop the change: the reply is then the last design on the path at which none of the pairs
+        /// touch that are apart in the design `from`.
+        #[serde(default)]
+        solid: bool,
     },
     /// Returns the text of the open model with changes. Reply: [`Text`].
     Text {

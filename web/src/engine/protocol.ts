@@ -22,7 +22,12 @@ change: Array<VariableSetting>,
  * A solved design. If the changed design cannot be reached, the reply is the last design on the path from this
  * one that can be solved.
  */
-from: Array<VariableSetting> | null, } | { "ask": "text",
+from: Array<VariableSetting> | null,
+/**
+ * True if shapes stop the change: the reply is then the last design on the path at which none of the pairs
+ * touch that are apart in the design `from`.
+ */
+solid: boolean, } | { "ask": "text",
 /**
  * Changed variables.
  */

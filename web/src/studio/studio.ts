@@ -507,7 +507,10 @@ export class Studio {
       return state.solved(undefined, [], '', !this.#wanted)
     }
     try {
-      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: wanted, from: this.#accepted })
+      const from = this.#accepted
+      // What is shown stops a change; with the shapes hidden it goes through.
+      const solid = state.choice.shapes
+      const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: wanted, from, solid })
       if (version !== this.#version) return
       const { part, why } = answer.json
       const reached = part === 1 ? wanted : between(this.#accepted, wanted, part)
@@ -694,7 +697,7 @@ export class Studio {
 
   /** A design of the model's own text, solved without a path to it. */
   async #solveAlone(settings: VariableSetting[]): Promise<Design | undefined> {
-    const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: settings, from: null })
+    const answer = await this.#drags.ask<DesignReply>({ ask: 'design', change: settings, from: null, solid: false })
     return this.#read(answer.json.design, answer, settings)
   }
 

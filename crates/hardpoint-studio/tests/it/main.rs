@@ -251,3 +251,46 @@ fn another_design_is_compared() {
     assert_eq!(beside["design"]["quantities"], design["design"]["quantities"]);
     assert_eq!(beside["design"]["values"], design["design"]["values"]);
 }
+
+/// A ball on a slider that passes a post; the post is moved towards its way.
+const PASSING: &str = r#"
+name = "passing"
+units = { length = "mm", angle = "deg" }
+hardpoints = { origin = [0, 0, 0], post = [45, 60, 0] }
+bodies = { slider = {} }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = "origin", axis = "x" }
+drivers.push = { joint = "slide", law = "90*t" }
+time = { end = 1.0, steps = 10 }
+[shapes]
+ball = { body = "slider", sphere = "origin", radius = 15 }
+head = { body = "ground", sphere = "post", radius = 10 }
+[clearances.gap]
+between = ["ball", "head"]
+[design]
+lower = { move = "post", along = "y" }
+"#;
+
+#[test]
+fn a_drag_stops_where_shapes_touch_and_goes_on_where_they_touched_before() {
+    let mut engine = Engine::default();
+    let model = json!({ "file": "passing.toml", "text": PASSING, "case": null, "files": {}, "shown": null });
+    ask(&mut engine, json!({ "ask": "open", "model": model }));
+    let moved = |engine: &mut Engine, from: f64, by: f64, solid: bool| {
+        let at = |by: f64| json!([{ "name": "lower", "by": by }]);
+        ask(engine, json!({ "ask": "design", "change": at(by), "from": at(from), "solid": solid }))
+    };
+    let stopped = moved(&mut engine, 0.0, -50.0, true);
+    // The sum of the radii is reached after 35 of 50 mm, known to a thousandth of the way.
+    let part = stopped["part"].as_f64().unwrap();
+    assert!((0.7 - 1.0 / 1024.0..=0.7).contains(&part), "{part}");
+    assert_eq!(stopped["why"]["code"], "HP0705");
+    let message = stopped["why"]["message"].as_str().unwrap();
+    assert!(message.contains("`ball` touches `head` at t = 0.5 s"), "{message}");
+    // Without shapes, and from a design in which they touch, nothing stops it.
+    for (from, solid) in [(0.0, false), (-40.0, true)] {
+        let free = moved(&mut engine, from, -50.0, solid);
+        assert_eq!((&free["part"], &free["why"]), (&json!(1.0), &Value::Null));
+    }
+    let away = moved(&mut engine, 0.0, 50.0, true);
+    assert_eq!((&away["part"], &away["why"]), (&json!(1.0), &Value::Null));
+}
