@@ -1,6 +1,6 @@
 //! Bodies that carry shapes: their points and directions with the derivatives of a number type.
 
-use crate::model::BodyId;
+use crate::model::{BodyId, Model};
 use crate::motion::{BodyState, States};
 use crate::number::{Dual, Jet, Rates};
 use crate::sensitivity::{BodySensitivity, Derivatives};
@@ -52,40 +52,58 @@ impl Bodies<Rates> for MovingBodies<'_> {
     }
 }
 
-/// The same with the derivatives by one design variable.
-pub(crate) struct ChangingBodies<'m, 's> {
-    pub states: States<'m>,
-    pub d: Derivatives<'s>,
+/// The same with the derivatives by one design variable. Numbers of a body are gathered once for all of its points.
+pub(crate) struct ChangingBodies {
+    /// Bodies that carry shapes.
+    carriers: Vec<usize>,
+    /// Per body.
+    at: Vec<(BodyState, BodySensitivity)>,
 }
 
-impl ChangingBodies<'_, '_> {
+impl ChangingBodies {
+    /// Bodies of a model, at rest in its origin.
+    pub fn of(model: &Model) -> Self {
+        let bodies = model.shapes.iter().flat_map(|shape| shape.bodies(model));
+        let mut carriers: Vec<usize> = bodies.map(|b| b.0).collect();
+        carriers.sort_unstable();
+        carriers.dedup();
+        Self { carriers, at: vec![(BodyState::GROUND, BodySensitivity::ZERO); model.bodies.len()] }
+    }
+
+    /// Moves those that carry shapes.
+    pub fn set(&mut self, states: States<'_>, d: Derivatives<'_>) {
+        self.carriers.iter().for_each(|&b| self.at[b] = (states.body(b), d.body(b)));
+    }
+
     /// Vector from the origin of a body to a point, with rates, and the derivatives of all of it.
-    fn vector(&self, body: BodyId, s: Vec3<Dual<Rates>>) -> ([[Vec3; 3]; 2], BodyState, BodySensitivity) {
-        let (state, d) = (self.states.body(body.0), self.d.body(body.0));
+    fn vector(&self, body: BodyId, s: Vec3<Dual<Rates>>) -> [[Vec3; 3]; 2] {
+        let (state, d) = &self.at[body.0];
         let y = state.rotation * s.map(|x| x.v.0[0]);
-        let [_, v, a] = rates_of(&state, y);
+        let [_, v, a] = rates_of(state, y);
         // (A s)_b = A s_b + pi' x y,    v_b = omega_b x y + omega x y_b,
         // a_b = alpha_b x y + alpha x y_b + omega_b x v + omega x v_b
         let yb = state.rotation * s.map(|x| x.d.0[0]) + d.dpi.cross(y);
         let vb = d.domega.cross(y) + state.omega.cross(yb);
         let ab = d.dalpha.cross(y) + state.alpha.cross(yb) + d.domega.cross(v) + state.omega.cross(vb);
-        ([[y, v, a], [yb, vb, ab]], state, d)
+        [[y, v, a], [yb, vb, ab]]
     }
 }
 
-impl Bodies<Dual<Rates>> for ChangingBodies<'_, '_> {
+impl Bodies<Dual<Rates>> for ChangingBodies {
     fn point(&self, body: BodyId, s: Vec3<Dual<Rates>>) -> Vec3<Dual<Rates>> {
-        let ([[y, v, a], [yb, vb, ab]], state, d) = self.vector(body, s);
+        let [[y, v, a], [yb, vb, ab]] = self.vector(body, s);
+        let (state, d) = &self.at[body.0];
         zip([state.r + y, state.v + v, state.a + a]).with_derivative(zip([d.dr + yb, d.dv + vb, d.da + ab]))
     }
 
     fn direction(&self, body: BodyId, e: Vec3<Dual<Rates>>) -> Vec3<Dual<Rates>> {
-        let ([value, derivative], ..) = self.vector(body, e);
+        let [value, derivative] = self.vector(body, e);
         zip(value).with_derivative(zip(derivative))
     }
 
     fn pose(&self, body: BodyId) -> Pose {
-        MovingBodies(self.states).pose(body)
+        let (state, _) = &self.at[body.0];
+        Pose { rot: state.rotation, r: state.r }
     }
 }
 

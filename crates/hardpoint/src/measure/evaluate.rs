@@ -249,6 +249,8 @@ pub(crate) fn derivatives(
     // Clearances need the points of shapes only, not all poses.
     let needs_poses = listed.iter().any(|(_, m)| clearance_of(model, outputs[*m].source).is_none());
     let bodies = if needs_poses { bodies_asked_for(model) } else { Vec::new() };
+    let has_clearances = !model.clearances.is_empty();
+    let mut carriers = ChangingBodies::of(model);
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
     let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
@@ -284,7 +286,10 @@ pub(crate) fn derivatives(
                     nearest,
                     ..Instant::new(model, &fixed, &poses)
                 };
-                let shapes = PlacedShapes { model, fixed: &fixed, bodies: &ChangingBodies { states, d } };
+                if has_clearances {
+                    carriers.set(states, d);
+                }
+                let shapes = PlacedShapes { model, fixed: &fixed, bodies: &carriers };
                 for &(_, m) in listed {
                     let value = match clearance_of(model, outputs[m].source) {
                         Some(of) => match nearest.get(of.0) {

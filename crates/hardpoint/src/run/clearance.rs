@@ -330,6 +330,7 @@ impl Analysis<'_> {
         let (model, map) = (self.model(), self.design_map());
         let values = model.whole(design);
         let states = solution.motion.at(k);
+        let mut carriers = ChangingBodies::of(model);
         (0..model.variables.len())
             .map(|b| {
                 let Some(d) =
@@ -340,7 +341,8 @@ impl Analysis<'_> {
                 let mut duals: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
                 duals[b] = Dual::variable(values[b]);
                 let fixed = map.fixed(&duals).map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
-                let placed = PlacedShapes { model, fixed: &fixed, bodies: &ChangingBodies { states, d } };
+                carriers.set(states, d);
+                let placed = PlacedShapes { model, fixed: &fixed, bodies: &carriers };
                 let near = placed.nearest(shapes);
                 let distance: Dual<Rates> = placed.distance(shapes, &near);
                 distance.d.0[0]
