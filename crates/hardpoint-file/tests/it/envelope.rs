@@ -65,7 +65,7 @@ fn capsule(radius: f64, length: f64) -> f64 {
 fn the_envelope_of_a_ball_on_a_line_is_a_capsule() {
     let model = slider();
     for (case, margin) in [("along", 0.0), ("both", 0.0), ("along", 0.004)] {
-        let found = envelope_of(&model, Overrides { margin: Some(margin), ..overrides("ball", case, 2e-4) });
+        let found = envelope_of(&model, Overrides { margin: Some(margin), ..overrides("ball", case, 4e-4) });
         assert!(found.is_within_error && found.stops.is_empty());
         assert_closed(&found.surface);
         // The slide is 90 mm in both.
@@ -100,11 +100,11 @@ fn a_shape_does_not_move_in_the_frame_of_its_own_body() {
 #[test]
 fn all_positions_of_a_shape_are_within_its_envelope_and_its_error() {
     let model = slider();
-    let found = envelope_of(&model, overrides("stick", "along", 5e-4));
+    let found = envelope_of(&model, overrides("stick", "along", 2e-3));
     assert_closed(&found.surface);
     let own = model.in_case(model.case("along").unwrap());
     // Times that are none of the envelope's.
-    let times: Vec<f64> = (0..137).map(|k| (f64::from(k) + 0.377) / 137.5).collect();
+    let times: Vec<f64> = (0..37).map(|k| (f64::from(k) + 0.377) / 37.5).collect();
     let moved = Model { times, ..own };
     let analysis = Analysis::with(&moved, Formulation::Relative).unwrap();
     let solution = analysis.solve(Run::new());
