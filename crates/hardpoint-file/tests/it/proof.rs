@@ -156,7 +156,7 @@ fn sampled(model: &Model, shapes: [ShapeId; 2], samples: usize) -> f64 {
 
 #[test]
 fn two_hundred_four_bars_are_proved_and_greater_claims_are_refused() {
-    // `HARDPOINT_FOUR_BARS=1000` proves so many, each against 100,000 samples.
+    // `HARDPOINT_FOUR_BARS=1000` sets their number, each against 100,000 samples.
     let more = std::env::var("HARDPOINT_FOUR_BARS").ok().map(|n| n.parse::<usize>().expect("a number"));
     let (most, samples) = more.map_or((200, 500), |n| (n, 100_000));
     let mut next = numbers(5);
