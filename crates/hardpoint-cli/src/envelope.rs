@@ -1,6 +1,6 @@
 //! `hardpoint envelope`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use hardpoint::joint::Quantity;
 use hardpoint::model::Dimension;
@@ -9,11 +9,11 @@ use hardpoint_export::write_stl;
 use hardpoint_file::ModelFile;
 use hardpoint_report::diagnose;
 use hardpoint_report::envelope::EnvelopeFact;
-use hardpoint_study::envelope::{Envelope, EnvelopeError, Overrides, Request, envelope};
+use hardpoint_study::envelope::{EnvelopeError, Overrides, Request, envelope};
 use serde_json::json;
 
 use crate::args;
-use crate::folder::{Folder, WriteError};
+use crate::folder::write_alone;
 use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
@@ -46,7 +46,9 @@ fn envelope_of(session: &Session, options: &args::Envelope) -> Result<Outcome, O
         envelope(&file.model, options.common.formulation(), &[], &request, &more)
     };
     let found = found.map_err(|error| refused(session, &file, error))?;
-    write(&to, &file, &found).map_err(|e| session.not_written(&e))?;
+    let scaled = |v: Vec3| v.map(|x| file.units.from_si(Dimension::LENGTH, x));
+    let corners = found.surface.corners().map(|corners| corners.map(scaled));
+    write_alone(&to, |out| write_stl(corners, out)).map_err(|e| session.not_written(&e))?;
     let fact = EnvelopeFact::of(&file.model, file.units, &request, &found);
     if options.common.json {
         session.print_json(&json!({ "name": file.model.name, "envelope": fact, "file": to }));
@@ -72,15 +74,4 @@ fn refused(session: &Session, file: &ModelFile, error: EnvelopeError) -> Outcome
             Outcome::Stopped
         }
     }
-}
-
-fn write(to: &Path, file: &ModelFile, found: &Envelope) -> Result<(), WriteError> {
-    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = to.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let scaled = |v: Vec3| v.map(|x| file.units.from_si(Dimension::LENGTH, x));
-    let surface = &found.surface;
-    let corners = surface.triangles.iter().map(|t| t.map(|k| scaled(surface.vertices[k as usize])));
-    let mut folder = Folder::open(parent)?;
-    folder.write(&name, |out| write_stl(corners, out))?;
-    folder.commit(&[])
 }

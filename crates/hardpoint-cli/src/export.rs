@@ -3,12 +3,12 @@
 use std::io::Write;
 use std::path::Path;
 
-use hardpoint_export::{ExportedModel, FORMATS, Format};
+use hardpoint_export::{FORMATS, Format};
 use hardpoint_report::GENERATOR;
 use serde_json::json;
 
 use crate::args::Export;
-use crate::folder::{Folder, WriteError};
+use crate::folder::write_alone;
 use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
@@ -50,7 +50,7 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
     session.may_save(model, Some(to))?;
     let file = session.read(model)?;
     let exported = format.export(&file);
-    write(to, &exported).map_err(|e| session.not_written(&e))?;
+    write_alone(to, |out| out.write_all(exported.text.as_bytes())).map_err(|e| session.not_written(&e))?;
     if session.is_json() {
         session.print_json(&json!({
             "generator": GENERATOR, "status": "complete", "format": format.name, "file": to, "unsaid": exported.unsupported,
@@ -64,12 +64,4 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
     }
     text::print(&out);
     Ok(Outcome::Done)
-}
-
-fn write(to: &Path, exported: &ExportedModel) -> Result<(), WriteError> {
-    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = to.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let mut folder = Folder::open(parent)?;
-    folder.write(&name, |out| out.write_all(exported.text.as_bytes()))?;
-    folder.commit(&[])
 }

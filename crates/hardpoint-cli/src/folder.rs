@@ -114,6 +114,18 @@ impl Folder {
     }
 }
 
+/// Writes one file, whole or not at all.
+pub fn write_alone(
+    to: &Path,
+    content: impl FnOnce(&mut PendingFile) -> io::Result<()>,
+) -> Result<(), WriteError> {
+    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = to.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let mut folder = Folder::open(parent)?;
+    folder.write(&name, content)?;
+    folder.commit(&[])
+}
+
 impl PendingFile {
     /// Error for a file that could not be written.
     pub fn failed(&self, error: impl Into<io::Error>) -> WriteError {

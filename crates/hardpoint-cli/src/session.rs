@@ -22,7 +22,7 @@ use hardpoint_study::request::named;
 use serde_json::json;
 
 use crate::args::Motions;
-use crate::folder::{self, Folder, WriteError};
+use crate::folder::{self, Folder, WriteError, write_alone};
 use crate::meter::{Listener, Meter};
 use crate::outcome::Outcome;
 use crate::text;
@@ -311,7 +311,7 @@ impl Session {
     /// Fails if the text does not support the changed design, or the file cannot be written.
     pub fn save(&self, file: &ModelFile, design: &[f64], to: &Path) -> Result<(), Outcome> {
         let text = self.edited(file, design)?;
-        write_text(to, &text).map_err(|e| self.not_written(&e))
+        write_alone(to, |out| out.write_all(text.as_bytes())).map_err(|e| self.not_written(&e))
     }
 
     /// Checks before the work that changes of some variables can be saved in the model's text.
@@ -346,7 +346,7 @@ impl Session {
             let why = found.list().first().map_or(String::new(), |d| d.message.clone());
             (found.list().to_vec(), why, Outcome::Misunderstood)
         })?;
-        write_text(to, &text).map_err(|failure| {
+        write_alone(to, |out| out.write_all(text.as_bytes())).map_err(|failure| {
             let why = format!("`{}` cannot be written: {}", failure.path.display(), failure.error);
             (Vec::new(), why, Outcome::NotWritten)
         })
@@ -635,13 +635,4 @@ pub fn json_text(document: &impl serde::Serialize) -> String {
     let mut text = serde_json::to_string_pretty(document).expect("results are plain data");
     text.push('\n');
     text
-}
-
-/// Writes a text, whole or not at all.
-fn write_text(to: &Path, text: &str) -> Result<(), WriteError> {
-    let parent = to.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = to.file_name().map(|n| n.to_string_lossy().into_owned());
-    let mut folder = Folder::open(parent)?;
-    folder.write(&name.unwrap_or_default(), |out| out.write_all(text.as_bytes()))?;
-    folder.commit(&[])
 }

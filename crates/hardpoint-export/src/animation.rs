@@ -71,13 +71,7 @@ pub fn animation(file: &ModelFile, motion: &Motion) -> io::Result<Vec<u8>> {
     for (b, places) in body_points(model).iter().enumerate() {
         let mesh = shape(file, b).unwrap_or_else(|| link_triangles(places, b > 0, model.size()));
         let colour = if b == 0 { GROUND } else { COLOURS[(b - 1) % COLOURS.len()] };
-        let poses: Vec<Pose> = steps
-            .iter()
-            .map(|&k| {
-                let state = motion.at(k).body(b);
-                Pose { rot: state.rotation, r: state.r }
-            })
-            .collect();
+        let poses: Vec<Pose> = steps.iter().map(|&k| motion.at(k).body(b).pose()).collect();
         let turns = poses.iter().map(|p| quaternion(*p));
         let track = Track::new(poses.iter().map(|p| p.r), turns, None);
         nodes.push(scene.add_node(&model.bodies[b].name, &mesh, colour, &track, &mut tracks));

@@ -89,10 +89,7 @@ impl OpenModel {
                 .collect(),
             stop,
         };
-        let mut pairs: Vec<[ShapeId; 2]> =
-            file.model.clearances.iter().flat_map(|c| &c.pairs).map(|pair| pair.shapes).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
+        let pairs = file.model.shape_pairs();
         let (memory, touching) = (Solution::default(), None);
         Ok((
             Self { all_cases, file, analysis, nominal, bare, summary, shown, memory, pairs, touching },

@@ -142,13 +142,14 @@ pub fn envelope(
     let extent = 2.0 * (found.swept.ball(0).1 + request.margin);
     let error = request.error.unwrap_or(extent * ERROR);
     let (half, first_cell) = (0.5 * error, extent / FIRST_CELLS);
-    let (mut between, mut enough) = (f64::INFINITY, false);
+    let (mut between, mut enough, mut made) = (f64::INFINITY, false, None);
     for halvings in 1.. {
         let finer = poses_of(halvings, &mut cost)?;
         let union = Union { swept: &found.swept, margin: request.margin };
         let beyond =
             |surface: &Triangles| surface.vertices.iter().map(|p| union.least(*p)).fold(0.0, f64::max);
-        between = of(&finer.swept, first_cell)?.as_ref().map_or(f64::INFINITY, beyond);
+        made = of(&finer.swept, first_cell)?;
+        between = made.as_ref().map_or(f64::INFINITY, beyond);
         let grew = finer.swept.len() > found.swept.len();
         found = finer;
         if QUARTER * between <= half || !grew {
@@ -159,17 +160,16 @@ pub fn envelope(
             break;
         }
     }
-    let mut cell = first_cell;
-    let mut best: Option<Triangles> = None;
-    while let Some(made) = of(&found.swept, cell)? {
-        let is_fine = made.deviation <= half;
-        best = Some(made);
-        if is_fine {
+    // The last coarse surface is the first candidate.
+    let (mut cell, mut surface) = (first_cell, Triangles::default());
+    while let Some(finer) = made {
+        surface = finer;
+        if surface.deviation <= half {
             break;
         }
         cell *= 0.5;
+        made = of(&found.swept, cell)?;
     }
-    let surface = best.unwrap_or_default();
     Ok(Envelope {
         is_within_error: enough && surface.deviation <= half && !surface.triangles.is_empty(),
         surface,

@@ -25,8 +25,7 @@ pub(crate) const CALIBRATE: Table = table! {
     ]), "\"tolerances\"";
     /// Groups of variables that deviate nearly alike, such as rods of one batch.
     may "groups": Shape::Entries("a group", &Shape::Table(&GROUP)), "{ rods = { variables = [\"rod_1\", \"rod_2\"], within = 0.05 } }";
-    /// Drivers and readings with an unknown constant offset, which is fitted: names of drivers, measures or components
-    /// of points, or tables with a prior.
+    /// Names of drivers, measures and components of points with an unknown constant offset; or tables with a prior.
     may "offsets": Shape::list(&OFFSET_ENTRY), "[\"motor\", { of = \"gauge\", sigma = 0.1 }]";
 };
 const ENTRY: Shape = Shape::Any(

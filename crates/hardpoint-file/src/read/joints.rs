@@ -73,8 +73,8 @@ pub(super) const LIMIT: Table = table! {
     may "max": NUMBER, "60";
     /// True for an end stop: the motion ends where the limit is reached.
     or("false") "stop": Shape::Flag, "true";
-    /// Direction of an articulation in the design configuration, such as the stud of a ball joint. Default: the joint's
-    /// axis; without any, the whole rotation counts.
+    /// Direction of an articulation in the design configuration, such as a stud. Default: the joint's axis, or the
+    /// whole rotation.
     may "axis": LINE, "\"z\"";
 };
 const JOINT_TYPE: Shape =

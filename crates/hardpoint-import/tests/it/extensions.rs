@@ -32,8 +32,7 @@ fn poses(file: &ModelFile, names: &[&str]) -> Vec<Vec<Pose>> {
     assert!(solution.stop.is_none(), "{:?}", solution.stop);
     let of = |k: usize, name: &&str| {
         let body = BodyId(file.model.bodies.iter().position(|b| b.name == **name).unwrap());
-        let state = solution.body(k, body);
-        Pose { rot: state.rotation, r: state.r }
+        solution.body(k, body).pose()
     };
     (0..solution.motion.len()).map(|k| names.iter().map(|n| of(k, n)).collect()).collect()
 }

@@ -39,7 +39,7 @@ impl Triangles {
     }
 
     /// Corners of all triangles.
-    pub fn corners(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
+    pub fn corners(&self) -> impl ExactSizeIterator<Item = [Vec3; 3]> + '_ {
         self.triangles.iter().map(|t| t.map(|k| self.vertices[k as usize]))
     }
 }

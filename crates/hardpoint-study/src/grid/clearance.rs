@@ -96,10 +96,7 @@ impl GridClearances {
         design: &[f64],
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<Self, TopologyError> {
-        let mut pairs: Vec<[ShapeId; 2]> =
-            model.clearances.iter().flat_map(|c| &c.pairs).map(|pair| pair.shapes).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
+        let pairs = model.shape_pairs();
         let [first, second] = &relative_values(model, grid);
         let (columns, rows) = (first.len(), second.len());
         let mut found: Vec<Vec<Option<f64>>> = vec![vec![None; columns * rows]; pairs.len()];

@@ -2,7 +2,7 @@
 
 use crate::model::{BodyId, Model};
 use crate::motion::{BodyState, States};
-use crate::number::{Dual, Jet, Rates};
+use crate::number::{Dual, Rates};
 use crate::sensitivity::{BodySensitivity, Derivatives};
 use crate::space::{Pose, Real, Vec3};
 
@@ -38,17 +38,16 @@ impl Bodies<Rates> for MovingBodies<'_> {
     fn point(&self, body: BodyId, s: Vec3<Rates>) -> Vec3<Rates> {
         let state = self.0.body(body.0);
         let [y, v, a] = rates_of(&state, state.rotation * s.value());
-        zip([state.r + y, state.v + v, state.a + a])
+        Vec3::of_rates([state.r + y, state.v + v, state.a + a])
     }
 
     fn direction(&self, body: BodyId, e: Vec3<Rates>) -> Vec3<Rates> {
         let state = self.0.body(body.0);
-        zip(rates_of(&state, state.rotation * e.value()))
+        Vec3::of_rates(rates_of(&state, state.rotation * e.value()))
     }
 
     fn pose(&self, body: BodyId) -> Pose {
-        let state = self.0.body(body.0);
-        Pose { rot: state.rotation, r: state.r }
+        self.0.body(body.0).pose()
     }
 }
 
@@ -93,17 +92,20 @@ impl Bodies<Dual<Rates>> for ChangingBodies {
     fn point(&self, body: BodyId, s: Vec3<Dual<Rates>>) -> Vec3<Dual<Rates>> {
         let [[y, v, a], [yb, vb, ab]] = self.vector(body, s);
         let (state, d) = &self.at[body.0];
-        zip([state.r + y, state.v + v, state.a + a]).with_derivative(zip([d.dr + yb, d.dv + vb, d.da + ab]))
+        Vec3::of_rates([state.r + y, state.v + v, state.a + a]).with_derivative(Vec3::of_rates([
+            d.dr + yb,
+            d.dv + vb,
+            d.da + ab,
+        ]))
     }
 
     fn direction(&self, body: BodyId, e: Vec3<Dual<Rates>>) -> Vec3<Dual<Rates>> {
         let [value, derivative] = self.vector(body, e);
-        zip(value).with_derivative(zip(derivative))
+        Vec3::of_rates(value).with_derivative(Vec3::of_rates(derivative))
     }
 
     fn pose(&self, body: BodyId) -> Pose {
-        let (state, _) = &self.at[body.0];
-        Pose { rot: state.rotation, r: state.r }
+        self.at[body.0].0.pose()
     }
 }
 
@@ -111,8 +113,4 @@ impl Bodies<Dual<Rates>> for ChangingBodies {
 fn rates_of(state: &BodyState, y: Vec3) -> [Vec3; 3] {
     let v = state.omega.cross(y);
     [y, v, state.alpha.cross(y) + state.omega.cross(v)]
-}
-
-fn zip([x, xd, xdd]: [Vec3; 3]) -> Vec3<Rates> {
-    Vec3::new(Jet([x.x, xd.x, xdd.x]), Jet([x.y, xd.y, xdd.y]), Jet([x.z, xd.z, xdd.z]))
 }

@@ -204,11 +204,11 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         least
     }
 
-    /// The distance of the nearest pair of a clearance; NaN if it has none.
-    pub fn clearance_between(&self, clearance: ClearanceId, nearest: &NearestPair) -> T {
+    /// The distance of the nearest pair of a clearance; NaN if it has none. `known` has the nearest pair of each
+    /// clearance, or nothing.
+    pub fn clearance(&self, clearance: ClearanceId, known: &[NearestPair]) -> T {
         let pairs = &self.model.clearances[clearance.0].pairs;
-        nearest
-            .as_ref()
-            .map_or_else(|| T::constant(f64::NAN), |(k, near)| self.distance(pairs[*k].shapes, near))
+        let nearest = known.get(clearance.0).copied().unwrap_or_else(|| self.nearest_pair(clearance));
+        nearest.map_or_else(|| T::constant(f64::NAN), |(k, near)| self.distance(pairs[k].shapes, &near))
     }
 }

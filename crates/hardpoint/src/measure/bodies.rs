@@ -1,7 +1,7 @@
 //! Poses of bodies as numbers with derivatives.
 
 use crate::motion::BodyState;
-use crate::number::{Dual, Jet, Rates, Real};
+use crate::number::{Dual, Rates, Real};
 use crate::sensitivity::BodySensitivity;
 use crate::space::{Mat3, Pose, Vec3};
 
@@ -17,10 +17,10 @@ pub(super) fn moving<T: Real>([r, x, y, z, v, omega, a, alpha]: [Vec3<T>; 8]) ->
         // e. = omega x e,    e.. = alpha x e + omega x e.
         let e1 = omega.cross(e);
         let e2 = alpha.cross(e) + omega.cross(e1);
-        zip([e, e1, e2])
+        Vec3::of_rates([e, e1, e2])
     };
     // r, r. = v, r.. = a of the frame's origin are known as they are.
-    Pose { rot: Mat3 { cols: [x, y, z].map(column) }, r: zip([r, v, a]) }
+    Pose { rot: Mat3 { cols: [x, y, z].map(column) }, r: Vec3::of_rates([r, v, a]) }
 }
 
 /// The same, with the derivatives of all of it by one design variable.
@@ -34,14 +34,10 @@ pub(crate) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Dual<
         let b0 = d.dpi.cross(e0);
         let b1 = d.domega.cross(e0) + s.omega.cross(b0);
         let b2 = d.dalpha.cross(e0) + s.alpha.cross(b0) + d.domega.cross(e1) + s.omega.cross(b1);
-        rot.cols[k].with_derivative(zip([b0, b1, b2]))
+        rot.cols[k].with_derivative(Vec3::of_rates([b0, b1, b2]))
     };
     Pose {
         rot: Mat3 { cols: [column(0), column(1), column(2)] },
-        r: r.with_derivative(zip([d.dr, d.dv, d.da])),
+        r: r.with_derivative(Vec3::of_rates([d.dr, d.dv, d.da])),
     }
-}
-
-fn zip<T: Copy>([x, xd, xdd]: [Vec3<T>; 3]) -> Vec3<Rates<T>> {
-    Vec3::new(Jet([x.x, xd.x, xdd.x]), Jet([x.y, xd.y, xdd.y]), Jet([x.z, xd.z, xdd.z]))
 }

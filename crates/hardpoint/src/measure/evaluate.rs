@@ -193,7 +193,7 @@ impl<'a> FormulaEvaluator<'a> {
         for &(_, m) in left {
             let source = measured.outputs[m].source;
             let value = match clearance_of(model, source) {
-                Some(of) => shapes.clearance_between(of, &nearest[of.0]),
+                Some(of) => shapes.clearance(of, nearest),
                 None => instant.output(source),
             };
             measured.set(k, m, value.0);
@@ -292,10 +292,7 @@ pub(crate) fn derivatives(
                 let shapes = PlacedShapes { model, fixed: &fixed, bodies: &carriers };
                 for &(_, m) in listed {
                     let value = match clearance_of(model, outputs[m].source) {
-                        Some(of) => match nearest.get(of.0) {
-                            Some(pair) => shapes.clearance_between(of, pair),
-                            None => shapes.clearance_between(of, &shapes.nearest_pair(of)),
-                        },
+                        Some(of) => shapes.clearance(of, nearest),
                         None => instant.output(outputs[m].source),
                     };
                     out(k, b, m, value.d.0);

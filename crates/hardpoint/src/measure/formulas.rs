@@ -125,11 +125,7 @@ impl<'a, T: Real> Instant<'a, T> {
             }
             MeasureKind::Clearance { of } => {
                 let Self { model, fixed, poses, .. } = *self;
-                let placed = PlacedShapes { model, fixed, bodies: poses };
-                match self.nearest.get(of.0) {
-                    Some(pair) => placed.clearance_between(*of, pair),
-                    None => placed.clearance_between(*of, &placed.nearest_pair(*of)),
-                }
+                PlacedShapes { model, fixed, bodies: poses }.clearance(*of, self.nearest)
             }
             MeasureKind::Articulation { joint, axis } => self.articulation(k, *joint, axis.is_some()),
             MeasureKind::Rate { of } => self.output(*of).rate(),

@@ -184,8 +184,7 @@ macro_rules! measures {
         of: String => ClearanceId,
     } |_, w| Dimension::LENGTH, POSITIONS, format!("least distance of clearance `{}`", w.model.clearances[of.0].name);
 
-    /// Angle between the axis of a joint on its two bodies; of a universal joint between its shafts, of a ball joint
-    /// without an `axis` the whole rotation.
+    /// Angle between the axis of a joint on its two bodies, or between its shafts; without an axis the whole rotation.
     Articulation "articulation" [Polar, normal: false] {
         /// The joint's name.
         joint: String => JointId,

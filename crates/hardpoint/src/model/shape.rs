@@ -167,4 +167,15 @@ impl Model {
     pub fn pair_names(&self, pair: &ShapePair) -> [&str; 2] {
         pair.shapes.map(|s| self.shapes[s.0].name.as_str())
     }
+
+    /// Pairs of shapes of all clearances, each once, in the order of the clearances.
+    pub fn shape_pairs(&self) -> Vec<[ShapeId; 2]> {
+        let mut pairs: Vec<[ShapeId; 2]> = Vec::new();
+        for ShapePair { shapes, .. } in self.clearances.iter().flat_map(|c| &c.pairs) {
+            if !pairs.contains(shapes) {
+                pairs.push(*shapes);
+            }
+        }
+        pairs
+    }
 }

@@ -45,7 +45,7 @@ use kinematics::State;
 
 use crate::blocks::{Blocks, ResultRow};
 use crate::model::{BodyId, JointId, Model};
-use crate::space::{Mat3, Quat, Real, Vec3};
+use crate::space::{Mat3, Pose, Quat, Real, Vec3};
 
 /// State of a body in global components; position, velocity and acceleration are those of the origin of its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +76,12 @@ impl BodyState {
     };
     /// Number of values.
     pub(crate) const NUMBERS: usize = 24;
+
+    /// Position and orientation.
+    #[inline]
+    pub fn pose(&self) -> Pose {
+        Pose { rot: self.rotation, r: self.r }
+    }
 
     /// r, the columns of A, v, omega, a and alpha, one after the other.
     #[inline(always)]

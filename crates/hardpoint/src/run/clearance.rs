@@ -191,8 +191,6 @@ impl Analysis<'_> {
     /// any of them. Those of the others are never the value of a clearance.
     pub fn nearest_pairs(&self, design: &[f64], motion: &Motion, steps: &[usize]) -> Vec<PairCurve> {
         let model = self.model();
-        let all: Vec<[ShapeId; 2]> =
-            model.clearances.iter().flat_map(|c| &c.pairs).map(|pair| pair.shapes).collect();
         let posed = PosedMotion::of(self, design, motion);
         let mut active: Vec<[ShapeId; 2]> = Vec::new();
         posed.each(steps.iter().copied(), |_, placed| {
@@ -204,13 +202,8 @@ impl Analysis<'_> {
                 }
             }
         });
-        // In the order of the clearances.
-        let mut pairs: Vec<[ShapeId; 2]> = Vec::new();
-        for shapes in all {
-            if active.contains(&shapes) && !pairs.contains(&shapes) {
-                pairs.push(shapes);
-            }
-        }
+        let mut pairs = model.shape_pairs();
+        pairs.retain(|shapes| active.contains(shapes));
         let samples = posed.distances(&pairs, steps.iter().copied());
         pairs.iter().zip(samples).map(|(shapes, curve)| PairCurve { shapes: *shapes, curve }).collect()
     }
@@ -219,12 +212,7 @@ impl Analysis<'_> {
     /// derivatives by the design variables.
     pub fn clearances(&self, design: &[f64]) -> Clearances {
         let model = self.model();
-        let mut pairs: Vec<[ShapeId; 2]> = Vec::new();
-        for pair in model.clearances.iter().flat_map(|c| &c.pairs) {
-            if !pairs.contains(&pair.shapes) {
-                pairs.push(pair.shapes);
-            }
-        }
+        let pairs = model.shape_pairs();
         let mut times = self.times_within();
         let own = model.times.clone();
         let mut located = Located::default();

@@ -38,8 +38,7 @@ impl SweptShape {
         for k in steps {
             let states = motion.at(k);
             for b in &bodies {
-                let state = states.body(b.0);
-                poses[b.0] = Pose { rot: state.rotation, r: state.r };
+                poses[b.0] = states.body(b.0).pose();
             }
             let placed = PlacedShapes { model, fixed: &fixed, bodies: &poses[..] };
             self.poses.push(ShapeAtPose::of(&placed, self.shape, poses[self.relative_to.0]));

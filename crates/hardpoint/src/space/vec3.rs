@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
-use crate::number::{Dual, Real};
+use crate::number::{Dual, Jet, Rates, Real};
 
 /// Point or direction with components along x, y and z.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -71,6 +71,14 @@ impl<T> Vec3<T> {
     #[inline(always)]
     pub fn map<U>(self, f: impl Fn(T) -> U) -> Vec3<U> {
         Vec3::new(f(self.x), f(self.y), f(self.z))
+    }
+}
+
+impl<T: Copy> Vec3<T> {
+    /// Vector from its value, its rate and its acceleration.
+    #[inline(always)]
+    pub(crate) fn of_rates([x, xd, xdd]: [Self; 3]) -> Vec3<Rates<T>> {
+        Vec3::new(Jet([x.x, xd.x, xdd.x]), Jet([x.y, xd.y, xdd.y]), Jet([x.z, xd.z, xdd.z]))
     }
 }
 
