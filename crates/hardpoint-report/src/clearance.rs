@@ -2,6 +2,7 @@
 
 mod grid;
 
+use std::cmp::Ordering;
 use std::io::Write;
 
 use hardpoint::model::{Clearance, Dimension, Model, ShapePair};
@@ -203,8 +204,9 @@ record! {
     ) {
         let [a, b] = model.pair_names(pair);
         let length = |x: f64| units.from_si(Dimension::LENGTH, x);
-        let least = found.least().map(|m| m.at.distance[0]);
-        let below = |min: f64| least.is_some_and(|x| x < min - KEPT * model.size());
+        let least = found.least().map(|m| m.at);
+        // Where the cores meet, the shapes are at least as deep in each other as their distance.
+        let below = |min: f64| least.is_some_and(|at| at.cores_meet || at.distance[0] < min - KEPT * model.size());
     }
     /// Name of the clearance.
     clearance: String = clearance.name.clone();
@@ -213,7 +215,7 @@ record! {
     /// Unit of all distances.
     unit: String = unit(units, Dimension::LENGTH);
     /// Least distance; `null` if no output time was solved.
-    least: Option<f64> = least.map(length);
+    least: Option<f64> = least.map(|at| length(at.distance[0]));
     /// Distance that is required.
     min: Option<f64> = pair.min.map(length);
     /// False if the least distance is below the required one.
@@ -229,7 +231,7 @@ record! {
     /// Proof that the distance is never less; `null` where none was tried.
     proof: Option<ProofFact> = proof;
     /// True if the pair is always farther apart than the clearance lists.
-    beyond: bool = clearance.beyond.is_some_and(|beyond| least.is_some_and(|x| x > beyond));
+    beyond: bool = clearance.beyond.is_some_and(|beyond| least.is_some_and(|at| at.distance[0] > beyond));
 }
 
 /// Values of the drivers that move, in words.
@@ -279,7 +281,8 @@ impl ClearanceFact {
 
     /// The lowest of its minima.
     fn lowest(&self) -> Option<&MinimumFact> {
-        self.minima.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))
+        let depth = |m: &&MinimumFact| (!m.cores_meet, m.distance);
+        self.minima.iter().min_by(|a, b| depth(a).partial_cmp(&depth(b)).unwrap_or(Ordering::Equal))
     }
 
     /// The result in sentences: of each clearance its nearest pair, and all pairs that touch or are nearer than asked
@@ -385,7 +388,10 @@ impl ClearanceFact {
         let columns: [Column<'_, &&Self>; 7] = [
             ("clearance", &|f| f.clearance.clone()),
             ("shapes", &|f| format!("{} - {}", f.shapes[0], f.shapes[1])),
-            ("least", &|f| shown(f.least, &f.unit)),
+            ("least", &|f| {
+                let or_deeper = if f.lowest().is_some_and(|m| m.cores_meet) { " or deeper" } else { "" };
+                shown(f.least, &f.unit) + or_deeper
+            }),
             ("at t", &|f| match f.lowest() {
                 Some(_) if f.constant => "always".into(),
                 Some(m) => format!("{} s", number(m.time)),

@@ -420,3 +420,66 @@ fn a_planar_model_has_the_clearances_of_its_long_form() {
         assert_near(a.distance[0] * 1e3, b.distance[0] * 1e3, "distance");
     }
 }
+
+/// A triangle across the path of a slider, and a plate.
+const TRIANGLE: &str = "v 0 -100 -100\nv 0 100 -100\nv 0 0 150\nf 1 2 3\n";
+const PLATE: &str = "\
+v -2 -100 -100\nv 2 -100 -100\nv 2 100 -100\nv -2 100 -100\n\
+v -2 -100 100\nv 2 -100 100\nv 2 100 100\nv -2 100 100\n\
+f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+/// Shapes that a slider pushes through each other: 40 mm of travel, ends that begin 20 mm before x = 0.
+const PIERCING: &str = r#"
+name = "piercing"
+units = { length = "mm", angle = "deg" }
+hardpoints = { origin = [-60, 10, 0], tip = [-20, 10, 0] }
+bodies = { slider = {} }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = "origin", axis = "x" }
+drivers.push = { joint = "slide", law = "40*t" }
+time = { end = 1.0, steps = 4 }
+[shapes]
+rod = { body = "slider", capsule = ["origin", "tip"], radius = 1 }
+bar = { body = "slider", cylinder = ["origin", "tip"], radius = 3 }
+block = { body = "slider", box = [40, 6, 6], frame = { position = [-40, 10, 0] } }
+triangle = { body = "ground", mesh = "triangle.obj" }
+plate = { body = "ground", mesh = "plate.obj" }
+box = { body = "ground", box = [4, 200, 200] }
+disc = { body = "ground", cylinder = [[-2, 0, 0], [2, 0, 0]], radius = 100 }
+[clearances.all]
+between = [["rod", "bar", "block"], ["triangle", "plate", "box", "disc"]]
+"#;
+
+/// A shape that pierces another without an edge or rim of one near a face of the other overlaps it, from the time at
+/// which it touches it to the end, at whatever depth.
+#[test]
+fn what_pierces_a_shape_overlaps_it() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("triangle.obj"), TRIANGLE).unwrap();
+    std::fs::write(folder.path().join("plate.obj"), PLATE).unwrap();
+    let path = folder.path().join("piercing.toml");
+    for steps in [4, 7, 30] {
+        std::fs::write(&path, PIERCING.replace("steps = 4", &format!("steps = {steps}"))).unwrap();
+        let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        assert_eq!(found.pairs.len(), 12);
+        for pair in &found.pairs {
+            let [moving, fixed] = pair.shapes.map(|s| model.shapes[s.0].name.as_str());
+            let thickness = if fixed == "triangle" { 0.0 } else { 2.0 };
+            let radius = if moving == "rod" { 1.0 } else { 0.0 };
+            let touches = (20.0 - thickness - radius) / 40.0;
+            let name = format!("{moving} and {fixed}, {steps} steps");
+            let [[from, to]] = pair.intervals()[..] else { panic!("{name}: {:?}", pair.intervals()) };
+            assert_near(from, touches, &name);
+            assert_eq!(to, 1.0, "{name}");
+            assert!(pair.curve.iter().all(|s| s.time <= touches || s.distance[0] <= 0.0), "{name}");
+            // The rod's end is rounded: the way out of a plate is known at every depth. A plate is left by its faces.
+            let depth = match (moving, fixed) {
+                ("rod", "triangle") => -1.0,
+                ("rod", _) => -3.0,
+                _ => pair.least().unwrap().at.distance[0] * 1e3,
+            };
+            let least = pair.least().unwrap().at;
+            assert_near(least.distance[0] * 1e3, depth, &name);
+            assert!(least.cores_meet || least.distance[0] < 0.0, "{name}");
+        }
+    }
+}

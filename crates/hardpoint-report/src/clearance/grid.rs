@@ -45,8 +45,9 @@ record! {
     ) {
         let [a, b] = model.pair_names(pair);
         let length = |x: f64| units.from_si(Dimension::LENGTH, x);
-        let least = found.minima.first().map(|m| m.at.distance[0]);
-        let below = |min: f64| least.is_some_and(|x| x < min - KEPT * model.size());
+        let least = found.minima.first().map(|m| m.at);
+        // Where the cores meet, the shapes are at least as deep in each other as their distance.
+        let below = |min: f64| least.is_some_and(|at| at.cores_meet || at.distance[0] < min - KEPT * model.size());
     }
     /// Name of the clearance.
     clearance: String = clearance.name.clone();
@@ -55,7 +56,7 @@ record! {
     /// Unit of all distances.
     unit: String = unit(units, Dimension::LENGTH);
     /// Least distance; `null` if no position was reached.
-    least: Option<f64> = least.map(length);
+    least: Option<f64> = least.map(|at| length(at.distance[0]));
     /// Distance that is required.
     min: Option<f64> = pair.min.map(length);
     /// False if the least distance is below the required one.

@@ -85,9 +85,14 @@ pub(super) fn distance<T: Real>(a: &Placed<T>, b: &Placed<T>, near: [Vec3; 2]) -
         (Placed::Line { .. } | Placed::Circle(_), Placed::Line { .. } | Placed::Circle(_)) => {
             stationary(&Curve::of(a, near[0]), &Curve::of(b, near[1]))
         }
-        (Placed::Line { .. } | Placed::Face { .. }, Placed::Line { .. } | Placed::Face { .. }) => {
-            T::constant(f64::NAN)
+        // The place on the line is one of many that are equally near, and stays.
+        (line @ Placed::Line { .. }, Placed::Face { point, normal }) => {
+            normal.dot(Curve::of(line, near[0]).at(T::zero())[0] - *point)
         }
+        (Placed::Face { point, normal }, line @ Placed::Line { .. }) => {
+            normal.dot(Curve::of(line, near[1]).at(T::zero())[0] - *point)
+        }
+        (Placed::Face { .. }, Placed::Face { .. }) => T::constant(f64::NAN),
     }
 }
 

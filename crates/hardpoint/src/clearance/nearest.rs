@@ -17,7 +17,8 @@ pub(crate) struct Nearest {
     pub points: [Vec3; 2],
     /// Distance of the cores; negative where they overlap and the way out is known.
     pub distance: f64,
-    /// -1 where segments cross in a plane, and the distance is the way out of each other; otherwise 1.
+    /// -1 where segments cross in a plane, and the distance is the way out of each other; 0 where the cores overlap and
+    /// no way out is known, so that the distance is 0 whatever the features; otherwise 1.
     pub(super) sign: f64,
     /// True if more than one pair of points is nearest, since lines or faces are parallel.
     pub is_parallel: bool,
@@ -31,12 +32,18 @@ impl Nearest {
 
     /// The same for features that are placed, each with the distance by which its core extends beyond it.
     pub fn distance_between<T: Real>(&self, [(a, less), (b, as_well)]: [(Placed<T>, T); 2]) -> T {
+        if self.sign == 0.0 {
+            return T::zero();
+        }
         distance(&a, &b, self.points) * self.sign - less - as_well
     }
 
     /// With the sign by which the formula gives this distance: a formula between points or lines is never negative,
     /// one of a facet is negative behind it.
     pub fn signed(mut self, features: [(Placed<f64>, f64); 2]) -> Self {
+        if self.sign == 0.0 {
+            return self;
+        }
         self.sign = 1.0;
         self.sign = if self.distance_between(features) * self.distance < 0.0 { -1.0 } else { 1.0 };
         self
@@ -44,7 +51,12 @@ impl Nearest {
 
     /// True if the cores meet, so that their distance does not say how deep they are in each other.
     pub fn cores_meet(&self, within: f64) -> bool {
-        self.sign > 0.0 && (self.points[1] - self.points[0]).norm() <= within
+        self.sign >= 0.0 && (self.points[1] - self.points[0]).norm() <= within
+    }
+
+    /// Cores that overlap at a point, with no known way out.
+    pub(super) fn overlapping(self, at: Vec3) -> Self {
+        Self { points: [at; 2], distance: 0.0, sign: 0.0, ..self }
     }
 
     pub(super) fn reversed(self) -> Self {
@@ -291,46 +303,51 @@ fn parallel_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Option<Nearest> {
 fn segment_and_circle([a, b]: [Vec3; 2], circle: &Circle) -> Nearest {
     let at = |t: f64| a + (b - a) * t;
     let apart = |t: f64| (of_circle(circle, at(t)) - at(t)).norm();
-    let t = least_sampled(apart, false);
+    let t = least_sampled(apart, (b - a).norm(), false);
     let feature = if t > 0.0 && t < 1.0 { Feature::Line } else { Feature::Point(t) };
     let points = [at(t), of_circle(circle, at(t))];
     found([feature, Feature::Circle(0.0)], points, (points[1] - points[0]).norm())
 }
 
-/// Place in [0, 1] of the least value of a function that is sampled first; 0 and 1 are the same place of a periodic
-/// one.
-pub(super) fn least_sampled(f: impl Fn(f64) -> f64, is_periodic: bool) -> f64 {
-    let place = |k: usize| k as f64 / SAMPLES as f64;
+/// Place in [0, 1] of the least distance along a curve, which is sampled first; 0 and 1 are the same place of a closed
+/// one. Between two places the distance changes by no more than the curve is long: only minima that may be the least
+/// are refined.
+pub(super) fn least_sampled(f: impl Fn(f64) -> f64, length: f64, is_closed: bool) -> f64 {
+    let step = 1.0 / SAMPLES as f64;
+    let place = |k: usize| k as f64 * step;
     let samples: [f64; SAMPLES + 1] = std::array::from_fn(|k| f(place(k)));
     let around = |k: usize| {
-        let before = if k > 0 {
-            k - 1
-        } else if is_periodic {
-            SAMPLES - 1
-        } else {
-            k
-        };
-        let after = if k < SAMPLES {
-            k + 1
-        } else if is_periodic {
-            1
-        } else {
-            k
-        };
-        [before, after]
+        let [first, last] = if is_closed { [SAMPLES - 1, 1] } else { [0, SAMPLES] };
+        [if k > 0 { k - 1 } else { first }, if k < SAMPLES { k + 1 } else { last }]
     };
     let is_low = |k: &usize| around(*k).iter().all(|n| samples[*k] <= samples[*n]);
-    let refined = (0..=SAMPLES).filter(is_low).map(|k| {
-        let step = 1.0 / SAMPLES as f64;
-        let ends = [place(k) - step, place(k) + step];
-        let t = least_within(&f, if is_periodic { ends } else { ends.map(|t| t.clamp(0.0, 1.0)) });
-        // An end itself, if the function decreases up to it.
-        let t = if !is_periodic && (f(0.0) <= f(t) || t < AT_END) && k <= 1 { 0.0 } else { t };
-        let t =
-            if !is_periodic && (f(1.0) <= f(t) || t > 1.0 - AT_END) && k + 1 >= SAMPLES { 1.0 } else { t };
-        (f(t), t)
-    });
-    refined.reduce(|a, b| if b.0 < a.0 { b } else { a }).map_or(0.0, |(_, t)| t)
+    let mut lows: Vec<usize> = (0..=SAMPLES).filter(is_low).collect();
+    lows.sort_by(|a, b| samples[*a].total_cmp(&samples[*b]));
+    let mut best = (f64::INFINITY, 0.0);
+    for k in lows {
+        if samples[k] - step * length >= best.0 {
+            break;
+        }
+        let is_flat = around(k).iter().all(|n| samples[*n] - samples[k] <= PARALLEL * length);
+        let t = if is_flat { place(k) } else { refined(&f, place(k), step, is_closed) };
+        let value = f(t);
+        if value < best.0 {
+            best = (value, t);
+        }
+    }
+    best.1
+}
+
+/// Place of the minimum of a function around a sample.
+fn refined(f: &impl Fn(f64) -> f64, place: f64, step: f64, is_closed: bool) -> f64 {
+    let around = [place - step, place + step];
+    if is_closed {
+        return least_within(f, around);
+    }
+    let t = least_within(f, around.map(|t| t.clamp(0.0, 1.0)));
+    // An end itself, if the function decreases up to it.
+    let is_end = |end: f64| (end - place).abs() < 1.5 * step && (f(end) <= f(t) || (end - t).abs() < AT_END);
+    [0.0, 1.0].into_iter().find(|end| is_end(*end)).unwrap_or(t)
 }
 
 /// A solid cylinder, halfway between whose caps is this circle.
@@ -351,6 +368,11 @@ impl Drum {
         let z = self.middle.axis.dot(v);
         let out = v - self.middle.axis * z;
         (z, out.norm(), out)
+    }
+
+    /// Ends of the axis, on the caps.
+    pub fn axis(&self) -> [Vec3; 2] {
+        [-1.0, 1.0].map(|side| self.middle.moved(self.half_width * side).centre)
     }
 
     /// Distance of a point, negative inside: a convex function of the point.
@@ -428,7 +450,7 @@ pub(super) fn along_circle(circle: &Circle, itself: Feature, from: impl Fn(Vec3)
         circle.centre + (x * cos + y * sin) * circle.radius
     };
     let apart = |turn: f64| from(at(turn)).distance;
-    let near = from(at(least_sampled(apart, true)));
+    let near = from(at(least_sampled(apart, circle.radius * TAU, true)));
     // Parallel circles and faces: all points of the circle are nearest.
     let is_level = |k: u8| (apart(f64::from(k) * 0.25) - near.distance).abs() <= PARALLEL * circle.radius;
     let is_parallel = (0..4).all(is_level);
@@ -447,8 +469,7 @@ fn cylinders(drums: [&Drum; 2]) -> Nearest {
     };
     let ([a, b], [c, d]) = (rims(0), rims(1));
     let near = nearer([a, b, c.reversed(), d.reversed()]);
-    let axis = |drum: &Drum| [-1.0, 1.0].map(|side| drum.middle.moved(drum.half_width * side).centre);
-    let sides = segments(axis(drums[0]), axis(drums[1]));
+    let sides = segments(drums[0].axis(), drums[1].axis());
     let apart = sides.distance - drums[0].middle.radius - drums[1].middle.radius;
     // The sides are nearest where the common perpendicular of the axes meets both within their widths.
     if sides.features == [Feature::Line; 2]
@@ -461,5 +482,10 @@ fn cylinders(drums: [&Drum; 2]) -> Nearest {
         let points = [p + n * drums[0].middle.radius, q - n * drums[1].middle.radius];
         return found([Feature::Line; 2], points, apart);
     }
-    near
+    // A disc whose rims are all around the other cylinder is pierced by its axis.
+    let pierced = [0, 1].map(|k| segment_and_cylinder(drums[k].axis(), drums[1 - k]));
+    match pierced.iter().find(|axis| near.distance > 0.0 && axis.distance <= 0.0) {
+        Some(axis) => near.overlapping(axis.points[0]),
+        None => near,
+    }
 }

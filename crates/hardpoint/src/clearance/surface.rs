@@ -172,7 +172,9 @@ pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
                 }
                 near.distance
             });
-            best
+            // A cylinder that a triangle covers within its rims is pierced along its axis.
+            let axis = segment_and_surface(drum.axis(), view);
+            if best.distance > 0.0 && axis.distance <= 0.0 { best.overlapping(axis.points[0]) } else { best }
         }
         Core::HalfSpace { point, normal } => {
             let height = |p: &Vec3| normal.dot(*p - *point);
@@ -222,9 +224,9 @@ fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
         return best;
     }
     if !view.is_closed() {
-        return Nearest { distance: 0.0, points: [best.points[0]; 2], ..best };
+        return best.overlapping(best.points[0]);
     }
-    let t = least_sampled(|t| view.nearest_to(at(t)).distance, false);
+    let t = least_sampled(|t| view.nearest_to(at(t)).distance, (b - a).norm(), false);
     let near = view.nearest_to(at(t));
     Nearest { features: [Feature::Point(t), near.features[1]], ..near }
 }
@@ -306,7 +308,7 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
         }
     }
     if let Some(p) = overlap {
-        return Nearest { points: [p; 2], distance: 0.0, ..best };
+        return best.overlapping(p);
     }
     // One within the other.
     let is_inside = |view: View<'_>, p: Option<Vec3>| {
@@ -315,7 +317,7 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
     let back = place.inverse();
     let first = a.points().first().map(|p| back.point(*p));
     if is_inside(a, b.points().first().map(|p| place.point(*p))) || is_inside(b, first) {
-        return Nearest { points: [best.points[0]; 2], distance: 0.0, ..best };
+        return best.overlapping(best.points[0]);
     }
     if best.distance.is_infinite() { Nearest { distance: f64::NAN, ..best } } else { best }
 }

@@ -3,6 +3,8 @@
 //! Times are found on motions that are solved anew at them, never on polynomials between output times: a distance may
 //! change its features there, where its acceleration jumps.
 
+use std::cmp::Ordering;
+
 use crate::clearance::{ChangingBodies, MovingBodies, PlacedShapes};
 use crate::design::{BodyFixed, ShapeGeometry};
 use crate::model::{BodyId, Clearance, ClearanceId, Model, PointId, Shape, ShapeId, ShapeKind, ShapePair};
@@ -39,6 +41,13 @@ pub struct ShapeDistance {
     pub is_parallel: bool,
     /// True if the cores of the shapes meet: the distance does not say how deep the shapes are in each other.
     pub cores_meet: bool,
+}
+
+impl ShapeDistance {
+    /// True in an overlap of unknown depth, whose distance and rates are zero at all times.
+    fn is_deep(&self) -> bool {
+        self.cores_meet && self.distance[..2] == [0.0; 2]
+    }
 }
 
 /// Place of a minimum in the motion.
@@ -93,9 +102,10 @@ pub struct PairClearance {
 }
 
 impl PairClearance {
-    /// The least of the minima.
+    /// The least of the minima: one where the cores meet, if there is any, since no other is known to be deeper.
     pub fn least(&self) -> Option<&ClearanceMinimum> {
-        self.minima.iter().min_by(|a, b| a.at.distance[0].total_cmp(&b.at.distance[0]))
+        let depth = |m: &ClearanceMinimum| (!m.at.cores_meet, m.at.distance[0]);
+        self.minima.iter().min_by(|a, b| depth(a).partial_cmp(&depth(b)).unwrap_or(Ordering::Equal))
     }
 
     /// Intervals in which the shapes touch, s; one that begins before the motion or ends after it has its first or last
@@ -216,10 +226,13 @@ impl Analysis<'_> {
         let mut times = self.times_within();
         let own = model.times.clone();
         let mut located = Located::default();
+        let (mut plateaus, mut known) = (None, Vec::new());
         for _ in 0..MOST_PASSES {
             let solution = self.motion_at(&times, design, false);
-            let curves = Curves::of(self, design, &pairs, &solution.motion);
-            located = curves.locate(&pairs);
+            let curves = Curves::of(self, design, &pairs, &solution.motion, known);
+            let plateaus = plateaus.get_or_insert_with(|| curves.plateaus());
+            located = curves.locate(plateaus);
+            known = curves.samples;
             if located.add.is_empty() {
                 break;
             }
@@ -232,7 +245,7 @@ impl Analysis<'_> {
         events.sort_by(f64::total_cmp);
         events.dedup();
         let solution = self.motion_at(&events, design, true);
-        self.results(design, &pairs, &located, &solution)
+        self.results(design, &pairs, &located, &solution, known)
     }
 
     fn motion_at(&self, times: &[f64], design: &[f64], sensitivities: bool) -> Solution {
@@ -248,10 +261,11 @@ impl Analysis<'_> {
         pairs: &[[ShapeId; 2]],
         located: &Located,
         solution: &Solution,
+        known: Vec<Vec<ShapeDistance>>,
     ) -> Clearances {
         let model = self.model();
         let motion = &solution.motion;
-        let curves = Curves::of(self, design, pairs, motion);
+        let curves = Curves::of(self, design, pairs, motion, known);
         let place = |time: f64| motion.times.iter().position(|t| *t == time);
         let pair_of = |(p, shapes): (usize, &[ShapeId; 2])| {
             let samples = &curves.samples[p];
@@ -402,21 +416,69 @@ struct Curves<'m> {
 }
 
 impl<'m> Curves<'m> {
-    fn of(analysis: &Analysis<'_>, design: &[f64], pairs: &[[ShapeId; 2]], motion: &'m Motion) -> Self {
+    /// Distances that are known from an earlier motion of the same design are kept.
+    fn of(
+        analysis: &Analysis<'_>,
+        design: &[f64],
+        pairs: &[[ShapeId; 2]],
+        motion: &'m Motion,
+        known: Vec<Vec<ShapeDistance>>,
+    ) -> Self {
+        let at = |samples: &[ShapeDistance], time: f64| {
+            samples.binary_search_by(|s| s.time.total_cmp(&time)).ok()
+        };
+        let is_new = |k: &usize| known.first().is_none_or(|s| at(s, motion.times[*k]).is_none());
         let posed = PosedMotion::of(analysis, design, motion);
-        Self { motion, size: analysis.model().size(), samples: posed.distances(pairs, 0..motion.len()) }
+        let mut samples = posed.distances(pairs, (0..motion.len()).filter(is_new));
+        for (samples, mut known) in samples.iter_mut().zip(known) {
+            known.retain(|s| motion.times.binary_search_by(|t| t.total_cmp(&s.time)).is_ok());
+            samples.append(&mut known);
+            samples.sort_by(|a, b| a.time.total_cmp(&b.time));
+        }
+        Self { motion, size: analysis.model().size(), samples }
+    }
+
+    /// Parts of the motion in which the distance of a pair does not change, by pair: of a rod through a plate for
+    /// example, which is equally deep all the time. Rates there are those of either way out, and indicate nothing.
+    fn plateaus(&self) -> Vec<Vec<Plateau>> {
+        let times = &self.motion.times;
+        let of_pair = |samples: &Vec<ShapeDistance>| {
+            let same = |a: &usize, b: &usize| {
+                (samples[*a].distance[0] - samples[*b].distance[0]).abs() <= FLAT * self.size
+            };
+            let steps: Vec<usize> = (0..samples.len()).collect();
+            // Two equal distances may be those on both sides of a minimum, unless their rates are zero.
+            let is_still = |k: &usize| samples[*k].distance[1..] == [0.0; 2];
+            let is_deep = |k: &usize| samples[*k].is_deep();
+            let runs = steps
+                .chunk_by(same)
+                .filter(|run| run.len() > 2 || run.len() == 2 && run.iter().all(is_still));
+            let plateau = |run: &[usize]| {
+                let (first, last) = (run[0], run[run.len() - 1]);
+                let around = [first.saturating_sub(1), (last + 1).min(samples.len() - 1)];
+                let value = samples[first].distance[0];
+                let is_higher = |k: &usize| samples[*k].distance[0] >= value - FLAT * self.size;
+                let deep = run.iter().copied().find(is_deep);
+                let is_lowest = deep.is_some() || around.iter().all(is_higher);
+                let is_inside = 0 < first && last + 1 < samples.len();
+                let within = around.map(|k| times[k]);
+                Plateau { within, from: times[deep.unwrap_or(first)], value, is_lowest, is_inside }
+            };
+            runs.map(plateau).collect()
+        };
+        self.samples.iter().map(of_pair).collect()
     }
 
     /// The minima and contacts that are located, and the times at which the motion must be solved for the others.
-    fn locate(&self, pairs: &[[ShapeId; 2]]) -> Located {
-        let mut located = Located { constant: vec![false; pairs.len()], ..Located::default() };
-        for p in 0..pairs.len() {
-            self.locate_pair(p, &mut located);
+    fn locate(&self, plateaus: &[Vec<Plateau>]) -> Located {
+        let mut located = Located { constant: vec![false; plateaus.len()], ..Located::default() };
+        for (p, plateaus) in plateaus.iter().enumerate() {
+            self.locate_pair(p, plateaus, &mut located);
         }
         located
     }
 
-    fn locate_pair(&self, p: usize, located: &mut Located) {
+    fn locate_pair(&self, p: usize, plateaus: &[Plateau], located: &mut Located) {
         let (times, samples) = (&self.motion.times, &self.samples[p]);
         let Some(last) = samples.len().checked_sub(1) else { return };
         let span = times[last] - times[0];
@@ -434,12 +496,27 @@ impl<'m> Curves<'m> {
         }
         let rates_known = samples.iter().all(|s| s.distance[1].is_finite());
         let mut add = Vec::new();
+        let level = |k: usize| {
+            let same = |x: f64, plateau: &Plateau| (x - plateau.value).abs() <= FLAT * self.size;
+            plateaus.iter().find(|plateau| {
+                plateau.within[0] <= times[k]
+                    && times[k + 1] <= plateau.within[1]
+                    && same(value(k), plateau)
+                    && same(value(k + 1), plateau)
+            })
+        };
+        let is_level = |k: usize| level(k).is_some();
         // Ends.
-        if last > 0 && value(0) <= value(1) && !(samples[0].distance[1] < 0.0) {
+        let is_lowest = |k: usize, or: bool| level(k).map_or(or, |plateau| plateau.is_lowest);
+        if last > 0 && is_lowest(0, value(0) <= value(1) && !(samples[0].distance[1] < 0.0)) {
             event(times[0], EventKind::Minimum(MinimumPlace::Start));
         }
-        if last > 0 && value(last) <= value(last - 1) && !(samples[last].distance[1] > 0.0) {
+        let falls = value(last) <= value(last.saturating_sub(1)) && !(samples[last].distance[1] > 0.0);
+        if last > 0 && is_lowest(last - 1, falls) {
             event(times[last], EventKind::Minimum(MinimumPlace::End));
+        }
+        for plateau in plateaus.iter().filter(|plateau| plateau.is_lowest && plateau.is_inside) {
+            event(plateau.from, EventKind::Minimum(MinimumPlace::Inside));
         }
         let curve = SampledCurve {
             times,
@@ -458,7 +535,7 @@ impl<'m> Curves<'m> {
                     found.push(times[k]);
                 }
             }
-            for k in 0..last {
+            for k in (0..last).filter(|k| !is_level(*k)) {
                 let [from, to] = [k, k + 1].map(|k| samples[k].distance[1]);
                 let changes = from < 0.0 && to > 0.0;
                 let at = |t: f64| curve.at(k, t)[0];
@@ -494,7 +571,8 @@ impl<'m> Curves<'m> {
             located.events.extend(kinks.into_iter().map(of_kink));
         } else {
             for k in 1..last {
-                if value(k) > value(k - 1) || value(k) > value(k + 1) {
+                let is_low = value(k) <= value(k - 1) && value(k) <= value(k + 1);
+                if !is_low || is_level(k - 1) || is_level(k) {
                     continue;
                 }
                 if times[k + 1] - times[k - 1] <= AT_REST * span {
@@ -513,11 +591,22 @@ impl<'m> Curves<'m> {
                 continue;
             }
             let begins = b <= 0.0;
-            let near = if a.abs() <= b.abs() { k } else { k + 1 };
+            // Overlaps of unknown depth have neither a distance nor a rate: only the other side leads to the contact.
+            let is_deep = [k, k + 1].map(|k| samples[k].is_deep());
+            let other_is_nearer = if is_deep == [false; 2] { a.abs() > b.abs() } else { is_deep[0] };
+            let near = k + usize::from(other_is_nearer);
             let [d, rate, _] = samples[near].distance;
-            let there = d.abs() <= LOCATED * span * rate.abs() || d == 0.0;
-            if there || times[k + 1] - times[k] <= LOCATED * span {
+            let is_there = d.abs() <= LOCATED * span * rate.abs() || d.abs() <= f64::EPSILON * self.size;
+            if is_there || times[k + 1] - times[k] <= LOCATED * span {
                 event(times[near], EventKind::Contact(begins));
+                continue;
+            }
+            if is_deep != [false; 2] {
+                // Newton's method, to just before the contact.
+                let step = -d / rate;
+                let t = times[near] + step - 0.5 * LOCATED * span * step.signum();
+                add.extend(Some(t).filter(|t| times[k] < *t && *t < times[k + 1]));
+                add.push(0.5 * (times[k] + times[k + 1]));
                 continue;
             }
             let polynomial = |t: f64| curve.at(k, t)[0];
@@ -539,6 +628,24 @@ impl<'m> Curves<'m> {
 /// A distance that changes less than this fraction of the mechanism's size over a motion is constant: round-off of
 /// solved positions.
 const CONSTANT: f64 = 1e-10;
+/// Distances that differ by less than this fraction of the mechanism's size are the same: round-off of solved positions.
+const FLAT: f64 = 4e-12;
+
+/// Part of a motion in which the distance of a pair does not change.
+#[derive(Clone, Copy)]
+struct Plateau {
+    /// Times around it, between which it begins and ends.
+    within: [f64; 2],
+    /// The first time that is known to be in it.
+    from: f64,
+    /// The distance, m.
+    value: f64,
+    /// True if the distance is greater on both sides, or the shapes overlap at a depth that is not known.
+    is_lowest: bool,
+    /// True if it begins and ends within the motion.
+    is_inside: bool,
+}
+
 /// Interval in which the minimum of a curve without rates is located, as a fraction of the motion: the value is then
 /// known to round-off.
 const AT_REST: f64 = 1e-6;
