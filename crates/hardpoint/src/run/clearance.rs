@@ -424,9 +424,8 @@ impl<'m> Curves<'m> {
         motion: &'m Motion,
         known: Vec<Vec<ShapeDistance>>,
     ) -> Self {
-        let at = |samples: &[ShapeDistance], time: f64| {
-            samples.binary_search_by(|s| s.time.total_cmp(&time)).ok()
-        };
+        let at =
+            |samples: &[ShapeDistance], time: f64| samples.binary_search_by(|s| s.time.total_cmp(&time)).ok();
         let is_new = |k: &usize| known.first().is_none_or(|s| at(s, motion.times[*k]).is_none());
         let posed = PosedMotion::of(analysis, design, motion);
         let mut samples = posed.distances(pairs, (0..motion.len()).filter(is_new));
