@@ -2,7 +2,9 @@
 
 use hardpoint::draft::{DirectionDraft, FieldDraft, FieldKind, MeasureField, NumberDraft, RayDraft};
 use hardpoint::law::Law;
-use hardpoint::model::{Axes, CoupledStiffness, ElementUnit, OrientationAngle, ReactionPart, WheelPoint};
+use hardpoint::model::{
+    Axes, CoupledStiffness, ElementUnit, JacobianValue, OrientationAngle, ReactionPart, WheelPoint,
+};
 
 use crate::values::{
     ANGLE, BODY, DIRECTION, DRIVER, EntryPlace, Field, Fields, JOINT, Key, LENGTH, LINE, NUMBER, Need,
@@ -51,6 +53,13 @@ const REACTION_PART: Shape = Shape::Any(
     "What of a joint's reaction is measured.",
     &[Shape::Words(ReactionPart::WORDS)],
 );
+const JACOBIAN_VALUE: Shape = Shape::Any(
+    "JacobianValue",
+    "Quantity that a dexterity takes from the singular values.",
+    &[Shape::Words(JacobianValue::WORDS)],
+);
+const POINTS: Shape = Shape::list(&POINT_REF);
+const DRIVERS: Shape = Shape::list(&DRIVER);
 const AXES: Shape = Shape::Any("Axes", "Along which axes something is given.", &[Shape::Words(Axes::WORDS)]);
 const WHEEL_POINT: Shape =
     Shape::Any("WheelPoint", "Point of a wheel at which a force acts.", &[Shape::Words(WheelPoint::WORDS)]);
@@ -66,6 +75,9 @@ pub(super) fn key(field: &MeasureField) -> Key {
         FieldKind::Joint => (JOINT, "\"J1\""),
         FieldKind::Coordinate => (COORDINATE, "\"angle\""),
         FieldKind::Point => (POINT_REF, "\"P\""),
+        FieldKind::Points => (POINTS, "[\"P\", \"Q\"]"),
+        FieldKind::Drivers => (DRIVERS, "[\"bump\", \"steer\"]"),
+        FieldKind::JacobianValue => (JACOBIAN_VALUE, "\"least_gain\""),
         FieldKind::Direction => (DIRECTION, "\"z\""),
         FieldKind::Line => (LINE, "[0, 1, 0]"),
         FieldKind::Ray => (RAY, "[\"P\", \"Q\"]"),
@@ -143,6 +155,10 @@ pub(super) fn own_field(
             r.word_of(fields, key).map(|k| FieldDraft::Angle(OrientationAngle::at(k)))
         }
         FieldKind::ReactionPart => r.word_of(fields, key).map(|k| FieldDraft::Part(ReactionPart::at(k))),
+        FieldKind::JacobianValue => {
+            r.word_of(fields, key).map(|k| FieldDraft::Jacobian(JacobianValue::at(k)))
+        }
+        FieldKind::Drivers => r.list_of_names(fields, key, "all").map(FieldDraft::Names),
         FieldKind::Axes => r.word_of(fields, key).map(|k| FieldDraft::Axes(Axes::at(k))),
         FieldKind::WheelPoint => r.word_of(fields, key).map(|k| FieldDraft::WheelPoint(WheelPoint::at(k))),
         FieldKind::Number(unit) => {
@@ -158,6 +174,7 @@ pub(super) fn own_field(
             solid.map(FieldDraft::Solid)
         }
         FieldKind::Point => points::point_of(r, fields, key).map(FieldDraft::Point),
+        FieldKind::Points => points::points_of(r, fields, key).map(FieldDraft::Points),
         FieldKind::Direction => r.vector_of(fields, key).map(FieldDraft::Direction),
         FieldKind::Line => r.line_of(fields, key, place).map(FieldDraft::Line),
         FieldKind::Ray => r.given(fields, key, |r, f| ray(r, fields, f, place)).map(FieldDraft::Ray),

@@ -3,7 +3,9 @@
 use hardpoint::draft::{LocationDraft, PointDraft, PointRef, Section};
 use hardpoint::space::Vec3;
 
-use crate::values::{BODY, EntryPlace, Field, Fields, PLACE, Reader, Shape, Table, table};
+use crate::values::{
+    BODY, EntryPlace, Field, Fields, PLACE, Reader, Shape, Subject, Table, Value, all_read, table,
+};
 
 use super::raw::Raw;
 
@@ -39,14 +41,24 @@ pub(super) fn point_of(r: &mut Reader<'_>, fields: &Fields<'_>, key: &str) -> Op
     r.given(fields, key, |r, f| point_ref(r, fields, f))
 }
 
+/// A list of points.
+pub(super) fn points_of(r: &mut Reader<'_>, fields: &Fields<'_>, key: &str) -> Option<Vec<PointRef>> {
+    let (subject, expected) = (fields.subject(key), fields.key(key).shape.noun());
+    r.given(fields, key, |r, f| {
+        let list = r.list(f.value, &subject, &expected)?;
+        all_read(list.into_iter().map(|value| point(r, value, &subject)))
+    })
+}
+
 pub(super) fn point_ref(r: &mut Reader<'_>, fields: &Fields<'_>, f: Field<'_>) -> Option<PointRef> {
-    let subject = fields.subject(f.key);
-    let Some(table) = f.value.get_ref().as_table() else {
-        return r
-            .name(f.value, &subject, "a point's name or `{ body = ..., at = ... }`")
-            .map(PointRef::Named);
+    point(r, f.value, &fields.subject(f.key))
+}
+
+fn point(r: &mut Reader<'_>, value: &Value<'_>, subject: &Subject) -> Option<PointRef> {
+    let Some(table) = value.get_ref().as_table() else {
+        return r.name(value, subject, "a point's name or `{ body = ..., at = ... }`").map(PointRef::Named);
     };
-    let fields = r.fields(subject.name.clone(), f.value.span(), table, POINT.keys());
+    let fields = r.fields(subject.name.clone(), value.span(), table, POINT.keys());
     let body = r.name_of(&fields, "body");
     let at = r.place_of(&fields, "at");
     Some(PointRef::On { body: body?, at: at? })

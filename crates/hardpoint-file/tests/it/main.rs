@@ -5,6 +5,7 @@ mod calibrations;
 mod cases;
 mod clearance;
 mod couplers;
+mod dexterity;
 mod diagnostics;
 mod docs;
 mod domain;

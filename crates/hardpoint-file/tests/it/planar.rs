@@ -370,6 +370,9 @@ fn the_planar_shorthand_of_every_measure_equals_its_long_form() {
             "curvature" => &["point = \"p\""],
             "rate" => &["of = \"base\""],
             "slope" => &["of = \"base\", over = \"far\", driver = \"swing\""],
+            "dexterity" => {
+                &["points = [\"p\", { body = \"c\", at = <-20 300> }], drivers = [\"swing\", \"turn\"]"]
+            }
             "expression" => &["expression = \"2*base + far^2/100\""],
             "toe" | "camber" => &["body = \"c\", spin_axis = <0.4 1>"],
             "driver_force" | "driver_power" => &["driver = \"turn\""],

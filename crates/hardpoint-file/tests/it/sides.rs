@@ -711,6 +711,10 @@ pub(crate) fn measures(hold: Hold<'_>) {
             }
             "rate" => vec![("of = \"left_base\"", &[])],
             "slope" => vec![("of = \"left_base\", over = \"left_far\", driver = \"left_swing\"", &[])],
+            "dexterity" => vec![(
+                "points = [\"left_p\", { body = \"left_b\", at = \"left_H\" }], drivers = [\"left_swing\"], value = \"least_gain\"",
+                &[],
+            )],
             "expression" => vec![("expression = \"2*left_base + left_far^2/100\"", &[])],
             "toe" | "camber" => vec![("body = \"left_b\", spin_axis = [0.05, 1, 0.02]", &[])],
             "driver_force" | "driver_power" => {

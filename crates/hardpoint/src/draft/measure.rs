@@ -6,8 +6,8 @@ use crate::joint::VectorKind;
 use crate::law::Law;
 use crate::model::{
     Axes, AxleMeasure, BodyId, ClearanceId, Combination, Direction, DriverId, ElementId, ElementUnit,
-    JointId, MeasureKind, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid, WheelId,
-    WheelMeasure, measures,
+    JacobianValue, JointId, MeasureKind, OrientationAngle, OutputSource, PointId, Ray, ReactionPart, Solid,
+    WheelId, WheelMeasure, measures,
 };
 use crate::space::Vec3;
 
@@ -50,6 +50,8 @@ pub enum FieldKind {
     Coordinate,
     /// A point.
     Point,
+    /// Several points.
+    Points,
     /// A global direction.
     Direction,
     /// A direction, which may follow hardpoints.
@@ -60,12 +62,16 @@ pub enum FieldKind {
     Output,
     /// The name of a driver.
     Driver,
+    /// Several names of drivers.
+    Drivers,
     /// The name of a body.
     Body,
     /// One of [`OrientationAngle::WORDS`].
     OrientationAngle,
     /// One of [`ReactionPart::WORDS`].
     ReactionPart,
+    /// One of [`JacobianValue::WORDS`].
+    JacobianValue,
     /// One of [`Axes::WORDS`].
     Axes,
     /// One of [`WheelPoint::WORDS`](crate::model::WheelPoint::WORDS).
@@ -95,8 +101,12 @@ pub enum FieldKind {
 pub enum FieldDraft {
     /// A name.
     Name(String),
+    /// Several names.
+    Names(Vec<String>),
     /// A point.
     Point(PointRef),
+    /// Several points.
+    Points(Vec<PointRef>),
     /// A global direction, of any length.
     Direction(Vec3),
     /// A direction, which may follow hardpoints.
@@ -107,6 +117,8 @@ pub enum FieldDraft {
     Angle(OrientationAngle),
     /// Component of a joint's reaction.
     Part(ReactionPart),
+    /// Part of a Jacobian's singular values.
+    Jacobian(JacobianValue),
     /// Axes in which a vector is given.
     Axes(Axes),
     /// Point of a wheel at which a force acts.
@@ -228,6 +240,7 @@ macro_rules! not_drivable {
             | MeasureKindDraft::Curvature { .. }
             | MeasureKindDraft::Rate { .. }
             | MeasureKindDraft::Slope { .. }
+            | MeasureKindDraft::Dexterity { .. }
             | MeasureKindDraft::Clearance { .. }
             | MeasureKindDraft::Articulation { .. }
             | MeasureKindDraft::Combination { .. }

@@ -31,6 +31,7 @@ impl<T: Real> LoadMeasures<'_, T> {
                 component(shaking.m - p.cross(shaking.f), *along)
             }
             MeasureKind::Slope { .. }
+            | MeasureKind::Dexterity { .. }
             | MeasureKind::Compliance { .. }
             | MeasureKind::Wheel { .. }
             | MeasureKind::Axle { .. }

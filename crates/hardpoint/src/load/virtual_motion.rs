@@ -38,6 +38,7 @@ impl<T: Real> Weights<T> {
             MeasureKind::SpringForce { .. }
             | MeasureKind::KineticEnergy { .. }
             | MeasureKind::Slope { .. }
+            | MeasureKind::Dexterity { .. }
             | MeasureKind::Compliance { .. }
             | MeasureKind::Wheel { .. }
             | MeasureKind::Axle { .. }

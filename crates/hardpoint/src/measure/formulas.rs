@@ -57,7 +57,7 @@ impl<'a, T: Real> Instant<'a, T> {
         }
     }
 
-    fn point(&self, p: PointId) -> Vec3<T> {
+    pub(super) fn point(&self, p: PointId) -> Vec3<T> {
         // P = r + A s
         self.poses[self.model.points[p.0].body.0].point(self.fixed.points[p.0])
     }
@@ -142,7 +142,10 @@ impl<'a, T: Real> Instant<'a, T> {
             }
             MeasureKind::Axle { axle, what } => self.axle(k, self.model.axles[axle.0].wheels, *what),
             // What depends on the step, above.
-            MeasureKind::Slope { .. } | MeasureKind::Compliance { .. } | loads!() => unknown(),
+            MeasureKind::Slope { .. }
+            | MeasureKind::Dexterity { .. }
+            | MeasureKind::Compliance { .. }
+            | loads!() => unknown(),
         }
     }
 

@@ -7,6 +7,7 @@
 //! for the derivative by a design variable of all three (`docs/theory.md`, section 9).
 
 mod bodies;
+mod dexterity;
 mod evaluate;
 mod formulas;
 mod program;

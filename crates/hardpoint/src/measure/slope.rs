@@ -7,7 +7,7 @@ use hardpoint_tape::{Number, record};
 
 use crate::design::{BodyFixed, DesignMap};
 use crate::model::{
-    AxleMeasure, DriverId, GROUND, Measure, MeasureKind, Model, OutputSource, WheelId, loads, of_bodies,
+    AxleMeasure, DriverId, GROUND, MeasureKind, Model, OutputSource, WheelId, loads, of_bodies,
 };
 use crate::motion::kinematics::State;
 use crate::motion::mechanism::Mechanism;
@@ -17,6 +17,7 @@ use crate::sensitivity::{PairDirection, Seconds, pair_with_variables, values_alo
 use crate::space::{Mat3, Pose, Vec3};
 use crate::topology::Topology;
 
+use super::dexterity::dexterity;
 use super::step_values::{RecordedValue, RecordedValues};
 use super::wheel::{TravellingWheel, axle_roll_centre};
 use super::{Instant, StepValues, bodies_asked_for};
@@ -161,7 +162,7 @@ impl<'a> Slopes<'a, Number> {
                     }
                 };
                 let RecordedValue { excess, numbers, .. } = &mut found[place];
-                if slope_of(&model.measures[measure]).is_some() {
+                if let Formula::Slope(..) = formula(&model.measures[measure].kind) {
                     // A formula has another number beyond its limits; ...
                     limits.extend(holds);
                 } else {
@@ -223,16 +224,30 @@ impl<'a, T: Real> Slopes<'a, T> {
 
 /// Drivers that measures depend on.
 fn drivers_of(model: &Model) -> Vec<DriverId> {
-    let mut drivers: Vec<DriverId> =
-        (0..model.measures.len()).flat_map(|k| model.drivers_alone(k)).flatten().collect();
+    let mut drivers: Vec<DriverId> = (0..model.measures.len()).flat_map(|k| model.drivers_alone(k)).collect();
     drivers.sort_unstable();
     drivers.dedup();
     drivers
 }
 
-/// The two outputs of a measure that is the slope of one over the other.
-fn slope_of(measure: &Measure) -> Option<[OutputSource; 2]> {
-    if let MeasureKind::Slope { of, over, .. } = measure.kind { Some([of, over]) } else { None }
+/// Formula of a measure along a driver.
+enum Formula {
+    /// The slope of one output over another.
+    Slope(OutputSource, OutputSource),
+    SingularValue,
+    Other,
+}
+
+fn formula(kind: &MeasureKind) -> Formula {
+    match kind {
+        MeasureKind::Slope { of, over, .. } => Formula::Slope(*of, *over),
+        MeasureKind::Dexterity { .. } => Formula::SingularValue,
+        of_bodies!()
+        | loads!()
+        | MeasureKind::Compliance { .. }
+        | MeasureKind::Wheel { .. }
+        | MeasureKind::Axle { .. } => Formula::Other,
+    }
 }
 
 /// Reason why the measures of a model that depend on a driver are not recorded, if they are not.
@@ -242,8 +257,14 @@ pub(crate) fn hindrance(design_map: &DesignMap<'_>) -> Option<&'static str> {
     if pairs > MOST_PAIRS {
         return Some("the program for the motion of single drivers would be too long");
     }
-    let slopes = model.measures.iter().filter_map(slope_of);
-    let outputs: Vec<_> = slopes.flatten().collect();
+    let mut outputs = Vec::new();
+    for measure in &model.measures {
+        match formula(&measure.kind) {
+            Formula::Slope(of, over) => outputs.extend([of, over]),
+            Formula::SingularValue => return Some("singular values are found by iterations"),
+            Formula::Other => {}
+        }
+    }
     if outputs.is_empty() {
         return None;
     }
@@ -274,13 +295,16 @@ struct DriverAlone<'m, T> {
 }
 
 impl<T: Real> DriverAlone<'_, T> {
+    fn instant(&self, driver: DriverId) -> &Instant<'_, Dual<T>> {
+        &self.instants[self.drivers.binary_search(&driver).expect("the drivers of all measures are here")]
+    }
+
     /// The value of a measure that depends on a driver; NaN of all others.
     fn measure(&self, model: &Model, k: usize) -> T {
         let unknown = T::constant(f64::NAN);
-        let Some(drivers) = model.drivers_alone(k) else { return unknown };
-        let [first, second] = drivers.map(|d| {
-            &self.instants[self.drivers.binary_search(&d).expect("the drivers of all measures are here")]
-        });
+        let mut alone = model.drivers_alone(k).map(|d| self.instant(d));
+        let Some(first) = alone.next() else { return unknown };
+        let second = alone.next();
         let wheel = |instant: &Instant<'_, Dual<T>>, d: usize, wheel: WheelId| TravellingWheel {
             wheel: instant.wheel(k, d, wheel),
             // The twist w, v per unit of q, from a pose with its derivative `d` along q
@@ -288,15 +312,23 @@ impl<T: Real> DriverAlone<'_, T> {
             drive: model.wheels[wheel.0].drive,
             brakes: model.wheels[wheel.0].brakes,
         };
-        match model.measures[k].kind {
+        match &model.measures[k].kind {
             // (d of/dq) / (d over/dq), each with its derivative by the variable; the quotient rule is the dual's
-            MeasureKind::Slope { of, over, .. } => first.output(of).d / first.output(over).d,
-            MeasureKind::Wheel { wheel: w, what } => wheel(first, 0, w).measure(what, &model.vehicle),
+            MeasureKind::Slope { of, over, .. } => first.output(*of).d / first.output(*over).d,
+            MeasureKind::Dexterity { points, drivers, value } => {
+                let jacobian = |d: usize, p: usize| {
+                    let instant = self.instant(drivers[d]);
+                    instant.point(points[p]).map(|x| x.d)
+                };
+                dexterity(jacobian, [drivers.len(), points.len()], *value)
+            }
+            MeasureKind::Wheel { wheel: w, what } => wheel(first, 0, *w).measure(*what, &model.vehicle),
             MeasureKind::Axle { axle, what } => {
                 // Each wheel goes up and down by its own driver; they may be one.
                 let [left, right] = model.axles[axle.0].wheels;
+                let Some(second) = second else { return unknown };
                 let (y, height) = axle_roll_centre([wheel(first, 0, left), wheel(second, 1, right)]);
-                if what == AxleMeasure::RollCentreY { y } else { height }
+                if *what == AxleMeasure::RollCentreY { y } else { height }
             }
             of_bodies!() | loads!() | MeasureKind::Compliance { .. } => unknown,
         }

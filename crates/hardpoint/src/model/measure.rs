@@ -165,6 +165,29 @@ macro_rules! measures {
         format!("{} over {} while driver `{driver}` alone moves", w.output(*of), w.output(*over))
     };
 
+    /// Dexterity: how the velocities of points on a body follow those of drivers, by the singular values of their
+    /// Jacobian.
+    Dexterity "dexterity" [Polar, normal: false] {
+        /// Points of the body: one for its translation, two or three apart for its rotation too.
+        points: Vec<PointRef> => Vec<PointId>,
+        /// Drivers that move, each alone, all in lengths or all in angles. Default: all.
+        drivers: Option<Vec<String>> => Vec<DriverId>,
+        /// Quantity taken from the singular values. Default: `inverse_condition`.
+        value: Option<JacobianValue> => JacobianValue,
+    } |m, w|
+        match (value, drivers.first()) {
+            (JacobianValue::LeastGain | JacobianValue::GreatestGain, Some(driver)) => {
+                Dimension::LENGTH.over(m.driven(&m.drivers[driver.0]).quantity.into())
+            }
+            (JacobianValue::LeastGain | JacobianValue::GreatestGain, None)
+            | (JacobianValue::InverseCondition, _) => Dimension::NUMBER,
+        },
+        moving(1),
+        {
+            let points: Vec<String> = points.iter().map(|p| w.point(*p)).collect();
+            format!("{} of the velocities of {} by the drivers", value.words(), points.join(", "))
+        };
+
     /// A formula over other measures.
     Combination "expression" [Polar, normal: false] {
         /// Like `front_left.toe + front_right.toe`; lengths are in the file's unit, angles in rad.
@@ -486,6 +509,12 @@ impl OnBodies for WheelId {
     }
 }
 
+impl OnBodies for Vec<PointId> {
+    fn bodies(&self, model: &Model) -> Vec<BodyId> {
+        self.iter().map(|p| model.points[p.0].body).collect()
+    }
+}
+
 impl OnBodies for Option<PointId> {
     fn bodies(&self, model: &Model) -> Vec<BodyId> {
         self.map_or_else(Vec::new, |p| p.bodies(model))
@@ -532,6 +561,8 @@ impl OnBodies for Direction {}
 impl OnBodies for Option<Direction> {}
 impl OnBodies for DriverId {}
 impl OnBodies for Option<DriverId> {}
+impl OnBodies for Vec<DriverId> {}
+impl OnBodies for JacobianValue {}
 impl OnBodies for OutputSource {}
 impl OnBodies for Combination {}
 
@@ -634,7 +665,8 @@ impl MeasureKind {
         match self {
             Self::Angle { about: None, .. } | Self::Articulation { .. } => Some(value.min(PI - value)),
             Self::TransmissionAngle { .. } => Some(value.min(FRAC_PI_2 - value)),
-            Self::Distance { .. }
+            Self::Dexterity { value: JacobianValue::InverseCondition | JacobianValue::LeastGain, .. }
+            | Self::Distance { .. }
             | Self::SpringForce { .. }
             | Self::Velocity { along: None, .. }
             | Self::AngularVelocity { along: None, .. }
@@ -661,6 +693,7 @@ impl MeasureKind {
             | Self::Curvature { about: Some(_), .. }
             | Self::Rate { .. }
             | Self::Slope { .. }
+            | Self::Dexterity { value: JacobianValue::GreatestGain, .. }
             | Self::Combination { .. }
             | Self::Clearance { .. }
             | Self::Toe { .. }
@@ -698,6 +731,7 @@ impl MeasureKind {
             | Self::Clearance { .. }
             | Self::Articulation { .. }
             | Self::Slope { .. }
+            | Self::Dexterity { .. }
             | Self::Compliance { .. }
             | loads!() => "",
         }
@@ -710,6 +744,7 @@ impl MeasureKind {
             of_bodies_but_joints!()
             | loads!()
             | Self::Slope { .. }
+            | Self::Dexterity { .. }
             | Self::Compliance { .. }
             | Self::Wheel { .. }
             | Self::Axle { .. } => None,
@@ -725,6 +760,7 @@ impl MeasureKind {
             | of_bodies_but_joints!()
             | loads!()
             | Self::Slope { .. }
+            | Self::Dexterity { .. }
             | Self::Compliance { .. }
             | Self::Wheel { .. }
             | Self::Axle { .. } => None,
@@ -748,7 +784,12 @@ impl MeasureKind {
                 };
                 Some((of, force))
             }
-            Self::Slope { .. } | Self::Wheel { .. } | Self::Axle { .. } | of_bodies!() | loads!() => None,
+            Self::Slope { .. }
+            | Self::Dexterity { .. }
+            | Self::Wheel { .. }
+            | Self::Axle { .. }
+            | of_bodies!()
+            | loads!() => None,
         }
     }
 
@@ -768,6 +809,7 @@ impl MeasureKind {
             | Self::AngularVelocity { .. }
             | Self::Acceleration { .. }
             | Self::Curvature { .. }
+            | Self::Dexterity { .. }
             | Self::Clearance { .. }
             | Self::Articulation { .. }
             | Self::Toe { .. }
@@ -784,6 +826,7 @@ impl MeasureKind {
             loads!() => true,
             of_bodies!()
             | Self::Slope { .. }
+            | Self::Dexterity { .. }
             | Self::Compliance { .. }
             | Self::Wheel { .. }
             | Self::Axle { .. } => false,
@@ -913,6 +956,46 @@ impl OrientationAngle {
             (Angles::RollPitchYaw, 0) => "roll",
             (Angles::RollPitchYaw, 1) => "pitch",
             (Angles::RollPitchYaw, _) => "yaw",
+        }
+    }
+}
+
+/// Quantity that a dexterity takes from the singular values of a Jacobian.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum JacobianValue {
+    /// The least over the greatest.
+    #[default]
+    InverseCondition,
+    /// The least.
+    LeastGain,
+    /// The greatest.
+    GreatestGain,
+}
+
+impl JacobianValue {
+    /// Maximum number of drivers of a dexterity: a body has six freedoms.
+    pub(crate) const MOST_DRIVERS: usize = 6;
+
+    /// As model files write them, and what they are.
+    pub const WORDS: &[(&str, &str)] = &[
+        (
+            "inverse_condition",
+            "The least over the greatest: 1 where all directions are alike, 0 at a singular position.",
+        ),
+        ("least_gain", "The least: speed of the points per speed of the drivers in the slowest direction."),
+        ("greatest_gain", "The greatest: the same in the fastest direction."),
+    ];
+
+    /// That of a place in [`WORDS`](Self::WORDS).
+    pub fn at(word: usize) -> Self {
+        [Self::InverseCondition, Self::LeastGain, Self::GreatestGain][word]
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::InverseCondition => "inverse condition number",
+            Self::LeastGain => "least singular value",
+            Self::GreatestGain => "greatest singular value",
         }
     }
 }
@@ -1049,7 +1132,7 @@ impl Model {
     /// True if a measure is a derivative along the motion of a single driver instead of time.
     pub fn depends_on_driver(&self, measure: usize) -> bool {
         match self.measures[measure].kind {
-            MeasureKind::Slope { .. } => true,
+            MeasureKind::Slope { .. } | MeasureKind::Dexterity { .. } => true,
             MeasureKind::Wheel { what, .. } => what.needs().depends_on_driver(),
             MeasureKind::Axle { what, .. } => what.depends_on_driver(),
             of_bodies!() | loads!() | MeasureKind::Compliance { .. } => false,
@@ -1063,22 +1146,22 @@ impl Model {
         self.depends_on_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
     }
 
-    /// The drivers that a measure moves alone, if it does: those of both wheels of an axle may differ.
-    pub(crate) fn drivers_alone(&self, measure: usize) -> Option<[DriverId; 2]> {
+    /// The drivers that a measure moves alone, if it does: of an axle that of each wheel.
+    pub(crate) fn drivers_alone(&self, measure: usize) -> impl Iterator<Item = DriverId> {
         let of_wheel = |wheel: WheelId, need: WheelRequirement| self.wheels[wheel.0].driver(need);
-        if !self.depends_on_driver(measure) {
-            return None;
-        }
-        match self.measures[measure].kind {
-            MeasureKind::Slope { driver, .. } => Some([driver; 2]),
-            MeasureKind::Wheel { wheel, what } => of_wheel(wheel, what.needs()).map(|d| [d; 2]),
+        let (one, other, all): (_, _, &[DriverId]) = match &self.measures[measure].kind {
+            MeasureKind::Slope { driver, .. } => (Some(*driver), None, &[]),
+            MeasureKind::Dexterity { drivers, .. } => (None, None, drivers),
+            MeasureKind::Wheel { wheel, what } => (of_wheel(*wheel, what.needs()), None, &[]),
             MeasureKind::Axle { axle, .. } => {
                 let [left, right] =
                     self.axles[axle.0].wheels.map(|wheel| of_wheel(wheel, WheelRequirement::Bump));
-                left.zip(right).map(|(l, r)| [l, r])
+                (left, right, &[])
             }
-            of_bodies!() | loads!() | MeasureKind::Compliance { .. } => None,
-        }
+            of_bodies!() | loads!() | MeasureKind::Compliance { .. } => (None, None, &[]),
+        };
+        let depends = self.depends_on_driver(measure);
+        one.into_iter().chain(other).chain(all.iter().copied()).filter(move |_| depends)
     }
 
     /// Dimension of a driver's force: its product with the driven quantity is work.
@@ -1140,6 +1223,7 @@ impl Model {
             | MeasureKind::Curvature { .. }
             | MeasureKind::Rate { .. }
             | MeasureKind::Slope { .. }
+            | MeasureKind::Dexterity { .. }
             | MeasureKind::Clearance { .. }
             | MeasureKind::Combination { .. }
             | MeasureKind::Compliance { .. }

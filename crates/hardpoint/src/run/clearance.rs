@@ -627,7 +627,7 @@ impl<'m> Curves<'m> {
 /// A distance that changes less than this fraction of the mechanism's size over a motion is constant: round-off of
 /// solved positions.
 const CONSTANT: f64 = 1e-10;
-/// Distances that differ by less than this fraction of the mechanism's size are the same: round-off of solved positions.
+/// Distances that differ by less than this fraction of the mechanism's size are the same: round-off of positions.
 const FLAT: f64 = 4e-12;
 
 /// Part of a motion in which the distance of a pair does not change.

@@ -164,14 +164,16 @@ fn gradients_of_other_measures_are_those_of_a_run() {
     let driver = Some(draft.drivers[0].name.clone());
     let (of, over) = ("aside".to_owned(), "height".to_owned());
     let mut add = |name: &str, kind| draft.measures.push(MeasureDraft::new(name, kind));
+    let (points, drivers) = (vec![point()], driver.clone().map(|driver| vec![driver]));
     add("slope", MeasureKindDraft::Slope { of, over, driver });
+    add("gain", MeasureKindDraft::Dexterity { points, drivers, value: Some(JacobianValue::GreatestGain) });
     let expression = hardpoint::expression::Expression::parse("height*aside").unwrap();
     add("product", MeasureKindDraft::Combination { expression });
     let model = Model::from_draft(&draft).unwrap();
     let analysis = Analysis::new(&model).unwrap();
     let run = analysis.run();
     let asked: Vec<usize> =
-        ["speed", "slope", "product"].iter().map(|n| run.measured.index(n).unwrap()).collect();
+        ["speed", "slope", "gain", "product"].iter().map(|n| run.measured.index(n).unwrap()).collect();
     let found = analysis.gradients(&[], &asked, GradientMethod::Adjoint);
     assert_eq!(found.method, GradientMethod::Direct);
     let same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();

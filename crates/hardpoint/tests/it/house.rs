@@ -133,7 +133,7 @@ const MEASURE_WILDCARDS: &[(&str, usize)] = &[
     ("draft", 6),
     ("hardpoint-report", 3),
     ("load", 7),
-    ("measure", 7),
+    ("measure", 6),
     ("model", 1),
     ("run", 2),
 ];

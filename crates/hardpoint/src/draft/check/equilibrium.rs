@@ -64,6 +64,7 @@ impl Checker<'_> {
                 | MeasureKind::DriverPower { .. }
                 | MeasureKind::KineticEnergy { .. } => true,
                 MeasureKind::Slope { .. }
+                | MeasureKind::Dexterity { .. }
                 | MeasureKind::Coordinate { .. }
                 | MeasureKind::Distance { .. }
                 | MeasureKind::Coordinates { .. }
@@ -92,8 +93,8 @@ impl Checker<'_> {
                 let at = Here { section: Section::Measures, index }.key("type");
                 self.fault("HP0261", at, message).help("remove it, or remove `equilibrium`");
             }
-            let alone = k.and_then(|k| self.model.drivers_alone(k));
-            if let Some(driver) = alone.into_iter().flatten().find(|d| released.contains(d)) {
+            let alone = k.and_then(|k| self.model.drivers_alone(k).find(|d| released.contains(d)));
+            if let Some(driver) = alone {
                 let message = format!(
                     "measure `{}` is per motion of driver `{}`, which is released",
                     draft.measures[index].name, self.model.drivers[driver.0].name

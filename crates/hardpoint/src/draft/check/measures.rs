@@ -9,8 +9,9 @@ use crate::expression::Expression;
 use crate::model::element::{Compliance, CoupledStiffness};
 use crate::model::{
     Axes, AxleMeasure, BodyId, CaseId, ClearanceId, Combination, Dimension, Direction, DriverId, Element,
-    ElementId, JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle, OutputSource,
-    PointId, Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure, WheelPoint,
+    ElementId, JacobianValue, JointId, KnownOrders, Measure, MeasureKind, Metric, NumberId, OrientationAngle,
+    OutputSource, PointId, Ray, ReactionPart, Reduction, Solid, SpringTable, WheelId, WheelMeasure,
+    WheelPoint,
 };
 use crate::space::Vec3;
 
@@ -335,12 +336,17 @@ impl Checker<'_> {
         owners.any(|(section, k)| unread.any(section, k) || self.vehicle_is_unread())
     }
 
+    fn driver_named(&mut self, name: &str, at: DraftLocation) -> Option<DriverId> {
+        let draft = self.draft;
+        self.find("driver", name, at, draft.drivers.iter().map(|d| d.name.as_str())).map(DriverId)
+    }
+
     /// Returns the driver with this name, or the only driver.
     pub(super) fn driver_or_only(&mut self, name: Option<&str>, owner: &str, here: Here) -> Option<DriverId> {
         let draft = self.draft;
         let names = draft.drivers.iter().map(|d| d.name.as_str());
         match name {
-            Some(name) => self.find("driver", name, here.key("driver"), names).map(DriverId),
+            Some(name) => self.driver_named(name, here.key("driver")),
             None if draft.drivers.len() == 1 => Some(DriverId(0)),
             None if self.is_table_unread("driver") => None,
             None => {
@@ -416,6 +422,9 @@ impl Checker<'_> {
                     .help("use a measure that depends on positions only");
                 false
             }
+            MeasureKind::Dexterity { points, drivers, .. } => {
+                self.is_one_jacobian(points, drivers, name, here)
+            }
             MeasureKind::Slope { of, over, .. } => {
                 for (key, source) in [("of", *of), ("over", *over)] {
                     if !self.model.known(source).by_position {
@@ -434,6 +443,31 @@ impl Checker<'_> {
             }
             _ => true,
         }
+    }
+
+    /// HP0274: points of several bodies, no driver or too many, lengths and angles mixed.
+    fn is_one_jacobian(&mut self, points: &[PointId], drivers: &[DriverId], name: &str, here: Here) -> bool {
+        let body = |p: &PointId| self.model.points[p.0].body;
+        let quantity = |d: &DriverId| self.model.driven(&self.model.drivers[d.0]).quantity;
+        let most = JacobianValue::MOST_DRIVERS;
+        let are_alike = |same: &dyn Fn(usize, usize) -> bool, n: usize| (1..n).all(|k| same(0, k));
+        let (key, message, help) = if points.is_empty() {
+            ("points", "has no point".to_owned(), "add a point of the body, or two or three for its rotation")
+        } else if !are_alike(&|a, b| body(&points[a]) == body(&points[b]), points.len()) {
+            ("points", "has points of several bodies".into(), "use points of one body")
+        } else if drivers.is_empty() || drivers.len() > most {
+            let message = format!("has {} drivers instead of 1 to {most}", drivers.len());
+            ("drivers", message, "list the drivers that move the body under `drivers`")
+        } else if drivers.iter().enumerate().any(|(k, d)| drivers[..k].contains(d)) {
+            ("drivers", "has a driver twice".into(), "list each driver once")
+        } else if !are_alike(&|a, b| quantity(&drivers[a]) == quantity(&drivers[b]), drivers.len()) {
+            let message = "has drivers of lengths and of angles, whose speeds do not compare".into();
+            ("drivers", message, "list drivers of one kind under `drivers`, and use a measure for each kind")
+        } else {
+            return true;
+        };
+        self.fault("HP0274", here.key(key), format!("measure `{name}` {message}")).help(help);
+        false
     }
 
     /// Returns a combination with its units; the units of its inputs are known.
@@ -527,6 +561,10 @@ field!(Option<PointId>, Point, Point: Option<PointRef>, may |point, key, c| matc
     Some(point) => PointId::resolve(point, key, c).map(Some),
     None => Some(None),
 });
+field!(Vec<PointId>, Points, Points: Vec<PointRef>, |points, key, c| {
+    let found: Vec<_> = points.iter().map(|point| PointId::resolve(point, key, c)).collect();
+    found.into_iter().collect()
+});
 field!(WheelId, Wheel, Name: String, |name, key, c| c.check.wheel_named(name, c.here.key(key)));
 field!(Option<WheelId>, Wheel, Name: Option<String>, may |name, key, c| match name {
     Some(name) => WheelId::resolve(name, key, c).map(Some),
@@ -576,6 +614,16 @@ field!(DriverId, Driver, Name: Option<String>, may |name, _key, c| {
 field!(Option<DriverId>, Driver, Name: Option<String>, may |name, _key, c| match name {
     Some(name) => c.check.driver_or_only(Some(name), c.owner, c.here).map(Some),
     None => Some(None),
+});
+field!(Vec<DriverId>, Drivers, Names: Option<Vec<String>>, may |names, key, c| {
+    let all = || Some((0..c.check.draft.drivers.len()).map(DriverId).collect());
+    names.as_ref().map_or_else(all, |names| {
+        let found: Vec<_> = names.iter().map(|name| c.check.driver_named(name, c.here.key(key))).collect();
+        found.into_iter().collect()
+    })
+});
+field!(JacobianValue, JacobianValue, Jacobian: Option<JacobianValue>, may |value, _key, _c| {
+    Some(value.unwrap_or_default())
 });
 field!(Combination, Expression, Expression: Expression, |expression, key, c| {
     let at = c.here.key(key);

@@ -816,7 +816,12 @@ impl<'r> Drawing<'r> {
         if let Some((driver, joint, coordinate)) = driven {
             let (over, driver) = (format!("m{}", self.draft.measures.len()), Some(driver.name.clone()));
             self.measure(MeasureKindDraft::Coordinate { joint, coordinate });
+            let drivers = driver.clone().map(|driver| vec![driver]);
             self.measure(MeasureKindDraft::Slope { of: position, over, driver });
+            let at = LocationDraft::At([0.1, 0.2, -0.1].into());
+            let points = vec![PointRef::On { body: self.name(body), at }];
+            let value = Some(JacobianValue::LeastGain);
+            self.measure(MeasureKindDraft::Dexterity { points, drivers, value });
         }
         for _ in 0..3 + self.rng.below(4) {
             self.variable();

@@ -641,7 +641,8 @@ fn flat(model: &Model, s: &Solution, size: f64, moved: Option<Pose>, anywhere: b
             | MeasureKind::Camber { .. }
             | MeasureKind::Velocity { .. }
             | MeasureKind::Acceleration { .. }
-            | MeasureKind::Slope { .. },
+            | MeasureKind::Slope { .. }
+            | MeasureKind::Dexterity { .. },
         ) = model.measures.iter().find(|x| x.name == output.name).map(|x| &x.kind)
         {
             depends = true;
@@ -769,6 +770,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
                 *along = along.map(|v| to.rot * v);
             }
             MeasureKindDraft::AngularVelocity { along, .. } => *along = along.map(|v| to.rot * v),
+            MeasureKindDraft::Dexterity { points, .. } => points.iter_mut().for_each(&point),
             MeasureKindDraft::Rate { .. }
             | MeasureKindDraft::Slope { .. }
             | MeasureKindDraft::Clearance { .. }
