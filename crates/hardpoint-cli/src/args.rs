@@ -537,6 +537,7 @@ With --output it writes into the folder:
 Examples:
   hardpoint optimize models/four_bar_inverse.toml
   hardpoint optimize models/four_bar_inverse.toml --starts 100 --json | jq '.starts[].status'
+  hardpoint optimize models/four_bar_inverse.toml --starts 20 --optimum 2 --save second.toml
   hardpoint optimize models/four_bar_inverse.toml -o results/found --save found.toml";
 
 /// `hardpoint optimize`.
@@ -560,6 +561,9 @@ pub struct Optimize {
     /// Maximum number of iterations of a search [default: that of the file, or 100]
     #[arg(long, value_name = "N")]
     pub iterations: Option<NonZero<usize>>,
+    /// Report and save the N-th of the distinct optima that the starts ended in [default: the best]
+    #[arg(long, value_name = "N")]
+    pub optimum: Option<NonZero<usize>>,
     /// Number of threads for several starts; the result does not depend on it [default: one per
     /// core]
     #[arg(long, value_name = "N")]

@@ -42,6 +42,12 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
 
     session.patient(true);
     let mut search = Search::run(session, &file, &motions, &request, options.threads);
+    if let Some(wanted) = options.optimum {
+        search.choose(wanted.get()).map_err(|why| {
+            session.remark(&why);
+            Outcome::FellShort
+        })?;
+    }
 
     let mut saved = Ok(None);
     if let (Some(to), Some(design)) = (&options.save, search.to_save()) {
@@ -137,6 +143,23 @@ impl<'a> Search<'a> {
         let mut facts = OptimizeFacts::of(file, asked, &found);
         facts.seconds = session.seconds();
         Self { file, motions, asked, found, facts }
+    }
+
+    /// Makes another of the distinct optima the result, counted from 1.
+    fn choose(&mut self, wanted: usize) -> Result<(), String> {
+        let optima = self.found.optima(&self.file.model, self.asked);
+        let Some(searches) = optima.get(wanted - 1) else {
+            return Err(match optima.len() {
+                0 => "`--optimum`: no start ended in an optimum".into(),
+                n => format!(
+                    "`--optimum {wanted}`: the starts ended in {n} distinct optima; try more `--starts`"
+                ),
+            });
+        };
+        self.found.best = Some(searches[0]);
+        let seconds = self.facts.seconds;
+        self.facts = OptimizeFacts { seconds, ..OptimizeFacts::of(self.file, self.asked, &self.found) };
+        Ok(())
     }
 
     /// Best design, if a position of any design could be solved.

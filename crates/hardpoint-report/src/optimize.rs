@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::figures::{error, number, some_of, symbol, unit, variable_unit, with_unit};
 use crate::page::{Payload, Table};
-use crate::record::record;
+use crate::record::{Column, record};
 use crate::study::{BeforeAfter, Evaluations, MovedHardpoint, case_name, titled};
 
 /// Multiplier, as a fraction of the objective per range of a variable, below which an active constraint is not
@@ -122,6 +122,9 @@ record! {
     hardpoints: Vec<MovedHardpoint> = hardpoints.unwrap_or_default();
     /// Iterations of the best search.
     iterations: Vec<IterationFact> = iterations.collect();
+    /// Distinct optima, the best first; searches that ended elsewhere are in none of them.
+    optima: Vec<OptimumFact> =
+        found.optima(model, asked).iter().map(|starts| OptimumFact::of(search, starts)).collect();
     /// All searches.
     starts: Vec<StartFact> = found.searches.iter().enumerate().map(|(k, s)| StartFact::of(k, s)).collect();
     /// The first designs that could not be evaluated.
@@ -278,6 +281,29 @@ record! {
     unit: Option<String> = variable.map(|(v, _)| symbol(units, v.quantity).to_owned());
     /// Number of designs evaluated so far.
     designs: usize = i.designs;
+}
+
+record! {
+    /// Optimum that one or several searches ended in.
+    OptimumFact::of(search: Search<'_>, starts: &[usize]) {
+        let (model, units) = (search.model(), search.units());
+        let best = &search.found.searches[starts[0]];
+        let design = best.found.as_ref().expect("an optimum has a design");
+        let goal = |(goal, _, value): &(usize, usize, f64)| {
+            units.from_si(model.metric_dimension(&model.metrics[search.asked.goals[*goal].metric]), *value)
+        };
+        let change = |v: &VariableId| units.from_si(model.variables[v.0].quantity, design.design[v.0]);
+    }
+    /// Numbers of the searches that ended in it.
+    starts: Vec<usize> = starts.to_vec();
+    /// Objective.
+    objective: f64 = design.objective;
+    /// Residual of the optimality conditions, as [`OptimizeFacts::kkt`].
+    kkt: f64 = best.optimality.residual;
+    /// Values of the goals, in their order.
+    goals: Vec<f64> = design.goals.iter().map(goal).collect();
+    /// Changes of the variables, in their order.
+    changes: Vec<f64> = search.asked.variables.iter().map(change).collect();
 }
 
 record! {
@@ -551,9 +577,46 @@ impl OptimizeFacts {
             ],
             &self.variables,
         );
-        let more =
-            [limits.if_any(), variables.if_any(), MovedHardpoint::table(&self.hardpoints, "optimised")];
+        let more = [
+            self.optima_table(),
+            limits.if_any(),
+            variables.if_any(),
+            MovedHardpoint::table(&self.hardpoints, "optimised"),
+        ];
         std::iter::once(goals).chain(more.into_iter().flatten()).collect()
+    }
+
+    /// Distinct optima, if there are several, with the variables in which each differs most from the best.
+    fn optima_table(&self) -> Option<Table> {
+        if self.optima.len() < 2 {
+            return None;
+        }
+        let best = &self.optima[0];
+        let other = |of: &OptimumFact| {
+            let change = |k: usize| of.changes[k] - best.changes[k];
+            let part = |v: &SearchedVariable, k: usize| change(k).abs() / (v.bounds[1] - v.bounds[0]);
+            let mut all: Vec<_> =
+                self.variables.iter().enumerate().map(|(k, v)| (part(v, k), k, v)).collect();
+            all.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let far = all.iter().take(NAMED_CHANGES).filter(|(part, ..)| *part > SLIGHT);
+            let named = far.map(|(_, k, v)| format!("{} {}", v.name, signed(change(*k), &v.unit)));
+            named.collect::<Vec<_>>().join(", ")
+        };
+        let goals = |of: &OptimumFact| {
+            let values = self.goals.iter().zip(&of.goals).map(|(g, x)| with_unit(*x, &g.unit));
+            some_of(&values.collect::<Vec<_>>(), ", ")
+        };
+        let rows: Vec<(usize, &OptimumFact)> = self.optima.iter().enumerate().collect();
+        let note = "Each with the values of the goals, and where its design differs most from the best. `--optimum N` reports and \
+                    saves another one.";
+        let columns: [Column<'_, &(usize, &OptimumFact)>; 5] = [
+            ("optimum", &|o| (o.0 + 1).to_string()),
+            ("objective", &|o| number(o.1.objective)),
+            ("goals", &|o| goals(o.1)),
+            ("starts", &|o| o.1.starts.len().to_string()),
+            ("against the best", &|o| if o.0 == 0 { "-".into() } else { other(o.1) }),
+        ];
+        Table::of("Optima", note, &columns, &rows).if_any()
     }
 
     /// Facts of the result, line by line.
@@ -597,7 +660,14 @@ impl OptimizeFacts {
             });
             rows.push((
                 "starts",
-                format!("{}, {ended} of them ended in an optimum; the best is {best}", self.starts.len()),
+                format!(
+                    "{}, {ended} of them ended in {}; the best is {best}",
+                    self.starts.len(),
+                    match self.optima.len() {
+                        0 | 1 => "an optimum".into(),
+                        n => format!("one of {n} optima"),
+                    }
+                ),
             ));
         }
         let refused = match self.refused_count {
@@ -697,6 +767,9 @@ impl LimitFact {
         format!("`{}`{case} is {value} instead of {}", self.name, self.wanted())
     }
 }
+
+/// Number of variables that an optimum names.
+const NAMED_CHANGES: usize = 3;
 
 /// A limit that is exceeded by less than this fraction of its value is reported as satisfied.
 const MISSED: f64 = 1e-7;

@@ -308,3 +308,40 @@ high = { target = 15 }
     assert_eq!(best(&found).status, Status::Optimal);
     near(judged.design[0], 0.03 - 0.02);
 }
+
+/// A point that may be at either side of an axis: two optima, each with the starts that ended in it.
+#[test]
+fn searches_that_end_in_two_optima_are_gathered() {
+    let text = r#"
+name = "two sides"
+units = { length = "mm", angle = "deg" }
+parameters.a = { value = 10, bounds = [-100, 100] }
+hardpoints = { O = [0, 0, 0], P = ["a", 20, 0] }
+bodies.crank = {}
+joints.pin = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }
+drivers.motor = { joint = "pin", law = "t" }
+points.p = { body = "crank", at = "P" }
+measures.x = { type = "position", point = "p", along = "x" }
+measures.square = { type = "expression", expression = "x*x/100" }
+metrics.far = { of = "square", take = "value", at = 0 }
+optimize = { starts = 9, goals = { far = { target = 25 } } }
+time = { end = 1, steps = 2 }
+"#;
+    let file = hardpoint_file::parse(text, "two_sides.toml").unwrap_or_else(|e| panic!("{e}"));
+    let settings = asked(&file);
+    let found = searched(&file, &settings);
+    let optima = found.optima(&file.model, &settings);
+    let place = |optimum: &Vec<usize>| 10.0 + found.searches[optimum[0]].found.as_ref().unwrap().design[0];
+    let mut places: Vec<f64> = optima.iter().map(place).collect();
+    places.sort_by(f64::total_cmp);
+    assert_eq!(places.len(), 2, "{places:?}");
+    for (place, expected) in places.iter().zip([-50.0, 50.0]) {
+        assert!((place - expected).abs() < 1e-6, "{place}");
+    }
+    let mut starts = optima.concat();
+    starts.sort_unstable();
+    assert_eq!(starts, (0..9).collect::<Vec<_>>(), "each start is in one optimum");
+    // Fewer starts, in any number of threads, end in the same ones.
+    let again = searched_on(2, &file, &settings).optima(&file.model, &settings);
+    assert_eq!(again, optima);
+}

@@ -14,6 +14,7 @@
 //! the step is rejected: the search steps back and continues.
 
 mod gauss_newton;
+mod optima;
 mod optimality;
 mod problem;
 mod request;

@@ -1,0 +1,44 @@
+//! Distinct optima of several searches.
+
+use hardpoint::model::{Model, OptimizationSettings};
+
+use super::{KEPT, Optimization, Status};
+
+/// Optima are the same if no variable differs by more than this fraction of its bounds: an optimality residual of 1e-6
+/// leaves less than that wherever the curvature of the goals is of order one.
+const SAME: f64 = 1e-4;
+
+impl Optimization {
+    /// Distinct optima, the best first: of each the searches that ended in it, the sharpest first.
+    ///
+    /// Searches that ended elsewhere are in none of them.
+    pub fn optima(&self, model: &Model, settings: &OptimizationSettings) -> Vec<Vec<usize>> {
+        let design = |k: usize| &self.searches[k].found.as_ref().expect("an optimum has a design").design;
+        let is_same = |a: usize, b: usize| {
+            settings.variables.iter().all(|v| {
+                let [low, high] = model.variables[v.0].bounds.unwrap_or_default();
+                (design(a)[v.0] - design(b)[v.0]).abs() <= SAME * (high - low)
+            })
+        };
+        let kept = |k: &usize| {
+            let search = &self.searches[*k];
+            let found = search.found.as_ref().filter(|found| found.violation <= KEPT);
+            found.filter(|_| search.status == Status::Optimal)
+        };
+        let mut ends: Vec<(usize, f64)> =
+            (0..self.searches.len()).filter_map(|k| Some((k, kept(&k)?.objective))).collect();
+        ends.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let mut optima: Vec<Vec<usize>> = Vec::new();
+        for (k, _) in ends {
+            match optima.iter_mut().find(|optimum| is_same(optimum[0], k)) {
+                Some(optimum) => optimum.push(k),
+                None => optima.push(vec![k]),
+            }
+        }
+        let residual = |k: &usize| self.searches[*k].optimality.residual;
+        for optimum in &mut optima {
+            optimum.sort_by(|a, b| residual(a).total_cmp(&residual(b)));
+        }
+        optima
+    }
+}
