@@ -68,6 +68,32 @@ static KINDS: &[(Table, Read)] = &[
     ),
     (
         variable! {
+            /// Play of a joint: its pin is off the centre of its hole, in two directions perpendicular to its axis,
+            /// NAME_x and NAME_y; a ball in three, NAME_x, NAME_y and NAME_z. Lengths.
+            "Play":
+            /// The joint's name: revolute, cylindrical or spherical.
+            must "play": JOINT, "\"J1\"";
+        },
+        |r, fields, name, raw, place| {
+            place.changes(fields, "play");
+            let joint = r.name_of(fields, "play")?;
+            let kind = raw
+                .draft
+                .joints
+                .iter()
+                .find(|j| j.name == joint)
+                .and_then(|j| hardpoint::joint::named(&j.kind));
+            // A joint that is not known, or has no play, is reported by the core.
+            let along = kind.map(|kind| kind.play()).filter(|along| !along.is_empty()).unwrap_or(&[0]);
+            let one = |along: &usize| {
+                let change = ChangeDraft::Play { joint: joint.clone(), along: *along };
+                (format!("{name}_{}", ["x", "y", "z"][*along]), vec![change])
+            };
+            Some(along.iter().map(one).collect())
+        },
+    ),
+    (
+        variable! {
             /// Design velocities V and U of single markers, under one parameter. A plain number.
             "Fields":
             /// The markers.

@@ -264,7 +264,7 @@ fn near_a_dead_point_rss_fails_and_second_derivatives_detect_it() {
 #[test]
 fn designs_beyond_the_dead_point_are_counted_with_their_reason() {
     let file = near_dead_point(0.9);
-    let found = examined(&file, |_| ());
+    let found = examined(&file, |asked| asked.samples = 0);
     let drawn = sampled(&found);
     // The rod must not be shorter by more than 0.5 mm: 0.5 / 0.3 standard deviations.
     let expected = 0.5 * 20_000.0 * (1.0 - 0.904_419);
@@ -284,7 +284,7 @@ fn correlated_tolerances_are_those_of_the_closed_form() {
         let file = crank(&format!(
             "[tolerance.variables]\nrod = 6\noffset = 3\n[tolerance.correlations]\njig = {{ between = [\"offset\", \"rod\"], coefficient = {r} }}"
         ));
-        let found = examined(&file, |_| ());
+        let found = examined(&file, |asked| asked.samples = 0);
         let of = spread(&file, &found, "first");
         let parts = [g[0] * s[0], g[1] * s[1]];
         let variance = parts[0].powi(2) + parts[1].powi(2) + 2.0 * r * parts[0] * parts[1];
@@ -585,4 +585,116 @@ fn broken_tolerances() {
         "tolerance_as_a_number",
         &format!("tolerance = 0.1\n{}", crate::diagnostics::VALID),
     );
+}
+
+/// Slider-crank with play in its three pins, and one with a ball at the end of its rod.
+const LOOSE_CRANK: &str = r#"
+name = "loose slider-crank"
+units = { length = "mm", angle = "deg" }
+hardpoints = { O = [0, 0, 0], A = [80, 60, 0], B = [371.8089506, 0, 0] }
+bodies = { crank = {}, rod = {}, slider = {} }
+joints.main = { type = "revolute", bodies = ["ground", "crank"], at = "O", axis = "z" }
+joints.crank_pin = { type = "revolute", bodies = ["crank", "rod"], at = "A", axis = "z" }
+joints.wrist_pin = { type = "spherical", bodies = ["rod", "slider"], at = "B" }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = "B", axis = "x" }
+drivers.motor = { joint = "main", law = "300*t" }
+points.B = { body = "slider", at = "B" }
+measures.place = { type = "position", point = "B", along = "x" }
+design.main = { play = "main", tolerance = 0.02 }
+design.crank_pin = { play = "crank_pin", tolerance = 0.03 }
+design.wrist_pin = { play = "wrist_pin", tolerance = 0.04 }
+time = { end = 1.0, steps = 30 }
+"#;
+
+/// An offset e of any pin moves the slider by e along the rod over the cosine of the rod's angle: the band is the sum
+/// of all plays over that, and holds whatever places the pins have in their holes.
+#[test]
+fn the_play_of_a_slider_crank_has_its_closed_form() {
+    let file = model(LOOSE_CRANK);
+    let found = examined(&file, |asked| asked.samples = 0);
+    // The plane of the linkage holds the ball: it has no play across it.
+    let left_out: Vec<&str> = found.left_out.iter().map(|v| file.model.variables[v.0].name.as_str()).collect();
+    assert_eq!(left_out, ["wrist_pin_z"]);
+    let names: Vec<&str> = file.model.variables.iter().map(|v| v.name.as_str()).collect();
+    let all = ["main_x", "main_y", "crank_pin_x", "crank_pin_y", "wrist_pin_x", "wrist_pin_y", "wrist_pin_z"];
+    assert_eq!(names, all);
+    let plays = [0.02e-3, 0.03e-3, 0.04e-3];
+    let r = 0.1_f64;
+    let b = 0.371_808_950_6_f64;
+    let rod = ((b - 0.08).powi(2) + 0.06 * 0.06).sqrt();
+    let curve = &found.curves[0];
+    let mut random = 1_u64;
+    let mut draw = || {
+        // A plain generator: places in the holes need no more.
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for (t, band) in curve.times.iter().zip(&curve.bands) {
+        let angle = 0.6_f64.atan2(0.8) + (300.0 * t).to_radians();
+        let (sin, cos) = angle.sin_cos();
+        let tilt = (r * sin / rod).asin();
+        let reach = plays.iter().sum::<f64>() / tilt.cos();
+        let half = 0.5 * (band.worst[1] - band.worst[0]);
+        assert!((half - reach).abs() < 1e-9 * reach, "t = {t}: {half} instead of {reach}");
+        // Evenly in a disc: a quarter of the square of the radius per coordinate.
+        let squares: f64 = plays.iter().map(|c| 0.25 * c * c).sum();
+        let sigma = squares.sqrt() / tilt.cos();
+        assert!((band.sigma - sigma).abs() < 1e-9 * sigma, "t = {t}: {} instead of {sigma}", band.sigma);
+        // Places in all holes, solved exactly; beyond first order the error is e^2 / l.
+        let second = plays.iter().sum::<f64>().powi(2) / rod / tilt.cos().powi(3);
+        let mut widest = 0.0_f64;
+        for _ in 0..100_000 / curve.times.len() {
+            let offset = |c: f64| {
+                let (turn, far) = (std::f64::consts::TAU * draw(), c * draw().sqrt());
+                [far * turn.cos(), far * turn.sin()]
+            };
+            let [o, a, w] = plays.map(offset);
+            let [x, y] = [0, 1].map(|k| o[k] + a[k] + w[k] + r * [cos, sin][k]);
+            let place = x + (rod * rod - y * y).sqrt();
+            widest = widest.max((place - band.nominal).abs());
+            assert!((place - band.nominal).abs() <= reach + second, "t = {t}");
+        }
+        assert!(widest > 0.7 * reach, "t = {t}: the samples fill the band");
+    }
+}
+
+/// The follower of a four-bar turns by the offset along the coupler over the arm `b sin(mu)`, for each of four pins.
+#[test]
+fn the_play_of_a_four_bar_has_its_closed_form() {
+    let text = r#"
+name = "loose four-bar"
+units = { length = "mm", angle = "rad" }
+planar = "xy"
+hardpoints = { A = [0, 0], B = [0, 100], C = [300, 250], D = [300, 0] }
+bodies = { crank = {}, coupler = {}, rocker = {} }
+joints.A = { type = "revolute", bodies = ["ground", "crank"], at = "A" }
+joints.B = { type = "revolute", bodies = ["crank", "coupler"], at = "B" }
+joints.C = { type = "revolute", bodies = ["coupler", "rocker"], at = "C" }
+joints.D = { type = "revolute", bodies = ["ground", "rocker"], at = "D" }
+drivers.motor = { joint = "A", law = "2*t" }
+measures.output = { type = "coordinate", joint = "D" }
+points.B = { body = "coupler", at = "B" }
+points.C = { body = "coupler", at = "C" }
+measures.mu = { type = "transmission_angle", from = ["B", "C"], to = [{ body = "rocker", at = "D" }, "C"] }
+design.A_play = { play = "A", tolerance = 0.01 }
+design.B_play = { play = "B", tolerance = 0.01 }
+design.C_play = { play = "C", tolerance = 0.01 }
+design.D_play = { play = "D", tolerance = 0.01 }
+time = { end = 1.0, steps = 20 }
+"#;
+    let file = model(text);
+    let found = examined(&file, |asked| asked.samples = 0);
+    let curve = found.curves.iter().find(|c| file.model.measures[c.measure].name == "output").unwrap();
+    let angle = found.curves.iter().find(|c| file.model.measures[c.measure].name == "mu").unwrap();
+    for (band, mu) in curve.bands.iter().zip(&angle.bands) {
+        let half = 0.5 * (band.worst[1] - band.worst[0]);
+        let expected = 4.0 * 0.01 / (250.0 * mu.nominal.sin());
+        assert!((half - expected).abs() < 1e-9 * expected, "{half} instead of {expected}");
+    }
+    // In a joint without a pin there is no play.
+    let message = parse(&text.replace("play = \"D\"", "play = \"E\""), "t.toml").unwrap_err().to_string();
+    assert!(message.contains("HP0204") && message.contains("`E`"), "{message}");
+    let message =
+        parse(&LOOSE_CRANK.replace("play = \"main\"", "play = \"slide\""), "t.toml").unwrap_err().to_string();
+    assert!(message.contains("HP0275") && message.contains("joint `slide` of design variable"), "{message}");
 }

@@ -25,6 +25,13 @@ macro_rules! in_drafts {
                 /// Rotation axis; one radian per radian of the variable.
                 about: DirectionDraft,
             },
+            /// Play of a joint: its pin or ball is off its centre, on body j.
+            Play {
+                /// The joint's name.
+                joint: String,
+                /// Axis of the joint's marker (0, 1 or 2) along which it is.
+                along: usize,
+            },
             /// Change of shape of whole bodies. Everything on them follows: joints with the markers of both bodies,
             /// axes, points.
             Shape {
@@ -42,6 +49,7 @@ macro_rules! in_drafts {
                     $(#[allow(unused_variables, reason = "what it measures follows from some of its fields")]
                     Self::$kind { $($field),* } => { let $known = known; $quantity })*
                     Self::Tilt { .. } => Quantity::Angle,
+                    Self::Play { .. } => Quantity::Length,
                     Self::Shape { field, .. } => field.quantity(),
                 }
             }

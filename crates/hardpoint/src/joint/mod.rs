@@ -133,6 +133,17 @@ pub struct JointType {
     pub coordinates: &'static [CoordinateType],
 }
 
+impl JointType {
+    /// Axes of its marker along which its pin or ball is off its centre if it has play; none for other types.
+    pub fn play(&self) -> &'static [usize] {
+        match self.freedoms {
+            Some([Freedom::Ball]) => &[0, 1, 2],
+            _ if self.is_hinge => &[0, 1],
+            _ => &[],
+        }
+    }
+}
+
 /// Straight guide of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slide {

@@ -82,6 +82,7 @@ fn the_field_is_the_derivative_of_the_geometry_for_every_kind_of_change() {
             "move a rod's end",
             ChangeDraft::Move { hardpoint: "tie_rod_outer".into(), velocity: Vec3::new(0.3, 1.0, 0.2) },
         ),
+        ("play", ChangeDraft::Play { joint: joint(), along: 1 }),
         ("tilt", ChangeDraft::Tilt { joint: joint(), about: DirectionDraft::Along(x[1]) }),
         (
             "one marker",

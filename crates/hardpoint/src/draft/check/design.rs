@@ -210,6 +210,22 @@ impl Checker<'_> {
                 let (_, rotation) = self.line(about, owner, here, "about")?;
                 change::Marker { joint, end: End::Both, position: Vec3::ZERO, rotation }.into()
             }
+            ChangeDraft::Play { joint: name, along } => {
+                let joint = self.joint(name, at.clone())?;
+                let of = &self.model.joints[joint.0];
+                if !of.kind.play().contains(along) {
+                    let message = format!("joint `{name}` of design variable `{owner}` has no play");
+                    let kind = of.kind.name;
+                    self.fault("HP0275", at, message)
+                        .note(format!(
+                            "it is a {kind} joint; revolute, cylindrical and spherical joints have play"
+                        ))
+                        .help("name a joint with a pin or ball, or move a marker with `markers`");
+                    return None;
+                }
+                let position = of.frames[1].cols[*along];
+                change::Marker { joint, end: End::J, position, rotation: Vec3::ZERO }.into()
+            }
             ChangeDraft::Marker { joint, end, position, rotation } => {
                 let joint = self.joint(joint, at.clone())?;
                 self.check_not_zero(vectors(&[*position, *rotation]), owner, at);

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::draft::{CorrelationDraft, ScatterDraft, Section, ToleranceDraft, ToleranceSettingsDraft};
+use crate::draft::{
+    ChangeDraft, CorrelationDraft, ScatterDraft, Section, ToleranceDraft, ToleranceSettingsDraft,
+};
 use crate::linalg::semidefinite;
 use crate::model::{
     AllocationRule, AllocationSettings, Correlation, Dimension, Scatter, Tolerance, ToleranceSettings,
@@ -13,12 +15,18 @@ use super::formulas::AXES;
 use super::optimization::per_si;
 use super::{Checker, Here};
 
+/// Uniform distribution, in [`Scatter::NAMES`].
+const UNIFORM: usize = 0;
 const HERE: Here = Here { section: Section::Tolerance, index: 0 };
 
-impl Checker<'_> {
+impl<'d> Checker<'d> {
     pub(super) fn add_tolerancing(&mut self) {
         let draft = self.draft;
-        let Some(t) = &draft.tolerancing else { return };
+        // The coordinates of a play have one tolerance.
+        let has_play = (0..draft.design.len()).any(|k| self.entry_of_play(k).is_some());
+        let implied = draft.design.iter().any(|v| v.tolerance.is_some()) && has_play;
+        let default = ToleranceSettingsDraft::default();
+        let Some(t) = draft.tolerancing.as_ref().or_else(|| implied.then_some(&default)) else { return };
         let default = self.scatter(t.scatter, ScatterDraft::default(), HERE, "the tolerances");
         let tolerances = self.tolerances(t);
         let correlations = self.correlations(t, &tolerances);
@@ -86,11 +94,18 @@ impl Checker<'_> {
             of.extend(variables.iter().map(|v| (*v, one.name.as_str())));
             found.extend(self.tolerance(t, one, variables, here));
         }
-        for (k, variable) in draft.design.iter().enumerate().filter(|(k, _)| !of.contains_key(k)) {
+        let others: Vec<usize> = (0..draft.design.len()).filter(|k| !of.contains_key(k)).collect();
+        for all in
+            others.chunk_by(|a, b| self.entry_of_play(*a).is_some_and(|e| self.entry_of_play(*b) == Some(e)))
+        {
+            let variable = &draft.design[all[0]];
             let Some(reach) = variable.tolerance.filter(|reach| *reach > 0.0) else { continue };
-            let scatter = self.scatter_of(t.scatter, ScatterDraft::default());
-            let variables = vec![VariableId(k)];
-            found.push(Tolerance { name: variable.name.clone(), variables, reach, scatter, cost: None });
+            let entry = self.entry_of_play(all[0]);
+            let own = ScatterDraft { kind: entry.map(|_| UNIFORM), ..ScatterDraft::default() };
+            let scatter = self.scatter_of(own, t.scatter);
+            let variables = all.iter().map(|k| VariableId(*k)).collect();
+            let name = entry.unwrap_or(&variable.name).to_owned();
+            found.push(Tolerance { name, variables, reach, scatter, cost: None });
         }
         let unknown = !draft.unread.is_empty() || !self.faults.is_empty();
         if found.is_empty() && !unknown {
@@ -99,6 +114,14 @@ impl Checker<'_> {
             );
         }
         found
+    }
+
+    /// Entry of `[design]` that a variable with this index comes from, if it is the play of a joint. Its coordinates
+    /// have one tolerance: the pin is anywhere in its hole.
+    fn entry_of_play(&self, variable: usize) -> Option<&'d str> {
+        let variable = &self.draft.design[variable];
+        let is_play = matches!(variable.changes.first(), Some(ChangeDraft::Play { .. }));
+        variable.name.rsplit_once('_').filter(|_| is_play).map(|(entry, _)| entry)
     }
 
     /// Returns the variables of a tolerance: the one with its name, or the coordinates of the entry with its name.
@@ -127,7 +150,9 @@ impl Checker<'_> {
         let name = &one.name;
         let own = draft.unread.any(Section::Design, variables[0]);
         let quantity = self.model.variables.get(variables[0]).map(|v| v.quantity);
-        let scatter = self.scatter(one.scatter, t.scatter, here, &format!("the tolerance of `{name}`"));
+        let play = self.entry_of_play(variables[0]).map(|_| UNIFORM);
+        let scatter = ScatterDraft { kind: one.scatter.kind.or(play), ..one.scatter };
+        let scatter = self.scatter(scatter, t.scatter, here, &format!("the tolerance of `{name}`"));
         if one.cost.is_some_and(|cost| !(cost > 0.0 && cost.is_finite())) {
             let message =
                 format!("invalid cost of the tolerance of `{name}`: {}", one.cost.unwrap_or_default());
@@ -164,7 +189,7 @@ impl Checker<'_> {
     /// Distribution of a tolerance, with the defaults of the study. HP0241 if it is invalid.
     fn scatter(&mut self, own: ScatterDraft, all: ScatterDraft, here: Here, what: &str) -> Option<Scatter> {
         if let Some(sigmas) = own.sigmas {
-            let even = own.kind.or(all.kind) == Some(0) && here.section == Section::Tolerances;
+            let even = own.kind.or(all.kind) == Some(UNIFORM) && here.section == Section::Tolerances;
             if even {
                 let message = format!("{what} is uniform, which takes no `sigmas`");
                 self.fault("HP0241", here.key("sigmas"), message)
@@ -185,7 +210,7 @@ impl Checker<'_> {
     fn scatter_of(&self, own: ScatterDraft, all: ScatterDraft) -> Scatter {
         let sigmas = own.sigmas.or(all.sigmas).unwrap_or(ToleranceSettings::SIGMAS);
         match own.kind.or(all.kind) {
-            Some(0) => Scatter::Uniform,
+            Some(UNIFORM) => Scatter::Uniform,
             Some(2) => Scatter::Truncated { sigmas },
             _ => Scatter::Normal { sigmas },
         }

@@ -384,6 +384,7 @@ impl Case<'_> {
             used.insert(match change {
                 ChangeDraft::Move { .. } => "move".into(),
                 ChangeDraft::Tilt { .. } => "tilt".into(),
+                ChangeDraft::Play { .. } => "play".into(),
                 ChangeDraft::Marker { .. } => "marker".into(),
                 ChangeDraft::Length { .. } => "length".into(),
                 ChangeDraft::Law { .. } => "law".into(),
@@ -713,6 +714,7 @@ fn moved(draft: &Draft, to: Pose) -> Draft {
             ChangeDraft::Shape { .. } => unreachable!("random mechanisms have no shapes"),
             // In a body's own frame, which is drawn along.
             ChangeDraft::Field { .. }
+            | ChangeDraft::Play { .. }
             | ChangeDraft::Length { .. }
             | ChangeDraft::Parameter { .. }
             | ChangeDraft::Law { .. } => {}
