@@ -7,7 +7,7 @@ use hardpoint::model::{AllocationRule, Dimension, LimitTarget, Model, OutputSour
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::tolerance::{
     Allocation, AllocationError, CurveBands, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledCurve,
-    SampledMetric, SpreadModel, ToleranceResult, Yield,
+    SampledMetric, SideChange, SpreadModel, ToleranceResult, Yield,
 };
 use hardpoint_study::{EvaluationError, Motions};
 use hardpoint_table::csv::CsvWriter;
@@ -88,6 +88,9 @@ record! {
     metrics: Vec<SpreadFact> = metrics;
     /// Metrics without a nominal value.
     unknown: Vec<String> = found.unknown.iter().map(|(m, _)| file.model.metrics[*m].name.clone()).collect();
+    /// Pins with play that change sides under the loads of the nominal motions.
+    side_changes: Vec<SideChangeFact> =
+        found.side_changes.iter().map(|of| SideChangeFact::of(studied, of)).collect();
     /// Yield per limit and case.
     limits: Vec<YieldFact> = (0..found.limits.len()).map(|k| YieldFact::of(studied, k)).collect();
     /// Number of sampled designs that do not reach the end of a motion.
@@ -100,6 +103,17 @@ record! {
     files: Vec<String> = Vec::new();
     /// Duration, s.
     seconds: f64 = 0.0;
+}
+
+record! {
+    /// Pin with play that changes sides under load.
+    SideChangeFact::of(studied: &ToleranceInputs<'_>, of: &SideChange) {}
+    /// Name of the joint.
+    joint: String = studied.model().joints[of.joint.0].name.clone();
+    /// Name of the case; `null` if the model has no cases.
+    case: Option<String> = studied.case(of.motion);
+    /// Times at which the force reverses, s.
+    times: Vec<f64> = of.times.clone();
 }
 
 record! {
@@ -428,7 +442,8 @@ impl ToleranceInputs<'_> {
             let sampled = self.found.sampled.as_ref();
             sampled.map_or(String::new(), |s| shown(r, list(&s.curves[r.c])[r.k]))
         };
-        let columns: [Column<'_, Row<'_>>; 14] = [
+        let loaded = |r: &Row<'_>| r.curve.bands[r.k].loaded.map_or(String::new(), |x| shown(r, x));
+        let columns: [Column<'_, Row<'_>>; 15] = [
             ("measure", &|r| self.model().measures[r.curve.measure].name.clone()),
             ("case", &|r| self.case(r.curve.motion).unwrap_or_default()),
             ("unit", &|r| unit(self.units(), r.dimension)),
@@ -439,6 +454,7 @@ impl ToleranceInputs<'_> {
             ("sigma", &|r| moment(r, 1)),
             ("least", &|r| shown(r, r.curve.bands[r.k].worst[0])),
             ("greatest", &|r| shown(r, r.curve.bands[r.k].worst[1])),
+            ("loaded", &loaded),
             ("drawn_mean", &|r| drawn(r, |c| &c.mean)),
             ("drawn_sigma", &|r| drawn(r, |c| &c.sigma)),
             ("drawn_least", &|r| drawn(r, |c| &c.least)),
@@ -606,6 +622,14 @@ impl ToleranceFacts {
         let stopped: Vec<String> = self.metrics.iter().flat_map(ends).collect();
         if !stopped.is_empty() {
             rows.push(("worst case", format!("does not move: {}", some_of(&stopped, "; "))));
+        }
+        for pin in &self.side_changes {
+            let times = pin.times.iter().map(|t| number(*t)).collect::<Vec<_>>();
+            let case = pin.case.as_ref().map_or(String::new(), |case| format!(" in `{case}`"));
+            rows.push((
+                "pin",
+                format!("`{}`{case} changes sides at t = {} s", pin.joint, some_of(&times, ", ")),
+            ));
         }
         if !self.left_out.is_empty() {
             let names = some_of(&self.left_out, ", ");

@@ -100,7 +100,7 @@ fn moments_of_a_slider_crank_are_those_of_its_closed_form() {
     let file = crank(
         "[tolerance.variables]\nrod = 6\noffset = { tolerance = 4, distribution = \"uniform\" }\nradius = { tolerance = 3, sigmas = 2 }",
     );
-    let found = examined(&file, |asked| asked.samples = 0);
+    let found = examined(&file, |_| ());
     let of = spread(&file, &found, "first");
     let (g, h) = closed_form();
     let s = [6e-3 / 3.0, 4e-3 / 3.0_f64.sqrt(), 3e-3 / 2.0];
@@ -141,7 +141,7 @@ fn second_derivatives_of_metrics_are_those_of_their_curves() {
     let file = crank(
         "[tolerance.variables]\nrod = 6\noffset = { tolerance = 4, distribution = \"uniform\" }\nradius = 3",
     );
-    let found = examined(&file, |asked| asked.samples = 0);
+    let found = examined(&file, |_| ());
     let (of, band) = (spread(&file, &found, "first"), found.curves[0].bands[0]);
     near(band.sigma, of.sigma, 1e-12);
     let (a, b) = (band.second.unwrap(), of.second.unwrap());
@@ -264,7 +264,7 @@ fn near_a_dead_point_rss_fails_and_second_derivatives_detect_it() {
 #[test]
 fn designs_beyond_the_dead_point_are_counted_with_their_reason() {
     let file = near_dead_point(0.9);
-    let found = examined(&file, |asked| asked.samples = 0);
+    let found = examined(&file, |_| ());
     let drawn = sampled(&found);
     // The rod must not be shorter by more than 0.5 mm: 0.5 / 0.3 standard deviations.
     let expected = 0.5 * 20_000.0 * (1.0 - 0.904_419);
@@ -284,7 +284,7 @@ fn correlated_tolerances_are_those_of_the_closed_form() {
         let file = crank(&format!(
             "[tolerance.variables]\nrod = 6\noffset = 3\n[tolerance.correlations]\njig = {{ between = [\"offset\", \"rod\"], coefficient = {r} }}"
         ));
-        let found = examined(&file, |asked| asked.samples = 0);
+        let found = examined(&file, |_| ());
         let of = spread(&file, &found, "first");
         let parts = [g[0] * s[0], g[1] * s[1]];
         let variance = parts[0].powi(2) + parts[1].powi(2) + 2.0 * r * parts[0] * parts[1];
@@ -613,7 +613,8 @@ fn the_play_of_a_slider_crank_has_its_closed_form() {
     let file = model(LOOSE_CRANK);
     let found = examined(&file, |asked| asked.samples = 0);
     // The plane of the linkage holds the ball: it has no play across it.
-    let left_out: Vec<&str> = found.left_out.iter().map(|v| file.model.variables[v.0].name.as_str()).collect();
+    let left_out: Vec<&str> =
+        found.left_out.iter().map(|v| file.model.variables[v.0].name.as_str()).collect();
     assert_eq!(left_out, ["wrist_pin_z"]);
     let names: Vec<&str> = file.model.variables.iter().map(|v| v.name.as_str()).collect();
     let all = ["main_x", "main_y", "crank_pin_x", "crank_pin_y", "wrist_pin_x", "wrist_pin_y", "wrist_pin_z"];
@@ -697,4 +698,40 @@ time = { end = 1.0, steps = 20 }
     let message =
         parse(&LOOSE_CRANK.replace("play = \"main\"", "play = \"slide\""), "t.toml").unwrap_err().to_string();
     assert!(message.contains("HP0275") && message.contains("joint `slide` of design variable"), "{message}");
+}
+
+/// A force that pushes the slider back presses all pins of the massless linkage to one side of their holes, a pull to the
+/// other: the slider is at the edges of the band, and jumps where the force reverses.
+#[test]
+fn pins_lie_where_the_loads_press_them() {
+    let text = LOOSE_CRANK.to_owned()
+        + r#"
+[forces.push]
+type = "force"
+at = "B"
+force = 100
+along = "-x"
+law = "cos(pi*t/0.8)"
+"#;
+    let file = model(&text);
+    let found = examined(&file, |asked| asked.samples = 0);
+    let curve = &found.curves[0];
+    for (t, band) in curve.times.iter().zip(&curve.bands) {
+        let expected = if *t < 0.4 { band.worst[0] } else { band.worst[1] };
+        // At 0.4 s there is no force.
+        let Some(loaded) = band.loaded else {
+            assert_eq!(*t, 0.4);
+            continue;
+        };
+        assert!((loaded - expected).abs() < 1e-9 * (band.worst[1] - band.worst[0]), "t = {t}: {loaded}");
+    }
+    assert_eq!(found.side_changes.len(), 3, "{:?}", found.side_changes);
+    for change in &found.side_changes {
+        let [time] = change.times[..] else { panic!("{change:?}") };
+        // Interpolated between output times 1/30 s apart.
+        assert!((time - 0.4).abs() < 1e-3, "{change:?}");
+    }
+    // Without loads nothing is known.
+    let found = examined(&model(LOOSE_CRANK), |asked| asked.samples = 0);
+    assert!(found.curves[0].bands.iter().all(|band| band.loaded.is_none()) && found.side_changes.is_empty());
 }

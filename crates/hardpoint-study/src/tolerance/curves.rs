@@ -3,6 +3,7 @@
 use hardpoint::model::OutputSource;
 
 use super::deviations::Deviations;
+use super::pins::{Pins, SideChange};
 use super::{SecondOrder, Study};
 
 /// Maximum size of the second derivatives for bands, in bytes; with more variables or longer motions, bands are of
@@ -37,6 +38,9 @@ pub struct BandPoint {
     pub worst: [f64; 2],
     /// Second-order moments, if second derivatives are known: for outputs that depend on positions alone.
     pub second: Option<SecondOrder>,
+    /// First-order value where every pin with play lies on the side to which the loads press it; `None` without loads,
+    /// or where that is not known.
+    pub loaded: Option<f64>,
 }
 
 impl CurveBands {
@@ -48,12 +52,23 @@ impl CurveBands {
 }
 
 impl Study<'_> {
-    /// Bands of all requested curves; stops early if `more` returns false.
-    pub(super) fn curves(&self, more: &(dyn Fn() -> bool + Sync)) -> Vec<CurveBands> {
-        (0..self.motions.len()).flat_map(|motion| self.curves_of(motion, more)).collect()
+    /// Bands of all requested curves; stops early if `more` returns false. With the pins that change sides under load.
+    pub(super) fn curves(&self, more: &(dyn Fn() -> bool + Sync)) -> (Vec<CurveBands>, Vec<SideChange>) {
+        let (mut curves, mut changes) = (Vec::new(), Vec::new());
+        for motion in 0..self.motions.len() {
+            let pins = Pins::of(self, motion);
+            curves.extend(self.curves_of(motion, pins.as_ref(), more));
+            changes.extend(pins.into_iter().flat_map(|pins| pins.changes));
+        }
+        (curves, changes)
     }
 
-    fn curves_of(&self, motion: usize, more: &(dyn Fn() -> bool + Sync)) -> Vec<CurveBands> {
+    fn curves_of(
+        &self,
+        motion: usize,
+        pins: Option<&Pins>,
+        more: &(dyn Fn() -> bool + Sync),
+    ) -> Vec<CurveBands> {
         let measured = &self.nominal.solutions[motion].measured;
         let column = |measure: &usize| {
             measured
@@ -82,6 +97,7 @@ impl Study<'_> {
                     sigma: deviations.sigma(&g),
                     worst: [nominal - reach, nominal + reach],
                     second,
+                    loaded: pins.and_then(|pins| Some(nominal + pins.shift(deviations, k, &g)?)),
                 }
             };
             let bands = (0..times.len()).map(band).collect();

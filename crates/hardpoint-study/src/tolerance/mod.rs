@@ -14,6 +14,7 @@ mod contributions;
 mod curves;
 mod deviations;
 mod monte_carlo;
+mod pins;
 mod request;
 mod worst;
 
@@ -34,6 +35,7 @@ pub use curves::{BandPoint, CurveBands};
 use deviations::Deviations;
 use hardpoint::run::{metric_numbers, place_of};
 pub use monte_carlo::{FailureGroup, MonteCarlo, SampledCurve, SampledMetric, Yield};
+pub use pins::SideChange;
 pub use request::{Overrides, Request, allocation_rule};
 pub use worst::Extreme;
 
@@ -59,6 +61,8 @@ pub struct ToleranceResult {
     pub unknown: Vec<(usize, usize)>,
     /// Bands of each measure in each motion.
     pub curves: Vec<CurveBands>,
+    /// Pins with play that change sides under the loads of the nominal motions.
+    pub side_changes: Vec<SideChange>,
     /// Yields per limit and motion of its metric.
     pub limits: Vec<LimitYield>,
     /// Monte Carlo results, if requested.
@@ -225,7 +229,7 @@ pub fn tolerance(
         .zip(hessians)
         .map(|(one, hessian)| study.spread(one, hessian.as_deref(), &mut cost))
         .collect();
-    let curves = study.curves(more);
+    let (curves, side_changes) = study.curves(more);
     let limits = study.limits(&metrics);
     let mut found = ToleranceResult {
         variables: deviations.variables.clone(),
@@ -234,6 +238,7 @@ pub fn tolerance(
         contributions: Vec::new(),
         unknown,
         curves,
+        side_changes,
         limits,
         sampled: None,
         allocation: None,

@@ -1,6 +1,6 @@
 //! Settings of a tolerance study: deviations of the design, and limits that it must keep.
 
-use super::{Limit, Model, VariableId};
+use super::{JointId, Limit, Model, VariableId};
 
 /// Settings of a tolerance study.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,8 @@ pub struct Tolerance {
     /// One variable, or the coordinates of one point, whose deviation as a whole stays within the reach: in a disc or a
     /// sphere.
     pub variables: Vec<VariableId>,
+    /// Joint whose pin or ball it lets move in its hole, if it is a play.
+    pub play: Option<JointId>,
     /// Half width of the tolerance, `±`, in the variables' unit; positive.
     pub reach: f64,
     /// Distribution of the deviations within it.
@@ -126,6 +128,7 @@ impl ToleranceSettings {
             Some(Tolerance {
                 name: variable.name.clone(),
                 variables: vec![VariableId(k)],
+                play: None,
                 reach: variable.tolerance?,
                 scatter: Scatter::Normal { sigmas: Self::SIGMAS },
                 cost: None,

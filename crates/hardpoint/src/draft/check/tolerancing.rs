@@ -7,8 +7,8 @@ use crate::draft::{
 };
 use crate::linalg::semidefinite;
 use crate::model::{
-    AllocationRule, AllocationSettings, Correlation, Dimension, Scatter, Tolerance, ToleranceSettings,
-    VariableId,
+    AllocationRule, AllocationSettings, Correlation, Dimension, JointId, Scatter, Tolerance,
+    ToleranceSettings, VariableId,
 };
 
 use super::formulas::AXES;
@@ -105,7 +105,8 @@ impl<'d> Checker<'d> {
             let scatter = self.scatter_of(own, t.scatter);
             let variables = all.iter().map(|k| VariableId(*k)).collect();
             let name = entry.unwrap_or(&variable.name).to_owned();
-            found.push(Tolerance { name, variables, reach, scatter, cost: None });
+            let play = self.joint_of_play(all[0]);
+            found.push(Tolerance { name, variables, play, reach, scatter, cost: None });
         }
         let unknown = !draft.unread.is_empty() || !self.faults.is_empty();
         if found.is_empty() && !unknown {
@@ -122,6 +123,16 @@ impl<'d> Checker<'d> {
         let variable = &self.draft.design[variable];
         let is_play = matches!(variable.changes.first(), Some(ChangeDraft::Play { .. }));
         variable.name.rsplit_once('_').filter(|_| is_play).map(|(entry, _)| entry)
+    }
+
+    /// Joint whose play a variable with this index is.
+    fn joint_of_play(&self, variable: usize) -> Option<JointId> {
+        match &self.draft.design[variable].changes[..] {
+            [ChangeDraft::Play { joint, .. }] => {
+                self.model.joints.iter().position(|j| j.name == *joint).map(JointId)
+            }
+            _ => None,
+        }
     }
 
     /// Returns the variables of a tolerance: the one with its name, or the coordinates of the entry with its name.
@@ -182,8 +193,9 @@ impl<'d> Checker<'d> {
                 reach
             }
         };
+        let play = self.joint_of_play(variables[0]);
         let variables = variables.into_iter().map(VariableId).collect();
-        Some(Tolerance { name: name.clone(), variables, reach, scatter: scatter?, cost: one.cost })
+        Some(Tolerance { name: name.clone(), variables, play, reach, scatter: scatter?, cost: one.cost })
     }
 
     /// Distribution of a tolerance, with the defaults of the study. HP0241 if it is invalid.
