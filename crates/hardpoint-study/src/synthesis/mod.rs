@@ -81,6 +81,8 @@ pub struct Task {
     pub full_turn: bool,
     /// True if the poses may be passed in any order.
     pub any_order: bool,
+    /// Distance up to which a point of a path counts as met, m: linkages that come nearer are not better.
+    pub tolerance: f64,
     /// Maximum number of answers.
     pub answers: usize,
 }
@@ -97,6 +99,7 @@ impl Task {
             fixed_pivots: Vec::new(),
             full_turn: false,
             any_order: false,
+            tolerance: 0.0,
             answers: 10,
         }
     }
@@ -553,8 +556,9 @@ fn along_path(
         };
         good.push((answer, linkage));
     }
-    // Exact answers are ranked by their score, all others by their distance.
-    let level = |a: &Answer| if a.rms <= EXACT * size { 0.0 } else { a.rms };
+    // Answers that meet the points are ranked by their score, all others by their distance.
+    let is_met = |a: &Answer| a.largest <= task.tolerance || a.rms <= EXACT * size;
+    let level = |a: &Answer| if is_met(a) { 0.0 } else { a.rms };
     good.sort_by(|(a, _), (b, _)| level(a).total_cmp(&level(b)).then(b.score.total_cmp(&a.score)));
     // Fewer than nine points are met by families.
     let is_family = points.len() < 9 && turns.is_none();
