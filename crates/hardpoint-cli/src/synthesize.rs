@@ -6,8 +6,10 @@ use std::path::Path;
 use hardpoint::topology::Formulation;
 use hardpoint_file::{ModelFile, TaskFile};
 use hardpoint_report::gallery::{Card, gallery};
-use hardpoint_report::synthesis::{AnswerFact, SynthesisFacts, followed_model, model_text, refusal, task_of};
-use hardpoint_study::synthesis::{TaskError, synthesize};
+use hardpoint_report::synthesis::{
+    AnswerFact, SynthesisFacts, followed_model, model_text, picture, refusal, task_of,
+};
+use hardpoint_study::synthesis::{Answer, TaskError, synthesize};
 
 use crate::args::Synthesize;
 use crate::folder::{Folder, WriteError};
@@ -50,7 +52,7 @@ fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome, Out
         }
     })?;
     let mut facts = SynthesisFacts::of(&file, &task, &found);
-    let mut models: Vec<(String, ModelFile)> = Vec::new();
+    let (mut answers, mut models) = (Vec::<Answer>::new(), Vec::<(String, ModelFile)>::new());
     for answer in &found.answers {
         let rank = models.len() + 1;
         let content = model_text(&file, answer, rank);
@@ -63,12 +65,13 @@ fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome, Out
             Some(by_engine) => {
                 facts.answers.push(AnswerFact::of(file.units, rank, answer, &by_engine));
                 models.push((content, model));
+                answers.push(answer.clone());
             }
             None => facts.not_reproduced += 1,
         }
     }
     if let Some(folder) = folder {
-        write(session, &file, &mut facts, &models, folder)?;
+        write(session, &file, &mut facts, (&answers, &models), folder)?;
     }
     facts.seconds = session.seconds();
     if session.is_json() {
@@ -89,7 +92,7 @@ fn write(
     session: &Session,
     file: &TaskFile,
     facts: &mut SynthesisFacts,
-    models: &[(String, ModelFile)],
+    (answers, models): (&[Answer], &[(String, ModelFile)]),
     mut folder: Folder,
 ) -> Result<(), Outcome> {
     session.patient(true);
@@ -113,6 +116,7 @@ fn write(
             wrong: None,
             link: format!("{}/{PAGE}", k + 1),
             more: Vec::new(),
+            picture: Some(picture(file, &answers[k])),
         });
         meter.show(k + 1, models.len());
     }

@@ -300,12 +300,70 @@ pub fn model_text(task: &TaskFile, answer: &Answer, rank: usize) -> String {
         _ = writeln!(text, "{name} = {{ move = {what}, along = \"xy\", bounds = [-{bound}, {bound}] }}");
     }
     let goals: Vec<String> = missed.iter().map(|(measure, _)| format!("missed_{measure} = {{}}")).collect();
+    let crank = if direction.is_some() { ", { y = [\"angle\"], over = \"crank\" }" } else { "" };
+    _ = writeln!(
+        text,
+        "\n[page]\nplots = [{{ y = [\"y\"], over = \"x\" }}, {{ y = [\"transmission\"], over = \"crank\" }}{crank}]"
+    );
     _ = writeln!(text, "\n[optimize]\ngoals = {{ {} }}\n\n[time]\nat = [", goals.join(", "));
     for row in schedule.times.chunks(8) {
         let row: Vec<String> = row.iter().map(|t| rounded(*t, DIGITS)).collect();
         _ = writeln!(text, "    {},", row.join(", "));
     }
     text + "]\n"
+}
+
+/// Picture of an answer as SVG: its links in the first pose, the path of its point, and the poses or points.
+pub fn picture(task: &TaskFile, answer: &Answer) -> String {
+    const WIDTH: f64 = 300.0;
+    const HEIGHT: f64 = 200.0;
+    const MARGIN: f64 = 12.0;
+    let of = &answer.linkage;
+    let [from, to] = if answer.passage.is_full { [0.0, TAU] } else { answer.passage.range() };
+    let turn = |k: usize| from + (to - from) * k as f64 / STEPS as f64;
+    let path: Vec<Complex> = (0..=STEPS).map(|k| of.point(turn(k))).collect();
+    let targets: Vec<Complex> = targets(task).iter().map(|[x, y, _]| at([*x, *y])).collect();
+    let all: Vec<Complex> = path.iter().chain(&targets).copied().chain(of.joints()).collect();
+    let range = |part: fn(&Complex) -> f64| {
+        let low = all.iter().map(part).fold(f64::INFINITY, f64::min);
+        (low, all.iter().map(part).fold(f64::NEG_INFINITY, f64::max))
+    };
+    let ((left, right), (bottom, top)) = (range(|p| p.x), range(|p| p.y));
+    let per_metre = ((WIDTH - 2.0 * MARGIN) / (right - left)).min((HEIGHT - 2.0 * MARGIN) / (top - bottom));
+    let shown = |p: Complex| {
+        let x = 0.5 * WIDTH + (p.x - 0.5 * (left + right)) * per_metre;
+        let y = 0.5 * HEIGHT - (p.y - 0.5 * (bottom + top)) * per_metre;
+        format!("{x:.1},{y:.1}")
+    };
+    let line = |points: &[Complex]| points.iter().map(|p| shown(*p)).collect::<Vec<_>>().join(" ");
+    let dot = |p: Complex, radius: f64, style: &str| {
+        let (x, y) = shown(p).split_once(',').map(|(x, y)| (x.to_owned(), y.to_owned())).unwrap_or_default();
+        format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {style}/>")
+    };
+    let mut svg = format!("<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"the linkage\">");
+    _ = write!(svg, "<polyline points=\"{}\" fill=\"none\" stroke=\"var(--accent)\"/>", line(&path));
+    let coupler = line(&[of.b, of.c, of.p]);
+    svg += &format!(
+        "<polygon points=\"{coupler}\" fill=\"var(--rule)\" stroke=\"currentColor\" stroke-width=\"1.5\"/>"
+    );
+    let (rest, far) = match of.guide {
+        Guide::Rocker(d) => (d, d),
+        Guide::Slider(along) => {
+            let half = along.times(0.1 * of.extent());
+            (of.c - half, of.c + half)
+        }
+    };
+    for link in [[of.a, of.b], [if rest == far { of.c } else { rest }, far]] {
+        let link = line(&link);
+        svg += &format!("<polyline points=\"{link}\" stroke=\"currentColor\" stroke-width=\"3\"/>");
+    }
+    for pin in of.joints() {
+        let fixed = pin == of.a || matches!(of.guide, Guide::Rocker(d) if d == pin);
+        let fill = if fixed { "currentColor" } else { "var(--page)" };
+        svg += &dot(pin, 4.0, &format!("fill=\"{fill}\" stroke=\"currentColor\""));
+    }
+    targets.iter().for_each(|p| svg += &dot(*p, 3.0, "fill=\"var(--accent)\""));
+    svg + "</svg>\n"
 }
 
 /// Poses or points as x, y and angle, SI.
@@ -514,8 +572,8 @@ impl TallyFact {
             (n, d.phrase())
         });
         let others = [
-            (self.rocking, "have no crank that turns fully"),
-            (self.outside, "have joints outside the regions"),
+            (self.rocking, "with a crank that rocks"),
+            (self.outside, "outside the regions"),
             (self.good, "good"),
         ];
         let parts: Vec<String> = defects
@@ -533,8 +591,10 @@ impl SynthesisFacts {
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let mut rows = vec![("task", format!("{} ({})", self.task, count(self.count, self.one())))];
         if let (Some(cranks), Some(sliders)) = (self.cranks, self.sliders) {
-            let of_five = if self.count == 5 { " of the 4 are real" } else { " of a family" };
-            let mut dyads = format!("{}{of_five}", count(cranks, "crank"));
+            let mut dyads = match self.count {
+                5 => format!("{cranks} of the 4 cranks are real"),
+                _ => format!("{} of a family", count(cranks, "crank")),
+            };
             if sliders > 0 {
                 dyads += &format!(", {}", count(sliders, "slider"));
             }

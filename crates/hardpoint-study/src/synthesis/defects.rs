@@ -25,10 +25,10 @@ impl Defect {
     /// Description of linkages with it, after their number.
     pub fn phrase(self) -> &'static str {
         match self {
-            Self::Order => "pass the poses in another order",
-            Self::Branch => "change branch between poses",
-            Self::Circuit => "have poses on separate circuits",
-            Self::Singular => "come within 1 deg of a dead point",
+            Self::Order => "in another order",
+            Self::Branch => "with a change of branch",
+            Self::Circuit => "on separate circuits",
+            Self::Singular => "within 1 deg of a dead point",
         }
     }
 }

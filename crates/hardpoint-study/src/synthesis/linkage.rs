@@ -189,6 +189,39 @@ impl Linkage {
         all.iter().map(from).fold(0.0, f64::max)
     }
 
+    /// The same four-bar driven at its other side; `None` for a slider-crank.
+    pub fn swapped(&self) -> Option<Self> {
+        match self.guide {
+            Guide::Rocker(d) => {
+                Some(Self { a: d, b: self.c, c: self.b, guide: Guide::Rocker(self.a), p: self.p })
+            }
+            Guide::Slider(_) => None,
+        }
+    }
+
+    /// The two other four-bars whose guided points have the same path (Roberts, Chebyshev), in the same configuration,
+    /// with the displacements of their couplers; none for a slider-crank.
+    ///
+    /// With `k = (P - B) / (C - B)` the three fixed pivots A, D and `F = A + k (D - A)` form a triangle that is similar
+    /// to the coupler. Over A the crank is `P - B`, the coupler turns as the crank did, and over D alike.
+    pub fn cognates(&self, moves: &[Displacement]) -> Vec<(Self, Vec<Displacement>)> {
+        let Some(swapped) = self.swapped() else { return Vec::new() };
+        let over = |of: &Self| {
+            let Guide::Rocker(d) = of.guide else { return None };
+            let k = (of.p - of.b).over(of.c - of.b);
+            let b = of.a + of.p - of.b;
+            let c = b + k * (of.b - of.a);
+            let cognate = Self { a: of.a, b, c, guide: Guide::Rocker(of.a + k * (d - of.a)), p: of.p };
+            let moved = |m: &Displacement| {
+                let turn = (m.of(of.b) - of.a).over(of.b - of.a);
+                let turn = turn.times(1.0 / turn.norm());
+                Displacement { turn, shift: m.of(of.p) - turn * of.p }
+            };
+            Some((cognate, moves.iter().map(moved).collect()))
+        };
+        [self, &swapped].into_iter().filter_map(over).collect()
+    }
+
     fn drive(&self) -> Drive {
         let Lengths { crank: a, coupler: b, .. } = self.lengths();
         match self.guide {
@@ -220,10 +253,9 @@ impl Linkage {
     pub fn kind(&self) -> LinkageType {
         let of = self.lengths();
         let turns = matches!(self.drive().arcs()[..], [Arc::Full]);
-        let Guide::Rocker(d) = self.guide else {
+        let Some(swapped) = self.swapped() else {
             return if turns { LinkageType::SliderCrank } else { LinkageType::SliderRocker };
         };
-        let swapped = Self { a: d, b: self.c, c: self.b, guide: Guide::Rocker(self.a), p: self.p };
         let links = [of.ground, of.crank, of.coupler, of.rocker.unwrap_or(0.0)];
         let [least, most] =
             [links.iter().copied().fold(f64::INFINITY, f64::min), links.iter().copied().fold(0.0, f64::max)];

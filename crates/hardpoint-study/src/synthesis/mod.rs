@@ -213,6 +213,8 @@ const TRIAL: usize = 20;
 /// Searches of each type that are completed, and their steps.
 const COMPLETED: usize = 24;
 const MOST_STEPS: usize = 300;
+/// Searches of each type that are followed along a curve.
+const FOLLOWED: usize = 8;
 /// Searches whose joints are nearer than this, in sizes, end at the same linkage.
 const MERGED: f64 = 0.02;
 /// Answers of a family whose joints are nearer than this, in sizes, are alike; only the best of them is kept.
@@ -225,6 +227,38 @@ const EXACT: f64 = 1e-9;
 /// Score of a linkage: `sin mu / (1 + extent / (4 size))`.
 fn score(linkage: &Linkage, passage: &Passage, size: f64) -> f64 {
     passage.transmission.sin() / (1.0 + 0.25 * linkage.extent() / size)
+}
+
+/// Outcome of driving a linkage at one side or the other.
+enum Driven {
+    /// It passes the poses: its score, the linkage driven at the better side, and the passage.
+    Well((f64, Linkage, Passage)),
+    /// It passes them only with a crank that does not turn fully, as it must.
+    Rocking,
+    /// It has a defect, the least of both sides.
+    Not(Defect),
+}
+
+/// Drives a linkage at each of the given sides.
+fn driven(sides: [Option<Linkage>; 2], moves: &[Displacement], any_order: bool, full_turn: bool) -> Driven {
+    let (mut best, mut least, mut rocks) = (None::<(f64, Linkage, Passage)>, Defect::Singular, false);
+    for linkage in sides.into_iter().flatten() {
+        match passage(&linkage, moves, any_order) {
+            Ok(passage) if full_turn && !passage.is_full => rocks = true,
+            Ok(passage) => {
+                let score = score(&linkage, &passage, 1.0);
+                if best.as_ref().is_none_or(|b| score > b.0) {
+                    best = Some((score, linkage, passage));
+                }
+            }
+            Err(defect) => least = least.min(defect),
+        }
+    }
+    match best {
+        Some(best) => Driven::Well(best),
+        None if rocks => Driven::Rocking,
+        None => Driven::Not(least),
+    }
 }
 
 /// Finds the linkages of a task. `more` is called regularly; if it returns false, the study ends.
@@ -264,6 +298,12 @@ impl Frame {
 
     fn outward(&self, p: Complex) -> Complex {
         (p * self.x).times(self.size) + self.middle
+    }
+
+    /// The same displacement in coordinates of the task.
+    fn displacement_outward(&self, of: Displacement) -> Displacement {
+        let middle = self.inward(Complex::ZERO);
+        Displacement { turn: of.turn, shift: self.outward(of.of(middle)) }
     }
 
     fn linkage_outward(&self, linkage: &Linkage) -> Linkage {
@@ -312,43 +352,20 @@ fn through_poses(
     let mut rejected: Vec<(Defect, f64, Linkage)> = Vec::new();
     let mut pair = |one: &Dyad, other: &Dyad, tally: &mut Tally| {
         let linkages = [Linkage::of(one, other, own[0].at), Linkage::of(other, one, own[0].at)];
-        let tried = linkages
-            .into_iter()
-            .flatten()
-            .map(|linkage| (linkage, passage(&linkage, &moves, task.any_order)));
-        let mut best: Option<(f64, Linkage, Passage)> = None;
-        let mut least: Option<(Defect, Linkage)> = None;
-        let mut rocks = false;
-        for (linkage, tried) in tried {
-            match tried {
-                Ok(passage) if task.full_turn && !passage.is_full => rocks = true,
-                Ok(passage) => {
-                    let score = score(&linkage, &passage, 1.0);
-                    if best.as_ref().is_none_or(|b| score > b.0) {
-                        best = Some((score, linkage, passage));
-                    }
-                }
-                Err(defect) => {
-                    if least.is_none_or(|l| defect < l.0) {
-                        least = Some((defect, linkage));
-                    }
-                }
-            }
-        }
         tally.made += 1;
-        let regions = |linkage: &Linkage| in_regions(task, &frame.linkage_outward(linkage));
-        match (best, least) {
-            (Some((_, linkage, _)), _) if !regions(&linkage) => tally.outside += 1,
-            (Some(best), _) => {
+        match driven(linkages, &moves, task.any_order, task.full_turn) {
+            Driven::Well((_, linkage, _)) if !in_regions(task, &frame.linkage_outward(&linkage)) => {
+                tally.outside += 1;
+            }
+            Driven::Well(best) => {
                 tally.good += 1;
                 good.push(best);
             }
-            (None, _) if rocks => tally.rocking += 1,
-            (None, Some((defect, linkage))) => {
+            Driven::Rocking => tally.rocking += 1,
+            Driven::Not(defect) => {
                 tally.defects[defect as usize] += 1;
-                rejected.push((defect, linkage.extent(), linkage));
+                rejected.extend(linkages.into_iter().flatten().next().map(|l| (defect, l.extent(), l)));
             }
-            (None, None) => {}
         }
     };
     for j in 0..cranks.len() {
@@ -375,7 +392,7 @@ fn through_poses(
         let misfit = |dyad: Option<Dyad>| dyad.map_or(0.0, |d| d.misfit(&moves));
         let (first, second) = dyads_in(&linkage);
         found.answers.push(Answer {
-            linkage: outward,
+            linkage: Linkage { p: poses[0].at, ..outward },
             moves: poses.iter().map(|p| Displacement::between(poses[0], *p)).collect(),
             passage,
             kind: linkage.kind(),
@@ -517,44 +534,69 @@ fn along_path(
     let mut found = Synthesis { size, ..Synthesis::default() };
     let mut good: Vec<(Answer, Linkage)> = Vec::new();
     for fit in fits(&target, &types, more)? {
-        let linkage = fit.linkage();
-        if !(linkage.extent() < LARGEST) {
-            continue;
+        // The path of a four-bar is that of its cognates; with prescribed turns their cranks are others.
+        let mut all = Vec::new();
+        for (linkage, moves, rms) in fit.found() {
+            let cognates = if turns.is_none() { linkage.cognates(&moves) } else { Vec::new() };
+            all.push((linkage, moves, rms));
+            all.extend(cognates.into_iter().map(|(linkage, moves)| (linkage, moves, rms)));
         }
-        let tally = match linkage.guide {
-            linkage::Guide::Rocker(_) => &mut found.four_bars,
-            linkage::Guide::Slider(_) => &mut found.slider_cranks,
-        };
-        tally.made += 1;
-        let moves: Vec<Displacement> = fit.turns().iter().map(|t| linkage.displacement(*t)).collect();
-        let passed = match passage(&linkage, &moves, task.any_order) {
-            Ok(passed) => passed,
-            Err(defect) => {
-                tally.defects[defect as usize] += 1;
+        let mut is_met = false;
+        for (linkage, moves, rms) in all {
+            // The nearest is of no use where an exact one is good.
+            if is_met && rms > 0.0 {
                 continue;
             }
-        };
-        let outward = frame.linkage_outward(&linkage);
-        if task.full_turn && !passed.is_full || is_closed && !passed.is_full {
-            tally.rocking += 1;
-            continue;
+            if !(linkage.extent() < LARGEST) {
+                continue;
+            }
+            let tally = match linkage.guide {
+                linkage::Guide::Rocker(_) => &mut found.four_bars,
+                linkage::Guide::Slider(_) => &mut found.slider_cranks,
+            };
+            tally.made += 1;
+            // With free timing either side may drive.
+            let other = linkage.swapped().filter(|_| turns.is_none());
+            let full_turn = task.full_turn || is_closed;
+            let (score, linkage, passage) =
+                match driven([Some(linkage), other], &moves, task.any_order, full_turn) {
+                    Driven::Well(best) => best,
+                    Driven::Rocking => {
+                        tally.rocking += 1;
+                        continue;
+                    }
+                    Driven::Not(defect) => {
+                        tally.defects[defect as usize] += 1;
+                        let outward = frame.linkage_outward(&linkage);
+                        let is_known = |r: &Rejection| is_alike(&r.linkage, &outward, MERGED * size);
+                        if rms <= EXACT
+                            && found.rejections.len() < task.answers
+                            && !found.rejections.iter().any(is_known)
+                        {
+                            found.rejections.push(Rejection { linkage: outward, defect });
+                        }
+                        continue;
+                    }
+                };
+            let outward = frame.linkage_outward(&linkage);
+            if !in_regions(task, &outward) {
+                tally.outside += 1;
+                continue;
+            }
+            tally.good += 1;
+            let far = moves.iter().zip(&own).map(|(m, p)| (m.of(linkage.p) - *p).norm()).fold(0.0, f64::max);
+            let answer = Answer {
+                linkage: outward,
+                moves: moves.iter().map(|m| frame.displacement_outward(*m)).collect(),
+                score,
+                passage,
+                kind: linkage.kind(),
+                rms: rms * size,
+                largest: far * size,
+            };
+            good.push((answer, linkage));
+            is_met |= fit.is_exact() && rms == 0.0;
         }
-        if !in_regions(task, &outward) {
-            tally.outside += 1;
-            continue;
-        }
-        tally.good += 1;
-        let far = moves.iter().zip(&own).map(|(m, p)| (m.of(linkage.p) - *p).norm()).fold(0.0, f64::max);
-        let answer = Answer {
-            linkage: outward,
-            moves: fit.turns().iter().map(|t| outward.displacement(*t)).collect(),
-            score: score(&linkage, &passed, 1.0),
-            passage: passed,
-            kind: linkage.kind(),
-            rms: fit.rms() * size,
-            largest: far * size,
-        };
-        good.push((answer, linkage));
     }
     // Answers that meet the points are ranked by their score, all others by their distance.
     let is_met = |a: &Answer| a.largest <= task.tolerance || a.rms <= EXACT * size;
@@ -612,8 +654,14 @@ fn fits(
                 return Err(TaskError::Interrupted);
             }
             search.approach(target.points);
-            search.advance(target.points, MOST_STEPS, true);
-            search.approach(target.points);
+            if !search.is_exact() {
+                search.advance(target.points, MOST_STEPS, true);
+                search.approach(target.points);
+            }
+        }
+        kept.sort_by(|a, b| a.rms().total_cmp(&b.rms()));
+        for search in kept.iter_mut().filter(|s| !s.is_exact()).take(FOLLOWED) {
+            search.follow(target.points, more);
         }
         found.extend(kept);
     }

@@ -8,8 +8,10 @@
 use hardpoint::linalg::{least_squares, semidefinite};
 use hardpoint::number::{Dual, Real};
 
+use crate::svd::singular;
+
 use super::linkage::{Guide, Linkage};
-use super::plane::Complex;
+use super::plane::{Complex, Displacement};
 
 /// Distance that counts as none, in sizes of the path.
 const ROUND_OFF: f64 = 1e-13;
@@ -24,15 +26,20 @@ const MOST_DAMPING: f64 = 1e10;
 const FLOOR: f64 = 1e-6;
 /// Paths of at most this many points are fitted by orthogonal decomposition in the end, which keeps all digits.
 const ORTHOGONAL: usize = 12;
-/// Points that a linkage can meet exactly.
-const MEETS: usize = 9;
 /// Distance from which points are approached along straight lines, in sizes of the path.
 const APPROACHED: f64 = 0.02;
 /// Steps of that approach, its least step, and Newton's steps and misfit at each.
 const APPROACH: usize = 400;
 const LEAST_STEP: f64 = 1e-5;
-const CORRECTIONS: usize = 5;
-const CORRECTED: f64 = 1e-8;
+const CORRECTIONS: usize = 6;
+/// Steps along the curve of linkages, its first and largest step, and the misfit at each.
+const CURVE_STEPS: usize = 300;
+const FIRST_ARC: f64 = 0.01;
+const LARGEST_ARC: f64 = 0.25;
+const LEAST_ARC: f64 = 1e-7;
+const ON_CURVE: f64 = 1e-13;
+/// Joints farther away end a curve, in sizes of the path.
+const FARTHEST: f64 = 10.0;
 
 /// Unknowns of a linkage as numbers: A, B, C, the guide, P.
 fn parameters(of: &Linkage) -> Vec<f64> {
@@ -180,24 +187,170 @@ impl Normal {
     }
 }
 
-/// Linkage and turns that meet points exactly, by Newton's method; `None` if it does not converge.
-fn corrected(x: &[f64], turns: &[f64], points: &[Complex]) -> Option<(Vec<f64>, Vec<f64>)> {
-    let (mut x, mut turns) = (x.to_vec(), turns.to_vec());
-    let mut before = f64::INFINITY;
-    for _ in 0..CORRECTIONS {
-        let (by, turned) = orthogonal_step(&x, &turns, points, false, 0.0);
-        x.iter_mut().zip(by).for_each(|(x, by)| *x += by);
-        turns.iter_mut().zip(turned).for_each(|(t, by)| *t += by);
-        let misfit = squares(&x, &turns, points).sqrt();
-        if !(misfit < before) {
-            break;
+/// Linkages whose guided point is at places on lines, the same way along each. Unknowns are A, B, C, the guide, and the
+/// angles of the coupler at the points but the first: each dyad keeps its length, so that no branch is taken, and the
+/// curve of linkages goes on where a point passes a dead point. The last number is the way along the lines.
+struct Lines {
+    from: Vec<Complex>,
+    /// Directions of the lines, together of length 1.
+    lines: Vec<Complex>,
+    /// The way to the points of the path.
+    length: f64,
+    /// Numbers of the joints.
+    unknowns: usize,
+}
+
+impl Lines {
+    /// Derivatives of the constraints of both dyads at all points, and their misfits.
+    fn linearized(&self, at: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let (n, way) = (self.unknowns, at[at.len() - 1]);
+        let aim = |k: usize| self.from[k] + self.lines[k].times(way);
+        let pin = |k: usize| Complex::new(at[k], at[k + 1]);
+        let (mut rows, mut right) = (Vec::new(), Vec::new());
+        for k in 1..self.from.len() {
+            let turn = Complex::<f64>::unit(at[n + k - 1]);
+            let [here, start] = [self.lines[k], self.lines[0]];
+            let mut put = |entries: &[(usize, Complex)], by_angle: f64, by_way: f64, misfit: f64| {
+                let mut row = vec![0.0; at.len()];
+                for (column, value) in entries {
+                    row[*column] += value.x;
+                    row[*column + 1] += value.y;
+                }
+                row[n + k - 1] = by_angle;
+                row[at.len() - 1] = by_way;
+                rows.push(row);
+                right.push(-misfit);
+            };
+            // |W - G|^2 = |Z - G|^2 with W = aim + turn (Z - first aim)
+            let mut crank = |pivot: usize, at_pin: usize| {
+                let (g, z) = (pin(pivot), pin(at_pin));
+                let arm = turn * (z - aim(0));
+                let reach = aim(k) + arm - g;
+                let own = z - g;
+                let back = turn.conjugate() * reach;
+                put(
+                    &[(pivot, own - reach), (at_pin, back - own)],
+                    arm.left().dot(reach),
+                    here.dot(reach) - start.dot(back),
+                    0.5 * (reach.square() - own.square()),
+                );
+            };
+            crank(0, 2);
+            if n == 8 {
+                crank(6, 4);
+                continue;
+            }
+            // along x (W - Z) = 0
+            let (z, along) = (pin(4), Complex::<f64>::unit(at[6]));
+            let arm = turn * (z - aim(0));
+            let shift = aim(k) + arm - z;
+            let q = along.conjugate() * (turn - Complex::new(1.0, 0.0));
+            let mut row = vec![0.0; at.len()];
+            (row[4], row[5], row[6]) = (q.y, q.x, along.left().cross(shift));
+            row[n + k - 1] = along.cross(arm.left());
+            row[at.len() - 1] = along.cross(here - turn * start);
+            rows.push(row);
+            right.push(-along.cross(shift));
         }
-        before = misfit;
-        if misfit < ROUND_OFF {
-            break;
-        }
+        (rows, right)
     }
-    (before < CORRECTED).then_some((x, turns))
+
+    /// Newton's method from here, with the way fixed or free, and the number of its steps; `None` if it does not converge.
+    fn corrected(&self, mut at: Vec<f64>, is_fixed: bool) -> Option<(Vec<f64>, usize)> {
+        for step in 0..=CORRECTIONS {
+            let (rows, right) = self.linearized(&at);
+            let misfit = right.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if misfit < ON_CURVE {
+                return Some((at, step));
+            }
+            if step == CORRECTIONS || !(misfit < 1.0) {
+                return None;
+            }
+            let width = at.len() - usize::from(is_fixed);
+            let by = &least_squares([rows.len(), width], |r, c| rows[r][c], &[right])[0];
+            at.iter_mut().zip(by).for_each(|(x, by)| *x += by);
+        }
+        None
+    }
+
+    /// The linkage that meets the points, by steps along the lines.
+    fn approached(&self, mut at: Vec<f64>) -> Option<Vec<f64>> {
+        let last = at.len() - 1;
+        let (mut part, mut step) = (0.0, 0.25);
+        for _ in 0..APPROACH {
+            if part >= 1.0 {
+                return Some(at);
+            }
+            if step < LEAST_STEP {
+                return None;
+            }
+            let next = f64::min(part + step, 1.0);
+            let mut ahead = at.clone();
+            ahead[last] = next * self.length;
+            match self.corrected(ahead, true) {
+                Some((found, _)) => {
+                    (at, part) = (found, next);
+                    step *= 2.0;
+                }
+                None => step *= 0.4,
+            }
+        }
+        None
+    }
+
+    /// The linkage that meets the points, along the curve of all.
+    fn followed(&self, mut at: Vec<f64>, more: &(dyn Fn() -> bool + Sync)) -> Option<Vec<f64>> {
+        let last = at.len() - 1;
+        let mut before = vec![0.0; at.len()];
+        before[last] = 1.0;
+        let mut arc = FIRST_ARC;
+        for _ in 0..CURVE_STEPS {
+            if arc < LEAST_ARC || !more() || at.iter().any(|x| x.abs() > FARTHEST) {
+                return None;
+            }
+            let tangent = self.tangent(&at, &before);
+            let ahead = at.iter().zip(&tangent).map(|(a, t)| a + arc * t).collect();
+            let Some((next, steps)) = self.corrected(ahead, false) else {
+                arc *= 0.4;
+                continue;
+            };
+            if (at[last] < self.length) != (next[last] < self.length) {
+                // Linear between both, then exactly
+                let part = (self.length - at[last]) / (next[last] - at[last]);
+                let mut between: Vec<f64> = at.iter().zip(&next).map(|(a, b)| a + part * (b - a)).collect();
+                between[last] = self.length;
+                if let Some((found, _)) = self.corrected(between, true) {
+                    return Some(found);
+                }
+                arc *= 0.4;
+                continue;
+            }
+            (at, before) = (next, tangent);
+            arc = if steps <= 3 { (arc * 1.6).min(LARGEST_ARC) } else { arc };
+        }
+        None
+    }
+
+    /// Unit tangent of the curve in the direction of the one before.
+    fn tangent(&self, at: &[f64], before: &[f64]) -> Vec<f64> {
+        let (rows, _) = self.linearized(at);
+        let tangent = singular(&rows, at.len()).directions.pop().unwrap_or_default();
+        let along: f64 = tangent.iter().zip(before).map(|(a, b)| a * b).sum();
+        if along < 0.0 { tangent.iter().map(|x| -x).collect() } else { tangent }
+    }
+
+    /// Linkage at the points of the path, and the displacements of its coupler.
+    fn met(&self, at: &[f64]) -> (Linkage, Vec<Displacement>) {
+        let aim = |k: usize| self.from[k] + self.lines[k].times(self.length);
+        let mut x = at[..6].to_vec();
+        x.extend([aim(0).x, aim(0).y]);
+        x.extend(&at[6..self.unknowns]);
+        let displacement = |k: usize| {
+            let turn = Complex::unit(if k == 0 { 0.0 } else { at[self.unknowns + k - 1] });
+            Displacement { turn, shift: aim(k) - turn * aim(0) }
+        };
+        (linkage(&x), (0..self.from.len()).map(displacement).collect())
+    }
 }
 
 /// A search from a start, for a path of size 1.
@@ -209,6 +362,8 @@ pub struct Search {
     is_timed: bool,
     damping: f64,
     resting: usize,
+    /// Linkage that meets the points exactly, and the displacements of its coupler, once it is found.
+    exact: Option<(Linkage, Vec<Displacement>)>,
 }
 
 impl Search {
@@ -217,22 +372,39 @@ impl Search {
         let x = parameters(start);
         let squares = squares(&x, turns, points);
         let turns = turns.to_vec();
-        squares.is_finite().then_some(Self { x, turns, squares, is_timed, damping: DAMPING, resting: 0 })
+        squares.is_finite().then_some(Self {
+            x,
+            turns,
+            squares,
+            is_timed,
+            damping: DAMPING,
+            resting: 0,
+            exact: None,
+        })
     }
 
-    /// Root mean square of the distances from the points.
+    /// Root mean square of the distances from the points, without those that are met exactly.
     pub fn rms(&self) -> f64 {
         (self.squares / self.turns.len() as f64).sqrt()
     }
 
-    /// Linkage in the configuration of the first point.
-    pub fn linkage(&self) -> Linkage {
-        linkage(&self.x)
+    /// True if the points are met exactly.
+    pub fn is_exact(&self) -> bool {
+        self.exact.is_some()
     }
 
-    /// Turns of the crank at the points, rad.
-    pub fn turns(&self) -> &[f64] {
-        &self.turns
+    /// Linkages in the configuration of the first point, each with the displacements of its coupler since then and the
+    /// root mean square of its distances: that which meets the points exactly, if it was found, and the nearest.
+    pub fn found(&self) -> Vec<(Linkage, Vec<Displacement>, f64)> {
+        let own = self.linkage();
+        let moves = self.turns.iter().map(|t| own.displacement(*t)).collect();
+        let exact = self.exact.iter().map(|(linkage, moves)| (*linkage, moves.clone(), 0.0));
+        exact.chain([(own, moves, self.rms())]).collect()
+    }
+
+    /// The nearest linkage.
+    pub fn linkage(&self) -> Linkage {
+        linkage(&self.x)
     }
 
     /// Performs steps until the search rests, at most this many. The last are `exact`.
@@ -245,35 +417,43 @@ impl Search {
         }
     }
 
-    /// Meets points exactly where there are at most nine: the points move from those that the linkage has to those of
-    /// the path, and the linkage follows by Newton's method. Nothing changes if it cannot.
+    /// Meets points exactly where there are few enough: the points move on straight lines from those that the linkage has
+    /// to those of the path, and the linkage follows. Nothing changes if it cannot.
     pub fn approach(&mut self, points: &[Complex]) {
-        if points.len() > MEETS || self.is_timed || !(self.rms() < APPROACHED) {
-            return;
+        if let Some(lines) = self.lines(points) {
+            self.exact = lines.approached(self.state()).map(|at| lines.met(&at));
         }
-        let own = self.linkage();
-        let from: Vec<Complex> = self.turns.iter().map(|t| own.point(*t)).collect();
-        let (mut x, mut turns, mut part, mut step) = (self.x.clone(), self.turns.clone(), 0.0, 0.25);
-        for _ in 0..APPROACH {
-            if part >= 1.0 || step < LEAST_STEP {
-                break;
-            }
-            let next = f64::min(part + step, 1.0);
-            let aims: Vec<Complex> =
-                from.iter().zip(points).map(|(a, b)| *a + (*b - *a).times(next)).collect();
-            match corrected(&x, &turns, &aims) {
-                Some(found) => {
-                    (x, turns) = found;
-                    part = next;
-                    step *= 2.0;
-                }
-                None => step *= 0.4,
-            }
+    }
+
+    /// Meets points exactly where a linkage meets as many, along the whole curve of linkages that meet points on those
+    /// lines and beyond: where the points turn back, the curve goes on. It leads out of the narrow valleys of the
+    /// squares. Nothing changes if the points of the path are not on it.
+    pub fn follow(&mut self, points: &[Complex], more: &(dyn Fn() -> bool + Sync)) {
+        if let Some(lines) = self.lines(points)
+            && points.len() == lines.unknowns + 1
+        {
+            self.exact = lines.followed(self.state(), more).map(|at| lines.met(&at));
         }
-        let found = squares(&x, &turns, points);
-        if part >= 1.0 && found < self.squares {
-            (self.x, self.turns, self.squares) = (x, turns, found);
-        }
+    }
+
+    /// The lines to points that can be met, from those that the linkage has.
+    fn lines(&self, points: &[Complex]) -> Option<Lines> {
+        let own = linkage(&self.x);
+        let unknowns = self.x.len() - 2;
+        let is_near = self.rms() < APPROACHED && self.rms() > ROUND_OFF;
+        (points.len() <= unknowns + 1 && !self.is_timed && is_near).then(|| {
+            let from: Vec<Complex> = self.turns.iter().map(|t| own.point(*t)).collect();
+            let lines: Vec<Complex> = points.iter().zip(&from).map(|(p, f)| *p - *f).collect();
+            let length = lines.iter().map(|l| l.square()).sum::<f64>().sqrt();
+            Lines { from, lines: lines.iter().map(|l| l.times(1.0 / length)).collect(), length, unknowns }
+        })
+    }
+
+    /// Joints, angles of the coupler at the further points, and the place on the lines.
+    fn state(&self) -> Vec<f64> {
+        let own = linkage(&self.x);
+        let angles = self.turns[1..].iter().map(|t| own.displacement(*t).turn.angle());
+        self.x[..6].iter().chain(&self.x[8..]).copied().chain(angles).chain([0.0]).collect()
     }
 
     /// Performs one step; false if none is better.

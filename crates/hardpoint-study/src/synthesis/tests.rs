@@ -8,7 +8,7 @@ use super::defects::{Defect, passage};
 use super::dyads::Dyad;
 use super::linkage::{Guide, Linkage, LinkageType};
 use super::plane::{Complex, Displacement, Pose};
-use super::{Aim, Answer, Synthesis, Task, TaskError, synthesize};
+use super::{Aim, Answer, Rejection, Synthesis, Task, TaskError, synthesize};
 
 /// Lengths of cranks at all poses, relative to the size of the task: Newton's method ends at round-off.
 const SAME_LENGTH: f64 = 1e-10;
@@ -375,7 +375,7 @@ fn a_hidden_path_is_found_from_nine_of_its_points() {
         let best = found.answers.iter().find(|a| distance(&a.linkage, &hidden) < FOUND).expect("it is found");
         assert!(best.largest < 1e-9 * found.size, "{:e}", best.largest);
         best.passage.turns.iter().zip(turns).for_each(|(a, b)| assert!((a - b).abs() < FOUND, "{a} {b}"));
-        // Its cognate of the same crank's angle has the same curve (Roberts).
+        // Its cognates have the same curve.
         let exact = found.answers.iter().filter(|a| a.largest < 1e-9 * found.size).count();
         assert!(exact >= 2, "{exact}");
     }
@@ -409,16 +409,63 @@ const NINE_POINTS: [[f64; 2]; 9] = [
 ];
 
 #[test]
-fn nine_published_points_are_approached() {
+fn cognates_have_the_same_path() {
+    let linkage = crank_rocker();
+    let moves: Vec<Displacement> = (0..12).map(|k| linkage.displacement(0.5 * f64::from(k))).collect();
+    let cognates = linkage.cognates(&moves);
+    assert_eq!(cognates.len(), 2);
+    for (cognate, own) in &cognates {
+        assert!(distance(cognate, &linkage) > 0.5);
+        for (m, n) in moves.iter().zip(own) {
+            assert!((m.of(linkage.p) - n.of(cognate.p)).norm() < 1e-12);
+        }
+        // Its dyads keep their lengths.
+        let Guide::Rocker(d) = cognate.guide else { panic!("a four-bar") };
+        for (pivot, pin) in [(cognate.a, cognate.b), (d, cognate.c)] {
+            assert!(Dyad::Crank { pivot, pin }.misfit(own) < 1e-12);
+        }
+    }
+    // Both have the third pivot.
+    let Guide::Rocker(one) = cognates[0].0.guide else { unreachable!() };
+    let Guide::Rocker(other) = cognates[1].0.guide else { unreachable!() };
+    assert!((one - other).norm() < 1e-12);
+}
+
+/// Smallest change of the coupler's length with which a four-bar has its guided point at a place: the circles of each
+/// dyad about the fixed pivot and the place meet twice.
+fn coupler_change(linkage: &Linkage, at: Complex) -> f64 {
+    let Guide::Rocker(d) = linkage.guide else { panic!("a four-bar") };
+    let meet = |pivot: Complex, pin: Complex| {
+        let (one, other) = ((pin - pivot).norm(), (pin - linkage.p).norm());
+        let f = at - pivot;
+        let u = (one * one + f.square() - other * other) / (2.0 * f.square());
+        let v = (one * one / f.square() - u * u).max(0.0).sqrt();
+        [v, -v].map(|v| pivot + f * Complex::new(u, v))
+    };
+    let length = (linkage.c - linkage.b).norm();
+    let (b, c) = (meet(linkage.a, linkage.b), meet(d, linkage.c));
+    let pairs = b.iter().flat_map(|b| c.iter().map(move |c| ((*c - *b).norm() - length).abs()));
+    pairs.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn nine_published_points_are_met_by_four_bars_that_change_branch() {
     let points: Vec<Complex> = NINE_POINTS.iter().map(|[x, y]| at(*x, *y)).collect();
-    let found = of(&Task { slider_cranks: false, ..path_of(points) });
+    let found = of(&Task { slider_cranks: false, ..path_of(points.clone()) });
+    // A four-bar and its two cognates (Roberts)
+    assert!(found.rejections.len() >= 3, "{:?}", found.rejections);
+    for Rejection { linkage, defect } in &found.rejections {
+        assert_eq!(*defect, Defect::Branch);
+        for point in &points {
+            let change = coupler_change(linkage, *point);
+            assert!(change < 1e-9 * found.size, "{change:e} {linkage:?}");
+        }
+    }
+    // Those that pass all nine in order come within 1e-5 of the path's size.
     let best = &found.answers[0];
-    // No crank was found that meets them exactly in their order; the nearest are within 1e-5 of the path's size.
     assert!(best.rms < 1e-5 * found.size, "{:e}", best.rms / found.size);
-    assert!(
-        best.passage.turns.windows(2).all(|p| p[0] < p[1])
-            || best.passage.turns.windows(2).all(|p| p[0] > p[1])
-    );
+    let turns = &best.passage.turns;
+    assert!(turns.windows(2).all(|p| p[0] < p[1]) || turns.windows(2).all(|p| p[0] > p[1]));
 }
 
 #[test]
