@@ -14,7 +14,7 @@ use serde::Deserialize;
 const AFTER: &str = "\
 Examples:
   hardpoint new strut --template macpherson
-  hardpoint synthesize models/studies/tailgate.toml -o results/tailgate
+  hardpoint synthesize models/tasks/tailgate.toml -o results/tailgate
   hardpoint check models/macpherson.toml
   hardpoint import four_bar.asmt -o four_bar.toml
   hardpoint run models/macpherson.toml -o results/macpherson
@@ -203,9 +203,9 @@ Files in the folder (without `-o`, nothing is written):
   summary.json             the same, and the numbers of linkages with each defect
 
 Examples:
-  hardpoint synthesize models/studies/tailgate.toml
-  hardpoint synthesize models/studies/tailgate.toml -o results/tailgate
-  hardpoint synthesize models/studies/tailgate.toml --answers 3 --json | jq '.answers[0]'";
+  hardpoint synthesize models/tasks/tailgate.toml
+  hardpoint synthesize models/tasks/tailgate.toml -o results/tailgate
+  hardpoint synthesize models/tasks/tailgate.toml --answers 3 --json | jq '.answers[0]'";
 
 /// Options of `synthesize`.
 #[derive(Args, Debug)]

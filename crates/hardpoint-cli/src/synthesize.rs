@@ -39,7 +39,6 @@ fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome, Out
         task.answers = answers.get().min(MOST);
     }
     let folder = session.folder(options.output.as_deref())?;
-    session.line(&text::bold(&file.name));
     let found = {
         let _working = session.working("looking for linkages");
         synthesize(&task, &|| !session.interrupted())
@@ -51,6 +50,7 @@ fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome, Out
             Outcome::BadModel
         }
     })?;
+    session.line(&text::bold(&file.name));
     let mut facts = SynthesisFacts::of(&file, &task, &found);
     let (mut answers, mut models) = (Vec::<Answer>::new(), Vec::<(String, ModelFile)>::new());
     for answer in &found.answers {

@@ -303,7 +303,7 @@ pub fn model_text(task: &TaskFile, answer: &Answer, rank: usize) -> String {
     let crank = if direction.is_some() { ", { y = [\"angle\"], over = \"crank\" }" } else { "" };
     _ = writeln!(
         text,
-        "\n[page]\nplots = [{{ y = [\"y\"], over = \"x\" }}, {{ y = [\"transmission\"], over = \"crank\" }}{crank}]"
+        "\n[page]\nplots = [{{ y = [\"x\", \"y\"], over = \"crank\" }}, {{ y = [\"transmission\"], over = \"crank\" }}{crank}]"
     );
     _ = writeln!(text, "\n[optimize]\ngoals = {{ {} }}\n\n[time]\nat = [", goals.join(", "));
     for row in schedule.times.chunks(8) {
@@ -677,10 +677,8 @@ impl SynthesisFacts {
         let note =
             "engine: largest distance of the solved motion from the answer, relative to the size of the task";
         let answers = Table::of("Answers", note, shown, self.answers.iter().cloned()).if_any();
-        let rejected = match answers {
-            Some(_) => None,
-            None => self.rejected_table(),
-        };
+        // With answers, those of poses with defects are only counted.
+        let rejected = if answers.is_none() || self.aim == "path" { self.rejected_table() } else { None };
         answers.into_iter().chain(rejected).collect()
     }
 
@@ -691,7 +689,8 @@ impl SynthesisFacts {
             ("defect", &|f| f.defect.replace('_', " ")),
             ("joints", &|f| f.joints.iter().map(place).collect::<Vec<_>>().join(" ")),
         ];
-        Table::of("Linkages with defects", "", &columns, self.rejected.iter().cloned()).if_any()
+        let title = if self.aim == "path" { "Exact linkages with defects" } else { "Linkages with defects" };
+        Table::of(title, "", &columns, self.rejected.iter().cloned()).if_any()
     }
 
     /// Writes the answers as a CSV table.

@@ -394,8 +394,8 @@ fn a_hidden_closed_path_is_found_with_its_timing() {
     }
 }
 
-/// Nine points of Wampler, Morgan and Sommese (J. Mech. Des. 114 (1992) 153), in the digits of
-/// juliahomotopycontinuation.org/examples/9point.
+/// Nine points in the documentation of HomotopyContinuation.jl (`content/examples/9point.md` of its site), which solves
+/// them after Wampler, Morgan and Sommese (J. Mech. Des. 114 (1992) 153).
 const NINE_POINTS: [[f64; 2]; 9] = [
     [0.8961867, -0.09802917],
     [1.2156535, -1.18749100],
