@@ -11,7 +11,7 @@ use hardpoint_study::synthesis::defects::Defect;
 use hardpoint_study::synthesis::linkage::{Guide, Linkage};
 use hardpoint_study::synthesis::plane::{Complex, Pose};
 use hardpoint_study::synthesis::{
-    Aim, Answer, Followed, Region, Rejection, Synthesis, Tally, Task, TaskError, followed,
+    Aim, Answer, EngineDeviation, Region, Rejection, Synthesis, Tally, Task, TaskError, deviation_of_engine,
 };
 
 use crate::figures::{count, error, number, rounded, symbol, with_unit};
@@ -33,7 +33,7 @@ fn at([x, y]: [f64; 2]) -> Complex {
     Complex { x, y }
 }
 
-/// The task of a file.
+/// Task of a file.
 pub fn task_of(file: &TaskFile) -> Task {
     let region = |of: Option<TaskRegion>| of.map(|[x, y]| Region { x, y });
     let (aim, tolerance) = match &file.aim {
@@ -164,7 +164,10 @@ impl Schedule {
 pub fn model_text(task: &TaskFile, answer: &Answer, rank: usize) -> String {
     let units = task.units;
     let length = |x: f64| units.from_si(Quantity::Length, x);
-    let place = |p: Complex| format!("[{}, {}]", rounded(length(p.x), DIGITS), rounded(length(p.y), DIGITS));
+    // Coordinates that round-off leaves are zero.
+    let least = 1e-14 * answer.linkage.extent();
+    let coordinate = |x: f64| if x.abs() < least { "0".to_owned() } else { rounded(length(x), DIGITS) };
+    let place = |p: Complex| format!("[{}, {}]", coordinate(p.x), coordinate(p.y));
     let angle = |x: f64| rounded(units.from_si(Quantity::Angle, x), DIGITS);
     let quoted = |text: &str| serde_json::to_string(text).expect("a text is plain JSON");
     let schedule = Schedule::of(answer);
@@ -384,12 +387,12 @@ pub fn followed_model(
     text: &str,
     name: &str,
     size: f64,
-) -> Result<(ModelFile, Option<Followed>), Diagnostics> {
+) -> Result<(ModelFile, Option<EngineDeviation>), Diagnostics> {
     let file = parse(text, name)?;
     let schedule = Schedule::of(answer);
     let found = Analysis::new(&file.model).ok().and_then(|analysis| {
         let solution = analysis.solve(Run::new().without_sensitivities());
-        followed(&file.model, &solution, answer, COUPLER, &schedule.steps)
+        deviation_of_engine(&file.model, &solution, answer, COUPLER, &schedule.steps)
     });
     let reach = size.max(answer.linkage.extent());
     Ok((file, found.filter(|f| f.distance <= FOLLOWED * reach && f.angle <= FOLLOWED)))
@@ -472,7 +475,7 @@ record! {
 
 record! {
     /// An answer.
-    pub AnswerFact::of(units: Units, rank: usize, answer: &Answer, by_engine: &Followed) {
+    pub AnswerFact::of(units: Units, rank: usize, answer: &Answer, by_engine: &EngineDeviation) {
         let length = |x: f64| units.from_si(Quantity::Length, x);
         let angle = |x: f64| units.from_si(Quantity::Angle, x);
         let place = |p: Complex| [length(p.x), length(p.y)];

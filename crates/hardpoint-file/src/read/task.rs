@@ -32,16 +32,16 @@ const TASK: Table = table! {
     may "description": Shape::Text, "\"...\"";
     /// The units of all numbers in this file.
     must "units": Shape::Table(&UNITS), "{ length = \"mm\", angle = \"deg\" }";
-    /// Three to five poses `[x, y, angle]` of the body that the linkage guides, in their order, or a CSV file with
-    /// these columns. Its angle is counter-clockwise from x.
+    /// Three to five poses `[x, y, angle]` of the guided body in their order, or a CSV file. The angle is
+    /// counter-clockwise from x.
     may "poses": POSES, "[[0, 0, 0], [40, 12, 25], [70, 40, 60]]";
-    /// Instead of poses: points `[x, y]` of the path of a point, in their order, or a CSV file with these columns.
+    /// Instead of poses: points `[x, y]` of the path of a point in their order, or a CSV file.
     may "points": POINTS, "[[0, 0], [20, 15], [45, 20], [60, 10]]";
-    /// For `points`: whether the path returns from its last point to its first, once per turn of the crank.
+    /// With `points`: `true` if the path returns from its last point to its first, once per turn of the crank.
     or("false") "closed": Shape::Flag, "true";
-    /// For `points`: angles of the crank at the points, in one direction. Default: free.
+    /// With `points`: angles of the crank at the points, in one direction. Default: free.
     may "crank_angles": Shape::list(&ANGLE), "[0, 30, 60, 90]";
-    /// For `points`: distance up to which a point counts as met. Default: linkages that come nearer are better.
+    /// With `points`: distance up to which a point counts as met. Default: linkages that come nearer are better.
     may "tolerance": LENGTH, "0.1";
     /// Types of linkages to look for. Default: both.
     may "linkages": Shape::list(&LINKAGE), "[\"four_bar\"]";
@@ -51,9 +51,9 @@ const TASK: Table = table! {
     may "moving_region": Shape::Table(&REGION), "{ x = [-50, 50], y = [-50, 50] }";
     /// With three poses: the fixed pivots of cranks and rockers themselves.
     may "fixed_pivots": Shape::list(&Shape::exactly(2, &LENGTH)), "[[-40, -20], [60, -30]]";
-    /// Whether the crank must turn fully.
+    /// `true` if the crank must turn fully.
     or("false") "full_turn": Shape::Flag, "true";
-    /// Whether the poses may be passed in another order.
+    /// `true` if the poses may be passed in another order.
     or("false") "any_order": Shape::Flag, "true";
     /// Number of answers.
     or("10") "answers": Shape::Count(MOST_ANSWERS), "5";
@@ -61,9 +61,9 @@ const TASK: Table = table! {
 const REGION: Table = table! {
     /// A rectangle.
     "Region":
-    /// Its range of x.
+    /// Range of x.
     must "x": Shape::exactly(2, &LENGTH), "[-100, 100]";
-    /// Its range of y.
+    /// Range of y.
     must "y": Shape::exactly(2, &LENGTH), "[-80, 0]";
 };
 const POSES: Shape =
@@ -159,7 +159,11 @@ impl TaskFile {
     ///
     /// ```
     /// use hardpoint_file::{TaskAim, TaskFile};
-    /// let text = "name = \"lid\"\nunits = { length = \"mm\", angle = \"deg\" }\nposes = [[0, 0, 0], [40, 12, 25], [70, 40, 60]]";
+    /// let text = r#"
+    /// name = "lid"
+    /// units = { length = "mm", angle = "deg" }
+    /// poses = [[0, 0, 0], [40, 12, 25], [70, 40, 60]]
+    /// "#;
     /// let task = TaskFile::parse(text, "lid.toml").unwrap();
     /// assert!(matches!(task.aim, TaskAim::Poses(poses) if poses[1][0] == 0.04));
     /// ```
@@ -249,8 +253,10 @@ fn fields_of(r: &mut Reader<'_>, table: &DeTable<'_>) -> Option<TaskFile> {
     })
 }
 
+/// Places of the entries of a list in the text.
+type Places = Vec<Range<usize>>;
 /// Aim with the places of its list and of its entries.
-type Aim = (TaskAim, Range<usize>, Vec<Range<usize>>);
+type Aim = (TaskAim, Range<usize>, Places);
 
 fn aim(r: &mut Reader<'_>, fields: &Fields<'_>) -> Option<Aim> {
     const OF_POINTS: [&str; 3] = ["closed", "crank_angles", "tolerance"];
@@ -308,7 +314,7 @@ fn rows<const N: usize>(
     fields: &Fields<'_>,
     f: Field<'_>,
     names: [&str; N],
-) -> Option<(Vec<[f64; N]>, Vec<Range<usize>>)> {
+) -> Option<(Vec<[f64; N]>, Places)> {
     let subject = fields.subject(f.key);
     let one = format!("[{}]", names.join(", "));
     let (rows, places) = if f.value.get_ref().is_str() {

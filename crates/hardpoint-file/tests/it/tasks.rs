@@ -53,7 +53,7 @@ fn points_may_be_in_a_file() {
         let path = folder.path().join("t.toml");
         std::fs::write(&path, format!("{HEAD}points = \"p.csv\"\nclosed = true\nlinkages = [\"four_bar\"]"))
             .unwrap();
-        TaskFile::read(&path).map_err(|e| e.diagnostics().list()[0].clone())
+        TaskFile::read(&path).map_err(|e| Box::new(e.diagnostics().list()[0].clone()))
     };
     for csv in
         ["x,y\n0,0\n10,5\n20,0\n", "0;0\n10;5\n20;0\n", "\u{feff}\"x [mm]\",\"y [mm]\"\n0,0\n10,5\n20,0"]
@@ -76,7 +76,7 @@ fn points_may_be_in_a_file() {
 }
 
 #[test]
-fn errors_are_told_at_their_places() {
+fn errors_are_reported_at_their_places() {
     for (body, expected) in [
         ("", vec![("HP0104", None)]),
         ("poses = 3", vec![("HP0105", Some(3))]),

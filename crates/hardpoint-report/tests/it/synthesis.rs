@@ -40,8 +40,10 @@ fn follow(file: &TaskFile, found: &Synthesis) -> Vec<AnswerFact> {
         let analysis = Analysis::new(&model.model).unwrap();
         let solution = analysis.solve(Run::new());
         assert!(solution.stop.is_none());
-        let values = metrics(&analysis, &[], &solution).unwrap();
-        let of = |name: &str| values[model.model.metrics.iter().position(|m| m.name == name).unwrap()].value;
+        let values = metrics(&model.model, &solution);
+        let of = |name: &str| {
+            values[model.model.metrics.iter().position(|m| m.name == name).unwrap()].value.unwrap()
+        };
         let missed = of("missed_x").hypot(of("missed_y"));
         assert!((missed - answer.rms).abs() <= 1e-9 * found.size, "{missed:e} {:e}\n{text}", answer.rms);
         let least = of("least_transmission");

@@ -55,8 +55,8 @@ impl Passage {
 
 /// Sine of the transmission angle below which a linkage is at a dead point: one degree.
 const DEAD: f64 = 0.0175;
-/// Turn between two poses below which the crank stands still, rad.
-const STILL: f64 = 1e-6;
+/// Turn between two poses below which the crank is at rest, rad.
+const AT_REST: f64 = 1e-6;
 /// Links shorter than this part of the largest have no direction.
 const SHORT: f64 = 1e-6;
 /// Round-off of an arc's ends, rad.
@@ -100,7 +100,7 @@ pub fn passage(linkage: &Linkage, moves: &[Displacement], any_order: bool) -> Re
             if !stays {
                 return Err(Defect::Branch);
             }
-            let [up, down] = [1.0, -1.0].map(|s| turns.windows(2).all(|p| s * (p[1] - p[0]) > STILL));
+            let [up, down] = [1.0, -1.0].map(|s| turns.windows(2).all(|p| s * (p[1] - p[0]) > AT_REST));
             if !(up || down || any_order) {
                 return Err(Defect::Order);
             }
@@ -122,7 +122,7 @@ fn full_turns(raw: &[f64], any_order: bool) -> Result<Vec<f64>, Defect> {
         for pair in raw.windows(2) {
             let step = (direction * (pair[1] - pair[0])).rem_euclid(TAU);
             // The end of the turn is the first again.
-            let step = if step < STILL { step + TAU } else { step };
+            let step = if step < AT_REST { step + TAU } else { step };
             total += step;
             turns.push(direction * total);
         }

@@ -4,7 +4,7 @@
 //! shift since the first. A crank about the fixed pivot g keeps its length. Theory (67):
 //!
 //! ```text
-//! |W_k - g|^2 = |z - g|^2      <=>      Re(conj(z) (conj(e_k) s_k + (1 - conj(e_k)) g))  =  Re(conj(s_k) g) - |s_k|^2 / 2
+//! |W_k - g|^2 = |z - g|^2,    Re(conj(z) (conj(e_k) s_k + (1 - conj(e_k)) g))  =  Re(conj(s_k) g) - |s_k|^2 / 2
 //! ```
 //!
 //! One equation per further pose, linear in g for a given z and in z for a given g. With `u = u0 z`, `v = u0 g`,
@@ -77,7 +77,7 @@ const STEPS: usize = 30;
 const RANK: f64 = 1e-9;
 
 /// Cranks through the displacements, which are those of a task of size 1, whose pivots lie on the given lines
-/// `normal . g = distance`: four with five poses and no line, or four poses and one line, as many as are real.
+/// `normal . g = distance`: four with five poses and no line, or four poses and one line, those that are real.
 pub fn cranks(moves: &[Displacement], lines: &[(Complex, f64)]) -> Vec<Dyad> {
     // u0, u.x, u.y, v.x, v.y, s.x, s.y, constant
     let row = |m: &Displacement| {

@@ -10,7 +10,7 @@ use super::plane::Complex;
 
 /// Largest differences between the motion of a model and the poses of an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Followed {
+pub struct EngineDeviation {
     /// Distance of the guided point, m.
     pub distance: f64,
     /// Angle of the coupler, rad.
@@ -19,20 +19,20 @@ pub struct Followed {
 
 /// Compares the motion of a model with an answer: `body` is the name of its coupler, `steps` are the output times at
 /// which the poses are passed. `None` if the motion ended before, or there is no such body.
-pub fn followed(
+pub fn deviation_of_engine(
     model: &Model,
     solution: &Solution,
     answer: &Answer,
     body: &str,
     steps: &[usize],
-) -> Option<Followed> {
+) -> Option<EngineDeviation> {
     let body = BodyId(model.bodies.iter().position(|b| b.name == body)?);
     let design = BodyState::at_design(model, body).pose().inverse();
     let at = |step: usize, p: Complex| {
         let moved = (step < solution.motion.len()).then(|| solution.motion.at(step).body(body.0).pose())?;
         Some(moved.compose(design).point(Vec3::new(p.x, p.y, 0.0)))
     };
-    let mut found = Followed { distance: 0.0, angle: 0.0 };
+    let mut found = EngineDeviation { distance: 0.0, angle: 0.0 };
     for (moved, step) in answer.moves.iter().zip(steps) {
         let (p, c) = (answer.linkage.p, answer.linkage.p + Complex::new(1.0, 0.0));
         let [own, ahead] = [at(*step, p)?, at(*step, c)?];

@@ -1,8 +1,8 @@
 //! Four-bars and slider-cranks: positions in closed form, ranges, transmission angle and type.
 //!
 //! The crank turns about A and carries the pin B; the coupler joins B to C, which a rocker about D or a slider guides.
-//! With a the crank's length, b the coupler's, c the rocker's, g the ground's, psi the crank's angle and mu the angle at
-//! C between coupler and rocker (of a slider: between coupler and the normal of its line), theory (69):
+//! With a the crank's length, b the coupler's, c the rocker's, g the ground's, psi the crank's angle and mu the angle
+//! at C between coupler and rocker (of a slider: between coupler and the normal of its line), theory (69):
 //!
 //! ```text
 //! cos mu  =  p + q cos(psi - gamma)      rocker: p = (b^2 + c^2 - a^2 - g^2) / (2 b c),  q = a g / (b c)

@@ -6,7 +6,7 @@
 //! - `atlas` and `path`: coupler curves that resemble a path, and their exact least squares.
 //!
 //! [`synthesize`] returns [`Answer`]s, best first. An answer is geometry; its model is written and followed by the
-//! engine elsewhere (`hardpoint-report`), and [`followed`] compares that motion with the task.
+//! engine elsewhere (`hardpoint-report`), and [`deviation_of_engine`] compares that motion with the answer.
 
 mod atlas;
 pub mod defects;
@@ -28,7 +28,7 @@ use linkage::{Linkage, LinkageType};
 use path::Search;
 use plane::{Complex, Displacement, Pose};
 
-pub use follow::{Followed, followed};
+pub use follow::{EngineDeviation, deviation_of_engine};
 
 /// Aim of a synthesis.
 #[derive(Clone, Debug, PartialEq)]
@@ -186,7 +186,7 @@ pub struct Synthesis {
     pub four_bars: Tally,
     /// Numbers of slider-cranks.
     pub slider_cranks: Tally,
-    /// Linkages with defects, the least first, at most as many as answers.
+    /// Linkages with defects, the least first, at most the number of answers; of a path those that meet all points.
     pub rejections: Vec<Rejection>,
     /// Size of the task: the largest distance between two poses or points, m.
     pub size: f64,
@@ -426,7 +426,10 @@ fn one_pole(poses: &[Pose], size: f64) -> Option<Complex> {
     let pole = moves[0].pole();
     let reach = size.max((pole - poses[0].at).norm());
     let is_fixed = pole.is_finite() && moves.iter().all(|m| (m.of(pole) - pole).norm() <= COINCIDE * reach);
-    (is_fixed && reach < size.max(f64::MIN_POSITIVE) / COINCIDE || size == 0.0).then_some(pole)
+    // Round-off of a pole at the origin
+    let rounded = |x: f64| if x.abs() <= f64::EPSILON * 16.0 * reach { 0.0 } else { x };
+    (is_fixed && reach < size.max(f64::MIN_POSITIVE) / COINCIDE || size == 0.0)
+        .then(|| Complex::new(rounded(pole.x), rounded(pole.y)))
 }
 
 /// All dyads of the displacements, or samples of their families.

@@ -116,10 +116,10 @@ fn orthogonal_step(
 
 /// Normal equations at a point, with the turns eliminated.
 struct Normal {
-    /// Of the unknowns of the linkage.
+    /// Products of the unknowns of the linkage.
     matrix: Vec<Vec<f64>>,
     right: Vec<f64>,
-    /// Of each turn: its own square, its right-hand side, and its products with the unknowns.
+    /// Each turn: its square, its right-hand side, and its products with the unknowns.
     turns: Vec<(f64, f64, Vec<f64>)>,
 }
 
@@ -255,7 +255,7 @@ impl Lines {
         (rows, right)
     }
 
-    /// Newton's method from here, with the way fixed or free, and the number of its steps; `None` if it does not converge.
+    /// Newton's method from here, with the way fixed or free, and the number of steps; `None` if it does not converge.
     fn corrected(&self, mut at: Vec<f64>, is_fixed: bool) -> Option<(Vec<f64>, usize)> {
         for step in 0..=CORRECTIONS {
             let (rows, right) = self.linearized(&at);
@@ -417,17 +417,17 @@ impl Search {
         }
     }
 
-    /// Meets points exactly where there are few enough: the points move on straight lines from those that the linkage has
-    /// to those of the path, and the linkage follows. Nothing changes if it cannot.
+    /// Meets points exactly where there are few enough: the points move on straight lines from those that the linkage
+    /// has to those of the path, and the linkage follows. Nothing changes if it cannot.
     pub fn approach(&mut self, points: &[Complex]) {
         if let Some(lines) = self.lines(points) {
             self.exact = lines.approached(self.state()).map(|at| lines.met(&at));
         }
     }
 
-    /// Meets points exactly where a linkage meets as many, along the whole curve of linkages that meet points on those
-    /// lines and beyond: where the points turn back, the curve goes on. It leads out of the narrow valleys of the
-    /// squares. Nothing changes if the points of the path are not on it.
+    /// Meets the largest number of points that a linkage can meet, along the whole curve of linkages that meet points
+    /// on those lines and beyond: where the points turn back, the curve goes on. It leads out of the narrow valleys of
+    /// the squares. Nothing changes if the points of the path are not on it.
     pub fn follow(&mut self, points: &[Complex], more: &(dyn Fn() -> bool + Sync)) {
         if let Some(lines) = self.lines(points)
             && points.len() == lines.unknowns + 1

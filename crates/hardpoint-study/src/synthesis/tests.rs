@@ -284,7 +284,7 @@ fn other_branch(of: &Linkage) -> Displacement {
 }
 
 #[test]
-fn defects_are_told_apart() {
+fn defects_are_distinguished() {
     let with =
         |links: &Linkage, turns: &[f64]| turns.iter().map(|t| links.displacement(*t)).collect::<Vec<_>>();
     let grashof = crank_rocker();
