@@ -21,7 +21,7 @@ fn answers_are_models_with_pages_and_earlier_ones_are_removed() {
     );
     assert_eq!(bench.list("out"), ["1", "2", "3", "4", "answers.csv", "index.html", "summary.json"]);
     assert_eq!(bench.list("out/1"), ["model.toml", "report.html"]);
-    assert_eq!(bench.page("out/1/report.html")["model"]["name"], "lid 1");
+    assert!(bench.text("out/1/report.html").contains("lid 1"));
     let index = bench.text("out/index.html");
     assert!(index.contains("href=\"1/report.html\"") && index.contains("<svg"), "{index}");
     let summary = bench.json("out/summary.json");
