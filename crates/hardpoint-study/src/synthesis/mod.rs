@@ -25,7 +25,7 @@ use atlas::{AtlasType, Target, Trace};
 use defects::{Defect, Passage, passage};
 use dyads::Dyad;
 use linkage::{Linkage, LinkageType};
-use path::Search;
+use path::{FittedLinkage, LARGEST, Search};
 use plane::{Complex, Displacement, Pose};
 
 pub use follow::{EngineDeviation, deviation_of_engine};
@@ -205,8 +205,6 @@ const FIELD: f64 = 2.0;
 const SLIDERS: usize = 24;
 /// Pins and pivots of a family farther away, in sizes of the task, are left out.
 const PRACTICAL: f64 = 5.0;
-/// Extent of a linkage, in sizes of the path, above which it is left out.
-const LARGEST: f64 = 8.0;
 /// Starts of each type from the atlas, and steps of each.
 const STARTS: usize = 120;
 const TRIAL: usize = 20;
@@ -534,94 +532,117 @@ fn along_path(
     types.extend(task.four_bars.then_some(AtlasType::FourBar));
     types.extend(task.slider_cranks.then_some(AtlasType::SliderCrank));
 
-    let mut found = Synthesis { size, ..Synthesis::default() };
-    let mut good: Vec<(Answer, Linkage)> = Vec::new();
-    for fit in fits(&target, &types, more)? {
-        // The path of a four-bar is that of its cognates; with prescribed turns their cranks are others.
-        let mut all = Vec::new();
-        for (linkage, moves, rms) in fit.found() {
-            let cognates = if turns.is_none() { linkage.cognates(&moves) } else { Vec::new() };
-            all.push((linkage, moves, rms));
-            all.extend(cognates.into_iter().map(|(linkage, moves)| (linkage, moves, rms)));
+    let mut judge = PathJudge {
+        task,
+        frame: &frame,
+        own: &own,
+        is_timed: turns.is_some(),
+        full_turn: task.full_turn || is_closed,
+        found: Synthesis { size, ..Synthesis::default() },
+        good: Vec::new(),
+    };
+    for mut fit in fits(&target, &types, more)? {
+        if !more() {
+            return Err(TaskError::Interrupted);
         }
-        let mut is_met = false;
-        for (linkage, moves, rms) in all {
-            // The nearest is of no use where an exact one is good.
-            if is_met && rms > 0.0 {
-                continue;
-            }
-            if !(linkage.extent() < LARGEST) {
-                continue;
-            }
-            let tally = match linkage.guide {
-                linkage::Guide::Rocker(_) => &mut found.four_bars,
-                linkage::Guide::Slider(_) => &mut found.slider_cranks,
-            };
-            tally.made += 1;
-            // With free timing either side may drive.
-            let other = linkage.swapped().filter(|_| turns.is_none());
-            let full_turn = task.full_turn || is_closed;
-            let (score, linkage, passage) =
-                match driven([Some(linkage), other], &moves, task.any_order, full_turn) {
-                    Driven::Well(best) => best,
-                    Driven::Rocking => {
-                        tally.rocking += 1;
-                        continue;
-                    }
-                    Driven::Not(defect) => {
-                        tally.defects[defect as usize] += 1;
-                        let outward = frame.linkage_outward(&linkage);
-                        let is_known = |r: &Rejection| is_alike(&r.linkage, &outward, MERGED * size);
-                        if rms <= EXACT
-                            && found.rejections.len() < task.answers
-                            && !found.rejections.iter().any(is_known)
-                        {
-                            found.rejections.push(Rejection { linkage: outward, defect });
-                        }
-                        continue;
-                    }
-                };
-            let outward = frame.linkage_outward(&linkage);
-            if !in_regions(task, &outward) {
-                tally.outside += 1;
-                continue;
-            }
-            tally.good += 1;
-            let far = moves.iter().zip(&own).map(|(m, p)| (m.of(linkage.p) - *p).norm()).fold(0.0, f64::max);
-            let answer = Answer {
-                linkage: outward,
-                moves: moves.iter().map(|m| frame.displacement_outward(*m)).collect(),
-                score,
-                passage,
-                kind: linkage.kind(),
-                rms: rms * size,
-                largest: far * size,
-            };
-            good.push((answer, linkage));
-            is_met |= fit.is_exact() && rms == 0.0;
+        // The nearest linkage is of no use where an exact one is good.
+        let is_met = fit.exact().is_some_and(|exact| judge.with_cognates(exact));
+        if !is_met {
+            fit.advance(&own, MOST_STEPS, true);
+            judge.with_cognates(fit.nearest());
         }
     }
-    // Answers that meet the points are ranked by their score, all others by their distance.
+    let PathJudge { mut found, mut good, .. } = judge;
+    // Answers that meet the points are ranked by their score, all others by their distance over their score: a linkage
+    // that jams is of no use, however near it comes.
     let is_met = |a: &Answer| a.largest <= task.tolerance || a.rms <= EXACT * size;
-    let level = |a: &Answer| if is_met(a) { 0.0 } else { a.rms };
-    good.sort_by(|(a, _), (b, _)| level(a).total_cmp(&level(b)).then(b.score.total_cmp(&a.score)));
+    let level = |a: &Answer| if is_met(a) { 0.0 } else { a.rms / a.score };
+    good.sort_by(|a, b| level(a).total_cmp(&level(b)).then(b.score.total_cmp(&a.score)));
     // Fewer than nine points are met by families.
     let is_family = points.len() < 9 && turns.is_none();
-    for (answer, linkage) in good {
+    for answer in good {
         let alike = match () {
             () if is_family => ALIKE,
             () if answer.rms > EXACT * size => MERGED,
             () => SAME,
         };
-        let is_known = found
-            .answers
-            .iter()
-            .any(|a| is_alike(&a.linkage, &frame.linkage_outward(&linkage), alike * size));
+        let is_known = found.answers.iter().any(|a| is_alike(&a.linkage, &answer.linkage, alike * size));
         if found.answers.len() < task.answers && !is_known {
             found.answers.push(answer);
         }
     }
     Ok(found)
+}
+
+/// Linkages that follow a path, and the numbers of those that do not.
+struct PathJudge<'a> {
+    task: &'a Task,
+    frame: &'a Frame,
+    /// Points in the coordinates of the frame.
+    own: &'a [Complex],
+    is_timed: bool,
+    full_turn: bool,
+    found: Synthesis,
+    good: Vec<Answer>,
+}
+
+impl PathJudge<'_> {
+    /// Judges a linkage and its cognates, which have the same path; with prescribed turns their cranks are others. True
+    /// if one of them is good.
+    fn with_cognates(&mut self, (linkage, moves, rms): FittedLinkage) -> bool {
+        let cognates = if self.is_timed { Vec::new() } else { linkage.cognates(&moves) };
+        let all = std::iter::once((linkage, moves)).chain(cognates);
+        all.fold(false, |is_good, (linkage, moves)| self.one(linkage, &moves, rms) || is_good)
+    }
+
+    fn one(&mut self, linkage: Linkage, moves: &[Displacement], rms: f64) -> bool {
+        let (task, frame, size) = (self.task, self.frame, self.found.size);
+        if !(linkage.extent() < LARGEST) {
+            return false;
+        }
+        let tally = match linkage.guide {
+            linkage::Guide::Rocker(_) => &mut self.found.four_bars,
+            linkage::Guide::Slider(_) => &mut self.found.slider_cranks,
+        };
+        tally.made += 1;
+        // With free timing either side may drive.
+        let other = linkage.swapped().filter(|_| !self.is_timed);
+        let (score, linkage, passage) =
+            match driven([Some(linkage), other], moves, task.any_order, self.full_turn) {
+                Driven::Well(best) => best,
+                Driven::Rocking => {
+                    tally.rocking += 1;
+                    return false;
+                }
+                Driven::Not(defect) => {
+                    tally.defects[defect as usize] += 1;
+                    let outward = frame.linkage_outward(&linkage);
+                    let rejections = &mut self.found.rejections;
+                    let is_known = rejections.iter().any(|r| is_alike(&r.linkage, &outward, MERGED * size));
+                    if rms <= EXACT && rejections.len() < task.answers && !is_known {
+                        rejections.push(Rejection { linkage: outward, defect });
+                    }
+                    return false;
+                }
+            };
+        let outward = frame.linkage_outward(&linkage);
+        if !in_regions(task, &outward) {
+            tally.outside += 1;
+            return false;
+        }
+        tally.good += 1;
+        let far = moves.iter().zip(self.own).map(|(m, p)| (m.of(linkage.p) - *p).norm()).fold(0.0, f64::max);
+        self.good.push(Answer {
+            linkage: outward,
+            moves: moves.iter().map(|m| frame.displacement_outward(*m)).collect(),
+            score,
+            passage,
+            kind: linkage.kind(),
+            rms: rms * size,
+            largest: far * size,
+        });
+        true
+    }
 }
 
 /// Searches from the starts of each type in the atlas; those that come nearest are completed.
@@ -643,7 +664,6 @@ fn fits(
                 searches.push(search);
             }
         }
-        searches.retain(|s| s.linkage().extent() < 2.0 * LARGEST);
         searches.sort_by(|a, b| a.rms().total_cmp(&b.rms()));
         let mut kept: Vec<Search> = Vec::new();
         for search in searches {

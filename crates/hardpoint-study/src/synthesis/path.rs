@@ -38,8 +38,8 @@ const FIRST_ARC: f64 = 0.01;
 const LARGEST_ARC: f64 = 0.25;
 const LEAST_ARC: f64 = 1e-7;
 const ON_CURVE: f64 = 1e-13;
-/// Joints farther away end a curve, in sizes of the path.
-const FARTHEST: f64 = 10.0;
+/// Extent of a linkage, in sizes of the path, that no step may exceed.
+pub const LARGEST: f64 = 8.0;
 
 /// Unknowns of a linkage as numbers: A, B, C, the guide, P.
 fn parameters(of: &Linkage) -> Vec<f64> {
@@ -305,7 +305,7 @@ impl Lines {
         before[last] = 1.0;
         let mut arc = FIRST_ARC;
         for _ in 0..CURVE_STEPS {
-            if arc < LEAST_ARC || !more() || at.iter().any(|x| x.abs() > FARTHEST) {
+            if arc < LEAST_ARC || !more() || at.iter().any(|x| x.abs() > LARGEST) {
                 return None;
             }
             let tangent = self.tangent(&at, &before);
@@ -353,6 +353,10 @@ impl Lines {
     }
 }
 
+/// Linkage in the configuration of the first point, displacements of its coupler since then, and the root mean square of
+/// the distances.
+pub type FittedLinkage = (Linkage, Vec<Displacement>, f64);
+
 /// A search from a start, for a path of size 1.
 #[derive(Clone, Debug)]
 pub struct Search {
@@ -393,13 +397,15 @@ impl Search {
         self.exact.is_some()
     }
 
-    /// Linkages in the configuration of the first point, each with the displacements of its coupler since then and the
-    /// root mean square of its distances: that which meets the points exactly, if it was found, and the nearest.
-    pub fn found(&self) -> Vec<(Linkage, Vec<Displacement>, f64)> {
+    /// Linkage that meets the points exactly, if it was found.
+    pub fn exact(&self) -> Option<FittedLinkage> {
+        self.exact.as_ref().map(|(linkage, moves)| (*linkage, moves.clone(), 0.0))
+    }
+
+    /// The nearest linkage that was found by steps.
+    pub fn nearest(&self) -> FittedLinkage {
         let own = self.linkage();
-        let moves = self.turns.iter().map(|t| own.displacement(*t)).collect();
-        let exact = self.exact.iter().map(|(linkage, moves)| (*linkage, moves.clone(), 0.0));
-        exact.chain([(own, moves, self.rms())]).collect()
+        (own, self.turns.iter().map(|t| own.displacement(*t)).collect(), self.rms())
     }
 
     /// The nearest linkage.
@@ -468,7 +474,7 @@ impl Search {
                 let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect::<Vec<f64>>();
                 let (x, turns) = (sum(&self.x, &by), sum(&self.turns, &turned));
                 let found = squares(&x, &turns, points);
-                if found < self.squares {
+                if found < self.squares && linkage(&x).extent() < LARGEST {
                     let rests = found > (1.0 - RESTS) * self.squares;
                     self.resting = if rests { self.resting + 1 } else { 0 };
                     (self.x, self.turns, self.squares) = (x, turns, found);
