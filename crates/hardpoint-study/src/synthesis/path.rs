@@ -353,8 +353,8 @@ impl Lines {
     }
 }
 
-/// Linkage in the configuration of the first point, displacements of its coupler since then, and the root mean square of
-/// the distances.
+/// Linkage in the configuration of the first point, displacements of its coupler since then, and the root mean square
+/// of the distances.
 pub type FittedLinkage = (Linkage, Vec<Displacement>, f64);
 
 /// A search from a start, for a path of size 1.
