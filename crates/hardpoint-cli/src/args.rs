@@ -14,6 +14,7 @@ use serde::Deserialize;
 const AFTER: &str = "\
 Examples:
   hardpoint new strut --template macpherson
+  hardpoint synthesize models/tasks/tailgate.toml -o results/tailgate
   hardpoint check models/macpherson.toml
   hardpoint import four_bar.asmt -o four_bar.toml
   hardpoint run models/macpherson.toml -o results/macpherson
@@ -31,7 +32,8 @@ Exit codes:
     0  done; for verify: every variable passed
     1  verify: a sensitivity and its re-solved designs disagree;
        clearance: shapes are nearer than required;
-       optimize: the search did not converge, or limits are violated
+       optimize: the search did not converge, or limits are violated;
+       synthesize: no linkage fulfils the task
     2  invalid command line
     3  the model file cannot be read, or has errors
     4  the mechanism cannot be driven
@@ -61,6 +63,8 @@ pub struct Arguments {
 pub enum Command {
     /// Create a model from a template, with your own hardpoints if you have a table of them
     New(New),
+    /// Find linkages for poses of a body or points of a path, and write a model of each
+    Synthesize(Synthesize),
     /// Solve the motion and its sensitivities; write tables, a summary and an interactive report
     Run(Run),
     /// Check a model: mobility, loops, redundant constraints, margins, admissibility of the design variables
@@ -176,6 +180,48 @@ pub struct New {
     /// Axes of the table, by name or in words
     #[arg(long, value_name = "AXES", requires = "hardpoints")]
     pub axes: Option<String>,
+}
+
+const AFTER_SYNTHESIZE: &str = "\
+A task file has three to five poses of a body, or the points of a path:
+
+  name = \"tailgate\"
+  units = { length = \"mm\", angle = \"deg\" }
+  poses = [[0, 0, 0], [60, 90, 25], [70, 190, 60]]    # x, y, angle
+
+All four-bars and slider-cranks that have the poses are found (Burmester); three and four
+poses have infinitely many, of which samples are taken. Points are met exactly, or in the
+least squares. Every answer passes all poses in order, driven by its crank, without a dead
+point; its motion is solved and compared. docs/synthesis.md describes all keys.
+
+Files in the folder (without `-o`, nothing is written):
+  index.html               the answers with links to their pages
+  1/model.toml             the best answer, as a model for all other commands
+  1/report.html            its page
+  2/ ...                   the next ones
+  answers.csv              joints, transmission angles and distances of all answers
+  summary.json             the same, and the numbers of linkages with each defect
+
+Examples:
+  hardpoint synthesize models/tasks/tailgate.toml
+  hardpoint synthesize models/tasks/tailgate.toml -o results/tailgate
+  hardpoint synthesize models/tasks/tailgate.toml --answers 3 --json | jq '.answers[0]'";
+
+/// Options of `synthesize`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_SYNTHESIZE)]
+pub struct Synthesize {
+    /// The task file (TOML)
+    pub task: PathBuf,
+    /// Folder for the models and pages of the answers
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Number of answers [default: that of the file, or 10]
+    #[arg(long, value_name = "N")]
+    pub answers: Option<NonZero<usize>>,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub json: bool,
 }
 
 const AFTER_RUN: &str = "\

@@ -21,6 +21,7 @@ mod session;
 mod site;
 mod studio;
 mod sweep;
+mod synthesize;
 mod tables;
 mod text;
 mod tolerance;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
     };
     let outcome = match arguments.command {
         Command::New(options) => new::run(&options),
+        Command::Synthesize(options) => synthesize::run(&options),
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
         Command::Clearance(options) => clearance::run(&options),

@@ -104,6 +104,7 @@ fn card(session: &Session, model: &Path, folder: &mut Folder) -> Result<Card, Ou
         wrong: None,
         link: link(&name),
         more: pages,
+        picture: None,
     })
 }
 

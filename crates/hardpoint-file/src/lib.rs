@@ -46,8 +46,8 @@ mod write;
 pub use compose::{Plane, side_names};
 pub use hardpoint_table::{AngleUnit, LengthUnit, Units};
 pub use read::{
-    Appearance, Form, MeasuredData, Mesh, MeshFrame, ModelFile, ReadError, parse, parse_in, parse_with, read,
-    triangles,
+    Appearance, Form, MeasuredData, Mesh, MeshFrame, ModelFile, ReadError, TaskAim, TaskFile, TaskRegion,
+    parse, parse_in, parse_with, read, triangles,
 };
 pub use values::{Diagnostic, Diagnostics, LARGEST_FILE, Severity, Source, Texts};
 pub use write::{at_keys, hardpoint_in, hardpoints_in, placed, schema, with_keys};

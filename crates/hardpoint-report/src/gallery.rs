@@ -18,6 +18,8 @@ pub struct Card {
     pub link: String,
     /// Further pages of the model, one per case: name and address.
     pub more: Vec<(String, String)>,
+    /// Picture as SVG, made by this program.
+    pub picture: Option<String>,
 }
 
 /// Number of models that are shown without a field for a search.
@@ -50,6 +52,7 @@ field.addEventListener('input', () => {
 ///     wrong: None,
 ///     link: "ab.html".into(),
 ///     more: Vec::new(),
+///     picture: None,
 /// };
 /// assert!(gallery("Models", "Two bodies.", &[card]).contains(r#"<a href="ab.html">a &lt; b</a>"#));
 /// ```
@@ -68,6 +71,7 @@ impl Card {
         let link =
             |to: &str, name: &str| format!("<a href=\"{}\">{}</a>", escape_text(to), escape_text(name));
         let mut html = format!("<article class=\"model\"><h2>{}</h2>\n", link(&self.link, &self.title));
+        html += self.picture.as_deref().unwrap_or_default();
         if let Some(text) = &self.description {
             _ = writeln!(html, "<p>{}</p>", escape_text(text));
         }

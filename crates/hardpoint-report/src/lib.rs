@@ -16,6 +16,7 @@
 //! | [`tolerance`] | tolerance study: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
 //! | [`study`] | facts that several studies have |
 //! | [`sweep`], [`cells`] | result of a sweep: `summary.json`, and the columns of `designs` and `curves` |
+//! | [`synthesis`] | answers of a synthesis: their models, `answers.csv`, `summary.json` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
 //! | [`payload`], [`page`], [`encoding`] | `report.html` |
 //! | [`gallery`] | pages of all models, and of a model that cannot be shown |
@@ -48,6 +49,7 @@ mod shifts;
 pub mod study;
 pub mod summary;
 pub mod sweep;
+pub mod synthesis;
 pub mod tolerance;
 pub mod validity;
 pub mod verdict;

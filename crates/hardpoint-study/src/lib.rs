@@ -6,6 +6,7 @@
 //! - [`sweep`]: metrics of designs drawn at random or on a grid, with sensitivity indices.
 //! - [`grid`]: outputs and clearances over a grid of driver positions.
 //! - [`envelope`]: the space that a shape sweeps, as a closed surface.
+//! - [`synthesis`]: four-bars and slider-cranks from poses of a body, or from points of a path.
 //! - [`verify`]: exact sensitivities against differences of re-solved designs.
 //! - [`whatif`]: outputs of changed designs, predicted and solved.
 //!
@@ -80,6 +81,7 @@ pub mod grid;
 pub mod optimize;
 pub mod request;
 pub mod sweep;
+pub mod synthesis;
 pub mod tolerance;
 pub mod verify;
 pub mod whatif;

@@ -144,6 +144,7 @@ pub async fn gallery(studio: Arc<Studio>) -> Answer {
             title: e.title,
             description: e.description,
             file: e.file,
+            picture: None,
         };
         let cards: Vec<Card> = entries.into_iter().map(card).collect();
         let about = About {

@@ -25,6 +25,7 @@ fn help_has_examples_and_exit_codes() {
     for command in [
         "",
         "new",
+        "synthesize",
         "run",
         "check",
         "import",

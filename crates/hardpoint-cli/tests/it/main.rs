@@ -14,6 +14,7 @@ mod pdf;
 mod results;
 mod studio;
 mod sweep;
+mod synthesize;
 mod there_and_back;
 mod tolerance;
 mod whatif;

@@ -29,6 +29,7 @@ mod raw;
 mod readings;
 mod shapes;
 mod sweep;
+mod task;
 mod times;
 mod tolerance;
 mod wheels;
@@ -39,7 +40,11 @@ pub use mesh::triangles;
 pub use model_file::ModelFile;
 pub use parse::{ReadError, parse, parse_in, parse_with, read};
 
+pub use task::{TaskAim, TaskFile, TaskRegion};
+
 pub(crate) use model::MODEL;
 #[cfg(test)]
 pub(crate) use model::tables;
 pub(crate) use parse::parsed;
+#[cfg(test)]
+pub(crate) use task::task_tables;

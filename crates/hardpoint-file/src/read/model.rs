@@ -102,7 +102,7 @@ const CHANGE_POINTS: Shape = Shape::Words(&[
         "The motion continues smoothly if it can, and stops otherwise. At the change point, sensitivities and loads are undefined.",
     ),
 ]);
-const UNITS: Table = table! {
+pub(super) const UNITS: Table = table! {
     /// The units of all numbers in the file.
     "Units":
     /// Unit of every length.
@@ -235,9 +235,9 @@ pub(crate) fn model<'a>(
     raw
 }
 
-fn units(r: &mut Reader<'_>, model: &Fields<'_>) {
+pub(super) fn units(r: &mut Reader<'_>, model: &Fields<'_>) {
     let Some(f) = model.get("units") else {
-        let message = "the model has no `units`";
+        let message = format!("{} has no `units`", model.what);
         r.report("HP0104", model.at.clone(), message).help = Some(
             "add near the top `units = { length = \"mm\", angle = \"deg\" }`; lengths may be in mm, cm, m or in, \
              angles in deg or rad"

@@ -52,6 +52,12 @@ impl std::error::Error for ReadError {}
 /// # Errors
 /// Returns the errors of the file or of its model.
 pub fn read(path: &Path) -> Result<ModelFile, ReadError> {
+    let (text, name) = text_of(path)?;
+    parse_in(path.parent(), &text, &name).map_err(ReadError::Invalid)
+}
+
+/// Text of a file, and its name.
+pub(super) fn text_of(path: &Path) -> Result<(String, String), ReadError> {
     let name = path.display().to_string();
     let bytes = bytes_of(path).map_err(|(message, note, help)| {
         let source = Source::new(&name, "");
@@ -61,7 +67,7 @@ pub fn read(path: &Path) -> Result<ModelFile, ReadError> {
         ReadError::Unreadable(Diagnostics::new(source, vec![d]))
     })?;
     match String::from_utf8(bytes) {
-        Ok(text) => parse_in(path.parent(), &text, &name).map_err(ReadError::Invalid),
+        Ok(text) => Ok((text, name)),
         Err(error) => {
             let valid = error.utf8_error().valid_up_to();
             let bytes = error.into_bytes();
@@ -232,7 +238,11 @@ pub(crate) fn parsed(folder: Folder<'_>, text: &str, file_name: &str) -> Result<
 }
 
 /// Reports the syntax errors of a TOML file.
-fn syntax_errors(source: &Source, errors: &[toml::de::Error], file: &Range<usize>) -> Vec<Diagnostic> {
+pub(super) fn syntax_errors(
+    source: &Source,
+    errors: &[toml::de::Error],
+    file: &Range<usize>,
+) -> Vec<Diagnostic> {
     let mut list: Vec<Diagnostic> = Vec::new();
     let mut last = (0, "");
     for error in errors {

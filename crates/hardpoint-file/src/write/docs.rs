@@ -2,7 +2,7 @@
 
 use hardpoint::joint::Quantity;
 
-use crate::read::tables;
+use crate::read::{tables, task_tables};
 use crate::values::{Key, Kinds, Need, Shape, noun, several};
 
 /// Row of a key: name, form of the value, default, and meaning.
@@ -37,6 +37,7 @@ fn words(shape: Shape) -> String {
         Shape::List(of, [2, 2]) => format!("two {}", many(*of)),
         Shape::List(of, [3, 3]) => format!("three {}", many(*of)),
         Shape::List(of, [4, 4]) => format!("four {}", many(*of)),
+        Shape::List(Shape::List(of, [3, 3]), _) => format!("list of triples of {}", many(**of)),
         Shape::List(Shape::List(of, _), _) => format!("list of pairs of {}", many(**of)),
         Shape::List(of, _) => format!("list of {}", many(*of)),
         Shape::Entries(_, of) => format!("table of names and {}", many(*of)),
@@ -95,11 +96,18 @@ fn typed(kinds: &Kinds) -> String {
 }
 
 #[test]
-fn the_tables_of_the_document_are_those_that_are_declared() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/file-format.md");
+fn the_tables_of_the_documents_are_those_that_are_declared() {
+    declared_in("file-format.md", &tables());
+    declared_in("synthesis.md", &task_tables());
+}
+
+/// Checks the tables of a document, or writes them.
+#[cfg(test)]
+fn declared_in(document: &str, tables: &[(&str, Shape)]) {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(document);
     let text = std::fs::read_to_string(&path).unwrap();
     let mut expected = text.clone();
-    for (name, of) in tables() {
+    for (name, of) in tables {
         let table = match of {
             Shape::Table(table) => keys(table.keys()),
             Shape::Kinds(kinds) if kinds.typed => typed(kinds),
@@ -114,5 +122,5 @@ fn the_tables_of_the_document_are_those_that_are_declared() {
     if std::env::var_os("UPDATE_DOCS").is_some() {
         std::fs::write(&path, &expected).unwrap();
     }
-    assert!(text == expected, "run the tests with UPDATE_DOCS=1 and commit docs/file-format.md");
+    assert!(text == expected, "run the tests with UPDATE_DOCS=1 and commit docs/{document}");
 }

@@ -47,6 +47,7 @@ mod studies;
 mod sweeps;
 mod synthesis;
 mod tape;
+mod tasks;
 mod tolerances;
 mod tube;
 mod wheels;

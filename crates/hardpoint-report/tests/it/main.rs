@@ -9,6 +9,7 @@ mod opening;
 mod rockers;
 mod shapes;
 mod shown;
+mod synthesis;
 mod weight;
 mod whatif;
 mod windows;
