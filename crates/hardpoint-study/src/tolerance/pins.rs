@@ -4,7 +4,7 @@
 //! body j is off by `c F / abs(F)`, the part of F perpendicular to the axis for a pin.
 
 use hardpoint::load::Loads;
-use hardpoint::model::{Change, JointId, Model, Tolerance, ToleranceSettings, VariableId};
+use hardpoint::model::{Change, JointId, Model, VariableId};
 use hardpoint::space::Vec3;
 
 use super::Study;
