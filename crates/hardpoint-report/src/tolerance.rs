@@ -25,6 +25,8 @@ const BAND: f64 = 3.0;
 const SLIGHT: f64 = 1e-3;
 /// Number of standard errors above which Monte Carlo and derivatives differ.
 const ERRORS: f64 = 3.0;
+/// Bands below this fraction of the curve's largest value are round-off.
+const NO_BAND: f64 = 1e-13;
 /// Number of bars in a histogram.
 const BARS: usize = 24;
 
@@ -88,6 +90,8 @@ record! {
     metrics: Vec<SpreadFact> = metrics;
     /// Metrics without a nominal value.
     unknown: Vec<String> = found.unknown.iter().map(|(m, _)| file.model.metrics[*m].name.clone()).collect();
+    /// Widest bands along the curves.
+    bands: Vec<BandFact> = found.curves.iter().filter_map(|c| BandFact::of_curve(studied, c)).collect();
     /// Pins with play that change sides under the loads of the nominal motions.
     side_changes: Vec<SideChangeFact> =
         found.side_changes.iter().map(|of| SideChangeFact::of(studied, of)).collect();
@@ -103,6 +107,42 @@ record! {
     files: Vec<String> = Vec::new();
     /// Duration, s.
     seconds: f64 = 0.0;
+}
+
+record! {
+    /// Widest band of a measure in one motion, to first order.
+    BandFact::of(studied: &ToleranceInputs<'_>, curve: &CurveBands, k: usize, by_sigma: usize) {
+        let (model, units) = (studied.model(), studied.units());
+        let dimension = model.dimension(OutputSource::Measure(curve.measure));
+        let largest = curve.bands.iter().map(|b| b.nominal.abs()).fold(0.0, f64::max);
+        let shown = |x: f64| if x <= NO_BAND * largest { 0.0 } else { units.from_si(dimension, x) };
+    }
+    /// Name of the measure.
+    measure: String = model.measures[curve.measure].name.clone();
+    /// Name of the case; `null` if the model has no cases.
+    case: Option<String> = studied.case(curve.motion);
+    /// Unit.
+    unit: String = unit(units, dimension);
+    /// Greatest worst-case deviation to either side.
+    worst: f64 = shown(0.5 * (curve.bands[k].worst[1] - curve.bands[k].worst[0]));
+    /// Time of it, s.
+    at: f64 = curve.times[k];
+    /// Greatest standard deviation.
+    sigma: f64 = shown(curve.bands[by_sigma].sigma);
+    /// Time of it, s.
+    sigma_at: f64 = curve.times[by_sigma];
+}
+
+impl BandFact {
+    fn of_curve(studied: &ToleranceInputs<'_>, curve: &CurveBands) -> Option<Self> {
+        let widest = |width: &dyn Fn(usize) -> f64| {
+            let known = (0..curve.bands.len()).filter(|k| width(*k).is_finite());
+            known.max_by(|a, b| width(*a).total_cmp(&width(*b)))
+        };
+        let worst = widest(&|k| curve.bands[k].worst[1] - curve.bands[k].worst[0])?;
+        let sigma = widest(&|k| curve.bands[k].sigma)?;
+        Some(Self::of(studied, curve, worst, sigma))
+    }
 }
 
 record! {
@@ -706,7 +746,20 @@ impl ToleranceFacts {
             ],
             self.metrics.iter().filter_map(|m| Some((m, m.sampled.as_ref()?))),
         );
-        let mut tables = vec![metrics];
+        let bands = Table::of(
+            "Bands along curves",
+            "The widest of each curve, to first order; all are in bands.csv.",
+            &[
+                ("measure", &|b: &&BandFact| titled(&b.measure, &b.case)),
+                ("worst case", &|b| format!("±{}", with_unit(b.worst, &b.unit))),
+                ("at t", &|b| format!("{} s", number(b.at))),
+                ("RSS", &|b| with_unit(b.sigma, &b.unit)),
+                ("at t", &|b| format!("{} s", number(b.sigma_at))),
+            ],
+            &self.bands,
+        );
+        let mut tables = if self.metrics.is_empty() { Vec::new() } else { vec![metrics] };
+        tables.extend(bands.if_any());
         tables.extend(sampled.if_any());
         for m in &self.metrics {
             let listed = m.contributions.iter().filter(|c| c.share.abs() >= SLIGHT);
