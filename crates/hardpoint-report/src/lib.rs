@@ -14,6 +14,7 @@
 //! | [`compare`] | `compare.json`, `.csv` and `.html`: comparison of two model files |
 //! | [`optimize`] | result of an optimisation: `summary.json` and tables |
 //! | [`tolerance`] | tolerance study: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
+//! | [`trade_off`] | front of a trade-off: `summary.json`, `front.csv` |
 //! | [`study`] | facts that several studies have |
 //! | [`sweep`], [`cells`] | result of a sweep: `summary.json`, and the columns of `designs` and `curves` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
@@ -49,6 +50,7 @@ pub mod study;
 pub mod summary;
 pub mod sweep;
 pub mod tolerance;
+pub mod trade_off;
 pub mod validity;
 pub mod verdict;
 pub mod whatif;

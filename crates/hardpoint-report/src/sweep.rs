@@ -12,7 +12,7 @@ use crate::cells::Cells;
 use crate::figures::{count, number, unit, variable_unit, with_unit};
 use crate::page::{Payload, SweepAxis, SweepIndex, SweepPlot, Table};
 use crate::record::{Column, record};
-use crate::study::{BeforeAfter, Evaluations, FailureFact, bar, case_name, percent, titled};
+use crate::study::{BeforeAfter, Evaluations, FailureFact, bar, case_name, percent, titled, with_brackets};
 
 /// Maximum number of designs that are plotted and ranked.
 pub const MAX_PLOTTED: usize = 5000;
@@ -446,11 +446,6 @@ fn plot(facts: &SweepFacts, drawn: PlottedDesigns) -> SweepPlot {
         axes: axes.chain(facts.metrics.iter().zip(drawn.metrics).map(metric)).collect(),
         indices: influences.filter_map(index).collect(),
     }
-}
-
-/// Name of a column with its unit in brackets; no brackets for a plain number.
-fn with_brackets(name: &str, unit: &str) -> String {
-    if unit.is_empty() || unit == "1" { name.into() } else { format!("{name} [{unit}]") }
 }
 
 fn common_divisor(a: usize, b: usize) -> usize {

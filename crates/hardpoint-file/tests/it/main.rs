@@ -1,6 +1,5 @@
 //! Model files: reading, diagnostics, and the models of the gallery compared with known results.
 
-mod trade_offs;
 mod bushings;
 mod calibrations;
 mod cases;
@@ -48,5 +47,6 @@ mod sweeps;
 mod synthesis;
 mod tape;
 mod tolerances;
+mod trade_offs;
 mod tube;
 mod wheels;

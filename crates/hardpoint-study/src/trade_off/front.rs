@@ -13,11 +13,15 @@ const COMMON: f64 = 1e-4;
 const NEAR: f64 = 0.1;
 /// A point nearer to a neighbour than this fraction of the gap is that neighbour.
 const SAME: f64 = 1e-2;
+/// Positions in a gap at which a point is sought; where none is between its neighbours, the front has a jump.
+const POSITIONS: [f64; 3] = [0.5, 0.2, 0.8];
 /// Weight of a goal below which a point is at an end of the front.
 const NO_WEIGHT: f64 = 1e-6;
-/// Loss in a goal, as a fraction of its range, that is accepted at an end of the front where the design with its optimum
-/// is not unique. The rate of exchange is finite there.
-const END_LOSS: f64 = 1e-4;
+/// Losses in a goal, as fractions of its range, that lead to an end of the front where the design with its optimum is
+/// not unique; the last one is accepted there. The rate of exchange is finite with it.
+const END_LOSSES: [f64; 3] = [1e-1, 1e-2, 1e-3];
+/// A goal of squares with a misfit below this fraction of its range is met. In general many designs meet it.
+const MET: f64 = 1e-4;
 /// Differences of goals, as fractions of their ranges, that are round-off of the searches.
 const ROUND_OFF: f64 = 1e-9;
 /// A neighbour takes part in an interpolation if its gap is at most this much wider.
@@ -28,13 +32,16 @@ const ALIKE: f64 = 4.0;
 struct Node {
     solved: Solved,
     anchor: Option<usize>,
+    /// True if it is the optimum of this goal alone.
+    is_alone: bool,
     designs: usize,
 }
 
 /// Gap between two neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Gap {
-    Open,
+    /// Points may be in it; the number of positions at which none was found.
+    Open(usize),
     /// The front has a jump here.
     Jump,
     /// No point was found.
@@ -72,8 +79,9 @@ pub(super) struct Front<'p> {
 }
 
 impl<'p> Front<'p> {
-    /// Front between the optima of the goals, given as fractions of the bounds; `None` if they cannot be evaluated.
-    pub fn new(memory: &'p Memory<'p>, anchors: Vec<Vec<f64>>) -> Option<Self> {
+    /// Front between the optima of the goals, given as fractions of the bounds; `None` if they cannot be evaluated. The
+    /// derivatives at the nominal design are examples of steep ones.
+    pub fn new(memory: &'p Memory<'p>, anchors: Vec<Vec<f64>>, nominal: Option<&State>) -> Option<Self> {
         let problem = memory.problem;
         let points = anchors.iter().map(|x| memory.at(x, |found| found.as_ref().ok().cloned()));
         let points: Vec<_> = points.collect::<Option<_>>()?;
@@ -91,17 +99,35 @@ impl<'p> Front<'p> {
             })
         };
         let states: Vec<State> = (0..count).map(|goal| states[best(goal)].clone()).collect();
-        let scale = scale_of(&states);
+        let examples: Vec<&State> = states.iter().chain(nominal).collect();
+        let steepest: Vec<f64> =
+            (0..count).map(|k| examples.iter().map(|s| s.steepest()[k]).fold(0.0, f64::max)).collect();
+        let scale = scale_of(&states, &steepest);
         let node = |(goal, state): (usize, State)| {
             let mut weights = vec![0.0; count];
             weights[goal] = 1.0;
             let criticality = state.criticality(&scale, &[goal], &[]);
             let curvatures = Curvatures::of_weights(&state, &scale, &weights);
-            Node { solved: Solved { state, criticality, curvatures }, anchor: Some(goal), designs: 0 }
+            Node {
+                solved: Solved { state, criticality, curvatures },
+                anchor: Some(goal),
+                is_alone: true,
+                designs: 0,
+            }
         };
         let anchors = states.into_iter().enumerate().map(node).collect();
         let (sides, inside) = (Vec::new(), Vec::new());
-        Some(Self { memory, limit_scales, scale, anchors, sides, inside, common: None, failed: 0, dominated: 0 })
+        Some(Self {
+            memory,
+            limit_scales,
+            scale,
+            anchors,
+            sides,
+            inside,
+            common: None,
+            failed: 0,
+            dominated: 0,
+        })
     }
 
     /// Finds points until there are `points`, with the anchors.
@@ -141,7 +167,7 @@ impl<'p> Front<'p> {
 
     fn side(&self, goals: [usize; 2]) -> Side {
         let nodes = goals.map(|k| self.anchors[k].clone()).into();
-        Side { goals, nodes, gaps: vec![Gap::Open] }
+        Side { goals, nodes, gaps: vec![Gap::Open(0)] }
     }
 
     fn is_degenerate(&self, side: &Side) -> bool {
@@ -172,13 +198,26 @@ impl<'p> Front<'p> {
 
     /// Finds points in the widest gaps first.
     fn fill_side(&mut self, side: &mut Side, points: usize, report: &mut dyn FnMut()) -> End {
+        for which in [0, 1] {
+            let at = if which == 0 { 0 } else { side.nodes.len() - 1 };
+            let Solved { state, criticality, .. } = &side.nodes[at].solved;
+            let goal = side.goals[which];
+            let is_met = state.curvature[goal].is_some() && state.goals[goal] <= MET * self.scale.range[goal];
+            if criticality.residual > ON_FRONT || is_met {
+                self.replace_optimum(side, which);
+            }
+        }
         while side.nodes.len() < points && !self.memory.interrupted() {
-            let open = (0..side.gaps.len()).filter(|k| side.gaps[*k] == Gap::Open);
+            let open = (0..side.gaps.len()).filter(|k| matches!(side.gaps[*k], Gap::Open(_)));
             let open = open.map(|k| (k, self.width(side, k))).filter(|(_, width)| *width > ROUND_OFF);
             // The first of equal gaps.
             let widest = open.reduce(|a, b| if b.1 > a.1 * (1.0 + ROUND_OFF) { b } else { a });
             let Some((k, width)) = widest else { break };
-            let Some(node) = self.between(side, k, width) else {
+            let Some(mut node) = self.between(side, k, width) else {
+                let alone = [0, 1].into_iter().find(|which| self.is_optimum(side, k, *which));
+                if alone.is_some_and(|which| self.replace_optimum(side, which)) {
+                    continue;
+                }
                 if !self.memory.interrupted() {
                     side.gaps[k] = Gap::Failed;
                     self.failed += 1;
@@ -189,20 +228,27 @@ impl<'p> Front<'p> {
                 self.common = Some(node);
                 return End::SinglePoint;
             }
-            if let Some(end) = self.end(side, &node, k) {
-                self.replace_end(side, k, end);
-                continue;
+            if let Some(which) = self.is_slack(side, &node, k) {
+                if self.replace_optimum(side, which) {
+                    continue;
+                }
+                // A better design with the same optimum.
+                (node.anchor, node.is_alone) = (Some(side.goals[which]), true);
             }
             let [low, high] = [k, k + 1].map(|k| self.along(side, &side.nodes[k]));
             let at = self.along(side, &node);
             let is_inside = at > low + SAME * (high - low) && at < high - SAME * (high - low);
             if !is_inside || side.nodes.iter().any(|other| self.dominates(side, other, &node)) {
-                side.gaps[k] = Gap::Jump;
+                side.gaps[k] = match side.gaps[k] {
+                    Gap::Open(tries) if tries + 1 < POSITIONS.len() => Gap::Open(tries + 1),
+                    Gap::Open(_) | Gap::Jump | Gap::Failed => Gap::Jump,
+                };
                 self.dominated += usize::from(is_inside);
                 continue;
             }
             side.nodes.insert(k + 1, node);
-            side.gaps.insert(k + 1, Gap::Open);
+            side.gaps[k] = Gap::Open(0);
+            side.gaps.insert(k + 1, Gap::Open(0));
             self.remove_dominated(side, k + 1);
             report();
         }
@@ -224,7 +270,7 @@ impl<'p> Front<'p> {
                 side.nodes.remove(at);
                 side.gaps.remove(at.min(side.gaps.len() - 1));
                 if at > 0 && at <= side.gaps.len() {
-                    side.gaps[at - 1] = Gap::Open;
+                    side.gaps[at - 1] = Gap::Open(0);
                 }
                 self.dominated += 1;
             } else {
@@ -233,35 +279,55 @@ impl<'p> Front<'p> {
         }
     }
 
-    /// The end of a side, if a point next to it shows that the optimum of a goal is not unique there: its weight is
-    /// all on this goal. The other goal is minimised with a slight loss in the first.
-    fn end(&self, side: &Side, node: &Node, k: usize) -> Option<Node> {
+    /// True if a point next to an end shows that the optimum of a goal is not unique there: its weight is all on this
+    /// goal. Returns which end.
+    fn is_slack(&self, side: &Side, node: &Node, k: usize) -> Option<usize> {
         let weights = side.goals.map(|goal| node.solved.criticality.weights[goal]);
-        let ends = [(0, k == 0), (1, k + 2 == side.nodes.len())];
-        let (which, _) = ends.into_iter().find(|(which, is_end)| {
-            *is_end && weights[1 - which] < NO_WEIGHT && side.nodes[k + which].solved.criticality.weights[side.goals[*which]] == 1.0
-        })?;
-        let values = node.solved.state.scaled(&self.scale);
-        let mut reference: Reference = vec![None; values.len()];
-        let [kept, other] = [side.goals[which], side.goals[1 - which]];
-        reference[kept] = Some([values[kept] + END_LOSS, 0.0]);
-        reference[other] = Some([values[other], 1.0]);
-        let before = self.memory.cost.borrow().designs;
-        let scalarization = self.scalarization(reference, 1.0);
-        let solved = scalarization.solve(node.solved.state.clone(), node.solved.curvatures.clone())?;
-        let designs = self.memory.cost.borrow().designs - before + node.designs;
-        (solved.criticality.residual <= ON_FRONT).then_some(Node { solved, anchor: Some(kept), designs })
+        [0, 1].into_iter().find(|which| self.is_optimum(side, k, *which) && weights[1 - which] < NO_WEIGHT)
     }
 
-    /// Puts a new end in place of the optimum of a goal, and measures the goals by their ranges over the new points.
-    fn replace_end(&mut self, side: &mut Side, k: usize, end: Node) {
-        let at = if k == 0 && end.anchor == Some(side.goals[0]) { 0 } else { side.nodes.len() - 1 };
-        side.nodes[at] = end;
-        side.gaps[k] = Gap::Open;
+    /// True if a gap ends at the optimum of one of the two goals alone.
+    fn is_optimum(&self, side: &Side, k: usize, which: usize) -> bool {
+        let (node, is_end) = match which {
+            0 => (&side.nodes[0], k == 0),
+            _ => (&side.nodes[side.nodes.len() - 1], k + 2 == side.nodes.len()),
+        };
+        is_end && node.is_alone
+    }
+
+    /// Replaces the optimum of a goal, where the design with this optimum is not unique or has no gradient, by the end
+    /// of the front: the design that minimises the other goal with a slight loss in the first. Returns false if it is
+    /// not found. The loss is reduced step by step, since designs with little of it are in a narrow curved valley.
+    fn replace_optimum(&mut self, side: &mut Side, which: usize) -> bool {
+        let [kept, other] = [side.goals[which], side.goals[1 - which]];
+        let at = if which == 0 { 0 } else { side.nodes.len() - 1 };
+        let before = self.memory.cost.borrow().designs;
+        let optimum = side.nodes[at].clone();
+        let least = optimum.solved.state.scaled(&self.scale)[kept];
+        let mut end = optimum.solved;
+        for loss in END_LOSSES {
+            let values = end.state.scaled(&self.scale);
+            let mut reference: Reference = vec![None; values.len()];
+            reference[kept] = Some([least + loss, 0.0]);
+            reference[other] = Some([values[other], 1.0]);
+            let scalarization = self.scalarization(reference, 1.0);
+            match scalarization.solve(end.state.clone(), end.curvatures.clone()) {
+                Some(solved) if solved.criticality.residual <= ON_FRONT => end = solved,
+                _ => return false,
+            }
+        }
+        let designs = self.memory.cost.borrow().designs - before;
+        side.nodes[at] = Node { solved: end, anchor: Some(kept), is_alone: false, designs };
+        let gap = if which == 0 { 0 } else { side.gaps.len() - 1 };
+        side.gaps[gap] = Gap::Open(0);
+        // The ranges of the goals are those over the new points.
         if self.anchors.len() == 2 {
             let states: Vec<State> = side.nodes.iter().map(|n| n.solved.state.clone()).collect();
-            self.scale = Scale { zero: self.scale.zero.clone(), ..scale_of(&states) };
+            let Scale { zero, range, steepest } = &self.scale;
+            let steepest: Vec<f64> = steepest.iter().zip(range).map(|(s, r)| s * r).collect();
+            self.scale = Scale { zero: zero.clone(), ..scale_of(&states, &steepest) };
         }
+        true
     }
 
     fn scalarization<'s>(&'s self, reference: Reference, near: f64) -> Scalarization<'s>
@@ -277,10 +343,14 @@ impl<'p> Front<'p> {
         }
     }
 
-    /// Point in the middle of a gap.
+    /// Point in a gap: in its middle, or else nearer to one of its ends.
     fn between(&self, side: &Side, k: usize, width: f64) -> Option<Node> {
         let [a, b] = [k, k + 1].map(|k| &side.nodes[k]);
-        let middle = 0.5 * (self.along(side, a) + self.along(side, b));
+        let position = match side.gaps[k] {
+            Gap::Open(tries) => POSITIONS[tries],
+            Gap::Jump | Gap::Failed => POSITIONS[0],
+        };
+        let middle = (1.0 - position) * self.along(side, a) + position * self.along(side, b);
         let mut reference: Reference = vec![None; self.scale.zero.len()];
         reference[side.goals[0]] = Some([0.5 * middle, 1.0]);
         reference[side.goals[1]] = Some([-0.5 * middle, 1.0]);
@@ -310,11 +380,10 @@ impl<'p> Front<'p> {
                 return None;
             }
             let Some(state) = scalarization.evaluate(&start) else { continue };
-            if std::env::var("TRACE").is_ok() { eprintln!("start {:?}", scalarization.reference); }
             let solved = scalarization.solve(state, curvatures.clone());
             if let Some(solved) = solved.filter(|s| s.criticality.residual <= ON_FRONT) {
                 let designs = self.memory.cost.borrow().designs - before;
-                return Some(Node { solved, anchor: None, designs });
+                return Some(Node { solved, anchor: None, is_alone: false, designs });
             }
         }
         None
@@ -323,7 +392,8 @@ impl<'p> Front<'p> {
     /// Design at a position in a gap, interpolated through up to four neighbours.
     fn interpolated(&self, side: &Side, k: usize, middle: f64) -> Vec<f64> {
         let width = self.width(side, k);
-        let is_alike = |k: usize| side.gaps[k] == Gap::Open && self.width(side, k) <= ALIKE * width;
+        let is_alike =
+            |k: usize| matches!(side.gaps[k], Gap::Open(_)) && self.width(side, k) <= ALIKE * width;
         let first = if k > 0 && is_alike(k - 1) { k - 1 } else { k };
         let last = if k + 1 < side.gaps.len() && is_alike(k + 1) { k + 2 } else { k + 1 };
         let knots: Vec<f64> = (first..=last).map(|k| self.along(side, &side.nodes[k])).collect();
@@ -331,7 +401,10 @@ impl<'p> Front<'p> {
         let is_ascending = knots.windows(2).all(|w| w[1] > w[0]);
         let value = |v: usize| {
             // A variable at the same bound on both sides is at that bound between them.
-            if !is_ascending || a[v] == b[v] {
+            if a[v] == b[v] {
+                return a[v];
+            }
+            if !is_ascending {
                 return 0.5 * (a[v] + b[v]);
             }
             let term = |i: usize| {
@@ -418,7 +491,8 @@ impl<'p> Front<'p> {
 
     /// Enters the points that no other dominates.
     pub fn into_result(self, result: &mut TradeOff) {
-        let Self { memory, limit_scales, scale, anchors, sides, inside, common, failed, mut dominated } = self;
+        let Self { memory, limit_scales, scale, anchors, sides, inside, common, mut failed, mut dominated } =
+            self;
         let mut nodes: Vec<(Node, Vec<f64>)> = Vec::new();
         let mut jumps = Vec::new();
         if let Some(common) = common {
@@ -452,10 +526,14 @@ impl<'p> Front<'p> {
             nodes.retain(|(_, values)| !is_dominated(values));
             dominated += before - nodes.len();
         }
+        // The optimum of a goal that is not smooth there does not satisfy the condition.
+        let every: Vec<usize> = (0..scale.zero.len()).collect();
+        let before = nodes.len();
+        nodes.retain(|(node, _)| node.solved.state.criticality(&scale, &every, &[]).residual <= ON_FRONT);
+        failed += before - nodes.len();
         nodes.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         let place = |goals: &Vec<f64>| nodes.iter().position(|(n, _)| n.solved.state.goals == *goals);
         result.jumps = jumps.iter().filter_map(|[a, b]| Some([place(a)?, place(b)?])).collect();
-        let every: Vec<usize> = (0..scale.zero.len()).collect();
         let point = |(node, _): &(Node, Vec<f64>)| {
             let state = &node.solved.state;
             // A point of a side has no weight on the third goal.
@@ -478,13 +556,11 @@ impl<'p> Front<'p> {
     }
 }
 
-/// Ranges of the goals over designs.
-fn scale_of(states: &[State]) -> Scale {
-    let goals = 0..states[0].goals.len();
+/// Ranges of the goals over designs, with the steepest derivatives of the goals in SI.
+fn scale_of(states: &[State], steepest: &[f64]) -> Scale {
+    let goals = 0..steepest.len();
     let values = |goal: usize| states.iter().map(move |s| s.goals[goal]);
     let zero: Vec<f64> = goals.clone().map(|k| values(k).fold(f64::INFINITY, f64::min)).collect();
-    let steepest: Vec<f64> =
-        goals.clone().map(|k| states.iter().map(|s| s.steepest()[k]).fold(0.0, f64::max)).collect();
     let range = |k: usize| {
         let range = values(k).fold(f64::NEG_INFINITY, f64::max) - zero[k];
         // A goal without conflict is measured by its change over the bounds.

@@ -93,9 +93,7 @@ impl State {
             let shares = || problem.goals.iter().zip(&point.shares).filter(|(g, _)| g.of == goal);
             let misfits = shares().flat_map(|(_, s)| s.misfits.clone());
             let rows: Vec<(f64, Vec<f64>)> = misfits
-                .map(|k| {
-                    (per_unit * point.misfits.values[k], by_parts(&point.misfits.d[k], per_unit))
-                })
+                .map(|k| (per_unit * point.misfits.values[k], by_parts(&point.misfits.d[k], per_unit)))
                 .collect();
             let plain: Vec<usize> = shares().flat_map(|(_, s)| s.plain.clone()).collect();
             if !rows.is_empty() {
@@ -195,12 +193,11 @@ impl State {
         steepest
     }
 
-    /// Functions with a role that attain their maximum.
+    /// Functions with a role that attain their maximum, up to a fraction of their change over the bounds.
     fn at_peak(&self, role: Role) -> Vec<&Function> {
-        let values = || self.of_role(role).map(|f| f.value);
-        let [most, least] =
-            [values().fold(f64::NEG_INFINITY, f64::max), values().fold(f64::INFINITY, f64::min)];
-        self.of_role(role).filter(|f| f.value >= most - BINDS * (most - least)).collect()
+        let steepest = self.of_role(role).flat_map(|f| &f.d).fold(0.0, |most: f64, d| most.max(d.abs()));
+        let most = self.greatest(role);
+        self.of_role(role).filter(|f| f.value >= most - BINDS * steepest).collect()
     }
 
     /// Distance from the condition that a design on the front of some goals satisfies:

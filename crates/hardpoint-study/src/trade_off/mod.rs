@@ -1,7 +1,7 @@
 //! Trade-off between goals: which designs are the best compromises, and what does one goal cost in the others?
 //!
 //! Input: a [`Request`] with two or three goals, bounds and limits. Output: a [`TradeOff`] with designs spread over the
-//! front, none better than another in all goals, each with its residual of the first-order condition (theory (T2)).
+//! front, none better than another in all goals, each with its residual of the first-order condition (theory (68)).
 //!
 //! ```text
 //! anchors (the optimum of each goal alone)  ->  points between neighbours, in the widest gaps first  ->  those not dominated
@@ -56,6 +56,24 @@ pub struct TradeOff {
     pub cost: StudyCost,
 }
 
+impl TradeOff {
+    /// Index of the balanced compromise: the point with the smallest largest loss, where the loss in a goal is its
+    /// distance from its minimum over the points, as a fraction of its range over them.
+    pub fn balanced(&self) -> Option<usize> {
+        let goals = 0..self.points.first()?.values.len();
+        let range = |k: usize| {
+            let values = self.points.iter().map(|p| p.values[k]);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
+        };
+        let ranges: Vec<[f64; 2]> = goals.map(range).collect();
+        let loss = |p: &FrontPoint| {
+            let goals = p.values.iter().zip(&ranges).filter(|(_, [low, high])| low < high);
+            goals.map(|(x, [low, high])| (x - low) / (high - low)).fold(0.0, f64::max)
+        };
+        (0..self.points.len()).min_by(|a, b| loss(&self.points[*a]).total_cmp(&loss(&self.points[*b])))
+    }
+}
+
 /// Outcome of a trade-off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
@@ -83,7 +101,7 @@ pub struct FrontPoint {
     /// Change of each goal, in SI units, per SI unit of the first goal along the front, if all others are constant: the
     /// ratio of the weights. `None` if the weight of the goal is zero.
     pub rates: Vec<Option<f64>>,
-    /// Residual of the first-order condition, theory (T2).
+    /// Residual of the first-order condition, theory (68).
     pub residual: f64,
     /// Index of the goal that has its optimum here.
     pub anchor: Option<usize>,
@@ -114,12 +132,14 @@ pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, contro
         anchor_designs: 0,
         cost: StudyCost::default(),
     };
+    let mut nominal = None;
     match problem.at(undesigned.clone(), &mut memory.cost.borrow_mut(), &go_on) {
         Ok(point) => {
             let scales = limit_scales(&problem, &point);
             result.nominal = Some(assess(&problem, &point, &scales));
             let state = functions::State::new(&problem, &scales, problem.parts(&undesigned), point);
-            result.nominal_values = Some(state.goals);
+            result.nominal_values = Some(state.goals.clone());
+            nominal = Some(state);
         }
         Err(refusal) => result.nominal_failure = Some(failed_design(undesigned, refusal)),
     }
@@ -157,7 +177,7 @@ pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, contro
             ended.store(true, std::sync::atomic::Ordering::Relaxed);
         }
     };
-    if let Some(mut front) = Front::new(&memory, anchors) {
+    if let Some(mut front) = Front::new(&memory, anchors, nominal.as_ref()) {
         let end = front.fill(*points, &mut report);
         result.outcome = match end {
             _ if memory.interrupted() => Outcome::Interrupted,

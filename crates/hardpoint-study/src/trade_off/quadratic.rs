@@ -108,8 +108,7 @@ pub(super) fn non_negative(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
         let before = u.clone();
         loop {
             let entry = |r: usize, c: usize| columns[passive[c]][r];
-            let solved =
-                least_squares([right.len(), passive.len()], entry, &[right.to_vec()]).swap_remove(0);
+            let solved = least_squares([right.len(), passive.len()], entry, &[right.to_vec()]).swap_remove(0);
             if solved.iter().all(|x| *x > 0.0) {
                 passive.iter().zip(solved).for_each(|(k, x)| u[*k] = x);
                 break;

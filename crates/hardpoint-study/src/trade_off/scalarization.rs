@@ -12,6 +12,7 @@
 use super::functions::{Criticality, Matrix, Role, Scale, State};
 use super::quadratic::{Linear, Minimum, dot, minimize, norm};
 use crate::optimize::{LIMIT_KEPT, Memory, Point};
+use crate::svd::{Singular, singular};
 use hardpoint::linalg::semidefinite;
 
 /// Residual at which a point of a front is found: a tenth of what is promised for each.
@@ -36,6 +37,8 @@ const SLIGHT: f64 = 1e-3;
 const FLAT: f64 = 1e-6;
 /// Minimum of the largest curvature: goals change by about one over the bounds.
 const LEAST_CURVATURE: f64 = 1e-2;
+/// Multiples of the largest curvature that are tried along the gradients of active functions.
+const AUGMENTATIONS: [f64; 5] = [0.0, 0.1, 1.0, 10.0, 100.0];
 /// Weight of the violation of limits at the start, which change by one over the bounds, relative to the goals.
 const PENALTY: f64 = 10.0;
 /// Largest such weight: limits that still are exceeded cannot be kept.
@@ -135,7 +138,7 @@ impl Scalarization<'_> {
                 return None;
             }
             let Some(mut step) = self.step(&here, &mut curvatures, radius, penalty) else { break };
-            while step.forces > 0.5 * penalty && penalty < MOST_PENALTY && violation > LIMIT_KEPT {
+            while step.forces > 0.5 * penalty && penalty < MOST_PENALTY {
                 penalty *= 10.0;
                 recent.clear();
                 match self.step(&here, &mut curvatures, radius, penalty) {
@@ -149,9 +152,6 @@ impl Scalarization<'_> {
                 break;
             }
             let x: Vec<f64> = here.x.iter().zip(&step.p).map(|(x, p)| (x + p).clamp(0.0, 1.0)).collect();
-            if std::env::var("TRACE").is_ok() {
-                eprintln!("  t {t:e} v {violation:e} r {:e} w {:?} apart {apart:e} near {:e} len {length:e} gain {:e} rad {radius:e} pen {penalty:e} {:?} {:?}", critical.residual, critical.weights, self.near, step.gain, here.x, here.scaled(self.scale));
-            }
             let Some(next) = self.evaluate(&x) else {
                 radius = SHRINK * length;
                 continue;
@@ -242,10 +242,8 @@ impl Scalarization<'_> {
             let Some([a, direction]) = *reference else { continue };
             let per_range = 1.0 / self.scale.range[goal];
             let smooth = state.of_role(Role::Goal(goal)).next();
-            let mut with: Vec<(usize, f64)> = (0..groups)
-                .filter(|g| state.groups[*g].0 == goal)
-                .map(|g| (u + g, 1.0))
-                .collect();
+            let mut with: Vec<(usize, f64)> =
+                (0..groups).filter(|g| state.groups[*g].0 == goal).map(|g| (u + g, 1.0)).collect();
             let free = if direction > 0.0 {
                 with.push((t, -direction));
                 a + direction * t0
@@ -299,7 +297,7 @@ impl Scalarization<'_> {
     /// ```
     ///
     /// The last sum does not act on the directions in which the active functions stay the same. It has the smallest
-    /// factor s that makes H positive definite; where none does, its diagonal is raised.
+    /// factor s that makes H positive definite; where none does, curvatures are replaced by their sizes, (H^2)^1/2.
     fn hessian(&self, state: &State, curvatures: &Curvatures) -> Matrix {
         let n = state.x.len();
         let mut h = vec![vec![0.0; n]; n];
@@ -334,15 +332,19 @@ impl Scalarization<'_> {
             }
             h
         };
-        let augmented = [0.0, 0.1, 1.0, 10.0, 100.0].into_iter().map(|s| with(s * largest, FLAT * largest));
-        let raised = (0..).map(|k| with(largest, 1e-3 * largest * 4.0_f64.powi(k)));
-        let mut all = augmented.chain(raised.take(12));
-        all.find(semidefinite_is_definite).unwrap_or_else(|| with(0.0, 1e6 * largest))
+        let mut augmented = AUGMENTATIONS.into_iter().map(|s| with(s * largest, FLAT * largest));
+        augmented.find(|h| semidefinite::is_definite(h)).unwrap_or_else(|| sizes_of(&h, FLAT * largest))
     }
 }
 
-fn semidefinite_is_definite(h: &Matrix) -> bool {
-    semidefinite::is_definite(h)
+/// The matrix `V |L| V^T` of a symmetric matrix `V L V^T`, with sizes of at least `least`.
+fn sizes_of(h: &Matrix, least: f64) -> Matrix {
+    let n = h.len();
+    let Singular { values, directions } = singular(h, n);
+    let entry = |i: usize, j: usize| {
+        values.iter().zip(&directions).map(|(s, v)| s.max(least) * v[i] * v[j]).sum::<f64>()
+    };
+    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
 /// Function or goal that a linear constraint belongs to.

@@ -337,7 +337,7 @@ impl Checker<'_> {
         }
     }
 
-    /// HP0237: limits of quantities that no variable changes.
+    /// HP0239: limits of quantities that no variable changes.
     fn check_ineffective_limits(&mut self, variables: &[VariableId], limits: &[(Here, Limit)]) {
         let (mut moved, mut joints): (BTreeSet<Source>, BTreeSet<JointId>) = Default::default();
         let model = &self.model;
@@ -385,7 +385,7 @@ impl Checker<'_> {
         let names = crate::draft::some_of(&names, ", ", LISTED_NAMES);
         for (at, limit, what) in fixed {
             let message = format!("limit `{limit}` applies to {what}, which no variable changes");
-            self.fault("HP0237", at, message)
+            self.fault("HP0239", at, message)
                 .note(format!("optimised variables: {names}"))
                 .help("add a variable with bounds that changes it, or remove the limit");
         }
