@@ -676,9 +676,9 @@ With --output it writes into the folder:
   summary.json  the printed results
 
 Examples:
-  hardpoint trade-off models/studies/bump_steer_trade_off.toml
-  hardpoint trade-off models/studies/bump_steer_trade_off.toml --points 60 --output out/front
-  hardpoint trade-off models/studies/bump_steer_trade_off.toml --save chosen.toml --point 4";
+  hardpoint trade-off models/studies/wishbone_trade_off.toml
+  hardpoint trade-off models/studies/wishbone_trade_off.toml --points 60 --output out/front
+  hardpoint trade-off models/studies/wishbone_trade_off.toml --save chosen.toml --point 4";
 
 /// `hardpoint trade-off`.
 #[derive(Args, Debug)]

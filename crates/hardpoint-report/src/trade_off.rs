@@ -172,8 +172,8 @@ record! {
     goals: Vec<f64> = point.values.iter().enumerate().map(|(g, x)| inputs.shown(g, *x)).collect();
     /// Weights of the goals as fractions of their ranges, for which the design is stationary; their sum is 1.
     weights: Vec<f64> = point.weights.clone();
-    /// Change of each goal per unit of the first along the front, if all others are constant; `null` if its weight
-    /// is 0.
+    /// Change of each goal per unit of the first along the front, if all others are constant; `null` if a weight
+    /// vanishes.
     rates: Vec<Option<f64>> = point.rates.iter().enumerate().map(rate).collect();
     /// Values of the variables, in the order of [`TradeOffFacts::variables`].
     variables: Vec<f64> = inputs.searched().iter().map(|v| inputs.value_of(*v, &assessment.design)).collect();
@@ -291,7 +291,8 @@ impl TradeOffFacts {
                 "trade-off between {between}: {designs}, none of which is better than another in all goals"
             ),
             Outcome::NoConflict => format!(
-                "{between} do not conflict: one design is the optimum of all of them; save it, or trade other goals"
+                "{between} do not conflict: one design is within a thousandth of the optimum of each; save it, or trade \
+                 other goals"
             ),
             Outcome::Interrupted if self.points.is_empty() => "interrupted before a design was found".into(),
             Outcome::Interrupted => format!("interrupted: {designs} of the front between {between} so far"),
@@ -317,7 +318,7 @@ impl TradeOffFacts {
             Some(format!("`{}` {} to {}", g.name, number(best), with_unit(worst, &g.unit)))
         };
         let ranges: Vec<String> = self.goals.iter().filter_map(range).collect();
-        if !ranges.is_empty() {
+        if self.points.len() > 1 {
             rows.push(("ranges", ranges.join(", ")));
         }
         if let Some(balanced) = self.balanced.map(|k| &self.points[k]).filter(|_| self.points.len() > 1) {

@@ -7,8 +7,11 @@ use crate::optimize::{Memory, assess, limit_scales};
 
 /// Range of a goal, relative to its change from the nominal design, below which it does not conflict with the others.
 const NO_CONFLICT: f64 = 1e-7;
-/// Distance from the optimum of all goals, as a fraction of their ranges, below which a design is that optimum.
-const COMMON: f64 = 1e-4;
+/// Losses in all goals, as fractions of their ranges, below which a design is the optimum of all of them.
+const COMMON: f64 = 1e-3;
+/// An optimum is not at the end of the front if the other goal gains more than this fraction of its range for the last of
+/// [`END_LOSSES`].
+const GAIN: f64 = 0.25;
 /// A point of a front lies within this fraction of a gap from the line of its reference.
 const NEAR: f64 = 0.1;
 /// A point nearer to a neighbour than this fraction of the gap is that neighbour.
@@ -204,7 +207,7 @@ impl<'p> Front<'p> {
             let goal = side.goals[which];
             let is_met = state.curvature[goal].is_some() && state.goals[goal] <= MET * self.scale.range[goal];
             if criticality.residual > ON_FRONT || is_met {
-                self.replace_optimum(side, which);
+                self.replace_optimum(side, which, None);
             }
         }
         while side.nodes.len() < points && !self.memory.interrupted() {
@@ -215,7 +218,7 @@ impl<'p> Front<'p> {
             let Some((k, width)) = widest else { break };
             let Some(mut node) = self.between(side, k, width) else {
                 let alone = [0, 1].into_iter().find(|which| self.is_optimum(side, k, *which));
-                if alone.is_some_and(|which| self.replace_optimum(side, which)) {
+                if alone.is_some_and(|which| self.replace_optimum(side, which, None)) {
                     continue;
                 }
                 if !self.memory.interrupted() {
@@ -229,11 +232,16 @@ impl<'p> Front<'p> {
                 return End::SinglePoint;
             }
             if let Some(which) = self.is_slack(side, &node, k) {
-                if self.replace_optimum(side, which) {
+                if self.replace_optimum(side, which, None) {
                     continue;
                 }
                 // A better design with the same optimum.
                 (node.anchor, node.is_alone) = (Some(side.goals[which]), true);
+            }
+            if let Some(which) = self.is_flat(side, &node, k)
+                && self.replace_optimum(side, which, Some(&node))
+            {
+                continue;
             }
             let [low, high] = [k, k + 1].map(|k| self.along(side, &side.nodes[k]));
             let at = self.along(side, &node);
@@ -286,6 +294,16 @@ impl<'p> Front<'p> {
         [0, 1].into_iter().find(|which| self.is_optimum(side, k, *which) && weights[1 - which] < NO_WEIGHT)
     }
 
+    /// The end of a side where a point shows that the other goal gains much for a slight loss in this one.
+    fn is_flat(&self, side: &Side, node: &Node, k: usize) -> Option<usize> {
+        [0, 1].into_iter().find(|which| {
+            let [found, optimum] = [node, &side.nodes[k + which]].map(|n| self.pair(side, n));
+            self.is_optimum(side, k, *which)
+                && found[*which] - optimum[*which] <= END_LOSSES[END_LOSSES.len() - 1]
+                && optimum[1 - which] - found[1 - which] > GAIN
+        })
+    }
+
     /// True if a gap ends at the optimum of one of the two goals alone.
     fn is_optimum(&self, side: &Side, k: usize, which: usize) -> bool {
         let (node, is_end) = match which {
@@ -297,15 +315,19 @@ impl<'p> Front<'p> {
 
     /// Replaces the optimum of a goal, where the design with this optimum is not unique or has no gradient, by the end
     /// of the front: the design that minimises the other goal with a slight loss in the first. Returns false if it is
-    /// not found. The loss is reduced step by step, since designs with little of it are in a narrow curved valley.
-    fn replace_optimum(&mut self, side: &mut Side, which: usize) -> bool {
+    /// not found. The loss is reduced step by step, since designs with little of it are in a narrow curved valley, unless
+    /// a design with so small a loss is known.
+    fn replace_optimum(&mut self, side: &mut Side, which: usize, known: Option<&Node>) -> bool {
         let [kept, other] = [side.goals[which], side.goals[1 - which]];
         let at = if which == 0 { 0 } else { side.nodes.len() - 1 };
         let before = self.memory.cost.borrow().designs;
         let optimum = side.nodes[at].clone();
         let least = optimum.solved.state.scaled(&self.scale)[kept];
-        let mut end = optimum.solved;
-        for loss in END_LOSSES {
+        let (mut end, losses) = match known {
+            Some(node) => (node.solved.clone(), &END_LOSSES[END_LOSSES.len() - 1..]),
+            None => (optimum.solved, &END_LOSSES[..]),
+        };
+        for loss in losses {
             let values = end.state.scaled(&self.scale);
             let mut reference: Reference = vec![None; values.len()];
             reference[kept] = Some([least + loss, 0.0]);
@@ -316,7 +338,7 @@ impl<'p> Front<'p> {
                 _ => return false,
             }
         }
-        let designs = self.memory.cost.borrow().designs - before;
+        let designs = self.memory.cost.borrow().designs - before + known.map_or(0, |n| n.designs);
         side.nodes[at] = Node { solved: end, anchor: Some(kept), is_alone: false, designs };
         let gap = if which == 0 { 0 } else { side.gaps.len() - 1 };
         side.gaps[gap] = Gap::Open(0);
@@ -539,7 +561,8 @@ impl<'p> Front<'p> {
             // A point of a side has no weight on the third goal.
             let Criticality { residual, weights } = state.criticality(&scale, &every, &[]);
             let per_unit: Vec<f64> = weights.iter().zip(&scale.range).map(|(w, range)| w / range).collect();
-            let rate = |k: usize| (per_unit[k] > 0.0).then(|| -per_unit[0] / per_unit[k]);
+            let has_weight = |k: usize| weights[k] > NO_WEIGHT;
+            let rate = |k: usize| (has_weight(0) && has_weight(k)).then(|| -per_unit[0] / per_unit[k]);
             FrontPoint {
                 assessment: assess(memory.problem, &state.point, &limit_scales),
                 values: state.goals.clone(),

@@ -99,7 +99,7 @@ pub struct FrontPoint {
     /// 1.
     pub weights: Vec<f64>,
     /// Change of each goal, in SI units, per SI unit of the first goal along the front, if all others are constant: the
-    /// ratio of the weights. `None` if the weight of the goal is zero.
+    /// ratio of the weights. `None` if one of the two weights vanishes.
     pub rates: Vec<Option<f64>>,
     /// Residual of the first-order condition, theory (68).
     pub residual: f64,
