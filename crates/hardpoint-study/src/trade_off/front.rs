@@ -1,7 +1,7 @@
 //! Points of a front, and where to look for the next.
 
 use super::functions::{Criticality, Scale, State};
-use super::scalarization::{Curvatures, Reference, Scalarization, Solved};
+use super::scalarization::{Curvatures, Flat, Reference, Scalarization, Solved};
 use super::{FrontPoint, ON_FRONT, TradeOff};
 use crate::optimize::{Memory, assess, limit_scales};
 
@@ -112,7 +112,7 @@ impl<'p> Front<'p> {
             let criticality = state.criticality(&scale, &[goal], &[]);
             let curvatures = Curvatures::of_weights(&state, &scale, &weights);
             Node {
-                solved: Solved { state, criticality, curvatures },
+                solved: Solved { flat: None, state, criticality, curvatures },
                 anchor: Some(goal),
                 is_alone: true,
                 designs: 0,
@@ -227,20 +227,26 @@ impl<'p> Front<'p> {
                 }
                 continue;
             };
-            if side.nodes.len() == 2 && self.pair(side, &node).iter().all(|f| *f <= COMMON) {
+            let is_found = node.solved.criticality.residual <= ON_FRONT;
+            if is_found && side.nodes.len() == 2 && self.pair(side, &node).iter().all(|f| *f <= COMMON) {
                 self.common = Some(node);
                 return End::SinglePoint;
             }
-            if let Some(which) = self.is_slack(side, &node, k) {
+            if node.solved.flat.is_none()
+                && let Some(which) = self.is_slack(side, &node, k)
+            {
                 if self.replace_optimum(side, which, None) {
                     continue;
                 }
                 // A better design with the same optimum.
                 (node.anchor, node.is_alone) = (Some(side.goals[which]), true);
             }
-            if let Some(which) = self.is_flat(side, &node, k)
-                && self.replace_optimum(side, which, Some(&node))
-            {
+            if let Some(flat) = node.solved.flat {
+                let which = usize::from(flat.goal == side.goals[1]);
+                if !self.replace_optimum(side, which, Some(&node)) {
+                    side.gaps[k] = Gap::Failed;
+                    self.failed += 1;
+                }
                 continue;
             }
             let [low, high] = [k, k + 1].map(|k| self.along(side, &side.nodes[k]));
@@ -294,14 +300,16 @@ impl<'p> Front<'p> {
         [0, 1].into_iter().find(|which| self.is_optimum(side, k, *which) && weights[1 - which] < NO_WEIGHT)
     }
 
-    /// The end of a side where a point shows that the other goal gains much for a slight loss in this one.
-    fn is_flat(&self, side: &Side, node: &Node, k: usize) -> Option<usize> {
-        [0, 1].into_iter().find(|which| {
-            let [found, optimum] = [node, &side.nodes[k + which]].map(|n| self.pair(side, n));
-            self.is_optimum(side, k, *which)
-                && found[*which] - optimum[*which] <= END_LOSSES[END_LOSSES.len() - 1]
-                && optimum[1 - which] - found[1 - which] > GAIN
-        })
+    /// Regions beside a gap in which the other goal gains much for a slight loss in one that has its optimum there.
+    fn flats(&self, side: &Side, k: usize) -> Vec<Flat> {
+        let ends = [0, 1].into_iter().filter(|which| self.is_optimum(side, k, *which));
+        let flat = |which: usize| {
+            let optimum = self.pair(side, &side.nodes[k + which]);
+            let most = optimum[which] + END_LOSSES[END_LOSSES.len() - 1];
+            let [goal, other] = [side.goals[which], side.goals[1 - which]];
+            Flat { goal, most, other, below: optimum[1 - which] - GAIN }
+        };
+        ends.map(flat).collect()
     }
 
     /// True if a gap ends at the optimum of one of the two goals alone.
@@ -362,6 +370,7 @@ impl<'p> Front<'p> {
             scale: &self.scale,
             reference,
             near,
+            flats: Vec::new(),
         }
     }
 
@@ -379,20 +388,20 @@ impl<'p> Front<'p> {
         let curvatures = Curvatures::between(&a.solved.curvatures, &b.solved.curvatures);
         let ends = [a, b].map(|n| &n.solved.state.x);
         let start = self.interpolated(side, k, middle);
-        self.solve(reference, NEAR * width, &start, ends, curvatures)
+        let scalarization =
+            Scalarization { flats: self.flats(side, k), ..self.scalarization(reference, NEAR * width) };
+        self.solve(&scalarization, &start, ends, curvatures)
     }
 
     /// Solves a scalar problem from a start, or else nearer to a known design.
     fn solve(
         &self,
-        reference: Reference,
-        near: f64,
+        scalarization: &Scalarization<'_>,
         start: &[f64],
         ends: [&Vec<f64>; 2],
         curvatures: Curvatures,
     ) -> Option<Node> {
         let before = self.memory.cost.borrow().designs;
-        let scalarization = self.scalarization(reference, near);
         let mix = |end: &Vec<f64>, part: f64| -> Vec<f64> {
             start.iter().zip(end).map(|(s, e)| s + part * (e - s)).collect()
         };
@@ -403,7 +412,8 @@ impl<'p> Front<'p> {
             }
             let Some(state) = scalarization.evaluate(&start) else { continue };
             let solved = scalarization.solve(state, curvatures.clone());
-            if let Some(solved) = solved.filter(|s| s.criticality.residual <= ON_FRONT) {
+            let is_found = |s: &Solved| s.flat.is_some() || s.criticality.residual <= ON_FRONT;
+            if let Some(solved) = solved.filter(is_found) {
                 let designs = self.memory.cost.borrow().designs - before;
                 return Some(Node { solved, anchor: None, is_alone: false, designs });
             }
@@ -457,9 +467,9 @@ impl<'p> Front<'p> {
                 };
                 let nearest = all.min_by(|a, b| distance(a).total_cmp(&distance(b)));
                 let Some(nearest) = nearest.cloned() else { return };
+                let reference = reference.iter().map(|a| Some([*a, 1.0])).collect();
                 let found = self.solve(
-                    reference.iter().map(|a| Some([*a, 1.0])).collect(),
-                    NEAR / m as f64,
+                    &self.scalarization(reference, NEAR / m as f64),
                     &start,
                     [&nearest.solved.state.x; 2],
                     nearest.solved.curvatures.clone(),

@@ -59,9 +59,21 @@ pub(super) struct Curvatures {
     multipliers: Vec<f64>,
 }
 
+/// Region of the goals in which a search ends, since the front does: this goal at most at one value, the other below
+/// another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flat {
+    pub goal: usize,
+    pub most: f64,
+    pub other: usize,
+    pub below: f64,
+}
+
 /// Design on the front.
 #[derive(Clone, Debug)]
 pub(super) struct Solved {
+    /// The region in which the search ended, before it found a point.
+    pub flat: Option<Flat>,
     pub state: State,
     pub criticality: Criticality,
     pub curvatures: Curvatures,
@@ -75,6 +87,8 @@ pub(super) struct Scalarization<'p> {
     pub reference: Reference,
     /// Distance between the goals and the line of the reference that is near enough.
     pub near: f64,
+    /// Regions in which the search ends.
+    pub flats: Vec<Flat>,
 }
 
 /// Step of the quadratic program.
@@ -137,6 +151,12 @@ impl Scalarization<'_> {
             if self.memory.interrupted() {
                 return None;
             }
+            let goals = here.scaled(self.scale);
+            let is_in = |f: &&Flat| is_kept && goals[f.goal] <= f.most && goals[f.other] < f.below;
+            if let Some(flat) = self.flats.iter().find(is_in) {
+                let flat = Some(*flat);
+                return Some(Solved { flat, state: here, criticality: critical, curvatures });
+            }
             let Some(mut step) = self.step(&here, &mut curvatures, radius, penalty) else { break };
             while step.forces > 0.5 * penalty && penalty < MOST_PENALTY {
                 penalty *= 10.0;
@@ -177,7 +197,7 @@ impl Scalarization<'_> {
                 break;
             }
         }
-        best.map(|(state, criticality)| Solved { state, criticality, curvatures })
+        best.map(|(state, criticality)| Solved { flat: None, state, criticality, curvatures })
     }
 
     /// Step of the quadratic model; its multipliers enter the second derivatives.
