@@ -422,12 +422,14 @@ fn plot(facts: &SweepFacts, drawn: PlottedDesigns) -> SweepPlot {
         name: v.name.clone(),
         unit: v.unit.clone(),
         metric: false,
+        nominal: Some(v.start),
         values: values.into_iter().collect(),
     };
     let metric = |(m, values): (&SweptFact, Vec<f64>)| SweepAxis {
         name: titled(&m.name, &m.case),
         unit: m.unit.clone(),
         metric: true,
+        nominal: None,
         values: values.into_iter().collect(),
     };
     let first = facts.variables.len();

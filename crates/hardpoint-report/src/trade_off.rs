@@ -477,12 +477,14 @@ impl TradeOffFacts {
             unit: g.unit.clone(),
             // The first goal is the abscissa.
             metric: k > 0,
+            nominal: None,
             values: self.points.iter().map(|p| p.goals[k]).collect(),
         };
         let variable = |(k, v): (usize, &TradedVariable)| SweepAxis {
             name: v.name.clone(),
             unit: v.unit.clone(),
             metric: false,
+            nominal: Some(v.nominal),
             values: self.points.iter().map(|p| p.variables[k]).collect(),
         };
         let goals = self.goals.iter().enumerate().map(goal);
