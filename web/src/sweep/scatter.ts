@@ -16,7 +16,7 @@ const TICK = 70
 /** A design is pointed at from so far, px. */
 const REACH = 24
 
-/** So few points are drawn larger. */
+/** Number of points below which they are drawn larger. */
 const FEW = 200
 
 /**

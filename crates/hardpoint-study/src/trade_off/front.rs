@@ -9,8 +9,8 @@ use crate::optimize::{Memory, assess, limit_scales};
 const NO_CONFLICT: f64 = 1e-7;
 /// Losses in all goals, as fractions of their ranges, below which a design is the optimum of all of them.
 const COMMON: f64 = 1e-3;
-/// An optimum is not at the end of the front if the other goal gains more than this fraction of its range for the last of
-/// [`END_LOSSES`].
+/// An optimum is not at the end of the front if the other goal gains more than this fraction of its range for the last
+/// of [`END_LOSSES`].
 const GAIN: f64 = 0.25;
 /// A point of a front lies within this fraction of a gap from the line of its reference.
 const NEAR: f64 = 0.1;
@@ -323,8 +323,8 @@ impl<'p> Front<'p> {
 
     /// Replaces the optimum of a goal, where the design with this optimum is not unique or has no gradient, by the end
     /// of the front: the design that minimises the other goal with a slight loss in the first. Returns false if it is
-    /// not found. The loss is reduced step by step, since designs with little of it are in a narrow curved valley, unless
-    /// a design with so small a loss is known.
+    /// not found. The loss is reduced step by step, since designs with little of it are in a narrow curved valley,
+    /// unless a design with so small a loss is known.
     fn replace_optimum(&mut self, side: &mut Side, which: usize, known: Option<&Node>) -> bool {
         let [kept, other] = [side.goals[which], side.goals[1 - which]];
         let at = if which == 0 { 0 } else { side.nodes.len() - 1 };
@@ -489,7 +489,7 @@ impl<'p> Front<'p> {
     /// Values on the surface spanned between the sides, at barycentric coordinates (a Coons patch on a triangle):
     ///
     /// ```text
-    /// P = (P_0 + P_1 + P_2 - L) / 2        P_k: linear along the lines parallel to side k,  L: linear between the corners
+    /// P = (P_0 + P_1 + P_2 - L) / 2     P_k: linear along the lines parallel to side k,  L: linear between corners
     /// ```
     fn spanned(&self, part: [f64; 3], of: impl Fn(&State) -> Vec<f64>) -> Vec<f64> {
         // Value on the side between two corners, at a part of the way.

@@ -4,7 +4,7 @@
 //! front, none better than another in all goals, each with its residual of the first-order condition (theory (68)).
 //!
 //! ```text
-//! anchors (the optimum of each goal alone)  ->  points between neighbours, in the widest gaps first  ->  those not dominated
+//! optimum of each goal alone  ->  points between neighbours, in the widest gaps first  ->  points not dominated
 //! ```
 //!
 //! Each point is the solution of a scalar problem ([`scalarization`]) that starts at a design interpolated between its
@@ -95,8 +95,8 @@ pub struct FrontPoint {
     /// Traded goals, SI: the metric, its distance from the target, or for several cases their sum or the root of the
     /// sum of squares.
     pub values: Vec<f64>,
-    /// Weights with which the sum of the goals, as fractions of their ranges, is stationary at this design; their sum is
-    /// 1.
+    /// Weights with which the sum of the goals, as fractions of their ranges, is stationary at this design; their sum
+    /// is 1.
     pub weights: Vec<f64>,
     /// Change of each goal, in SI units, per SI unit of the first goal along the front, if all others are constant: the
     /// ratio of the weights. `None` if one of the two weights vanishes.

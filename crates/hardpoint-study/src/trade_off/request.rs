@@ -37,8 +37,8 @@ impl Request {
     /// Minimum number of designs on a front of two and of three goals.
     const LEAST_POINTS: [usize; 2] = [3, 6];
 
-    /// Request for the trade-off of a model file, with overrides. Without `trade_off` in `[optimize]` it is about all of
-    /// its goals.
+    /// Request for the trade-off of a model file, with overrides. Without `trade_off` in `[optimize]` it is about all
+    /// of its goals.
     ///
     /// # Errors
     /// A [`RequestError`] unless there are two or three different goals, or if an override is invalid.
@@ -76,7 +76,8 @@ impl Request {
             (n, true) => {
                 return Err(RequestError::model(
                     format!("a trade-off is between two or three goals, and `[optimize]` has {n}"),
-                    "name those to trade, like `trade_off = [\"one\", \"other\"]` in `[optimize]`, and turn others into limits",
+                    "name those to trade, like `trade_off = [\"one\", \"other\"]` in `[optimize]`, and turn the \
+                     others into limits",
                 ));
             }
             (n, false) => {

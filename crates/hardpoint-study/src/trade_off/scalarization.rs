@@ -2,7 +2,7 @@
 //! Serafini; with the normal of the front's chord, the normal boundary intersection of Das and Dennis).
 //!
 //! ```text
-//! min t    so that    f_i(x) <= a_i + d_i t,    c(x) <= 0,    0 <= x <= 1          f: goals as fractions of their ranges
+//! min t    so that    f_i(x) <= a_i + d_i t,    c(x) <= 0,    0 <= x <= 1       f: goals as fractions of their ranges
 //! ```
 //!
 //! Sequential quadratic programming within a trust region, from the design between two neighbours on the front. The
@@ -46,8 +46,8 @@ const MOST_PENALTY: f64 = 1e8;
 /// Secants whose denominator is below this fraction of its factors are not used.
 const SECANT: f64 = 1e-6;
 
-/// Reference point and direction of the goals as fractions of their ranges; `None` for a goal that is not traded. A goal
-/// with direction 0 is a limit.
+/// Reference point and direction of the goals as fractions of their ranges; `None` for a goal that is not traded. A
+/// goal with direction 0 is a limit.
 pub(super) type Reference = Vec<Option<[f64; 2]>>;
 
 /// Second derivatives of all functions beyond those of linear residuals, and the weights of the goals.
