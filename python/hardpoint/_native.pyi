@@ -46,6 +46,16 @@ class Model:
     def optimize(
         self, first: int = 0, starts: int | None = None, iterations: int | None = None, workers: int | None = None, progress: _Progress = None
     ) -> tuple[str, list[float] | None, list[float] | None]: ...
+    def trade_off(
+        self,
+        goals: list[str],
+        points: int | None = None,
+        point: int | None = None,
+        starts: int | None = None,
+        iterations: int | None = None,
+        workers: int | None = None,
+        progress: _Progress = None,
+    ) -> tuple[str, list[float] | None, list[float] | None]: ...
     def tolerance(
         self,
         samples: int | None = None,

@@ -265,6 +265,25 @@ class Model:
         text, design, exact = self._native.optimize(0, starts, iterations, workers, listener(progress))
         return outcome(self, text, design, exact)
 
+    def trade_off(
+        self,
+        *,
+        goals: Iterable[str] = (),
+        points: int | None = None,
+        point: int | None = None,
+        starts: int | None = None,
+        iterations: int | None = None,
+        workers: int | None = None,
+        progress: Progress = None,
+    ) -> Study:
+        """Trades two or three goals of `[optimize]` against each other, in all cases (docs/trade-off.md).
+
+        `facts["points"]` lists the front; the study's design is that of `point`, by default the balanced compromise.
+        """
+        names = list(goals)
+        text, design, exact = self._native.trade_off(names, points, point, starts, iterations, workers, listener(progress))
+        return outcome(self, text, design, exact)
+
     def tolerance(
         self,
         *,

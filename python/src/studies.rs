@@ -14,6 +14,7 @@ use hardpoint_report::maps::MapFact;
 use hardpoint_report::optimize::{OptimizeFacts, rounded};
 use hardpoint_report::page::Table;
 use hardpoint_report::tolerance::{ToleranceFacts, ToleranceInputs, nominal_stop};
+use hardpoint_report::trade_off::{TradeOffFacts, TradeOffInputs};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_report::verdict::Verdict;
 use hardpoint_report::whatif::WhatIfFacts;
@@ -23,6 +24,7 @@ use hardpoint_study::grid::GridMap;
 use hardpoint_study::optimize::{self, optimize};
 use hardpoint_study::request::variable;
 use hardpoint_study::tolerance::{self, tolerance, toleranced_designs};
+use hardpoint_study::trade_off::{self, trade_off};
 use hardpoint_study::verify::{self, verify};
 use hardpoint_study::whatif::what_if;
 use hardpoint_study::{Control, Progress, RequestError, validity};
@@ -78,6 +80,36 @@ impl Model {
         let best = found.best.and_then(|k| found.searches[k].found.as_ref());
         let exact = best.map(|best| self.values_of(&best.design));
         let design = best.map(|best| self.values_of(&rounded(file, asked, &best.design)));
+        Ok((outcome(&facts, &facts.tables()), design, exact))
+    }
+
+    /// Trades goals against each other; the design is that of a point, by default of the balanced compromise.
+    #[pyo3(signature = (goals, points=None, point=None, starts=None, iterations=None, workers=None, progress=None))]
+    fn trade_off(
+        &self,
+        py: Python<'_>,
+        goals: Vec<String>,
+        points: Option<usize>,
+        point: Option<usize>,
+        starts: Option<usize>,
+        iterations: Option<usize>,
+        workers: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Searched> {
+        let (file, motions) = (&self.whole, self.motions()?);
+        let overrides = trade_off::Overrides { goals, points, starts, iterations };
+        let request = trade_off::Request::of(&file.model, overrides).map_err(Failure::from)?;
+        let found = patiently(py, progress, |watch| {
+            let mut progress = |p: Progress<'_>| watch.tell(p.done, p.total);
+            let more = || watch.more();
+            let control = Control { threads: threads(workers), progress: &mut progress, more: &more };
+            trade_off(&file.model, motions, &request, control)
+        })?;
+        let asked = &request.settings;
+        let facts = TradeOffFacts::of(&TradeOffInputs { file, asked, found: &found });
+        let chosen = point.or(facts.balanced).and_then(|k| found.points.get(k));
+        let exact = chosen.map(|p| self.values_of(&p.assessment.design));
+        let design = chosen.map(|p| self.values_of(&rounded(file, asked, &p.assessment.design)));
         Ok((outcome(&facts, &facts.tables()), design, exact))
     }
 

@@ -39,6 +39,17 @@ def test_optimize(command):
             assert a.metric(name) == pytest.approx(b.metric(name), rel=1e-9, abs=1e-9)
 
 
+def test_trade_off(command):
+    path = MODELS / "studies/wishbone_trade_off.toml"
+    study = hardpoint.read(path).trade_off(points=6, point=2)
+    same(study, printed(command("trade-off", path, "--points", 6, "--json")))
+    point = study.facts["points"][2]
+    names = [v["name"] for v in study.facts["variables"]]
+    assert [study.design[name] for name in names] == pytest.approx(point["variables"])
+    moved = hardpoint.read(path).run(dict(zip(names, point["variables"])))
+    assert [moved.metric(g["metric"]) for g in study.facts["goals"]] == pytest.approx(point["goals"], rel=1e-6)
+
+
 def test_tolerance(command):
     path = MODELS / "studies/strut_tolerances.toml"
     study = hardpoint.read(path).tolerance(samples=1000)
@@ -141,6 +152,8 @@ def test_the_page_is_that_of_the_command_line(strut, command, tmp_path):
     [
         (["optimize", "macpherson.toml"], lambda m: m.optimize()),
         (["tolerance", "macpherson.toml"], lambda m: m.tolerance()),
+        (["trade-off", "macpherson.toml"], lambda m: m.trade_off()),
+        (["trade-off", "studies/wishbone_trade_off.toml", "--goals", "track,cambr"], lambda m: m.trade_off(goals=["track", "cambr"])),
         (["optimize", "studies/strut_toe.toml", "--starts", 100001], lambda m: m.optimize(starts=100001)),
         (["calibrate", "studies/strut_calibrate.toml", "{data}", "--variable", "outer_q"], lambda m: m.calibrate(DATA, variables=["outer_q"])),
         (["calibrate", "studies/strut_calibrate.toml", "{data}", "--prior", "strut_top_x=0"], lambda m: m.calibrate(DATA, prior={"strut_top_x": 0})),

@@ -990,7 +990,7 @@ values: Curve, };
  */
 export type SweepPlot = {
 /**
- * Meaning of a point: `design`, or `posture`.
+ * Meaning of a point: `design`, `posture`, or `point` of a front.
  */
 what: string,
 /**
@@ -1026,6 +1026,10 @@ unit: string,
  * True if it is a metric.
  */
 metric: boolean,
+/**
+ * Value of a design variable in the nominal design; `null` for all else.
+ */
+nominal: number | null,
 /**
  * Value in each point.
  */

@@ -1,5 +1,6 @@
 import { expect, test } from 'vitest'
 import { along, nearest } from '../src/sweep/nearest'
+import { settingsAt } from '../src/sweep/settings'
 
 test('designs that are not known on both axes are left out, and the others follow the first', () => {
   expect(along([3, NaN, 1, 2, 1], [1, 1, NaN, 5, 4])).toEqual([4, 3, 0])
@@ -10,4 +11,18 @@ test('what is nearest is pointed at, and nothing beyond reach', () => {
   expect(nearest([0, 1, 2], at, [12, 3], 24)).toBe(1)
   expect(nearest([0, 2], at, [12, 3], 24)).toBe(2)
   expect(nearest([0, 1], at, [100, 0], 24)).toBeUndefined()
+})
+
+test('a point of a front is a design: the changes of its variables, and nothing of goals', () => {
+  const axis = (name: string, nominal: number | null, values: number[]) => ({
+    ...{ name, unit: 'mm', metric: nominal === null, nominal },
+    values: new Float32Array(values),
+  })
+  const axes = [axis('track', null, [0.5, 0.9]), axis('lca_y', 0, [0, -15]), axis('length', 300, [300, 310])]
+  const front = { what: 'point', designs: 2, step: 1, indices: [], axes }
+  expect(settingsAt(front, 0)).toEqual([])
+  expect(settingsAt(front, 1)).toEqual([
+    { name: 'lca_y', by: -15 },
+    { name: 'length', by: 10 },
+  ])
 })

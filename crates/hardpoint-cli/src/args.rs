@@ -85,6 +85,9 @@ pub enum Command {
     Compare(Compare),
     /// Optimise the design for the goals in the model file, within its bounds and limits
     Optimize(Optimize),
+    /// Trade two or three goals against each other: the designs that are the best compromises, and what one goal costs
+    /// in the others
+    TradeOff(TradeOff),
     /// Analyse how tolerances of the design variables affect the results: spread, yield, contributions, loosest
     /// tolerances
     Tolerance(Tolerance),
@@ -708,6 +711,59 @@ Examples:
   hardpoint tolerance models/studies/strut_tolerances.toml
   hardpoint tolerance models/studies/strut_tolerances.toml --samples 100000 -o results/strut
   hardpoint tolerance models/studies/strut_tolerances.toml --case bump --json | jq '.metrics[].rss'";
+
+const AFTER_TRADE_OFF: &str = "\
+`[optimize.goals]` of the model file has the goals, `[optimize.limits]` the conditions,
+and every variable that may change has `bounds`. `trade_off` in `[optimize]` names the
+goals to trade (docs/trade-off.md). The optimum of each goal is found first, then the
+points between them. No point is better than another in all goals, and each satisfies
+the first-order condition to 1e-6. Ctrl-C keeps the points found so far.
+
+With --output it writes into the folder:
+  report.html   the front as a plot, with the nominal design and one point of the front
+                (report-CASE.html for each case)
+  front.csv     a row for each point: goals, weights, variables, residual, margin
+  summary.json  the printed results
+
+Examples:
+  hardpoint trade-off models/studies/wishbone_trade_off.toml
+  hardpoint trade-off models/studies/wishbone_trade_off.toml --points 60 --output out/front
+  hardpoint trade-off models/studies/wishbone_trade_off.toml --save chosen.toml --point 4";
+
+/// `hardpoint trade-off`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_TRADE_OFF)]
+pub struct TradeOff {
+    #[command(flatten)]
+    pub common: Common,
+    #[command(flatten)]
+    pub motions: Motions,
+    /// Names of two or three goals of `[optimize.goals]`, separated by commas [default: `trade_off` of the file, or
+    /// all goals]
+    #[arg(long, value_name = "GOALS", value_delimiter = ',')]
+    pub goals: Vec<String>,
+    /// Number of designs on the front [default: 15 for two goals, 45 for three]
+    #[arg(long, value_name = "N")]
+    pub points: Option<NonZero<usize>>,
+    /// Write a report with a plot of the front, front.csv and summary.json into this folder
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Write the model file with the design of a point; comments and layout are kept
+    #[arg(long, value_name = "FILE")]
+    pub save: Option<PathBuf>,
+    /// Number of the point to save and to show in the report [default: the balanced compromise]
+    #[arg(long, value_name = "K")]
+    pub point: Option<usize>,
+    /// Number of starts of the search for the optimum of each goal [default: that of the file, or 1]
+    #[arg(long, value_name = "N")]
+    pub starts: Option<NonZero<usize>>,
+    /// Maximum number of iterations of such a search [default: that of the file, or 100]
+    #[arg(long, value_name = "N")]
+    pub iterations: Option<NonZero<usize>>,
+    /// Number of threads for several starts; the result does not depend on it [default: one per core]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZero<usize>>,
+}
 
 /// `hardpoint tolerance`.
 #[derive(Args, Debug)]

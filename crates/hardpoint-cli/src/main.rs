@@ -25,6 +25,7 @@ mod synthesize;
 mod tables;
 mod text;
 mod tolerance;
+mod trade_off;
 mod verify;
 mod whatif;
 
@@ -62,6 +63,7 @@ fn main() -> ExitCode {
         Command::Whatif(options) => whatif::whatif(&options),
         Command::Compare(options) => compare::compare(&options),
         Command::Optimize(options) => optimize::run(&options),
+        Command::TradeOff(options) => trade_off::run(&options),
         Command::Tolerance(options) => tolerance::run(&options),
         Command::Calibrate(options) => calibrate::run(&options),
         Command::Sweep(options) => sweep::run(&options),

@@ -85,7 +85,7 @@ pub fn examine(
         match step {
             Step::Variable => derivatives.show(done, total),
             Step::Designs => designs.show(done, total),
-            Step::Iteration(_) | Step::Search(..) | Step::Fit(_) => {}
+            Step::Iteration(_) | Step::Search(..) | Step::FrontPoint | Step::Fit(_) => {}
         }
         session.go_on()
     };

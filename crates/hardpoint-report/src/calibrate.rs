@@ -402,6 +402,7 @@ impl CalibrationInputs<'_> {
             name: "line".into(),
             unit: "1".into(),
             metric: false,
+            nominal: None,
             values: self.measured.lines.iter().map(|line| *line as f64).collect(),
         }];
         for (d, driver) in model.drivers.iter().enumerate() {
@@ -416,6 +417,7 @@ impl CalibrationInputs<'_> {
                     name: driver.name.clone(),
                     unit: symbol(units, quantity).into(),
                     metric: false,
+                    nominal: None,
                     values,
                 },
             );
@@ -432,6 +434,7 @@ impl CalibrationInputs<'_> {
                 name: format!("{} fitted minus measured", self.output(m).name),
                 unit: self.unit_of(m),
                 metric: true,
+                nominal: None,
                 values: values.into_iter().collect(),
             });
         }

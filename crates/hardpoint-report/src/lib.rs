@@ -14,6 +14,7 @@
 //! | [`compare`] | `compare.json`, `.csv` and `.html`: comparison of two model files |
 //! | [`optimize`] | result of an optimisation: `summary.json` and tables |
 //! | [`tolerance`] | tolerance study: `summary.json`, `metrics.csv`, `contributions.csv`, `bands.csv`, `samples.csv` |
+//! | [`trade_off`] | front of a trade-off: `summary.json`, `front.csv` |
 //! | [`study`] | facts that several studies have |
 //! | [`sweep`], [`cells`] | result of a sweep: `summary.json`, and the columns of `designs` and `curves` |
 //! | [`synthesis`] | answers of a synthesis: their models, `answers.csv`, `summary.json` |
@@ -51,6 +52,7 @@ pub mod summary;
 pub mod sweep;
 pub mod synthesis;
 pub mod tolerance;
+pub mod trade_off;
 pub mod validity;
 pub mod verdict;
 pub mod whatif;

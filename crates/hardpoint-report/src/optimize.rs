@@ -369,7 +369,7 @@ pub fn status_word(status: Status) -> &'static str {
 }
 
 /// SI value of one user unit of a quantity.
-fn unit_in_si(units: Units, of: impl Into<Dimension>) -> f64 {
+pub(crate) fn unit_in_si(units: Units, of: impl Into<Dimension>) -> f64 {
     1.0 / units.from_si(of.into(), 1.0)
 }
 
@@ -378,7 +378,12 @@ pub fn progress_line(model: &Model, units: Units, progress: &Progress<'_>) -> Op
     match progress.step {
         Step::Iteration(iteration) if progress.is_counted => Some(iteration_line(model, units, iteration)),
         Step::Search(k, search) if progress.is_counted => Some(start_line(k, search)),
-        Step::Iteration(_) | Step::Search(..) | Step::Variable | Step::Designs | Step::Fit(_) => None,
+        Step::Iteration(_)
+        | Step::Search(..)
+        | Step::Variable
+        | Step::Designs
+        | Step::FrontPoint
+        | Step::Fit(_) => None,
     }
 }
 

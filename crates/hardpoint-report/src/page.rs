@@ -666,7 +666,7 @@ pub struct Quantity {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SweepPlot {
-    /// Meaning of a point: `design`, or `posture`.
+    /// Meaning of a point: `design`, `posture`, or `point` of a front.
     pub what: String,
     /// Number of solved designs.
     pub designs: usize,
@@ -688,6 +688,8 @@ pub struct SweepAxis {
     pub unit: String,
     /// True if it is a metric.
     pub metric: bool,
+    /// Value of a design variable in the nominal design; `null` for all else.
+    pub nominal: Option<f64>,
     /// Value in each point.
     pub values: Curve,
 }

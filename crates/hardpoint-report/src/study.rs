@@ -146,3 +146,8 @@ pub(crate) fn bar(part: f64) -> String {
 pub(crate) fn percent(part: f64) -> String {
     format!("{} %", rounded(100.0 * part, 4))
 }
+
+/// Name of a column with its unit in brackets; no brackets for a plain number.
+pub(crate) fn with_brackets(name: &str, unit: &str) -> String {
+    if unit.is_empty() || unit == "1" { name.into() } else { format!("{name} [{unit}]") }
+}

@@ -12,7 +12,7 @@ use crate::cells::Cells;
 use crate::figures::{count, number, unit, variable_unit, with_unit};
 use crate::page::{Payload, SweepAxis, SweepIndex, SweepPlot, Table};
 use crate::record::{Column, record};
-use crate::study::{BeforeAfter, Evaluations, FailureFact, bar, case_name, percent, titled};
+use crate::study::{BeforeAfter, Evaluations, FailureFact, bar, case_name, percent, titled, with_brackets};
 
 /// Maximum number of designs that are plotted and ranked.
 pub const MAX_PLOTTED: usize = 5000;
@@ -422,12 +422,14 @@ fn plot(facts: &SweepFacts, drawn: PlottedDesigns) -> SweepPlot {
         name: v.name.clone(),
         unit: v.unit.clone(),
         metric: false,
+        nominal: Some(v.start),
         values: values.into_iter().collect(),
     };
     let metric = |(m, values): (&SweptFact, Vec<f64>)| SweepAxis {
         name: titled(&m.name, &m.case),
         unit: m.unit.clone(),
         metric: true,
+        nominal: None,
         values: values.into_iter().collect(),
     };
     let first = facts.variables.len();
@@ -446,11 +448,6 @@ fn plot(facts: &SweepFacts, drawn: PlottedDesigns) -> SweepPlot {
         axes: axes.chain(facts.metrics.iter().zip(drawn.metrics).map(metric)).collect(),
         indices: influences.filter_map(index).collect(),
     }
-}
-
-/// Name of a column with its unit in brackets; no brackets for a plain number.
-fn with_brackets(name: &str, unit: &str) -> String {
-    if unit.is_empty() || unit == "1" { name.into() } else { format!("{name} [{unit}]") }
 }
 
 fn common_divisor(a: usize, b: usize) -> usize {

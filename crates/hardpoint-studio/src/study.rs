@@ -78,7 +78,7 @@ pub(crate) fn run_optimization(
         let design = match progress.step {
             Step::Iteration(iteration) => Some(&iteration.best),
             Step::Search(_, search) => search.found.as_ref().map(|found| &found.design),
-            Step::Variable | Step::Designs | Step::Fit(_) => None,
+            Step::Variable | Step::Designs | Step::FrontPoint | Step::Fit(_) => None,
         };
         let line = progress_line(&file.model, file.units, &progress);
         if line.is_none() && design.is_none() {
@@ -135,7 +135,9 @@ pub(crate) fn run_tolerance(
         let line = match step {
             Step::Variable => "differentiating",
             Step::Designs => "solving designs",
-            Step::Iteration(_) | Step::Search(..) | Step::Fit(_) => return ControlFlow::Continue(()),
+            Step::Iteration(_) | Step::Search(..) | Step::FrontPoint | Step::Fit(_) => {
+                return ControlFlow::Continue(());
+            }
         };
         listener(&ProgressReply { done, total: Some(total), line: line.into(), change: None })
     };

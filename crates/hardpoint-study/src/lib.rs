@@ -1,6 +1,7 @@
 //! Analyses that solve a mechanism many times: each in a module of its own.
 //!
 //! - [`optimize`]: minimises misfits of metrics within limits, by exact derivatives.
+//! - [`trade_off`]: the front of the best compromises between two or three goals.
 //! - [`tolerance`]: spread of metrics and curves from tolerances of hardpoints; yields; allocation.
 //! - [`calibrate`]: fits a design to measurements, and states what the data determine.
 //! - [`sweep`]: metrics of designs drawn at random or on a grid, with sensitivity indices.
@@ -59,6 +60,7 @@
 //!     margin: None,
 //!     starts: 1,
 //!     iterations: 50,
+//!     trade_off: vec![],
 //! });
 //! let model = Model::from_draft(&draft).unwrap();
 //! let models = model.motions();
@@ -83,6 +85,7 @@ pub mod request;
 pub mod sweep;
 pub mod synthesis;
 pub mod tolerance;
+pub mod trade_off;
 pub mod verify;
 pub mod whatif;
 

@@ -39,6 +39,8 @@ pub enum Step<'s> {
     Iteration(&'s Iteration),
     /// The search from the start of this number ended.
     Search(usize, &'s SearchResult),
+    /// A point of a front was found.
+    FrontPoint,
     /// An iteration of a fit was completed, with this objective.
     Fit(f64),
 }

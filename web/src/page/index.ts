@@ -137,8 +137,10 @@ function tableTabs(state: State, limits?: VariableLimits): Tab[] {
   const all: Tab[] = []
   if (variables.length > 0) all.push({ name: 'variables', title: 'Variables', content: variableList(state, limits) })
   if (sweep) {
-    const title = sweep.what === 'design' ? 'Designs' : 'Residuals'
-    all.push({ name: 'designs', title, content: el('div', {}, recordHeading(state), sweepPlot(sweep)) })
+    const title = { design: 'Designs', point: 'Front' }[sweep.what] ?? 'Residuals'
+    const plot = sweepPlot(sweep, (settings) => state.setDesign(settings))
+    const heading = sweep.what === 'posture' ? [recordHeading(state)] : []
+    all.push({ name: 'designs', title, content: el('div', {}, ...heading, plot) })
   }
   if (maps.length > 0) {
     const selected = quantities[state.choice.quantity]?.name ?? ''

@@ -1,9 +1,11 @@
 import './sweep.css'
 import { el, svg } from '../dom'
+import type { VariableSetting } from '../engine/protocol'
 import { extent, linearAxis, type Axis } from '../export/axis'
 import { figure, number, titled } from '../format'
 import type { Sweep, SweepAxis } from '../report'
 import { along, nearest } from './nearest'
+import { settingsAt } from './settings'
 
 const MARGIN = { left: 70, right: 16, top: 10, bottom: 46 }
 /** The picture is so high for its width, and no higher, px. */
@@ -14,12 +16,15 @@ const TICK = 70
 /** A design is pointed at from so far, px. */
 const REACH = 24
 
+/** Number of points below which they are drawn larger. */
+const FEW = 200
+
 /**
  * Swept designs as points over two of their variables and metrics, and what Sobol's indices say of the metric that is
- * shown.
+ * shown. A point that is pressed, or dragged along, is passed on as the changes of its variables.
  */
-export function sweepPlot(sweep: Sweep): HTMLElement {
-  return new Scatter(sweep).element
+export function sweepPlot(sweep: Sweep, setDesign?: (settings: VariableSetting[]) => void): HTMLElement {
+  return new Scatter(sweep, setDesign).element
 }
 
 class Scatter {
@@ -35,7 +40,10 @@ class Scatter {
   #width = 0
   #chosen?: number
 
-  constructor(private readonly sweep: Sweep) {
+  constructor(
+    private readonly sweep: Sweep,
+    private readonly setDesign?: (settings: VariableSetting[]) => void,
+  ) {
     const render = () => this.#render()
     const choice = (name: string, chosen: number) =>
       el(
@@ -58,7 +66,8 @@ class Scatter {
         tabindex: 0,
         role: 'application',
         'aria-label': `${sweep.what}s: left and right arrow go through them in the order of the x axis`,
-        onpointermove: (event: PointerEvent) => this.#point(event),
+        onpointermove: (event: PointerEvent) => this.#point(event, event.buttons === 1),
+        onpointerdown: (event: PointerEvent) => this.#point(event, true),
         onkeydown: (event: KeyboardEvent) => this.#key(event),
       },
       this.#picture,
@@ -68,6 +77,7 @@ class Scatter {
       drawn < sweep.designs
         ? `${number(drawn)} of ${number(sweep.designs, 10)} ${sweep.what}s are shown: every ${sweep.step}th.`
         : `${number(drawn)} ${sweep.what}s.`
+    const hint = this.#isOfDesigns() ? ' Press a point, or drag along: the mechanism and its curves follow.' : ''
     const axes = el('p', { class: 'choice' }, el('label', {}, 'Y axis ', this.#y), el('label', {}, 'X axis ', this.#x))
     this.element = el(
       'section',
@@ -75,7 +85,7 @@ class Scatter {
       axes,
       this.#frame,
       this.#reading,
-      el('p', { class: 'note' }, note),
+      el('p', { class: 'note' }, note + hint),
       this.#bars,
     )
     render()
@@ -92,6 +102,11 @@ class Scatter {
     const first = this.sweep.axes.findIndex(({ metric }) => metric)
     const of = this.sweep.indices.filter(({ metric }) => metric === first)
     return of.reduce((best, index) => (index.total[0] > best.total[0] ? index : best), of[0])?.variable ?? 0
+  }
+
+  /** True if points are designs that the page can show. */
+  #isOfDesigns(): boolean {
+    return this.setDesign !== undefined && this.sweep.axes.some(({ nominal }) => nominal !== null)
   }
 
   #shown(): { x: SweepAxis; y: SweepAxis } {
@@ -119,7 +134,7 @@ class Scatter {
     this.#picture.setAttribute('aria-label', `${titled(of.name, of.unit)} over ${titled(over.name, over.unit)}`)
     this.#picture.replaceChildren(
       svg('rect', { ...box, class: 'frame' }),
-      svg('path', { class: 'points', d: dots }),
+      svg('path', { class: this.#points.length < FEW ? 'points few' : 'points', d: dots }),
       ...x.ticks.map(({ value, text }) => label(text, x.at(value), bottom + 16, 'middle')),
       ...y.ticks.map(({ value, text }) => label(text, MARGIN.left - 6, y.at(value) + 4, 'end')),
       label(titled(over.name, over.unit), (MARGIN.left + right) / 2, height - 8, 'middle'),
@@ -148,8 +163,9 @@ class Scatter {
     this.#reading.textContent = `${this.sweep.what} ${k * this.sweep.step}: ${all.join(', ')}`
   }
 
-  #point(event: PointerEvent): void {
+  #point(event: PointerEvent, isPressed: boolean): void {
     if (!this.#axes) return
+    const before = this.#chosen
     const corner = this.#picture.getBoundingClientRect()
     const { x: over, y: of } = this.#shown()
     const { x, y } = this.#axes
@@ -160,6 +176,12 @@ class Scatter {
       REACH,
     )
     this.#mark()
+    if (isPressed && (event.type === 'pointerdown' || this.#chosen !== before)) this.#show()
+  }
+
+  /** Shows the design of the chosen point. */
+  #show(): void {
+    if (this.#chosen !== undefined && this.#isOfDesigns()) this.setDesign?.(settingsAt(this.sweep, this.#chosen))
   }
 
   #key(event: KeyboardEvent): void {
@@ -173,6 +195,7 @@ class Scatter {
     event.stopPropagation()
     this.#chosen = this.#points[Math.min(Math.max(next, 0), last)]
     this.#mark()
+    this.#show()
   }
 
   /** Part of the variance by every variable: alone as a bar, with others as an outline. */

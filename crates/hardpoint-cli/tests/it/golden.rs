@@ -32,6 +32,7 @@ fn help_has_examples_and_exit_codes() {
         "export",
         "verify",
         "optimize",
+        "trade-off",
         "tolerance",
         "sweep",
         "studio",

@@ -398,3 +398,26 @@ fn a_saved_design_that_stops_or_comes_too_near_to_a_singular_position_is_no_opti
         assert_eq!(asks, margin.is_empty(), "advice for who has given a margin: {text}");
     }
 }
+
+#[test]
+fn a_point_of_a_front_is_saved_and_its_goals_are_those_of_the_saved_model() {
+    let bench = bench(&["wishbone_trade_off.toml"]);
+    let arguments = ["--points", "4", "--point", "1", "--save", "chosen.toml", "-o", "out", "--json"];
+    let output = bench.run(&[&["trade-off", "wishbone_trade_off.toml"], &arguments[..]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(bench.list("out"), ["front.csv", "report.html", "summary.json"]);
+    let summary = bench.json("out/summary.json");
+    let point = &summary["points"][1];
+    assert_eq!((&summary["saved"]["point"], &summary["saved"]["why"]), (&1.into(), &serde_json::Value::Null));
+    assert!(point["kkt"].as_f64().unwrap() < 1e-6, "{point}");
+    let row = bench.text("out/front.csv").lines().nth(2).unwrap().to_owned();
+    assert_eq!(row.split(',').nth(1).unwrap().parse::<f64>().ok(), point["goals"][0].as_f64());
+    bench.run(&["run", "chosen.toml", "-o", "run"]);
+    let metrics = bench.text("run/metrics.csv");
+    for (k, name) in ["track", "camber"].iter().enumerate() {
+        let line = metrics.lines().find(|line| line.split(',').any(|cell| cell == *name)).unwrap();
+        let goal = point["goals"][k].as_f64().unwrap();
+        let is_goal = |cell: &str| cell.parse::<f64>().is_ok_and(|x| (x / goal - 1.0).abs() < 1e-6);
+        assert!(line.split(',').any(is_goal), "{line}: {goal}");
+    }
+}

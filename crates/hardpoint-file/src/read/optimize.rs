@@ -18,6 +18,8 @@ pub(crate) const OPTIMIZE: Table = table! {
     may "variables": Shape::some(&VARIABLE), "[\"tie_rod_outer_y\"]";
     /// Goals; the sum of all of them is minimised.
     must "goals": Shape::Entries("a metric", &Shape::Table(&GOAL)), "{ toe = { metric = \"toe_error\" } }";
+    /// Names of two or three goals whose best compromises `hardpoint trade-off` finds. Default: all goals.
+    may "trade_off": Shape::some(&Shape::Name("a goal")), "[\"bump_steer\", \"camber\"]";
     /// Conditions that the design must satisfy.
     may "limits": Shape::Entries("a metric", &Shape::Kinds(&LIMIT)), "{ rod = { length = \"tie_rod\", max = 300 } }";
     /// Minimum margin of all motions from singular positions, between 0 and 1. Default: none.
@@ -167,6 +169,7 @@ pub(super) fn optimize(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     let Some(fields) = r.study(model, "optimize", "goals", &OPTIMIZE) else { return };
     let place = EntryPlace::of(&fields);
     let variables = r.list_of_names(&fields, "variables", "all that have bounds");
+    let trade_off = r.list_of_names(&fields, "trade_off", "all goals");
     let margin = r.number_of(&fields, "min_margin");
     let starts = r.count_of(&fields, "starts", OptimizationSettings::MOST);
     let iterations = r.count_of(&fields, "max_iterations", OptimizationSettings::MOST);
@@ -184,6 +187,7 @@ pub(super) fn optimize(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
         margin,
         starts: starts.unwrap_or(1),
         iterations: iterations.unwrap_or(1),
+        trade_off: trade_off.unwrap_or_default(),
     });
 }
 

@@ -49,5 +49,6 @@ mod synthesis;
 mod tape;
 mod tasks;
 mod tolerances;
+mod trade_offs;
 mod tube;
 mod wheels;

@@ -237,3 +237,13 @@ fn consequences_for_studies_are_not_reported() {
         assert_eq!(error.list().len(), 1, "{new}: {error}");
     }
 }
+
+#[test]
+fn trade_offs() {
+    let starts = "starts = 4";
+    broken("trade_off_of_unknown_goal", starts, "trade_off = [\"error\", \"hihg\"]");
+    broken("trade_off_with_a_goal_twice", starts, "trade_off = [\"error\", \"high\", \"error\"]");
+    broken("trade_off_of_one_goal", starts, "trade_off = [\"error\"]");
+    parse(&with(starts, "trade_off = [\"error\", \"high\"]"), "four-bar.toml")
+        .unwrap_or_else(|e| panic!("{e}"));
+}

@@ -31,9 +31,11 @@ use super::evaluation::{Motions, StudyCost};
 use super::progress::{Control, Progress, Step};
 use gauss_newton::GaussNewton;
 pub use optimality::{ActiveConstraint, Optimality};
-use problem::{Point, Problem, Refusal};
+pub(crate) use optimality::{BINDS, MET};
+pub(crate) use problem::{Point, Problem, Refusal};
 pub use request::{Overrides, Request, Selection};
-use solver::{Memory, Sequential, Solver, least_squares};
+pub(crate) use solver::Memory;
+use solver::{Sequential, Solver, least_squares};
 
 /// A limit is satisfied if it is exceeded by less than this fraction of its scale: the rest is round-off of the search.
 pub const LIMIT_KEPT: f64 = 1e-8;
@@ -299,11 +301,11 @@ fn best(searches: &[SearchResult]) -> Option<usize> {
     (0..searches.len()).filter(as_good).min_by(|a, b| residual(a).total_cmp(&residual(b)))
 }
 
-fn failed_design(design: Vec<f64>, Refusal { motion, why, .. }: Refusal) -> FailedDesign {
+pub(crate) fn failed_design(design: Vec<f64>, Refusal { motion, why, .. }: Refusal) -> FailedDesign {
     FailedDesign { design, motion, why }
 }
 
-fn assess(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> DesignAssessment {
+pub(crate) fn assess(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> DesignAssessment {
     let goals = problem.goals.iter().zip(&point.goal_values).map(|(t, v)| (t.of, t.motion, *v));
     let limits = problem.limits.iter().zip(&point.limit_values);
     DesignAssessment {
@@ -317,7 +319,7 @@ fn assess(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> DesignAssessm
 }
 
 /// Scale of every limit: the initial change by the most influential variable over its whole bounds.
-fn limit_scales(problem: &Problem<'_>, point: &Point) -> Vec<f64> {
+pub(crate) fn limit_scales(problem: &Problem<'_>, point: &Point) -> Vec<f64> {
     let mut scales = vec![0.0_f64; problem.limits.len()];
     for row in &point.limits {
         for (d, [low, high]) in row.d.iter().zip(&problem.bounds) {

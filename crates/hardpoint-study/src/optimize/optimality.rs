@@ -12,10 +12,10 @@ use hardpoint::linalg::least_squares;
 use super::problem::{Point, Problem, Rows};
 
 /// Distance from its end, as a fraction of its scale, below which a constraint is active.
-const BINDS: f64 = 1e-7;
+pub(crate) const BINDS: f64 = 1e-7;
 /// Misfits below this fraction of their change over the bounds of the most influential variable are round-off: motions
 /// are solved to about 1e-14.
-const MET: f64 = 1e-12;
+pub(crate) const MET: f64 = 1e-12;
 /// Minimum scale of goals that are not squares, as a fraction of the gradient at the start, since their value may pass
 /// through zero.
 const LEAST_SCALE: f64 = 1e-6;
@@ -168,7 +168,7 @@ impl Optimality {
 
 impl Point {
     /// Largest norm of a column of the misfits' derivatives, by fractions of the bounds.
-    pub(super) fn strongest(&self, spans: &[f64]) -> f64 {
+    pub(crate) fn strongest(&self, spans: &[f64]) -> f64 {
         let column = |(v, span): (usize, &f64)| {
             self.misfits.d.iter().map(|d| (d[v] * span).powi(2)).sum::<f64>().sqrt()
         };

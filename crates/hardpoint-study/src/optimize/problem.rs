@@ -1,5 +1,7 @@
 //! Optimisation problem of a search: goals and limits as numbers, with their exact derivatives.
 
+use std::ops::Range;
+
 use crate::evaluation::{DesignEvaluation, Motions, StudyCost};
 use hardpoint::model::{Limit, LimitTarget, Model, OptimizationSettings, Reduction, VariableId};
 use hardpoint::motion::Margin;
@@ -8,7 +10,7 @@ use hardpoint::run::{MetricParts, misfits, peaks};
 
 /// Goals and limits of an optimisation, and the motions that they are evaluated in.
 #[derive(Clone, Debug)]
-pub(super) struct Problem<'m> {
+pub(crate) struct Problem<'m> {
     /// Model with all of its cases.
     pub model: &'m Model,
     pub motions: &'m Motions<'m>,
@@ -23,7 +25,7 @@ pub(super) struct Problem<'m> {
 
 /// A metric in one motion.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MotionMetric {
+pub(crate) struct MotionMetric {
     /// Index of the goal or limit.
     pub of: usize,
     pub motion: usize,
@@ -33,7 +35,7 @@ pub(super) struct MotionMetric {
 
 /// Numbers with their derivatives by the searched variables, SI and per unit of each.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rows {
+pub(crate) struct Rows {
     pub values: Vec<f64>,
     pub d: Vec<Vec<f64>>,
 }
@@ -51,7 +53,7 @@ impl Rows {
 
 /// Evaluated design of a search.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Point {
+pub(crate) struct Point {
     /// Values of all variables of the model.
     pub design: Vec<f64>,
     /// Weighted residuals of squared goals.
@@ -60,6 +62,8 @@ pub(super) struct Point {
     pub plain: Rows,
     /// Weighted candidates for the maximum, for goals on a maximum.
     pub peaks: Vec<Rows>,
+    /// Rows of each goal in each motion, in the order of [`Problem::goals`].
+    pub shares: Vec<GoalShare>,
     /// Rows of the limits: index of the limit, and excess in its unit.
     pub limits: Vec<LimitRow>,
     /// Candidates for both ends of curves with a limited range.
@@ -72,9 +76,17 @@ pub(super) struct Point {
     pub margin: Option<f64>,
 }
 
+/// Rows of one goal in one motion: ranges of [`Point::misfits`], [`Point::plain`] and [`Point::peaks`].
+#[derive(Clone, Debug)]
+pub(crate) struct GoalShare {
+    pub misfits: Range<usize>,
+    pub plain: Range<usize>,
+    pub peaks: Range<usize>,
+}
+
 /// Limit, or one of several numbers that it applies to.
 #[derive(Clone, Debug)]
-pub(super) struct LimitRow {
+pub(crate) struct LimitRow {
     /// Index in [`Problem::limits`].
     pub of: usize,
     /// Excess over the limit, at most 0 if it is satisfied; for an equality, its deviation.
@@ -89,7 +101,7 @@ pub(super) struct LimitRow {
 
 /// Range of a curve with a limit: maximum minus minimum.
 #[derive(Clone, Debug)]
-pub(super) struct Spread {
+pub(crate) struct Spread {
     /// Index in [`Problem::limits`].
     pub of: usize,
     pub most: f64,
@@ -99,7 +111,7 @@ pub(super) struct Spread {
 
 /// Reason why a design cannot be evaluated.
 #[derive(Clone, Debug)]
-pub(super) struct Refusal {
+pub(crate) struct Refusal {
     /// Index of the motion, if one failed.
     pub motion: Option<usize>,
     pub why: String,
@@ -235,7 +247,12 @@ impl<'m> Problem<'m> {
         let margins = found.solutions.iter().filter_map(|s| Some(s.motion.least_margin()?.1.value));
         let mut point = Point { design, margin: margins.reduce(f64::min), ..Point::default() };
         for entry in &self.goals {
+            let counts = |p: &Point| [p.misfits.values.len(), p.plain.values.len(), p.peaks.len()];
+            let before = counts(&point);
             self.add_goal(*entry, &found, &mut point)?;
+            let after = counts(&point);
+            let [misfits, plain, peaks] = [0, 1, 2].map(|k| before[k]..after[k]);
+            point.shares.push(GoalShare { misfits, plain, peaks });
         }
         for (place, (limit, entry)) in self.limits.iter().enumerate() {
             self.add_limit(place, *limit, *entry, &found, &mut point)?;
@@ -483,6 +500,7 @@ mod tests {
             margin: None,
             starts: 1,
             iterations: 1,
+            trade_off: Vec::new(),
         }
     }
 

@@ -28,7 +28,7 @@ const FIRST_STEP: f64 = 0.1;
 type Found = Result<Point, Refusal>;
 
 /// Designs evaluated by a search: the most recent ones with their values, and all that failed.
-pub(super) struct Memory<'p> {
+pub(crate) struct Memory<'p> {
     pub problem: &'p Problem<'p>,
     more: &'p (dyn Fn() -> bool + Sync),
     recent: Recent<Found>,

@@ -642,12 +642,14 @@ pub struct OptimizationSettingsDraft {
     pub starts: usize,
     /// Maximum number of iterations per start.
     pub iterations: usize,
+    /// Names of the goals of a trade-off; empty for all of them.
+    pub trade_off: Vec<String>,
 }
 
 impl Default for OptimizationSettingsDraft {
     fn default() -> Self {
-        let (goals, limits) = (Vec::new(), Vec::new());
-        Self { variables: None, goals, limits, margin: None, starts: 1, iterations: 100 }
+        let (goals, limits, trade_off) = (Vec::new(), Vec::new(), Vec::new());
+        Self { variables: None, goals, limits, margin: None, starts: 1, iterations: 100, trade_off }
     }
 }
 

@@ -18,6 +18,8 @@ pub struct OptimizationSettings {
     pub starts: usize,
     /// Maximum number of iterations of a search.
     pub iterations: usize,
+    /// Names of the goals whose trade-off is of interest; empty for all of them.
+    pub trade_off: Vec<String>,
 }
 
 impl OptimizationSettings {
@@ -35,6 +37,7 @@ impl Default for OptimizationSettings {
             margin: None,
             starts: 1,
             iterations: 100,
+            trade_off: Vec::new(),
         }
     }
 }

@@ -45,6 +45,7 @@ impl Checker<'_> {
                 self.fault("HP0237", here.key(key), message).help("give a whole number from 1");
             }
         }
+        let trade_off = self.traded_goals(o, here);
         let goals: Vec<_> = o.goals.iter().enumerate().map(|(index, g)| self.goal(g, index)).collect();
         let mut tightest = Tightest::new();
         let mut limits = Vec::new();
@@ -64,7 +65,33 @@ impl Checker<'_> {
         let (margin, starts, iterations) = (o.margin, o.starts, o.iterations);
         let goals = goals.into_iter().flatten().collect();
         self.model.optimization =
-            Some(OptimizationSettings { variables, goals, limits, margin, starts, iterations });
+            Some(OptimizationSettings { variables, goals, limits, margin, starts, iterations, trade_off });
+    }
+
+    /// Returns the names of the goals of the trade-off. HP0237 unless they are two or three different ones.
+    fn traded_goals(&mut self, o: &OptimizationSettingsDraft, here: Here) -> Vec<String> {
+        let mut found: Vec<String> = Vec::new();
+        let mut sound = true;
+        for (k, name) in o.trade_off.iter().enumerate() {
+            let at = here.item("trade_off", k);
+            if found.contains(name) {
+                let message = format!("goal `{name}` is listed twice in `trade_off`");
+                self.fault("HP0237", at, message).help("name two or three different goals");
+                sound = false;
+                continue;
+            }
+            if !self.draft.unread.any_of(Section::Goals) {
+                self.find("goal", name, at, o.goals.iter().map(|g| g.name.as_str()));
+            }
+            found.push(name.clone());
+        }
+        if sound && !matches!(found.len(), 0 | 2 | 3) {
+            let message = format!("`trade_off` of the optimisation names {}", number_of_goals(found.len()));
+            self.fault("HP0237", here.key("trade_off"), message)
+                .note("a trade-off is between two or three goals")
+                .help("name two or three goals, and turn others into limits");
+        }
+        found
     }
 
     /// Returns the optimised variables. HP0236 unless each has bounds and is listed once.
@@ -392,4 +419,8 @@ fn bounds_of(v: &VariableDraft) -> String {
         ),
         _ => format!("give `{}` bounds in `[design]`, like `bounds = [-5, 5]`", v.name),
     }
+}
+
+fn number_of_goals(n: usize) -> String {
+    if n == 1 { "one goal".into() } else { format!("{n} goals") }
 }

@@ -1,0 +1,311 @@
+//! Goals and limits of one design as functions with derivatives, and the first-order condition of a front.
+//!
+//! Goals keep their own units: a goal of squares is the norm `|r|` of its residuals, which is the distance from the
+//! target or the root of the mean square. Designs are fractions of the bounds.
+
+use super::quadratic::{dot, non_negative, norm};
+use crate::optimize::{BINDS, MET, Point, Problem};
+
+/// Weight of the sum of the multipliers, relative to the longest gradient, in their least squares.
+const HEAVY: f64 = 10.0;
+
+/// A matrix of second derivatives.
+pub(super) type Matrix = Vec<Vec<f64>>;
+
+/// Part that a function has in goals or limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Role {
+    /// Smooth part of a goal.
+    Goal(usize),
+    /// Candidate for the maximum of a group.
+    Peak(usize),
+    /// Limit: at most 0.
+    Limit,
+    /// Limit: equal to 0.
+    Equal,
+    /// Candidate for an end of a limited range; the index counts both ends of all of them.
+    End(usize),
+}
+
+/// Differentiable function of the design.
+#[derive(Clone, Debug)]
+pub(super) struct Function {
+    pub role: Role,
+    /// Index of the functions that share their second derivatives.
+    pub block: usize,
+    /// Goals and peaks in SI, limits as fractions of their scales.
+    pub value: f64,
+    /// Gradient by fractions of the bounds.
+    pub d: Vec<f64>,
+}
+
+/// A design with its functions.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    /// Searched variables as fractions of their bounds.
+    pub x: Vec<f64>,
+    pub point: Point,
+    pub functions: Vec<Function>,
+    /// Second derivatives of the norm of linear residuals, for goals of squares.
+    pub curvature: Vec<Option<Matrix>>,
+    /// Goal and value of each group of peaks.
+    pub groups: Vec<(usize, f64)>,
+    /// Maximum of each limited range, as a fraction of its scale.
+    pub ranges: Vec<f64>,
+    /// Number of blocks.
+    pub blocks: usize,
+    /// Goals, SI.
+    pub goals: Vec<f64>,
+}
+
+/// Distance from the first-order condition of a front.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Criticality {
+    /// Largest entry of the unbalanced gradient of the weighted goals, relative to their steepest gradients.
+    pub residual: f64,
+    /// Weights of the goals as fractions of their ranges; their sum is 1.
+    pub weights: Vec<f64>,
+}
+
+/// Ranges of the goals over a front.
+#[derive(Clone, Debug)]
+pub(super) struct Scale {
+    /// Minimum of each goal, SI.
+    pub zero: Vec<f64>,
+    /// Maximum minus minimum, SI.
+    pub range: Vec<f64>,
+    /// Largest derivative of each goal by a fraction of the bounds, relative to its range.
+    pub steepest: Vec<f64>,
+}
+
+impl State {
+    pub fn new(problem: &Problem<'_>, limit_scales: &[f64], x: Vec<f64>, point: Point) -> Self {
+        let n = x.len();
+        let spans: Vec<f64> = problem.bounds.iter().map(|[low, high]| high - low).collect();
+        let by_parts = |d: &[f64], factor: f64| -> Vec<f64> {
+            d.iter().zip(&spans).map(|(d, span)| factor * d * span).collect()
+        };
+        let count = problem.settings.goals.len();
+        let mut functions = Vec::new();
+        let (mut curvature, mut groups, mut goals) = (vec![None; count], Vec::new(), vec![0.0; count]);
+        for goal in 0..count {
+            let per_unit = 1.0 / problem.settings.goals[goal].weight;
+            let shares = || problem.goals.iter().zip(&point.shares).filter(|(g, _)| g.of == goal);
+            let misfits = shares().flat_map(|(_, s)| s.misfits.clone());
+            let rows: Vec<(f64, Vec<f64>)> = misfits
+                .map(|k| (per_unit * point.misfits.values[k], by_parts(&point.misfits.d[k], per_unit)))
+                .collect();
+            let plain: Vec<usize> = shares().flat_map(|(_, s)| s.plain.clone()).collect();
+            if !rows.is_empty() {
+                let (value, d, second) = norm_of(&rows, n);
+                functions.push(Function { role: Role::Goal(goal), block: goal, value, d });
+                curvature[goal] = Some(second);
+                goals[goal] += value;
+            } else if !plain.is_empty() {
+                let value = plain.iter().map(|k| per_unit * point.plain.values[*k]).sum();
+                let mut d = vec![0.0; n];
+                for k in plain {
+                    d.iter_mut().zip(by_parts(&point.plain.d[k], per_unit)).for_each(|(a, b)| *a += b);
+                }
+                functions.push(Function { role: Role::Goal(goal), block: goal, value, d });
+                goals[goal] += value;
+            }
+            for k in shares().flat_map(|(_, s)| s.peaks.clone()) {
+                let peaks = &point.peaks[k];
+                let group = groups.len();
+                for (value, d) in peaks.values.iter().zip(&peaks.d) {
+                    let (value, d) = (per_unit * value, by_parts(d, per_unit));
+                    functions.push(Function { role: Role::Peak(group), block: count + group, value, d });
+                }
+                let greatest = per_unit * peaks.greatest();
+                goals[goal] += greatest;
+                groups.push((goal, greatest));
+            }
+        }
+        let limits = count + groups.len();
+        for row in point.limits.iter().filter(|row| !row.spread) {
+            let per_scale = 1.0 / limit_scales[row.of];
+            functions.push(Function {
+                role: if row.equal { Role::Equal } else { Role::Limit },
+                block: limits + 2 * row.of + usize::from(row.upper),
+                value: per_scale * row.exceeds,
+                d: by_parts(&row.d, per_scale),
+            });
+        }
+        let ends = limits + 2 * problem.limits.len();
+        let mut ranges = Vec::new();
+        for (k, spread) in point.spreads.iter().enumerate() {
+            let per_scale = 1.0 / limit_scales[spread.of];
+            ranges.push(per_scale * spread.most);
+            for (end, rows) in spread.ends.iter().enumerate() {
+                let end = 2 * k + end;
+                for (value, d) in rows.values.iter().zip(&rows.d) {
+                    let (value, d) = (per_scale * value, by_parts(d, per_scale));
+                    functions.push(Function { role: Role::End(end), block: ends + end, value, d });
+                }
+            }
+        }
+        let blocks = ends + 2 * ranges.len();
+        Self { x, point, functions, curvature, groups, ranges, blocks, goals }
+    }
+
+    /// Values and gradients of the functions with a role.
+    pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Function> {
+        self.functions.iter().filter(move |f| f.role == role)
+    }
+
+    /// Largest value of the functions with a role.
+    pub fn greatest(&self, role: Role) -> f64 {
+        self.of_role(role).map(|f| f.value).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Goals as fractions of their ranges.
+    pub fn scaled(&self, scale: &Scale) -> Vec<f64> {
+        let goals = self.goals.iter().zip(scale.zero.iter().zip(&scale.range));
+        goals.map(|(value, (zero, range))| (value - zero) / range).collect()
+    }
+
+    /// Largest violation of a limit, as a fraction of its scale; 0 if all are satisfied.
+    pub fn violation(&self) -> f64 {
+        let exceeds = |f: &Function| match f.role {
+            Role::Limit => f.value.max(0.0),
+            Role::Equal => f.value.abs(),
+            Role::Goal(_) | Role::Peak(_) | Role::End(_) => 0.0,
+        };
+        let spread = |(k, most): (usize, &f64)| {
+            [0, 1].map(|end| self.greatest(Role::End(2 * k + end))).iter().sum::<f64>() - most
+        };
+        let limits = self.functions.iter().map(exceeds).fold(0.0, f64::max);
+        self.ranges.iter().enumerate().map(spread).fold(limits, f64::max)
+    }
+
+    /// Largest derivative of each goal by a fraction of the bounds, SI.
+    pub fn steepest(&self) -> Vec<f64> {
+        let mut steepest = vec![0.0; self.goals.len()];
+        for f in &self.functions {
+            let goal = match f.role {
+                Role::Goal(goal) => goal,
+                Role::Peak(group) if f.value >= self.groups[group].1 => self.groups[group].0,
+                Role::Peak(_) | Role::Limit | Role::Equal | Role::End(_) => continue,
+            };
+            steepest[goal] = f.d.iter().fold(steepest[goal], |most: f64, d| most.max(d.abs()));
+        }
+        steepest
+    }
+
+    /// Functions with a role that attain their maximum, up to a fraction of their change over the bounds.
+    fn at_peak(&self, role: Role) -> Vec<&Function> {
+        let steepest = self.of_role(role).flat_map(|f| &f.d).fold(0.0, |most: f64, d| most.max(d.abs()));
+        let most = self.greatest(role);
+        self.of_role(role).filter(|f| f.value >= most - BINDS * steepest).collect()
+    }
+
+    /// Distance from the condition that a design on the front of some goals satisfies:
+    ///
+    /// ```text
+    /// sum w_i grad f_i + sum m_j grad c_j = 0,    w_i >= 0,  sum w_i = 1,    m_j >= 0,  m_j c_j = 0
+    /// ```
+    ///
+    /// for goals as fractions of their ranges. The multipliers are non-negative least squares over the active
+    /// constraints, independent of the solver. The candidates that attain a maximum share the weight of their goal. The
+    /// `fixed` goals are constraints: their weights do not count in the sum.
+    pub fn criticality(&self, scale: &Scale, traded: &[usize], fixed: &[usize]) -> Criticality {
+        let n = self.x.len();
+        let size = n + 1 + self.groups.len();
+        let mut columns: Vec<Vec<f64>> = Vec::new();
+        let padded = |d: &[f64], factor: f64| {
+            let mut column = vec![0.0; size];
+            column.iter_mut().zip(d).for_each(|(c, d)| *c = factor * d);
+            column
+        };
+        let goal = |goal: usize| match self.of_role(Role::Goal(goal)).next() {
+            Some(f) => padded(&f.d, 1.0 / scale.range[goal]),
+            None => vec![0.0; size],
+        };
+        let both: Vec<usize> = traded.iter().chain(fixed).copied().collect();
+        columns.extend(both.iter().map(|k| goal(*k)));
+        let mut peaks = Vec::new();
+        for (group, (of, _)) in self.groups.iter().enumerate().filter(|(_, (of, _))| both.contains(of)) {
+            for f in self.at_peak(Role::Peak(group)) {
+                peaks.push((columns.len(), group));
+                columns.push(padded(&f.d, 1.0 / scale.range[*of]));
+            }
+        }
+        for f in &self.functions {
+            match f.role {
+                Role::Limit if f.value > -BINDS => columns.push(padded(&f.d, 1.0)),
+                Role::Equal => columns.extend([1.0, -1.0].map(|sign| padded(&f.d, sign))),
+                Role::Limit | Role::Goal(_) | Role::Peak(_) | Role::End(_) => {}
+            }
+        }
+        for (k, most) in self.ranges.iter().enumerate() {
+            let [high, low] = [0, 1].map(|end| self.at_peak(Role::End(2 * k + end)));
+            // For a range, every pair of a maximum and a minimum.
+            for (a, b) in high.iter().flat_map(|a| low.iter().map(move |b| (a, b))) {
+                if a.value + b.value - most > -BINDS {
+                    let d: Vec<f64> = a.d.iter().zip(&b.d).map(|(a, b)| a + b).collect();
+                    columns.push(padded(&d, 1.0));
+                }
+            }
+        }
+        for (v, part) in self.x.iter().enumerate() {
+            for (is_active, sign) in [(*part < BINDS, -1.0), (*part > 1.0 - BINDS, 1.0)] {
+                if is_active {
+                    let mut column = vec![0.0; size];
+                    column[v] = sign;
+                    columns.push(column);
+                }
+            }
+        }
+        let longest = columns.iter().map(|c| norm(c)).fold(0.0, f64::max);
+        let heavy = HEAVY * if longest > 0.0 { longest } else { 1.0 };
+        for (k, (column, of)) in columns.iter_mut().zip(&both).enumerate() {
+            column[n] = if k < traded.len() { heavy } else { 0.0 };
+            for (group, _) in self.groups.iter().enumerate().filter(|(_, (goal, _))| goal == of) {
+                column[n + 1 + group] = -heavy;
+            }
+        }
+        peaks.iter().for_each(|(column, group)| columns[*column][n + 1 + group] = heavy);
+        let mut right = vec![0.0; size];
+        right[n] = heavy;
+        let multipliers = non_negative(&columns, &right);
+        let sum: f64 = multipliers[..both.len()].iter().sum();
+        let mut weights = vec![0.0; self.goals.len()];
+        both.iter().zip(&multipliers).for_each(|(k, m)| weights[*k] = if sum > 0.0 { m / sum } else { 0.0 });
+        let left = |row: usize| columns.iter().zip(&multipliers).map(|(c, m)| c[row] * m).sum::<f64>();
+        // The rows of the sums count as well, so that no weight is lost.
+        let left = (0..size).map(|row| (left(row) - right[row]).abs()).fold(0.0, f64::max);
+        let size = dot(&weights, &scale.steepest).max(f64::MIN_POSITIVE);
+        let residual = if sum > 0.0 { left / (sum * size) } else { f64::INFINITY };
+        Criticality { residual, weights }
+    }
+}
+
+/// Norm of residuals with its gradient, and its second derivatives for linear residuals.
+///
+/// ```text
+/// f = |r|,    grad f = J^T r / f,    (J^T J - grad f grad f^T) / f
+/// ```
+fn norm_of(rows: &[(f64, Vec<f64>)], n: usize) -> (f64, Vec<f64>, Matrix) {
+    let value = rows.iter().map(|(r, _)| r * r).sum::<f64>().sqrt();
+    let mut products = vec![vec![0.0; n]; n];
+    let mut d = vec![0.0; n];
+    for (r, row) in rows {
+        for i in 0..n {
+            d[i] += r * row[i];
+            (0..=i).for_each(|j| products[i][j] += row[i] * row[j]);
+        }
+    }
+    let strongest = (0..n).map(|i| products[i][i]).fold(0.0, f64::max).sqrt();
+    // Below this the direction of the residuals is round-off.
+    let least = MET * strongest;
+    let size = value.max(least).max(f64::MIN_POSITIVE);
+    d.iter_mut().for_each(|d| *d = if value > least { *d / size } else { 0.0 });
+    for i in 0..n {
+        for j in 0..=i {
+            products[i][j] = (products[i][j] - d[i] * d[j]) / size;
+            products[j][i] = products[i][j];
+        }
+    }
+    (value, d, products)
+}

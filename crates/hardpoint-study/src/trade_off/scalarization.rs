@@ -1,0 +1,452 @@
+//! One point of a front: the design nearest to a reference point, along a direction of improvement (Pascoletti and
+//! Serafini; with the normal of the front's chord, the normal boundary intersection of Das and Dennis).
+//!
+//! ```text
+//! min t    so that    f_i(x) <= a_i + d_i t,    c(x) <= 0,    0 <= x <= 1       f: goals as fractions of their ranges
+//! ```
+//!
+//! Sequential quadratic programming within a trust region, from the design between two neighbours on the front. The
+//! second derivatives of squares are those of linear residuals; the rest of each function is a symmetric rank-one
+//! secant, which neighbouring points of the front inherit.
+
+use super::functions::{Criticality, Matrix, Role, Scale, State};
+use super::quadratic::{Linear, Minimum, dot, minimize, norm};
+use crate::optimize::{LIMIT_KEPT, Memory, Point};
+use crate::svd::{Singular, singular};
+use hardpoint::linalg::semidefinite;
+
+/// Residual at which a point of a front is found: a tenth of what is promised for each.
+const SHARP: f64 = 1e-7;
+/// Maximum number of steps to a point.
+const STEPS: usize = 40;
+/// Radius of the first trust region, as a fraction of the bounds.
+const RADIUS: f64 = 0.2;
+/// Smallest trust region.
+const LEAST_RADIUS: f64 = 1e-11;
+/// Factor by which a trust region shrinks after a step without progress.
+const SHRINK: f64 = 0.3;
+/// A step achieves progress if it gains this part of its prediction.
+const GAIN: f64 = 0.05;
+/// A step is also accepted if it reduces the residual to this part.
+const NEARER: f64 = 0.5;
+/// Number of recent values that a step is compared with: curved constraints make single good steps look bad.
+const MEMORY: usize = 3;
+/// Curvature of auxiliary unknowns, whose values the constraints determine.
+const SLIGHT: f64 = 1e-3;
+/// Minimum curvature in any direction, as a fraction of the largest.
+const FLAT: f64 = 1e-6;
+/// Minimum of the largest curvature: goals change by about one over the bounds.
+const LEAST_CURVATURE: f64 = 1e-2;
+/// Multiples of the largest curvature that are tried along the gradients of active functions.
+const AUGMENTATIONS: [f64; 5] = [0.0, 0.1, 1.0, 10.0, 100.0];
+/// Weight of the violation of limits at the start, which change by one over the bounds, relative to the goals.
+const PENALTY: f64 = 10.0;
+/// Largest such weight: limits that still are exceeded cannot be kept.
+const MOST_PENALTY: f64 = 1e8;
+/// Secants whose denominator is below this fraction of its factors are not used.
+const SECANT: f64 = 1e-6;
+
+/// Reference point and direction of the goals as fractions of their ranges; `None` for a goal that is not traded. A
+/// goal with direction 0 is a limit.
+pub(super) type Reference = Vec<Option<[f64; 2]>>;
+
+/// Second derivatives of all functions beyond those of linear residuals, and the weights of the goals.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Curvatures {
+    /// Secant of each block of functions.
+    secants: Vec<Matrix>,
+    /// Multiplier of each function.
+    multipliers: Vec<f64>,
+}
+
+/// Region of the goals in which a search ends, since the front does: this goal at most at one value, the other below
+/// another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flat {
+    pub goal: usize,
+    pub most: f64,
+    pub other: usize,
+    pub below: f64,
+}
+
+/// Design on the front.
+#[derive(Clone, Debug)]
+pub(super) struct Solved {
+    /// The region in which the search ended, before it found a point.
+    pub flat: Option<Flat>,
+    pub state: State,
+    pub criticality: Criticality,
+    pub curvatures: Curvatures,
+}
+
+/// Evaluates designs of one front.
+pub(super) struct Scalarization<'p> {
+    pub memory: &'p Memory<'p>,
+    pub limit_scales: &'p [f64],
+    pub scale: &'p Scale,
+    pub reference: Reference,
+    /// Distance between the goals and the line of the reference that is near enough.
+    pub near: f64,
+    /// Regions in which the search ends.
+    pub flats: Vec<Flat>,
+}
+
+/// Step of the quadratic program.
+struct Step {
+    p: Vec<f64>,
+    /// Predicted decrease of the merit.
+    gain: f64,
+    multipliers: Vec<f64>,
+    /// Sum of the multipliers of limits.
+    forces: f64,
+}
+
+impl Scalarization<'_> {
+    /// Evaluates a design; `None` if it cannot be evaluated.
+    pub fn evaluate(&self, x: &[f64]) -> Option<State> {
+        let point: Point = self.memory.at(x, |found| found.as_ref().ok().cloned())?;
+        Some(State::new(self.memory.problem, self.limit_scales, x.to_vec(), point))
+    }
+
+    /// Indices of the traded goals, and of those that are limits.
+    fn traded(&self) -> [Vec<usize>; 2] {
+        let goals = |is_free: bool| {
+            let has = |k: &usize| self.reference[*k].is_some_and(|[_, d]| (d > 0.0) == is_free);
+            (0..self.reference.len()).filter(has).collect()
+        };
+        [true, false].map(goals)
+    }
+
+    /// Position `t` of each goal along the direction.
+    fn positions(&self, state: &State) -> Vec<f64> {
+        let goals = state.scaled(self.scale).into_iter().zip(&self.reference);
+        goals.filter_map(|(f, r)| r.filter(|[_, d]| *d > 0.0).map(|[a, d]| (f - a) / d)).collect()
+    }
+
+    /// Value of t and the largest violation of limits at a design.
+    fn merit(&self, state: &State) -> (f64, f64) {
+        let greatest = |all: Vec<f64>| all.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let fixed = state.scaled(self.scale).into_iter().zip(&self.reference);
+        let fixed = fixed.filter_map(|(f, r)| r.filter(|[_, d]| *d == 0.0).map(|[a, _]| f - a));
+        (greatest(self.positions(state)), greatest(fixed.collect()).max(state.violation()))
+    }
+
+    /// Searches from a design that can be evaluated. Returns the design with the smallest residual.
+    pub fn solve(&self, start: State, mut curvatures: Curvatures) -> Option<Solved> {
+        let [traded, fixed] = self.traded();
+        let criticality = start.criticality(self.scale, &traded, &fixed);
+        curvatures.fit(&start);
+        let (mut here, mut critical) = (start, criticality);
+        let (mut radius, mut penalty) = (RADIUS, PENALTY);
+        let mut best: Option<(State, Criticality)> = None;
+        let mut recent: Vec<f64> = Vec::new();
+        for _ in 0..STEPS {
+            let (t, violation) = self.merit(&here);
+            let positions = self.positions(&here);
+            let apart = positions.iter().map(|p| t - p).fold(0.0, f64::max);
+            let is_kept = violation <= LIMIT_KEPT;
+            if is_kept && best.as_ref().is_none_or(|(_, c)| critical.residual < c.residual) {
+                best = Some((here.clone(), critical.clone()));
+            }
+            if self.memory.interrupted() {
+                return None;
+            }
+            let goals = here.scaled(self.scale);
+            let is_in = |f: &&Flat| is_kept && goals[f.goal] <= f.most && goals[f.other] < f.below;
+            if let Some(flat) = self.flats.iter().find(is_in) {
+                let flat = Some(*flat);
+                return Some(Solved { flat, state: here, criticality: critical, curvatures });
+            }
+            let Some(mut step) = self.step(&here, &mut curvatures, radius, penalty) else { break };
+            while step.forces > 0.5 * penalty && penalty < MOST_PENALTY {
+                penalty *= 10.0;
+                recent.clear();
+                match self.step(&here, &mut curvatures, radius, penalty) {
+                    Some(next) => step = next,
+                    None => break,
+                }
+            }
+            let length = step.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
+            let is_near = apart <= self.near || length <= self.near.min(RADIUS) * SHARP.sqrt();
+            if is_kept && critical.residual <= SHARP && is_near || length < LEAST_RADIUS {
+                break;
+            }
+            let x: Vec<f64> = here.x.iter().zip(&step.p).map(|(x, p)| (x + p).clamp(0.0, 1.0)).collect();
+            let Some(next) = self.evaluate(&x) else {
+                radius = SHRINK * length;
+                continue;
+            };
+            curvatures.learn(&here, &next);
+            let critical_next = next.criticality(self.scale, &traded, &fixed);
+            let value = |(t, v): (f64, f64)| t + penalty * v.max(0.0);
+            let (now, then) = (value((t, violation)), value(self.merit(&next)));
+            recent.push(now);
+            let from = recent.iter().rev().take(MEMORY).fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+            let is_nearer = critical_next.residual <= NEARER * critical.residual
+                && self.merit(&next).1 <= violation.max(LIMIT_KEPT);
+            let is_down = then <= from - GAIN * step.gain;
+            if is_down || is_nearer {
+                if then <= now - 0.5 * step.gain && length >= 0.9 * radius {
+                    radius = (2.0 * radius).min(1.0);
+                }
+                (here, critical) = (next, critical_next);
+            } else {
+                radius = SHRINK * length;
+            }
+            if radius < LEAST_RADIUS {
+                break;
+            }
+        }
+        best.map(|(state, criticality)| Solved { flat: None, state, criticality, curvatures })
+    }
+
+    /// Step of the quadratic model; its multipliers enter the second derivatives.
+    fn step(&self, state: &State, curvatures: &mut Curvatures, radius: f64, penalty: f64) -> Option<Step> {
+        let mut found = None;
+        // The multipliers of the first solution correct the second derivatives of the second.
+        for _ in 0..2 {
+            let (constraints, owners, aux) = self.constraints(state, radius);
+            let n = state.x.len();
+            let matrix = self.hessian(state, curvatures);
+            let mut h = vec![vec![0.0; n + aux]; n + aux];
+            (0..n).for_each(|i| h[i][..n].copy_from_slice(&matrix[i]));
+            (n..n + aux).for_each(|k| h[k][k] = SLIGHT);
+            h[n + 1][n + 1] *= penalty * penalty;
+            let mut g = vec![0.0; n + aux];
+            (g[n], g[n + 1]) = (1.0, penalty);
+            let Minimum { p, multipliers } = minimize(&h, &g, &constraints)?;
+            let mut by_function = vec![0.0; state.functions.len()];
+            let mut forces = 0.0;
+            for (owner, m) in owners.iter().zip(&multipliers) {
+                let Owner::Function { of, sign, factor } = *owner else { continue };
+                by_function[of] += sign * factor * m;
+                if matches!(state.functions[of].role, Role::Limit | Role::Equal | Role::End(_)) {
+                    forces += m;
+                }
+            }
+            // The smooth part of a goal has the multiplier of its goal.
+            for (owner, m) in owners.iter().zip(&multipliers) {
+                let Owner::Goal(goal) = *owner else { continue };
+                if let Some(k) = state.functions.iter().position(|f| f.role == Role::Goal(goal)) {
+                    by_function[k] += m / self.scale.range[goal];
+                }
+            }
+            curvatures.multipliers = by_function;
+            let gain = -(p[n] + penalty * p[n + 1]);
+            found = Some(Step { p: p[..n].to_vec(), gain, multipliers, forces });
+        }
+        let step = found?;
+        (step.gain.is_finite() && step.multipliers.iter().all(|m| m.is_finite())).then_some(step)
+    }
+
+    /// Linear constraints of a step, with the owner of each, and the number of auxiliary unknowns: t, the violation of
+    /// limits, the maximum of each group of peaks, and both ends of each limited range.
+    fn constraints(&self, state: &State, radius: f64) -> (Vec<Linear>, Vec<Owner>, usize) {
+        let n = state.x.len();
+        let (groups, ends) = (state.groups.len(), 2 * state.ranges.len());
+        let aux = 2 + groups + ends;
+        let (t, e, u, w) = (n, n + 1, n + 2, n + 2 + groups);
+        let (t0, violation) = self.merit(state);
+        let e0 = violation.max(0.0);
+        let mut rows = Vec::new();
+        let mut owners = Vec::new();
+        let mut push = |d: &[f64], factor: f64, with: &[(usize, f64)], b: f64, owner: Owner| {
+            let mut a = vec![0.0; n + aux];
+            a.iter_mut().zip(d).for_each(|(a, d)| *a = factor * d);
+            with.iter().for_each(|(k, by)| a[*k] = *by);
+            rows.push(Linear { a, b });
+            owners.push(owner);
+        };
+        let values = state.scaled(self.scale);
+        for (goal, reference) in self.reference.iter().enumerate() {
+            let Some([a, direction]) = *reference else { continue };
+            let per_range = 1.0 / self.scale.range[goal];
+            let smooth = state.of_role(Role::Goal(goal)).next();
+            let mut with: Vec<(usize, f64)> =
+                (0..groups).filter(|g| state.groups[*g].0 == goal).map(|g| (u + g, 1.0)).collect();
+            let free = if direction > 0.0 {
+                with.push((t, -direction));
+                a + direction * t0
+            } else {
+                with.push((e, -1.0));
+                a + e0
+            };
+            let d = smooth.map_or(&[][..], |f| &f.d);
+            push(d, per_range, &with, free - values[goal], Owner::Goal(goal));
+        }
+        for (of, f) in state.functions.iter().enumerate() {
+            let mut own = |sign: f64, factor: f64, with: (usize, f64), b: f64| {
+                push(&f.d, sign * factor, &[with], b, Owner::Function { of, sign, factor });
+            };
+            match f.role {
+                Role::Goal(_) => {}
+                Role::Peak(group) => {
+                    let (goal, most) = state.groups[group];
+                    if self.reference[goal].is_some() {
+                        let per_range = 1.0 / self.scale.range[goal];
+                        own(1.0, per_range, (u + group, -1.0), per_range * (most - f.value));
+                    }
+                }
+                Role::Limit => own(1.0, 1.0, (e, -1.0), e0 - f.value),
+                Role::Equal => {
+                    own(1.0, 1.0, (e, -1.0), e0 - f.value);
+                    own(-1.0, 1.0, (e, -1.0), e0 + f.value);
+                }
+                Role::End(end) => {
+                    own(1.0, 1.0, (w + end, -1.0), state.greatest(Role::End(end)) - f.value);
+                }
+            }
+        }
+        for (k, most) in state.ranges.iter().enumerate() {
+            let now: f64 = [0, 1].iter().map(|end| state.greatest(Role::End(2 * k + end))).sum();
+            let with = [(w + 2 * k, 1.0), (w + 2 * k + 1, 1.0), (e, -1.0)];
+            push(&[], 1.0, &with, most + e0 - now, Owner::Other);
+        }
+        push(&[], 1.0, &[(e, -1.0)], e0, Owner::Other);
+        for (v, x) in state.x.iter().enumerate() {
+            push(&[], 1.0, &[(v, 1.0)], radius.min(1.0 - x), Owner::Other);
+            push(&[], 1.0, &[(v, -1.0)], radius.min(*x), Owner::Other);
+        }
+        (rows, owners, aux)
+    }
+
+    /// Second derivatives of the Lagrangian, made positive definite.
+    ///
+    /// ```text
+    /// H = sum m_k (linear residuals + secant) + s sum of c c^T        c: unit gradients of the active functions
+    /// ```
+    ///
+    /// The last sum does not act on the directions in which the active functions stay the same. It has the smallest
+    /// factor s that makes H positive definite; where none does, curvatures are replaced by their sizes, (H^2)^1/2.
+    fn hessian(&self, state: &State, curvatures: &Curvatures) -> Matrix {
+        let n = state.x.len();
+        let mut h = vec![vec![0.0; n]; n];
+        let mut add = |m: f64, a: &Matrix| {
+            for (row, other) in h.iter_mut().zip(a) {
+                row.iter_mut().zip(other).for_each(|(x, y)| *x += m * y);
+            }
+        };
+        for (f, m) in state.functions.iter().zip(&curvatures.multipliers).filter(|(_, m)| **m != 0.0) {
+            add(*m, &curvatures.secants[f.block]);
+            if let Role::Goal(goal) = f.role
+                && let Some(second) = &state.curvature[goal]
+            {
+                add(*m, second);
+            }
+        }
+        let largest = (0..n).map(|k| h[k][k].abs()).fold(LEAST_CURVATURE, f64::max);
+        let active: Vec<Vec<f64>> = state
+            .functions
+            .iter()
+            .zip(&curvatures.multipliers)
+            .filter(|(f, m)| **m != 0.0 && norm(&f.d) > 0.0)
+            .map(|(f, _)| f.d.iter().map(|d| d / norm(&f.d)).collect())
+            .collect();
+        let with = |by: f64, shift: f64| -> Matrix {
+            let mut h = h.clone();
+            for i in 0..n {
+                for j in 0..n {
+                    h[i][j] += by * active.iter().map(|c| c[i] * c[j]).sum::<f64>();
+                }
+                h[i][i] += shift;
+            }
+            h
+        };
+        let mut augmented = AUGMENTATIONS.into_iter().map(|s| with(s * largest, FLAT * largest));
+        augmented.find(|h| semidefinite::is_definite(h)).unwrap_or_else(|| sizes_of(&h, FLAT * largest))
+    }
+}
+
+/// The matrix `V |L| V^T` of a symmetric matrix `V L V^T`, with sizes of at least `least`.
+fn sizes_of(h: &Matrix, least: f64) -> Matrix {
+    let n = h.len();
+    let Singular { values, directions } = singular(h, n);
+    let entry = |i: usize, j: usize| {
+        values.iter().zip(&directions).map(|(s, v)| s.max(least) * v[i] * v[j]).sum::<f64>()
+    };
+    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+}
+
+/// Function or goal that a linear constraint belongs to.
+#[derive(Clone, Copy, Debug)]
+enum Owner {
+    Goal(usize),
+    Function { of: usize, sign: f64, factor: f64 },
+    Other,
+}
+
+impl Curvatures {
+    /// Adapts the sizes to the functions of a design.
+    fn fit(&mut self, state: &State) {
+        let n = state.x.len();
+        self.secants.resize(state.blocks, vec![vec![0.0; n]; n]);
+        if self.multipliers.len() != state.functions.len() {
+            self.multipliers = vec![0.0; state.functions.len()];
+        }
+    }
+
+    /// Mean of the multipliers of two neighbours, with the secants of the first.
+    pub fn between(a: &Self, b: &Self) -> Self {
+        let mut mean = a.clone();
+        if a.multipliers.len() == b.multipliers.len() {
+            mean.multipliers.iter_mut().zip(&b.multipliers).for_each(|(a, b)| *a = 0.5 * (*a + b));
+        }
+        mean
+    }
+
+    /// Multipliers of the goals alone.
+    pub fn of_weights(state: &State, scale: &Scale, weights: &[f64]) -> Self {
+        let mut new = Self::default();
+        new.fit(state);
+        for (f, m) in state.functions.iter().zip(&mut new.multipliers) {
+            if let Role::Goal(goal) = f.role {
+                *m = weights[goal] / scale.range[goal];
+            }
+        }
+        new
+    }
+
+    /// Symmetric rank-one update of each block by the change of its gradient.
+    ///
+    /// ```text
+    /// S += r r^T / r^T s,    r = y - S s,    y = grad f(x + s) - grad f(x) - (linear residuals) s
+    /// ```
+    fn learn(&mut self, from: &State, to: &State) {
+        if from.functions.len() != to.functions.len() || self.multipliers.len() != from.functions.len() {
+            self.fit(to);
+            return;
+        }
+        let s: Vec<f64> = to.x.iter().zip(&from.x).map(|(a, b)| a - b).collect();
+        for block in 0..from.blocks {
+            let members: Vec<usize> =
+                (0..from.functions.len()).filter(|k| from.functions[*k].block == block).collect();
+            let sum: f64 = members.iter().map(|k| self.multipliers[*k]).sum();
+            let weight = |k: usize| match members.len() {
+                1 => 1.0,
+                _ if sum != 0.0 => self.multipliers[k] / sum,
+                _ => 0.0,
+            };
+            let mut y = vec![0.0; s.len()];
+            for k in &members {
+                let (a, b) = (&from.functions[*k], &to.functions[*k]);
+                y.iter_mut().zip(a.d.iter().zip(&b.d)).for_each(|(y, (a, b))| *y += weight(*k) * (b - a));
+            }
+            if members.iter().all(|k| weight(*k) == 0.0) {
+                continue;
+            }
+            if let Some(Role::Goal(goal)) = members.first().map(|k| from.functions[*k].role) {
+                for second in [&from.curvature[goal], &to.curvature[goal]].into_iter().flatten() {
+                    y.iter_mut().zip(second).for_each(|(y, row)| *y -= 0.5 * dot(row, &s));
+                }
+            }
+            let secant = &mut self.secants[block];
+            let r: Vec<f64> = y.iter().zip(secant.iter()).map(|(y, row)| y - dot(row, &s)).collect();
+            let along = dot(&r, &s);
+            if along.abs() > SECANT * norm(&r) * norm(&s) {
+                for (row, a) in secant.iter_mut().zip(&r) {
+                    row.iter_mut().zip(&r).for_each(|(x, b)| *x += a * b / along);
+                }
+            }
+        }
+    }
+}
