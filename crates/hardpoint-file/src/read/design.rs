@@ -68,8 +68,8 @@ static KINDS: &[(Table, Read)] = &[
     ),
     (
         variable! {
-            /// Play of a joint: its pin is off the centre of its hole, in two directions perpendicular to its axis,
-            /// NAME_x and NAME_y; a ball in three, NAME_x, NAME_y and NAME_z. Lengths.
+            /// Play of a joint: its pin is off the centre of its hole by NAME_x and NAME_y, perpendicular to its axis;
+            /// a ball by NAME_x, NAME_y and NAME_z. Lengths.
             "Play":
             /// The joint's name: revolute, cylindrical or spherical.
             must "play": JOINT, "\"J1\"";

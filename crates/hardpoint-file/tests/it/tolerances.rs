@@ -700,10 +700,10 @@ time = { end = 1.0, steps = 20 }
     assert!(message.contains("HP0275") && message.contains("joint `slide` of design variable"), "{message}");
 }
 
-/// A force that pushes the slider back presses all pins of the massless linkage to one side of their holes, a pull to the
-/// other: the slider is at the edges of the band, and jumps where the force reverses.
+/// A force that pushes the slider back holds all pins of the massless linkage on one side of their holes, a pull on
+/// the other: the slider is at the edges of the band, and jumps where the force reverses.
 #[test]
-fn pins_lie_where_the_loads_press_them() {
+fn pins_lie_on_the_side_of_the_force() {
     let text = LOOSE_CRANK.to_owned()
         + r#"
 [forces.push]

@@ -1,6 +1,6 @@
 //! Places of pins in their holes under the loads of the nominal motion.
 //!
-//! A pin lies where the force presses it against its hole: with F the force on body j and c the play, the marker of
+//! A pin lies on the side to which the force pushes it: with F the force on body j and c the play, the marker of
 //! body j is off by `c F / abs(F)`, the part of F perpendicular to the axis for a pin.
 
 use hardpoint::load::Loads;
@@ -10,7 +10,7 @@ use hardpoint::space::Vec3;
 use super::Study;
 use super::deviations::Deviations;
 
-/// Forces below this fraction of the largest one of a joint press a pin to no side: round-off of reactions.
+/// Forces below this fraction of the largest one of a joint push a pin to no side: round-off of reactions.
 const NO_FORCE: f64 = 1e-9;
 
 /// Pin that changes its side in the hole.
