@@ -5,10 +5,13 @@ use std::num::NonZero;
 use std::path::Path;
 
 use hardpoint::Solution;
-use hardpoint::model::OptimizationSettings;
+use hardpoint::model::{Model, OptimizationSettings};
+use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 use hardpoint_report::optimize::{OptimizeFacts, progress_line, to_save};
-use hardpoint_study::optimize::{DesignAssessment, Optimization, Overrides, Request, judge, optimize};
+use hardpoint_study::optimize::{
+    DesignAssessment, FailedDesign, Optimization, Overrides, Request, judge, optimize,
+};
 use hardpoint_study::{Control, Motions, Progress};
 
 use crate::args::Optimize;
@@ -54,7 +57,11 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
         match session.save_result(&file, &design, to) {
             Ok(()) => {
                 search.facts.files.push(to.display().to_string());
-                let judged = judged_as_written(to, options, &request.settings);
+                let (case, formulation) = (options.motions.case.as_deref(), options.common.formulation());
+                let judged = judged_as_written(to, case, formulation, |model, motions| {
+                    let wanted = model.optimization.as_ref().unwrap_or(&request.settings);
+                    judge(model, motions, wanted, &[])
+                });
                 search.facts.check_saved(&to.display().to_string(), judged, request.settings.margin);
                 saved = Ok(Some(to));
             }
@@ -93,23 +100,23 @@ fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome
 }
 
 /// Reads a saved file and solves its design again.
-fn judged_as_written(
+pub fn judged_as_written(
     to: &Path,
-    options: &Optimize,
-    asked: &OptimizationSettings,
+    case: Option<&str>,
+    formulation: Formulation,
+    judge: impl FnOnce(&Model, &Motions<'_>) -> Result<DesignAssessment, FailedDesign>,
 ) -> Result<DesignAssessment, String> {
     let mut file = hardpoint_file::read(to).map_err(|error| {
         let first = error.diagnostics().list().first().map_or(String::new(), |d| d.message.clone());
         format!("it cannot be read again: {first}")
     })?;
-    if let Some(case) = options.motions.case.as_ref().and_then(|name| file.model.case(name)) {
+    if let Some(case) = case.and_then(|name| file.model.case(name)) {
         file.model = file.model.with_case_only(case);
     }
     let models = file.model.motions();
-    let motions = Motions::of(&models, options.common.formulation())
-        .map_err(|(_, fault)| format!("it cannot be driven: {fault}"))?;
-    let wanted = file.model.optimization.as_ref().unwrap_or(asked);
-    judge(&file.model, &motions, wanted, &[]).map_err(|refused| refused.why)
+    let motions =
+        Motions::of(&models, formulation).map_err(|(_, fault)| format!("it cannot be driven: {fault}"))?;
+    judge(&file.model, &motions).map_err(|failed| failed.why)
 }
 
 /// A finished search.

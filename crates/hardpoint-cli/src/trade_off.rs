@@ -14,6 +14,7 @@ use hardpoint_study::{Control, Motions, Progress, Step};
 
 use crate::args::TradeOff;
 use crate::folder::{Folder, WriteError};
+use crate::optimize::judged_as_written;
 use crate::outcome::Outcome;
 use crate::pages::{FoundDesign, Study, page, threads};
 use crate::session::{Session, json_text};
@@ -127,20 +128,11 @@ fn saved_point(
     point: usize,
     goals: &[(usize, usize, f64)],
 ) -> SavedPoint {
-    let judged = || {
-        let mut file = hardpoint_file::read(to).map_err(|error| {
-            let first = error.diagnostics().list().first().map_or(String::new(), |d| d.message.clone());
-            format!("it cannot be read again: {first}")
-        })?;
-        if let Some(case) = options.motions.case.as_ref().and_then(|name| file.model.case(name)) {
-            file.model = file.model.with_case_only(case);
-        }
-        let models = file.model.motions();
-        let motions = Motions::of(&models, options.common.formulation())
-            .map_err(|(_, fault)| format!("it cannot be driven: {fault}"))?;
-        judge(&file.model, &motions, &request.settings, &[]).map_err(|failed| failed.why)
-    };
-    let (margin, why) = match judged() {
+    let (case, formulation) = (options.motions.case.as_deref(), options.common.formulation());
+    let judged = judged_as_written(to, case, formulation, |model, motions| {
+        judge(model, motions, &request.settings, &[])
+    });
+    let (margin, why) = match judged {
         Ok(judged) => {
             let differs = |((_, _, a), (_, _, b)): (&(usize, usize, f64), &(usize, usize, f64))| {
                 !((a - b).abs() <= SAME * a.abs().max(b.abs()))
