@@ -16,15 +16,16 @@ use hardpoint_file::ModelFile;
 /// of the engine, but their Newton iterations begin elsewhere, and products are not fused with sums.
 const SAME: f64 = 1e-12;
 /// The same where the motion passes near singular positions, which magnify round-off.
-const NEAR_SINGULAR: f64 = 1e-10;
+const NEAR_SINGULAR: f64 = 1e-11;
 
 /// Models that have no formulas, with the reason.
-const REFUSED: [(&str, &str); 2] = [
-    ("cam", "a point follows a curve"),
-    ("gear_train", "couplers count angles by their predicted turns"),
-];
+const REFUSED: [(&str, &str); 2] =
+    [("cam", "a point follows a curve"), ("gear_train", "couplers count angles by their predicted turns")];
 /// Models whose motion the formulas do not follow to the end, and the reported time.
 const ENDS: [(&str, &str); 1] = [("bricard", "from t =")];
+
+/// Measures that are undefined at some output times: their formulas take another case there.
+const PARTIAL: [&str; 2] = ["front_axle: front.ackermann_error", "front_axle: front.ackermann"];
 
 fn model(name: &str) -> ModelFile {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
@@ -35,7 +36,8 @@ fn gallery() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let models = files.filter(|p: &PathBuf| p.extension().is_some_and(|e| e == "toml"));
-    let mut names: Vec<String> = models.map(|p| p.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> =
+        models.map(|p| p.file_stem().unwrap().to_string_lossy().into_owned()).collect();
     names.sort();
     names
 }
@@ -47,6 +49,8 @@ struct Compiled {
     unsupported: Vec<String>,
     /// Names in the comments of the measures, in order.
     measures: Vec<String>,
+    /// Measures that are reported as undefined at some output times.
+    partial: Vec<String>,
 }
 
 /// Motion of every driver at a step: value, rate and acceleration.
@@ -87,7 +91,10 @@ impl Compiled {
         let lines = header.text.lines().filter(|l| l.starts_with(&marker));
         let name = |line: &str| line.split_once("/* ").unwrap().1.split(", ").next().unwrap().to_owned();
         let measures = lines.map(name).collect();
-        Ok(Self { folder, unsupported: exported.unsupported.into_iter().map(|u| u.name).collect(), measures })
+        let partial = exported.unsupported.iter().filter(|u| u.why.starts_with("NaN at"));
+        let partial = partial.map(|u| u.name.clone()).collect();
+        let unsupported = exported.unsupported.into_iter().map(|u| u.name).collect();
+        Ok(Self { folder, unsupported, measures, partial })
     }
 
     /// Steps through these motions of the drivers.
@@ -141,7 +148,14 @@ fn difference(found: &[f64], expected: &[f64]) -> f64 {
 }
 
 /// Compares a step with the engine at all output times that it reaches.
-fn compare(name: &str, c: &Compiled, analysis: &Analysis<'_>, solution: &Solution, rows: &[Row], tolerance: f64) {
+fn compare(
+    name: &str,
+    c: &Compiled,
+    analysis: &Analysis<'_>,
+    solution: &Solution,
+    rows: &[Row],
+    tolerance: f64,
+) {
     let bodies = analysis.model().bodies.len();
     let expected = |k: usize| -> Vec<f64> {
         let of_body = |b: usize| {
@@ -162,11 +176,19 @@ fn compare(name: &str, c: &Compiled, analysis: &Analysis<'_>, solution: &Solutio
         assert!(apart < tolerance, "{name}: numbers {kind} of the bodies differ by {apart:e}");
     }
     for (m, measure) in c.measures.iter().enumerate() {
-        let column = solution.measured.index(measure).unwrap_or_else(|| panic!("{name}: no measure {measure}"));
+        let column =
+            solution.measured.index(measure).unwrap_or_else(|| panic!("{name}: no measure {measure}"));
         for order in 0..3 {
-            let expected: Vec<f64> =
-                (0..rows.len()).map(|k| solution.measured.value(k, column)[order]).collect();
+            let at = |k: usize| solution.measured.value(k, column)[order];
+            let mut expected: Vec<f64> = (0..rows.len()).map(at).collect();
             let found: Vec<f64> = rows.iter().map(|row| row.measures[m][order]).collect();
+            if c.partial.contains(measure) {
+                assert!(
+                    order > 0 || found.iter().any(|x| x.is_finite()),
+                    "{name}: {measure} is nowhere defined"
+                );
+                expected.iter_mut().zip(&found).filter(|(_, x)| x.is_nan()).for_each(|(x, _)| *x = f64::NAN);
+            }
             let apart = difference(&found, &expected);
             assert!(apart < tolerance, "{name}: {measure}, order {order}, differs by {apart:e}");
         }
@@ -186,7 +208,7 @@ fn compare(name: &str, c: &Compiled, analysis: &Analysis<'_>, solution: &Solutio
 
 #[test]
 fn the_gallery_in_c_moves_as_in_the_engine() {
-    let mut refused = Vec::new();
+    let (mut refused, mut partial) = (Vec::new(), Vec::new());
     for name in gallery() {
         let file = model(&name);
         let c = match Compiled::new(&file, &name, "-O0") {
@@ -197,6 +219,7 @@ fn the_gallery_in_c_moves_as_in_the_engine() {
             }
             Err(ExportError::CannotBeDriven(fault)) => panic!("{name}: {fault}"),
         };
+        partial.extend(c.partial.iter().map(|measure| format!("{name}: {measure}")));
         let analysis = Analysis::new(&file.model).unwrap();
         let solution = analysis.run();
         let rows = c.run(&drivers(&analysis, &solution), file.model.bodies.len());
@@ -210,6 +233,7 @@ fn the_gallery_in_c_moves_as_in_the_engine() {
     }
     let expected = REFUSED.map(|(name, why)| (name.to_owned(), why.to_owned()));
     assert_eq!(refused, expected);
+    assert_eq!(partial, PARTIAL);
 }
 
 /// A four-bar linkage turns by two radians in a single step, and by a hundred small ones: the path is divided until
@@ -232,7 +256,7 @@ fn a_long_step_is_divided() {
     assert!(difference(&long.bodies, &last.bodies) < SAME);
 }
 
-/// A platform whose legs are asked to become ten metres longer, or no number, stays where it was.
+/// A platform one leg of which is asked to become ten metres longer than the others, or no number, stays where it was.
 #[test]
 fn a_step_that_fails_leaves_the_state() {
     let file = model("stewart");
@@ -240,7 +264,11 @@ fn a_step_that_fails_leaves_the_state() {
     let analysis = Analysis::new(&file.model).unwrap();
     let solution = analysis.run();
     let good = drivers(&analysis, &solution)[..3].to_vec();
-    let with = |x: f64| -> Drivers { good[1].iter().map(|[q, v, a]| [q + x, *v, *a]).collect() };
+    let with = |x: f64| -> Drivers {
+        let mut drivers = good[1].clone();
+        drivers[0][0] += x;
+        drivers
+    };
     let steps = [good[0].clone(), good[1].clone(), with(10.0), with(f64::NAN), good[2].clone()];
     let bodies = file.model.bodies.len();
     let rows = c.run(&steps, bodies);

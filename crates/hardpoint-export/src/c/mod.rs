@@ -21,6 +21,7 @@ use hardpoint_tape::Operand;
 
 use crate::{Companion, ExportError, ExportedModel, Format, Writer};
 use emit::{Function, literal};
+use replay::{Replayed, replay};
 
 /// C format.
 pub const FORMAT: Format = Format {
@@ -50,10 +51,23 @@ fn write(file: &ModelFile, stem: &str, out: &mut ExportedModel) -> Result<(), Ex
         let why = "their nominal values are constants of the formulas";
         out.report_unsupported("design variables", &model.variables.len().to_string(), why);
     }
-    if let Some(t) = replay::end(model, &step) {
+    let Replayed { end, undefined } = replay(model, &step, formulas.as_ref());
+    if let Some(t) = end {
         let why = "the formulas end there: the motion goes on with other rows of redundant constraints, or through a \
                    change point";
         out.report_unsupported("motion", &format!("from t = {t} s"), why);
+    }
+    for measure in &measures.list {
+        if let MeasureSource::Formulas(k) = measure.from
+            && undefined[k] > 0
+        {
+            let why = format!(
+                "NaN at {} of {} output times, where its formula takes another case than at the first",
+                undefined[k],
+                model.times.len()
+            );
+            out.report_unsupported("measure", &measure.output.name, why);
+        }
     }
     let source =
         Source { file, stem, name: identifier(stem), step: &step, formulas: formulas.as_ref(), measures };

@@ -1,7 +1,10 @@
 //! Replay of a model's motion by the formulas, before they are written.
 
-use hardpoint::model::Model;
+use hardpoint::measure::MeasureFormulas;
+use hardpoint::model::{Driver, Model};
 use hardpoint::motion::{DrivenStep, MotionCheck};
+
+use super::BODY;
 
 /// A correction below this leaves round-off, as in `control.c`.
 const QUADRATIC: f64 = 1e-8;
@@ -9,8 +12,16 @@ const MOST_CORRECTIONS: usize = 12;
 const MOST_GROWTH: f64 = 1e4;
 const LEAST_PIVOT: f64 = 1e-12;
 
-/// First output time that the formulas do not reach; `None` if they reach all.
-pub fn end(model: &Model, step: &DrivenStep) -> Option<f64> {
+/// Result of a replay.
+pub struct Replayed {
+    /// First output time that the formulas do not reach, if any.
+    pub end: Option<f64>,
+    /// Per output: number of output times at which its formula is undefined.
+    pub undefined: Vec<usize>,
+}
+
+/// Replays the motion of the model.
+pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormulas>) -> Replayed {
     let mut replay = Replay {
         step,
         inputs: step.coordinates.iter().map(|c| c.start).collect(),
@@ -18,18 +29,30 @@ pub fn end(model: &Model, step: &DrivenStep) -> Option<f64> {
         found: vec![0.0; usize::max(step.motion.outputs.len(), step.path.outputs.len())],
     };
     replay.inputs.extend(step.drivers.iter().flat_map(|d| [d.start, 0.0, 0.0]));
-    let mut reaches = |t: &f64| {
-        let drivers: Vec<[f64; 3]> = model
-            .drivers
-            .iter()
-            .map(|driver| {
-                let [value, rate, acceleration, _] = driver.law.at(*t).derivatives();
-                [value, rate, acceleration]
-            })
-            .collect();
-        replay.reaches(&drivers)
-    };
-    model.times.iter().copied().find(|t| !reaches(t))
+    let outputs = formulas.map_or(0, |f| f.program.outputs.len());
+    let mut undefined = vec![0; outputs / 4];
+    let (mut inputs, mut found) = (Vec::new(), vec![0.0; outputs]);
+    for &t in &model.times {
+        let of = |driver: &Driver| {
+            let [value, rate, acceleration, _] = driver.law.at(t).derivatives();
+            [value, rate, acceleration]
+        };
+        let drivers: Vec<[f64; 3]> = model.drivers.iter().map(of).collect();
+        if !replay.reaches(&drivers) {
+            return Replayed { end: Some(t), undefined };
+        }
+        let Some(formulas) = formulas else { continue };
+        let bodies = &replay.found[step.motion.outputs.len() - BODY * (model.bodies.len() - 1)..];
+        inputs.clear();
+        formulas.bodies.iter().for_each(|b| inputs.extend(&bodies[BODY * (b - 1)..][..BODY]));
+        inputs.resize(formulas.program.inputs, 0.0);
+        formulas.program.evaluate(&inputs, &[], &mut replay.values, &mut found);
+        for (count, guard) in undefined.iter_mut().zip(&found) {
+            // NaN is undefined.
+            *count += usize::from(!(*guard <= 0.0));
+        }
+    }
+    Replayed { end: None, undefined }
 }
 
 struct Replay<'a> {
