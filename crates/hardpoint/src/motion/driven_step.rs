@@ -1,8 +1,8 @@
 //! A step as straight-line programs of its drivers, for generators of source code.
 //!
 //! The programs are recorded from the kernel, like those that the solver runs itself ([`step_program`]). They differ in
-//! their inputs: the coordinates at which the step begins, and the drivers' values, rates and accelerations. There is no
-//! time, no law and no prediction in them, so the caller chooses the path of the drivers.
+//! their inputs: the coordinates at which the step begins, and the drivers' values, rates and accelerations. There is
+//! no time, no law and no prediction in them, so the caller chooses the path of the drivers.
 //!
 //! [`step_program`]: super::step_program
 
@@ -23,8 +23,9 @@ use super::step_program::{OFFSET, RecordedStep, largest_of};
 /// Step of the nominal design as straight-line programs of its drivers.
 ///
 /// All numbers are in SI units. The three programs have the same inputs: the unknown coordinates, then value, rate and
-/// acceleration of every driver. A step corrects the coordinates by [`correction`](Self::correction) until the size of a
-/// correction is at most 1e-8, so that the remaining error is its square, and evaluates [`motion`](Self::motion) there.
+/// acceleration of every driver. A step corrects the coordinates by [`correction`](Self::correction) until the size of
+/// a correction is at most 1e-8, so that the remaining error is its square, and evaluates [`motion`](Self::motion)
+/// there.
 #[derive(Clone, Debug)]
 pub struct DrivenStep {
     /// Unknown coordinates; those of a ball are the four components of a unit quaternion.
