@@ -45,7 +45,7 @@ fn gallery() -> Vec<String> {
 /// A compiled step.
 struct Compiled {
     folder: tempfile::TempDir,
-    /// What the export reported, by name.
+    /// Names that the export reported.
     unsupported: Vec<String>,
     /// Names in the comments of the measures, in order.
     measures: Vec<String>,

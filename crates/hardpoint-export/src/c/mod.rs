@@ -22,7 +22,7 @@ use hardpoint_tape::Operand;
 
 use crate::{Companion, ExportError, ExportedModel, Format, Writer};
 use emit::{Function, literal};
-use replay::{Replayed, replay};
+use replay::{ReplayResult, replay};
 
 /// C format.
 pub const FORMAT: Format = Format {
@@ -58,7 +58,7 @@ fn write(file: &ModelFile, stem: &str, out: &mut ExportedModel) -> Result<(), Ex
         let why = "their nominal values are constants of the formulas";
         out.report_unsupported("design variables", &model.variables.len().to_string(), why);
     }
-    let Replayed { end, undefined } = replay(model, &step, formulas.as_ref());
+    let ReplayResult { end, undefined } = replay(model, &step, formulas.as_ref());
     if let Some(t) = end {
         let why = "the formulas end there: the motion goes on with other rows of redundant constraints, or through a \
                    change point";

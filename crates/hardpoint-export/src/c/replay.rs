@@ -13,7 +13,7 @@ const MOST_GROWTH: f64 = 1e4;
 const LEAST_PIVOT: f64 = 1e-12;
 
 /// Result of a replay.
-pub struct Replayed {
+pub struct ReplayResult {
     /// First output time that the formulas do not reach, if any.
     pub end: Option<f64>,
     /// Per output: number of output times at which its formula is undefined.
@@ -21,7 +21,7 @@ pub struct Replayed {
 }
 
 /// Replays the motion of the model.
-pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormulas>) -> Replayed {
+pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormulas>) -> ReplayResult {
     let mut replay = Replay {
         step,
         inputs: step.coordinates.iter().map(|c| c.start).collect(),
@@ -39,7 +39,7 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
         };
         let drivers: Vec<[f64; 3]> = model.drivers.iter().map(of).collect();
         if !replay.reaches(&drivers) {
-            return Replayed { end: Some(t), undefined };
+            return ReplayResult { end: Some(t), undefined };
         }
         let Some(formulas) = formulas else { continue };
         let bodies = &replay.found[step.motion.outputs.len() - BODY * (model.bodies.len() - 1)..];
@@ -52,7 +52,7 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
             *count += usize::from(!(*guard <= 0.0));
         }
     }
-    Replayed { end: None, undefined }
+    ReplayResult { end: None, undefined }
 }
 
 struct Replay<'a> {
