@@ -622,12 +622,14 @@ pub struct Optimize {
 const AFTER_EXPORT: &str = "\
 The file name selects the format; `--list` shows the formats. Unsupported features, such as
 motions in URDF, are listed, and the file is written all the same (docs/import.md).
-`hardpoint run` writes the motion itself.
+`hardpoint run` writes the motion itself; `-o NAME.c` writes its formulas, a function of the
+drivers, as C99 (docs/export-c.md).
 
 Examples:
   hardpoint export models/four_bar.toml -o four_bar.urdf
   hardpoint export models/double_wishbone.toml -o hardpoints.csv
   hardpoint export models/double_wishbone.toml -o skeleton.dxf
+  hardpoint export models/double_wishbone.toml -o corner.c
   hardpoint export models/double_wishbone.toml -o front.sub --json | jq '.unsaid[]'
   hardpoint export --list";
 

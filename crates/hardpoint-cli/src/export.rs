@@ -3,8 +3,10 @@
 use std::io::Write;
 use std::path::Path;
 
-use hardpoint_export::{FORMATS, Format};
+use hardpoint_export::{ExportError, FORMATS, Format};
 use hardpoint_report::GENERATOR;
+use hardpoint_study::RequestError;
+use hardpoint_study::request::Fault;
 use serde_json::json;
 
 use crate::args::Export;
@@ -49,19 +51,43 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
     };
     session.may_save(model, Some(to))?;
     let file = session.read(model)?;
-    let exported = format.export(&file);
-    write_alone(to, |out| out.write_all(exported.text.as_bytes())).map_err(|e| session.not_written(&e))?;
+    let stem = to.file_stem().unwrap_or_default().to_string_lossy();
+    let exported = format.export(&file, &stem).map_err(|error| match error {
+        ExportError::CannotBeDriven(fault) => session.cannot_be_driven(&file, &fault),
+        ExportError::NotRecorded { why } => session.refused(&file, &not_recorded(format, &why)),
+    })?;
+    let write = |to: &Path, text: &str| {
+        write_alone(to, |out| out.write_all(text.as_bytes())).map_err(|e| session.not_written(&e))
+    };
+    write(to, &exported.text)?;
+    let companion = exported.companion.as_ref().map(|c| (to.with_extension(c.ending), c));
+    if let Some((path, companion)) = &companion {
+        write(path, &companion.text)?;
+    }
     if session.is_json() {
         session.print_json(&json!({
-            "generator": GENERATOR, "status": "complete", "format": format.name, "file": to, "unsaid": exported.unsupported,
+            "generator": GENERATOR, "status": "complete", "format": format.name, "file": to,
+            "companion": companion.as_ref().map(|(path, _)| path), "unsaid": exported.unsupported,
         }));
         return Ok(Outcome::Done);
     }
     let mut out = format!("{}: {}\n", to.display(), format.about);
+    if let Some((path, _)) = &companion {
+        out += &format!("{}: its header\n", path.display());
+    }
     if !exported.unsupported.is_empty() {
         out += "  unsupported, or exported with changes:\n";
         out.extend(exported.unsupported.iter().map(|u| format!("    {} `{}`: {}\n", u.kind, u.name, u.why)));
     }
     text::print(&out);
     Ok(Outcome::Done)
+}
+
+/// Error for a model whose motion has no formulas in this format.
+fn not_recorded(format: &Format, why: &str) -> RequestError {
+    RequestError {
+        fault: Fault::Model,
+        message: format!("`--format {}`: the motion has no formulas: {why}", format.name),
+        help: "see `docs/export-c.md` for the models whose motion can be exported".into(),
+    }
 }

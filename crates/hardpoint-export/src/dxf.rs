@@ -6,15 +6,19 @@ use hardpoint_file::{LengthUnit, ModelFile};
 
 use crate::links::{body_points, lines, rods};
 use crate::tables::hardpoints;
-use crate::{ExportedModel, Format};
+use crate::{ExportedModel, Format, Writer};
 
 mod drawing;
 
 use drawing::{Drawing, number, point, single_line};
 
 /// DXF format.
-pub const FORMAT: Format =
-    Format { name: "dxf", about: "skeleton of hardpoints and bodies as DXF", endings: &["dxf"], write };
+pub const FORMAT: Format = Format {
+    name: "dxf",
+    about: "skeleton of hardpoints and bodies as DXF",
+    endings: &["dxf"],
+    write: Writer::Described(write),
+};
 
 /// Layer of the hardpoints and their names.
 const HARDPOINTS: &str = "hardpoints";

@@ -13,12 +13,13 @@
 //! "#;
 //! let file = hardpoint_file::parse(text, "pendulum.toml").unwrap();
 //! let urdf = hardpoint_export::Format::named("urdf").unwrap();
-//! let exported = urdf.export(&file);
+//! let exported = urdf.export(&file, "pendulum").unwrap();
 //! assert!(exported.text.contains(r#"<origin xyz="0 0 0.5"/>"#));
 //! assert!(exported.unsupported.iter().any(|u| u.name == "swing")); // URDF does not support motions
 //! ```
 
 mod animation;
+mod c;
 mod dxf;
 mod links;
 pub mod long_table;
@@ -31,6 +32,7 @@ mod tables;
 mod urdf;
 mod workbook;
 
+use hardpoint::topology::TopologyError;
 use hardpoint_file::ModelFile;
 use serde::Serialize;
 
@@ -46,6 +48,29 @@ pub struct ExportedModel {
     pub text: String,
     /// Features that the format does not support, or supports only approximately.
     pub unsupported: Vec<UnsupportedFeature>,
+    /// Second file, which belongs to the first.
+    pub companion: Option<Companion>,
+}
+
+/// A file that belongs to an exported one and has the same name but for its extension.
+#[derive(Clone, Debug)]
+pub struct Companion {
+    /// File extension, without the dot.
+    pub ending: &'static str,
+    /// Text of the file.
+    pub text: String,
+}
+
+/// Reason why a model cannot be written in a format.
+#[derive(Clone, Debug)]
+pub enum ExportError {
+    /// The mechanism cannot be driven as modelled.
+    CannotBeDriven(TopologyError),
+    /// The step of the mechanism has no formulas.
+    NotRecorded {
+        /// Reason.
+        why: String,
+    },
 }
 
 /// Feature of a model that a format does not support.
@@ -68,7 +93,16 @@ pub struct Format {
     pub about: &'static str,
     /// File extensions, without the dot.
     pub endings: &'static [&'static str],
-    write: fn(&ModelFile, &mut ExportedModel),
+    write: Writer,
+}
+
+/// Writer of a format.
+#[derive(Clone, Copy)]
+enum Writer {
+    /// A description of the model.
+    Described(fn(&ModelFile, &mut ExportedModel)),
+    /// The solved motion as formulas, in a file with this name without its extension.
+    Recorded(fn(&ModelFile, &str, &mut ExportedModel) -> Result<(), ExportError>),
 }
 
 impl std::fmt::Debug for Format {
@@ -78,7 +112,8 @@ impl std::fmt::Debug for Format {
 }
 
 /// All export formats.
-pub const FORMATS: &[Format] = &[tables::CSV, tables::TEIMORBIT, urdf::FORMAT, mjcf::FORMAT, dxf::FORMAT];
+pub const FORMATS: &[Format] =
+    &[tables::CSV, tables::TEIMORBIT, urdf::FORMAT, mjcf::FORMAT, dxf::FORMAT, c::FORMAT];
 
 /// Formats whose writers quote names, so that these may contain any character.
 const QUOTES_NAMES: [&str; 1] = ["csv"];
@@ -95,16 +130,24 @@ impl Format {
         FORMATS.iter().find(|f| f.endings.contains(&ending.as_str()))
     }
 
-    /// Exports a model to this format.
-    pub fn export(&self, file: &ModelFile) -> ExportedModel {
+    /// Exports a model to this format, as a file whose name without its extension is `stem`.
+    ///
+    /// # Errors
+    ///
+    /// Formats that contain the motion need a mechanism that can be driven and whose step has formulas.
+    pub fn export(&self, file: &ModelFile, stem: &str) -> Result<ExportedModel, ExportError> {
         let mut out = ExportedModel::default();
         let renamed = if QUOTES_NAMES.contains(&self.name) {
             None
         } else {
             names::with_supported_names(file, &mut out)
         };
-        (self.write)(renamed.as_ref().unwrap_or(file), &mut out);
-        out
+        let file = renamed.as_ref().unwrap_or(file);
+        match self.write {
+            Writer::Described(write) => write(file, &mut out),
+            Writer::Recorded(write) => write(file, stem, &mut out)?,
+        }
+        Ok(out)
     }
 }
 

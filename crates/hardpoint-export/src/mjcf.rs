@@ -9,10 +9,15 @@ use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 
 use crate::skeleton::{Carrier, Skeleton, axis, bounded, followers, is_closed, joint_points, range_of};
-use crate::{ExportedModel, Format, escaped, number, numbers};
+use crate::{ExportedModel, Format, Writer, escaped, number, numbers};
 
 /// MJCF format.
-pub const FORMAT: Format = Format { name: "mjcf", about: "MuJoCo model", endings: &["xml", "mjcf"], write };
+pub const FORMAT: Format = Format {
+    name: "mjcf",
+    about: "MuJoCo model",
+    endings: &["xml", "mjcf"],
+    write: Writer::Described(write),
+};
 
 /// Freedoms of a tree joint that a sequence of MJCF joints has as well: turns and slides, or a single ball.
 fn freedoms(kind: &JointType) -> Option<&'static [Freedom]> {

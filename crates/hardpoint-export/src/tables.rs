@@ -6,18 +6,22 @@ use std::io;
 use hardpoint_file::{LengthUnit, ModelFile};
 use hardpoint_table::csv::CsvWriter;
 
-use crate::{ExportedModel, Format, number};
+use crate::{ExportedModel, Format, Writer, number};
 
 /// CSV format, a table for spreadsheets.
-pub const CSV: Format =
-    Format { name: "csv", about: "hardpoints as a CSV table", endings: &["csv"], write: csv };
+pub const CSV: Format = Format {
+    name: "csv",
+    about: "hardpoints as a CSV table",
+    endings: &["csv"],
+    write: Writer::Described(csv),
+};
 
 /// TeimOrbit format, a block for Adams/Car.
 pub const TEIMORBIT: Format = Format {
     name: "teimorbit",
     about: "hardpoints as a TeimOrbit block",
     endings: &["sub", "hpt"],
-    write: teimorbit,
+    write: Writer::Described(teimorbit),
 };
 
 /// Names and positions of the hardpoints, in the unit of the file, with the fewest digits that reproduce the positions.

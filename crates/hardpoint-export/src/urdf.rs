@@ -6,11 +6,15 @@ use hardpoint::joint::{Freedom, JointType};
 use hardpoint_file::ModelFile;
 
 use crate::skeleton::{Carrier, Skeleton, axis, bounded, ends, followers, joint_points, range_of};
-use crate::{ExportedModel, Format, escaped, numbers};
+use crate::{ExportedModel, Format, Writer, escaped, numbers};
 
 /// URDF format.
-pub const FORMAT: Format =
-    Format { name: "urdf", about: "URDF robot description", endings: &["urdf"], write };
+pub const FORMAT: Format = Format {
+    name: "urdf",
+    about: "URDF robot description",
+    endings: &["urdf"],
+    write: Writer::Described(write),
+};
 
 /// Joint type of URDF with the same freedoms; a `ball` can close a loop only.
 fn urdf_type(kind: &JointType) -> Option<&'static str> {

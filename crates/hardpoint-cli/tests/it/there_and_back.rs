@@ -86,7 +86,7 @@ fn limits_of_joints_come_back_and_those_that_do_not_are_listed() {
     let first = model(text);
     let all = limits(&first);
     for (format, file, lost) in [("mjcf", "again.xml", 1), ("urdf", "again.urdf", 2)] {
-        let exported = Format::named(format).unwrap().export(&first);
+        let exported = Format::named(format).unwrap().export(&first, "model").unwrap();
         let listed: Vec<&str> =
             exported.unsupported.iter().filter(|u| u.kind == "limit").map(|u| u.name.as_str()).collect();
         assert_eq!(listed, &["C.articulation", "D.articulation"][2 - lost..], "{format}");
@@ -99,7 +99,7 @@ fn limits_of_joints_come_back_and_those_that_do_not_are_listed() {
 
 fn there_and_back(name: &str, format: &str, file: &str) {
     let first = model(&source(name));
-    let exported = Format::named(format).unwrap().export(&first);
+    let exported = Format::named(format).unwrap().export(&first, "model").unwrap();
     let again =
         hardpoint_import::import(exported.text.as_bytes(), file, &|_| None).unwrap_or_else(|e| panic!("{e}"));
     let second = model(&again.text);
@@ -127,7 +127,7 @@ fn by_way_of(name: &str, format: &str) -> (ModelFile, ModelFile) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
     let first = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
     let format = Format::named(format).unwrap();
-    let exported = format.export(&first);
+    let exported = format.export(&first, "model").unwrap();
     let file = format!("again.{}", format.endings[0]);
     let again = hardpoint_import::import(exported.text.as_bytes(), &file, &|_| None)
         .unwrap_or_else(|e| panic!("{name}: {e}\n{}", exported.text));
@@ -169,7 +169,7 @@ fn joints_of_several_freedoms_are_written_as_a_chain() {
 fn hardpoints_come_back_to_the_last_digit() {
     for name in ["teimorbit/wishbone.sub", "teimorbit/push_rod.sub"] {
         let first = model(&source(name));
-        let exported = Format::named("teimorbit").unwrap().export(&first);
+        let exported = Format::named("teimorbit").unwrap().export(&first, "model").unwrap();
         let again = hardpoint_import::import(exported.text.as_bytes(), "again.sub", &|_| None).unwrap();
         let second = model(&again.text);
         let places = |f: &ModelFile| -> Vec<(String, [u64; 3])> {
@@ -190,7 +190,7 @@ fn unsupported_features_of_a_format_are_listed() {
     let lists: Vec<String> = ["csv", "urdf", "mjcf"]
         .iter()
         .map(|format| {
-            let exported = Format::named(format).unwrap().export(&file);
+            let exported = Format::named(format).unwrap().export(&file, "model").unwrap();
             let list: Vec<String> = exported
                 .unsupported
                 .iter()
@@ -286,7 +286,7 @@ fn names_that_a_format_does_not_allow_are_changed_and_reported() {
     for (format, name) in
         [("urdf", "names.urdf"), ("mjcf", "names.xml"), ("dxf", "names.dxf"), ("teimorbit", "names.sub")]
     {
-        let exported = Format::named(format).unwrap().export(&file);
+        let exported = Format::named(format).unwrap().export(&file, "model").unwrap();
         // DXF ends its lines as on Windows.
         let odd = exported.text.chars().find(|c| c.is_control() && !['\n', '\r'].contains(c));
         assert_eq!(odd, None, "{format}: {}", exported.text);

@@ -20,6 +20,7 @@ mod wheel;
 pub(crate) use bodies::with_rates;
 pub(crate) use evaluate::{Context, MeasuredDesign, derivatives, evaluate};
 pub(crate) use formulas::{Instant, bodies_asked_for};
+pub use program::MeasureFormulas;
 pub(crate) use program::{MeasureProgram, ProgramKey, dependences};
 pub(crate) use slope::{DriverPoses, Slopes, hindrance};
 pub(crate) use step_values::{RecordedValue, RecordedValues, StepValues};

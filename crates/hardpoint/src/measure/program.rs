@@ -23,7 +23,7 @@
 
 use std::ops::Range;
 
-use hardpoint_tape::{LANES, Number, Options, record};
+use hardpoint_tape::{LANES, Number, Options, Program, record};
 
 use crate::blocks::{AlignedLanes, lanes_of};
 use crate::design::{BodyFixed, DesignMap};
@@ -91,6 +91,35 @@ pub(crate) struct MeasureProgram {
 impl MeasureProgram {
     /// The request, if it can be recorded.
     pub fn record(design_map: &DesignMap<'_>, asked: &ProgramKey, execution: Execution) -> Option<Self> {
+        let RecordedFormulas { program, bodies, turning, inputs, outputs, places, derivatives } =
+            RecordedFormulas::of(design_map, asked)?;
+        let (moved, design_at) = (asked.moved.clone(), inputs);
+        let program = Staged::new(program, design_at, execution, |step| {
+            Runnable::new(step, [outputs, 4 * outputs], execution)
+        });
+        Some(Self { program, bodies, moved, turning, design_at, outputs, places, derivatives })
+    }
+
+    /// By variable and output, where its derivatives begin, and how many numbers they are in all.
+    pub(super) fn layout(&self) -> (Vec<Option<usize>>, usize) {
+        (self.places.clone(), self.derivatives)
+    }
+}
+
+/// The formulas of all outputs, recorded.
+struct RecordedFormulas {
+    program: Program,
+    bodies: Vec<usize>,
+    turning: Vec<usize>,
+    /// Number of inputs before the design values.
+    inputs: usize,
+    outputs: usize,
+    places: Vec<Option<usize>>,
+    derivatives: usize,
+}
+
+impl RecordedFormulas {
+    fn of(design_map: &DesignMap<'_>, asked: &ProgramKey) -> Option<Self> {
         let model = design_map.model();
         let (outputs, bodies) = (super::outputs(model), moving_bodies(model));
         let nominal = model.whole(&[]);
@@ -163,16 +192,33 @@ impl MeasureProgram {
             return None;
         }
         let (program, _) = recorded.program(Options::default());
-        let (moved, outputs, design_at) = (asked.moved.clone(), outputs.len(), inputs);
-        let program = Staged::new(program, design_at, execution, |step| {
-            Runnable::new(step, [outputs, 4 * outputs], execution)
-        });
-        Some(Self { program, bodies, moved, turning, design_at, outputs, places, derivatives })
+        Some(Self { program, bodies, turning, inputs, outputs: outputs.len(), places, derivatives })
     }
+}
 
-    /// By variable and output, where its derivatives begin, and how many numbers they are in all.
-    pub(super) fn layout(&self) -> (Vec<Option<usize>>, usize) {
-        (self.places.clone(), self.derivatives)
+/// Measures and point components of the nominal design as a straight-line program of the motion of its bodies, for
+/// generators of source code.
+///
+/// Inputs are 24 numbers of each of the [`bodies`](Self::bodies) (r, the columns of A, v, omega, a, alpha), the whole
+/// turns of the measures of [`turning`](Self::turning), rad, and a zero. Outputs are one guard for each of
+/// [`outputs`], then value, rate and acceleration of each. An output is undefined if its guard is positive or NaN. A
+/// guard that is the constant one belongs to an output that is not arithmetic.
+#[derive(Clone, Debug)]
+pub struct MeasureFormulas {
+    /// The program.
+    pub program: Program,
+    /// Indices of the bodies that are inputs.
+    pub bodies: Vec<usize>,
+    /// Indices of the measures whose whole turns are inputs.
+    pub turning: Vec<usize>,
+}
+
+impl MeasureFormulas {
+    /// Records the formulas; `None` if the body-fixed data are not arithmetic.
+    pub(crate) fn record(design_map: &DesignMap<'_>) -> Option<Self> {
+        let asked = ProgramKey { any_design: false, variables: 0, moved: Vec::new() };
+        let RecordedFormulas { program, bodies, turning, .. } = RecordedFormulas::of(design_map, &asked)?;
+        Some(Self { program, bodies, turning })
     }
 }
 

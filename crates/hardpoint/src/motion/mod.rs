@@ -10,6 +10,7 @@ pub(crate) mod assembly;
 mod change_point;
 mod crossing;
 pub(crate) mod design_batch;
+mod driven_step;
 pub(crate) mod execution;
 mod gap;
 mod guard;
@@ -34,6 +35,7 @@ pub(crate) mod tube;
 pub(crate) mod turns;
 mod walk;
 
+pub use driven_step::{DrivenCoordinate, DrivenStep, MotionCheck};
 pub use execution::{Execution, StepMethod};
 pub use gap::{Assembly, AssemblyShift, Closing, Gap};
 pub use jerk::BodyJerk;

@@ -34,7 +34,7 @@ use super::predictor::{Channel, NODES, ORDERS};
 
 /// Newton's first correction while recording, in units of each coordinate, for programs with one correction and with
 /// two: the last of them leaves round-off.
-const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5];
+pub(super) const OFFSET: [f64; MOST_CORRECTIONS] = [1e-9, 1e-5];
 /// Maximum number of corrections of a program; if more are needed, it runs again from its result.
 pub(super) const MOST_CORRECTIONS: usize = 2;
 /// Maximum number of links of a recorded mechanism: each takes some kilobytes during recording.
@@ -415,7 +415,7 @@ fn judged(
 }
 
 /// Maximum of these numbers; NaN if one is NaN, and the smallest number if there are none.
-fn largest_of(numbers: impl Iterator<Item = Number>) -> Number {
+pub(super) fn largest_of(numbers: impl Iterator<Item = Number>) -> Number {
     numbers.reduce(Number::larger).unwrap_or_else(|| Number::constant(f64::MIN))
 }
 

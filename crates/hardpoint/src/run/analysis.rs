@@ -8,14 +8,14 @@ use crate::design::DesignMap;
 use crate::equilibrium::{Released, release};
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
-use crate::measure::{self, MeasureResults, Slopes, StepValues};
+use crate::measure::{self, MeasureFormulas, MeasureResults, Slopes, StepValues};
 use crate::model::{BodyId, DriverId, JointLimit, MeasureKind, Model, SharedModel};
 use crate::motion::advance;
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
 use crate::motion::step_program::{Programs, Purpose, RecordedExtras, RecordedStep, StepProgram};
 use crate::motion::stepper::Stepper;
-use crate::motion::{BodyState, Execution, Motion, StepMethod, Stop, StopKind};
+use crate::motion::{BodyState, DrivenStep, Execution, Motion, StepMethod, Stop, StopKind};
 use crate::number::record as recording;
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design, along, record_derivatives};
 use crate::topology::{Formulation, Topology, TopologyError};
@@ -415,6 +415,47 @@ impl<'m> Analysis<'m> {
             };
             StepProgram::record(&one.mechanism, &self.design_map, purpose, besides, execution)
         })
+    }
+
+    /// Returns the step of the nominal design as straight-line programs of its drivers, recorded at the first output
+    /// time.
+    ///
+    /// # Errors
+    ///
+    /// The reason why the step cannot be recorded.
+    pub fn driven_step(&self) -> Result<DrivenStep, String> {
+        if self.equilibrium.is_some() {
+            return Err(AT_EQUILIBRIUM.to_owned());
+        }
+        if let Some(why) = StepProgram::hindrance(&self.topology, false) {
+            return Err(why.to_owned());
+        }
+        let Some(one) = self.started() else {
+            return Err("the motion does not reach its first output time".to_owned());
+        };
+        let model = self.model();
+        let are_recorded = measure::hindrance(&self.design_map).is_none();
+        let slopes = (0..model.measures.len()).filter(|m| are_recorded && model.depends_on_driver(*m));
+        let slopes: Vec<usize> = slopes.collect();
+        let record = |measures: Vec<usize>| {
+            let is_asked = !measures.is_empty();
+            DrivenStep::record(&one.mechanism, &self.design_map, measures, |step| {
+                if !is_asked {
+                    return Some(Default::default());
+                }
+                let (slopes, limits) = Slopes::record(&self.design_map, step, false)?;
+                Some((slopes.numbers(), limits))
+            })
+        };
+        // A measure that is not arithmetic leaves the motion as it is.
+        let step = record(slopes).or_else(|| record(Vec::new()));
+        step.ok_or_else(|| "a decision of the step depends on its position".to_owned())
+    }
+
+    /// Returns the measures of the nominal design as a straight-line program of the motion of its bodies; `None` if
+    /// they cannot be recorded.
+    pub fn measure_formulas(&self) -> Option<MeasureFormulas> {
+        MeasureFormulas::record(&self.design_map)
     }
 
     /// The nominal design where its motion begins.

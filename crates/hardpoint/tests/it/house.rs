@@ -45,7 +45,10 @@ const CRATES: &[(&str, &[&str])] = &[
     ("hardpoint-file", &["hardpoint", "hardpoint-table"]),
     ("hardpoint-report", &["hardpoint", "hardpoint-file", "hardpoint-study", "hardpoint-table"]),
     ("hardpoint-import", &["hardpoint", "hardpoint-file"]),
-    ("hardpoint-export", &["hardpoint", "hardpoint-file", "hardpoint-report", "hardpoint-table"]),
+    (
+        "hardpoint-export",
+        &["hardpoint", "hardpoint-file", "hardpoint-report", "hardpoint-table", "hardpoint-tape"],
+    ),
     (
         "hardpoint-cli",
         &[

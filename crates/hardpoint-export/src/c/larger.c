@@ -1,0 +1,6 @@
+/* The larger of two numbers; NaN if either is NaN. */
+static double @name@_larger(double a, double b)
+{
+    return b <= a || a != a ? a : b;
+}
+

@@ -1,0 +1,298 @@
+//! Motions exported as C, compiled, and compared with those of the engine.
+//!
+//! The compiler is `cc`, which Rust itself links with.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use hardpoint::law::Law;
+use hardpoint::space::Vec3;
+use hardpoint::{Analysis, Solution};
+use hardpoint_export::{ExportError, Format};
+use hardpoint_file::ModelFile;
+
+/// Largest difference from the engine, relative to the largest number of its kind in the motion: the formulas are those
+/// of the engine, but their Newton iterations begin elsewhere, and products are not fused with sums.
+const SAME: f64 = 1e-12;
+/// The same where the motion passes near singular positions, which magnify round-off.
+const NEAR_SINGULAR: f64 = 1e-11;
+
+/// Models that have no formulas, with the reason.
+const REFUSED: [(&str, &str); 2] =
+    [("cam", "a point follows a curve"), ("gear_train", "couplers count angles by their predicted turns")];
+/// Models whose motion the formulas do not follow to the end, and the reported time.
+const ENDS: [(&str, &str); 1] = [("bricard", "from t =")];
+
+/// Measures that are undefined at some output times: their formulas take another case there.
+const PARTIAL: [&str; 2] = ["front_axle: front.ackermann_error", "front_axle: front.ackermann"];
+
+fn model(name: &str) -> ModelFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/{name}.toml"));
+    hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn gallery() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let models = files.filter(|p: &PathBuf| p.extension().is_some_and(|e| e == "toml"));
+    let mut names: Vec<String> =
+        models.map(|p| p.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// A compiled step.
+struct Compiled {
+    folder: tempfile::TempDir,
+    /// Names that the export reported.
+    unsupported: Vec<String>,
+    /// Names in the comments of the measures, in order.
+    measures: Vec<String>,
+    /// Measures that are reported as undefined at some output times.
+    partial: Vec<String>,
+}
+
+/// Motion of every driver at a step: value, rate and acceleration.
+type Drivers = Vec<[f64; 3]>;
+
+/// Result of a step.
+#[derive(Clone, Debug, PartialEq)]
+struct Row {
+    result: i32,
+    moves: usize,
+    /// 24 numbers of every body: by component, r, the columns of A, v, omega, a, alpha.
+    bodies: Vec<f64>,
+    /// Value, rate and acceleration of every measure.
+    measures: Vec<[f64; 3]>,
+    /// Per measure and driver.
+    jacobian: Vec<f64>,
+}
+
+impl Compiled {
+    /// Compiles with all warnings as errors.
+    fn new(file: &ModelFile, stem: &str, optimise: &str) -> Result<Self, ExportError> {
+        let exported = Format::named("c").unwrap().export(file, stem)?;
+        let header = exported.companion.expect("a header");
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        write(&format!("{stem}.c"), &exported.text);
+        write(&format!("{stem}.{}", header.ending), &header.text);
+        let main = include_str!("main.c").replace("@name@", stem);
+        write("main.c", &main.replace("@NAME@", &stem.to_ascii_uppercase()));
+        let compiled = Command::new("cc")
+            .current_dir(folder.path())
+            .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", optimise])
+            .args(["main.c", &format!("{stem}.c"), "-o", "main", "-lm"])
+            .output()
+            .expect("a C compiler, `cc`");
+        assert!(compiled.status.success(), "{stem}: {}", String::from_utf8_lossy(&compiled.stderr));
+        let marker = format!("    {}_MEASURE_", stem.to_ascii_uppercase());
+        let lines = header.text.lines().filter(|l| l.starts_with(&marker));
+        let name = |line: &str| line.split_once("/* ").unwrap().1.split(", ").next().unwrap().to_owned();
+        let measures = lines.map(name).collect();
+        let partial = exported.unsupported.iter().filter(|u| u.why.starts_with("NaN at"));
+        let partial = partial.map(|u| u.name.clone()).collect();
+        let unsupported = exported.unsupported.into_iter().map(|u| u.name).collect();
+        Ok(Self { folder, unsupported, measures, partial })
+    }
+
+    /// Steps through these motions of the drivers.
+    fn run(&self, steps: &[Drivers], bodies: usize) -> Vec<Row> {
+        let mut child = Command::new(self.folder.path().join("main"))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let input: String = steps.iter().flatten().flatten().map(|x| format!("{x:e} ")).collect();
+        let mut stdin = child.stdin.take().unwrap();
+        let writer = std::thread::spawn(move || stdin.write_all(input.as_bytes()).unwrap());
+        let output = child.wait_with_output().unwrap();
+        writer.join().unwrap();
+        assert!(output.status.success());
+        let row = |line: &str| {
+            let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+            let (head, rest) = numbers.split_at(2);
+            let solved = head[0] == 0.0;
+            let (bodies, rest) = rest.split_at(if solved { 24 * (bodies - 1) } else { 0 });
+            let (measures, jacobian) = rest.split_at(if solved { 3 * self.measures.len() } else { 0 });
+            Row {
+                result: head[0] as i32,
+                moves: head[1] as usize,
+                bodies: bodies.to_vec(),
+                measures: measures.as_chunks().0.to_vec(),
+                jacobian: jacobian.to_vec(),
+            }
+        };
+        String::from_utf8(output.stdout).unwrap().lines().map(row).collect()
+    }
+}
+
+/// The drivers' motion at all output times.
+fn drivers(analysis: &Analysis<'_>, solution: &Solution) -> Vec<Drivers> {
+    let of = |law: &Law, t: f64| {
+        let [value, rate, acceleration, _] = law.at(t).derivatives();
+        [value, rate, acceleration]
+    };
+    let at = |t: &f64| analysis.model().drivers.iter().map(|d| of(&d.law, *t)).collect();
+    solution.motion.times.iter().map(at).collect()
+}
+
+/// Largest difference between two lists, relative to the largest number, or to one. Both may be undefined.
+fn difference(found: &[f64], expected: &[f64]) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    let size = expected.iter().filter(|x| x.is_finite()).fold(1.0_f64, |most, x| most.max(x.abs()));
+    let apart = |(a, b): (&f64, &f64)| if a.is_nan() && b.is_nan() { 0.0 } else { (a - b).abs() };
+    // NaN is the largest.
+    found.iter().zip(expected).map(apart).fold(0.0, |most, x| if most >= x { most } else { x }) / size
+}
+
+/// Compares a step with the engine at all output times that it reaches.
+fn compare(
+    name: &str,
+    c: &Compiled,
+    analysis: &Analysis<'_>,
+    solution: &Solution,
+    rows: &[Row],
+    tolerance: f64,
+) {
+    let bodies = analysis.model().bodies.len();
+    let expected = |k: usize| -> Vec<f64> {
+        let of_body = |b: usize| {
+            let s = solution.motion.at(k).body(b);
+            let [x, y, z] = s.rotation.cols;
+            let all = [s.r, x, y, z, s.v, s.omega, s.a, s.alpha].map(Vec3::to_array);
+            (0..3).flat_map(move |i| all.map(|v| v[i]))
+        };
+        (1..bodies).flat_map(of_body).collect()
+    };
+    // Positions, axes, velocities, ... each by their own size.
+    let all: Vec<Vec<f64>> = (0..rows.len()).map(expected).collect();
+    for kind in 0..8 {
+        let of_kind = |numbers: &[f64]| numbers.iter().skip(kind).step_by(8).copied().collect::<Vec<f64>>();
+        let found: Vec<f64> = rows.iter().flat_map(|row| of_kind(&row.bodies)).collect();
+        let expected: Vec<f64> = all.iter().flat_map(|numbers| of_kind(numbers)).collect();
+        let apart = difference(&found, &expected);
+        assert!(apart < tolerance, "{name}: numbers {kind} of the bodies differ by {apart:e}");
+    }
+    for (m, measure) in c.measures.iter().enumerate() {
+        let column =
+            solution.measured.index(measure).unwrap_or_else(|| panic!("{name}: no measure {measure}"));
+        for order in 0..3 {
+            let at = |k: usize| solution.measured.value(k, column)[order];
+            let mut expected: Vec<f64> = (0..rows.len()).map(at).collect();
+            let found: Vec<f64> = rows.iter().map(|row| row.measures[m][order]).collect();
+            if c.partial.contains(measure) {
+                assert!(
+                    order > 0 || found.iter().any(|x| x.is_finite()),
+                    "{name}: {measure} is nowhere defined"
+                );
+                expected.iter_mut().zip(&found).filter(|(_, x)| x.is_nan()).for_each(|(x, _)| *x = f64::NAN);
+            }
+            let apart = difference(&found, &expected);
+            assert!(apart < tolerance, "{name}: {measure}, order {order}, differs by {apart:e}");
+        }
+    }
+    // The rate is the sum of the derivatives by the drivers, times their rates.
+    let motions = drivers(analysis, solution);
+    let count = analysis.model().drivers.len();
+    let along = |(row, drivers): (&Row, &Drivers)| -> Vec<f64> {
+        let product = |line: &[f64]| line.iter().zip(drivers).map(|(d, [_, rate, _])| d * rate).sum();
+        row.jacobian.chunks(count).map(product).collect()
+    };
+    let sums: Vec<f64> = rows.iter().zip(&motions).flat_map(along).collect();
+    let rates: Vec<f64> = rows.iter().flat_map(|row| row.measures.iter().map(|m| m[1])).collect();
+    let apart = difference(&sums, &rates);
+    assert!(apart < tolerance, "{name}: rates differ from those of the Jacobian by {apart:e}");
+}
+
+#[test]
+fn the_gallery_in_c_moves_as_in_the_engine() {
+    let (mut refused, mut partial) = (Vec::new(), Vec::new());
+    for name in gallery() {
+        let file = model(&name);
+        let c = match Compiled::new(&file, &name, "-O0") {
+            Ok(c) => c,
+            Err(ExportError::NotRecorded { why }) => {
+                refused.push((name, why));
+                continue;
+            }
+            Err(ExportError::CannotBeDriven(fault)) => panic!("{name}: {fault}"),
+        };
+        partial.extend(c.partial.iter().map(|measure| format!("{name}: {measure}")));
+        let analysis = Analysis::new(&file.model).unwrap();
+        let solution = analysis.run();
+        let rows = c.run(&drivers(&analysis, &solution), file.model.bodies.len());
+        let reached = rows.iter().take_while(|row| row.result == 0).count();
+        let reported = c.unsupported.iter().any(|u| u.starts_with("from t ="));
+        let ends = ENDS.iter().any(|(other, _)| *other == name);
+        assert_eq!(reported, ends, "{name}: {:?}", c.unsupported);
+        assert_eq!(reached < rows.len(), ends, "{name}: {reached} of {} steps", rows.len());
+        let tolerance = if ends { NEAR_SINGULAR } else { SAME };
+        compare(&name, &c, &analysis, &solution, &rows[..reached], tolerance);
+    }
+    let expected = REFUSED.map(|(name, why)| (name.to_owned(), why.to_owned()));
+    assert_eq!(refused, expected);
+    assert_eq!(partial, PARTIAL);
+}
+
+/// A four-bar linkage turns by two radians in a single step, and by a hundred small ones: the path is divided until
+/// both lead to the same position.
+#[test]
+fn a_long_step_is_divided() {
+    let file = model("four_bar");
+    // Optimised, the compiler sees more to warn about.
+    let c = Compiled::new(&file, "four_bar", "-O2").unwrap();
+    let bodies = file.model.bodies.len();
+    let start = file.model.drivers[0].law.at(file.model.times[0]).value();
+    let at = |part: f64| vec![[start + 2.0 * part, 3.0, 4.0]];
+    let small: Vec<Drivers> = (0..=100).map(|k| at(f64::from(k) / 100.0)).collect();
+    let small = c.run(&small, bodies);
+    let [long] = &c.run(&[at(1.0)], bodies)[..] else { panic!("one row") };
+    assert_eq!(long.result, 0);
+    assert!(long.moves > 3, "{} moves", long.moves);
+    let last = small.last().unwrap();
+    assert_eq!((last.result, last.moves), (0, 1));
+    assert!(difference(&long.bodies, &last.bodies) < SAME);
+}
+
+/// A platform one leg of which is asked to become ten metres longer than the others, or no number, stays where it was.
+#[test]
+fn a_step_that_fails_leaves_the_state() {
+    let file = model("stewart");
+    let c = Compiled::new(&file, "stewart", "-O0").unwrap();
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.run();
+    let good = drivers(&analysis, &solution)[..3].to_vec();
+    let with = |x: f64| -> Drivers {
+        let mut drivers = good[1].clone();
+        drivers[0][0] += x;
+        drivers
+    };
+    let steps = [good[0].clone(), good[1].clone(), with(10.0), with(f64::NAN), good[2].clone()];
+    let bodies = file.model.bodies.len();
+    let rows = c.run(&steps, bodies);
+    let undisturbed = c.run(&good, bodies);
+    let results: Vec<bool> = rows.iter().map(|row| row.result == 0).collect();
+    assert_eq!(results, [true, true, false, false, true]);
+    assert_eq!(rows[3].result, 1, "not finite");
+    assert_ne!(rows[2].result, 1);
+    assert_eq!(rows[4], undisturbed[2]);
+}
+
+/// Measures of loads and those found by iterations are reported, not written.
+#[test]
+fn what_is_not_written_is_reported() {
+    let file = model("press");
+    let exported = Format::named("c").unwrap().export(&file, "press").unwrap();
+    let loads = file.model.measures.iter().filter(|m| m.kind.is_load());
+    let mut count = 0;
+    for measure in loads {
+        assert!(exported.unsupported.iter().any(|u| u.name == measure.name), "{}", measure.name);
+        count += 1;
+    }
+    assert!(count > 0);
+    let variables = exported.unsupported.iter().find(|u| u.kind == "design variables");
+    let expected = (!file.model.variables.is_empty()).then(|| file.model.variables.len().to_string());
+    assert_eq!(variables.map(|u| u.name.clone()), expected);
+}

@@ -1,0 +1,173 @@
+//! A step as straight-line programs of its drivers, for generators of source code.
+//!
+//! The programs are recorded from the kernel, like those that the solver runs itself ([`step_program`]). They differ in
+//! their inputs: the coordinates at which the step begins, and the drivers' values, rates and accelerations. There is
+//! no time, no law and no prediction in them, so the caller chooses the path of the drivers.
+//!
+//! [`step_program`]: super::step_program
+
+use hardpoint_tape::{Number, Options, Program, record};
+
+use crate::design::DesignMap;
+use crate::linalg::Factors;
+use crate::number::record as recording;
+use crate::space::Vec3;
+
+use super::BodyState;
+use super::kinematics::State;
+use super::mechanism::{Mechanism, driver_units};
+use super::parts::PlanGeometry;
+use super::predictor::{Channel, ORDERS};
+use super::step_program::{OFFSET, RecordedStep, largest_of};
+
+/// Step of the nominal design as straight-line programs of its drivers.
+///
+/// All numbers are in SI units. The three programs have the same inputs: the unknown coordinates, then value, rate and
+/// acceleration of every driver. A step corrects the coordinates by [`correction`](Self::correction) until the size of
+/// a correction is at most 1e-8, so that the remaining error is its square, and evaluates [`motion`](Self::motion)
+/// there.
+#[derive(Clone, Debug)]
+pub struct DrivenStep {
+    /// Unknown coordinates; those of a ball are the four components of a unit quaternion.
+    pub coordinates: Vec<DrivenCoordinate>,
+    /// Value of every driver at the start, m or rad.
+    pub drivers: Vec<DrivenCoordinate>,
+    /// One Newton correction: the corrected coordinates, and its largest component in units of the coordinates.
+    pub correction: Program,
+    /// First and second derivative of every coordinate.
+    pub path: Program,
+    /// Results at the solved coordinates, in this order: [`MotionCheck`]s, the determinant of every block, excess and
+    /// then value of every measure of [`step_measures`](Self::step_measures), and 24 numbers of every body but ground:
+    /// r, the columns of A, v, omega, a, alpha.
+    pub motion: Program,
+    /// True for each block whose determinant is a logarithm.
+    pub logarithmic: Vec<bool>,
+    /// Measures of the model that are found with the motion. Their value is undefined if its excess is positive.
+    pub step_measures: Vec<usize>,
+}
+
+/// Coordinate of a step where its path starts.
+#[derive(Clone, Copy, Debug)]
+pub struct DrivenCoordinate {
+    /// Value, m or rad; a component of a quaternion.
+    pub start: f64,
+    /// Unit in which moves are compared: 1 rad, the size of the loop, or 1/2 for a component of a quaternion.
+    pub unit: f64,
+}
+
+/// Numbers by which the motion of a step is checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionCheck {
+    /// Positive if a decision of the recording does not hold.
+    Limit,
+    /// Positive if a determinant has another sign: the position is on another branch.
+    Branch,
+    /// Largest factor of the elimination in the recorded order of the pivots.
+    Growth,
+    /// Largest pivot over the smallest one, of all blocks.
+    Pivots,
+    /// Largest residual of a constraint, redundant ones included, rad or sizes of loops.
+    Residual,
+}
+
+impl MotionCheck {
+    /// All checks, in the order of the outputs.
+    pub const ALL: [Self; 5] = [Self::Limit, Self::Branch, Self::Growth, Self::Pivots, Self::Residual];
+}
+
+impl DrivenStep {
+    /// Records the step at the accepted position; `besides` records the measures that need more than the motion, with
+    /// further limits. `None` if the step is not arithmetic.
+    pub(crate) fn record(
+        one: &Mechanism<'_>,
+        design_map: &DesignMap<'_>,
+        step_measures: Vec<usize>,
+        besides: impl FnOnce(&mut RecordedStep<'_>) -> Option<(Vec<Number>, Vec<Number>)>,
+    ) -> Option<Self> {
+        let (model, topology) = (one.model, &one.topology);
+        let channels = Channel::all(topology);
+        // An offset below 1e-8 is corrected once; without an offset nothing is corrected.
+        let correction = recorded(one, design_map, OFFSET[0], |step, _| {
+            let state = &*step.state;
+            let mut out: Vec<Number> = channels.iter().map(|c| c.of(state)[0]).collect();
+            out.push(largest_of(state.corrections.iter().map(|(corrections, _)| corrections[0])));
+            Some(out)
+        })?;
+        let path = recorded(one, design_map, 0.0, |step, _| {
+            let rates = channels.iter().flat_map(|c| c.of(step.state).into_iter().skip(1));
+            Some(rates.collect())
+        })?;
+        let motion = recorded(one, design_map, 0.0, |step, parts| {
+            let bodies = BodyState::all(step.state);
+            let state = &*step.state;
+            let watched = || state.watched.iter();
+            let sides = state.watched.iter().map(|w| {
+                let side = if Number::value(w.product) > 0.0 { -1.0 } else { 1.0 };
+                w.product * side
+            });
+            let [branch, growth] = [largest_of(sides), largest_of(watched().map(|w| w.growth))];
+            let pivots = watched().map(|w| w.most * w.least).reduce(Number::larger);
+            let pivots = pivots.unwrap_or_else(|| Number::constant(1.0));
+            let [_, residual] = state.largest_residuals(topology, parts, step.drivers);
+            let determinants = state.determinants.clone();
+            let (measures, limits) = besides(step)?;
+            let limit = largest_of(limits.into_iter().chain(recording::limits()));
+            Some([vec![limit, branch, growth, pivots, residual], determinants, measures, bodies].concat())
+        })?;
+        let coordinates = channels.iter().map(|channel| DrivenCoordinate {
+            start: channel.saved(&one.saved.q, &one.saved.balls),
+            unit: match *channel {
+                Channel::Coordinate(c) => topology[c].unit,
+                Channel::Ball(..) => 0.5,
+            },
+        });
+        let drivers = one.saved.drivers.iter().zip(driver_units(model, topology));
+        Some(Self {
+            coordinates: coordinates.collect(),
+            drivers: drivers.map(|([start, ..], unit)| DrivenCoordinate { start: *start, unit }).collect(),
+            correction,
+            path,
+            motion,
+            logarithmic: one.state.factors.iter().map(|f| matches!(f, Factors::Sparse(_))).collect(),
+            step_measures,
+        })
+    }
+}
+
+/// Records a step of the nominal design from a position at `offset` from the accepted one, and returns the program of
+/// these outputs.
+fn recorded(
+    one: &Mechanism<'_>,
+    design_map: &DesignMap<'_>,
+    offset: f64,
+    outputs: impl FnOnce(&mut RecordedStep<'_>, &PlanGeometry<Number>) -> Option<Vec<Number>>,
+) -> Option<Program> {
+    let (model, topology) = (one.model, &one.topology);
+    let mut fits = false;
+    recording::begin();
+    let recorded = record(|| {
+        let mut state = State::new(model, topology);
+        for channel in Channel::all(topology) {
+            let beside = match channel {
+                Channel::Coordinate(c) => one.saved.q[c.0] + offset * topology[c].unit,
+                Channel::Ball(c, k) => {
+                    one.saved.balls[c.0].nudged(Vec3::new(offset, offset, offset)).component(k)
+                }
+            };
+            channel.put(Number::input(beside), &mut state);
+        }
+        let drivers: Vec<[Number; ORDERS]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
+        let values: Vec<Number> = model.whole(&[]).into_iter().map(Number::constant).collect();
+        let geometry = recording::strictly(|| design_map.geometry(&values));
+        let parts = PlanGeometry::of(model, topology, &geometry);
+        if state.solve(topology, &parts, &drivers, f64::INFINITY).is_err() {
+            return Vec::new();
+        }
+        let mut step =
+            RecordedStep { topology, state: &mut state, values: &values, drivers: &drivers, laws: &[] };
+        let outputs = outputs(&mut step, &parts);
+        fits = outputs.is_some();
+        outputs.unwrap_or_default()
+    });
+    (fits && recording::is_arithmetic()).then(|| recorded.program(Options::default()).0)
+}
