@@ -85,6 +85,7 @@ impl Model {
 
     /// Trades goals against each other; the design is that of a point, by default of the balanced compromise.
     #[pyo3(signature = (goals, points=None, point=None, starts=None, iterations=None, workers=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "a call of Python")]
     fn trade_off(
         &self,
         py: Python<'_>,
