@@ -503,6 +503,9 @@ impl OptimizeFacts {
         match status {
             Status::Optimal if best_is_met(found) => "all goals are met: no improvement is possible".into(),
             Status::Optimal if binding.is_empty() => "an optimum: no small change of the design is better".into(),
+            Status::Optimal if binding.len() == 1 => {
+                format!("optimum found; {} is at its bound, and a wider one would improve it", binding[0])
+            }
             Status::Optimal => format!(
                 "optimum found; {} are at their bounds, and wider bounds would improve it",
                 some_of(&binding, ", ")
