@@ -38,6 +38,19 @@ use crate::failure::{Failure, Kind};
 use crate::model::Model;
 use crate::watch::patiently;
 
+/// Runs a study that reports its progress and stops when it is interrupted.
+fn controlled<T: Send>(
+    py: Python<'_>,
+    progress: Option<Py<PyAny>>,
+    threads: NonZero<usize>,
+    study: impl FnOnce(Control<'_>) -> T + Send,
+) -> Result<T, Failure> {
+    patiently(py, progress, |watch| {
+        let mut progress = |p: Progress<'_>| watch.tell(p.done, p.total);
+        study(Control { threads, progress: &mut progress, more: &|| watch.more() })
+    })
+}
+
 /// Result of a study.
 fn outcome(facts: &impl Serialize, tables: &[Table]) -> String {
     json!({ "facts": facts, "tables": tables }).to_string()
@@ -70,10 +83,7 @@ impl Model {
         let overrides = optimize::Overrides { starts, iterations, first, selection: None };
         let request = optimize::Request::of(&file.model, overrides).map_err(Failure::from)?;
         let asked = &request.settings;
-        let found = patiently(py, progress, |watch| {
-            let mut progress = |p: Progress<'_>| watch.tell(p.done, p.total);
-            let more = || watch.more();
-            let control = Control { threads: threads(workers), progress: &mut progress, more: &more };
+        let found = controlled(py, progress, threads(workers), |control| {
             optimize(&file.model, motions, &request, control)
         })?;
         let facts = OptimizeFacts::of(file, asked, &found);
@@ -100,10 +110,7 @@ impl Model {
         let (file, motions) = (&self.whole, self.motions()?);
         let overrides = trade_off::Overrides { goals, points, starts, iterations };
         let request = trade_off::Request::of(&file.model, overrides).map_err(Failure::from)?;
-        let found = patiently(py, progress, |watch| {
-            let mut progress = |p: Progress<'_>| watch.tell(p.done, p.total);
-            let more = || watch.more();
-            let control = Control { threads: threads(workers), progress: &mut progress, more: &more };
+        let found = controlled(py, progress, threads(workers), |control| {
             trade_off(&file.model, motions, &request, control)
         })?;
         let asked = &request.settings;
@@ -131,10 +138,7 @@ impl Model {
         let overrides = tolerance::Overrides { samples, seed, allocate };
         let request = tolerance::Request::of(&file.model, &overrides).map_err(Failure::from)?;
         let numbers: Vec<usize> = (0..motions.len()).collect();
-        let found = patiently(py, progress, |watch| {
-            let mut progress = |p: Progress<'_>| watch.tell(p.done, p.total);
-            let more = || watch.more();
-            let control = Control { threads: threads(workers), progress: &mut progress, more: &more };
+        let found = controlled(py, progress, threads(workers), |control| {
             tolerance(&file.model, motions, &numbers, &request, control)
         })?;
         let found = found.map_err(|error| match error {
@@ -216,10 +220,7 @@ impl Model {
         };
         let request =
             calibrate::Request::of(&file.model, &table.measurements, &overrides).map_err(Failure::from)?;
-        let found = patiently(py, progress, |watch| {
-            let mut progress = |p: Progress<'_>| watch.tell(p.done, p.total);
-            let more = || watch.more();
-            let control = Control { threads: NonZero::<usize>::MIN, progress: &mut progress, more: &more };
+        let found = controlled(py, progress, NonZero::<usize>::MIN, |control| {
             calibrate(&file.model, &request, control)
         })?;
         let found = found.map_err(|error| match error {

@@ -29,10 +29,7 @@ pub fn run(options: &Optimize) -> Outcome {
 
 fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome> {
     let mut file = session.read(&options.common.model)?;
-    if let Some(name) = &options.motions.case {
-        let case = session.case(&file, name)?;
-        file.model = file.model.with_case_only(case);
-    }
+    session.keep_case(&mut file, options.motions.case.as_deref())?;
     let [starts, iterations] = [options.starts, options.iterations].map(|n| n.map(NonZero::get));
     let overrides = Overrides { starts, iterations, ..Overrides::default() };
     let request = Request::of(&file.model, overrides).map_err(|e| session.refused(&file, &e))?;

@@ -286,6 +286,17 @@ impl Session {
         })
     }
 
+    /// Restricts a model to the case that the command line names, if it names one.
+    ///
+    /// # Errors
+    /// Fails as [`Session::case`] does.
+    pub fn keep_case(&self, file: &mut ModelFile, name: Option<&str>) -> Result<(), Outcome> {
+        if let Some(name) = name {
+            file.model = file.model.with_case_only(self.case(file, name)?);
+        }
+        Ok(())
+    }
+
     /// Indices of the motions for a command.
     ///
     /// # Errors

@@ -32,10 +32,7 @@ pub fn run(options: &TradeOff) -> Outcome {
 
 fn trade_off_in(session: &Session, options: &TradeOff) -> Result<Outcome, Outcome> {
     let mut file = session.read(&options.common.model)?;
-    if let Some(name) = &options.motions.case {
-        let case = session.case(&file, name)?;
-        file.model = file.model.with_case_only(case);
-    }
+    session.keep_case(&mut file, options.motions.case.as_deref())?;
     let [points, starts, iterations] =
         [options.points, options.starts, options.iterations].map(|n| n.map(NonZero::get));
     let overrides = Overrides { goals: options.goals.clone(), points, starts, iterations };

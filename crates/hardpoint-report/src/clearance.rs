@@ -2,7 +2,6 @@
 
 mod grid;
 
-use std::cmp::Ordering;
 use std::io::Write;
 
 use hardpoint::model::{Clearance, Dimension, Model, ShapePair};
@@ -204,7 +203,8 @@ record! {
     ) {
         let [a, b] = model.pair_names(pair);
         let length = |x: f64| units.from_si(Dimension::LENGTH, x);
-        let least = found.least().map(|m| m.at);
+        let lowest = found.least();
+        let least = lowest.map(|m| m.at);
         // Where the cores meet, the shapes are at least as deep in each other as their distance.
         let below = |min: f64| least.is_some_and(|at| at.cores_meet || at.distance[0] < min - KEPT * model.size());
     }
@@ -222,6 +222,9 @@ record! {
     kept: bool = !pair.min.is_some_and(below);
     /// True if the distance is the same at all times.
     constant: bool = found.is_constant;
+    /// Index of the least of the minima.
+    #[serde(skip)]
+    least_minimum: Option<usize> = lowest.and_then(|least| found.minima.iter().position(|m| std::ptr::eq(m, least)));
     /// All local minima, in order of time.
     minima: Vec<MinimumFact> = found.minima.iter().map(|m| MinimumFact::of(model, units, m)).collect();
     /// Intervals in which the shapes touch, s.
@@ -281,8 +284,7 @@ impl ClearanceFact {
 
     /// The lowest of its minima.
     fn lowest(&self) -> Option<&MinimumFact> {
-        let depth = |m: &&MinimumFact| (!m.cores_meet, m.distance);
-        self.minima.iter().min_by(|a, b| depth(a).partial_cmp(&depth(b)).unwrap_or(Ordering::Equal))
+        self.minima.get(self.least_minimum?)
     }
 
     /// The result in sentences: of each clearance its nearest pair, and all pairs that touch or are nearer than asked

@@ -98,6 +98,7 @@ mod samples;
 mod svd;
 mod trust_region;
 mod validity;
+mod vector;
 
 pub use comparison::{Comparison, StepError};
 pub use evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};

@@ -1,5 +1,7 @@
 //! Singular values by one-sided Jacobi rotations: small ones have the same relative accuracy as large ones.
 
+use crate::vector::{dot, norm};
+
 /// Columns count as perpendicular if their cosine is below this.
 const PERPENDICULAR: f64 = 1e-15;
 /// Maximum number of sweeps over all pairs of columns; a handful suffices.
@@ -43,17 +45,13 @@ pub(crate) fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
             break;
         }
     }
-    let sizes: Vec<f64> = columns.iter().map(|c| dot(c, c).sqrt()).collect();
+    let sizes: Vec<f64> = columns.iter().map(|c| norm(c)).collect();
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
     Singular {
         values: order.iter().map(|k| sizes[*k]).collect(),
         directions: order.iter().map(|k| v[*k].clone()).collect(),
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn rotate(columns: &mut [Vec<f64>], [p, q]: [usize; 2], cos: f64, sin: f64) {

@@ -304,10 +304,7 @@ impl Listener for Heard {
 
 fn optimized(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result<End, Outcome> {
     let mut file = file.clone();
-    if let Some(name) = &asked.case {
-        let case = session.case(&file, name)?;
-        file.model = file.model.with_case_only(case);
-    }
+    session.keep_case(&mut file, asked.case.as_deref())?;
     let [starts, iterations] =
         [asked.options.starts, asked.options.iterations].map(|n| n.map(|n| usize::from(n.get())));
     let overrides = Overrides { starts, iterations, ..Overrides::default() };

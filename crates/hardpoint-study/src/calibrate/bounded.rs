@@ -1,6 +1,6 @@
 //! Linear least squares within bounds by an active set.
 
-use super::dot;
+use crate::vector::dot;
 
 /// A release or a new active bound takes one pass; this number of passes per parameter is enough for any problem that
 /// does not cycle.

@@ -1,7 +1,8 @@
 //! Accuracy of the fitted variables: covariance, and changes that cannot be identified.
 
+use super::BoundSide;
 use super::fit::{FitWorkspace, SearchResult, information};
-use super::{BoundSide, dot};
+use crate::vector::dot;
 
 /// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not reported.
 const VAGUE: f64 = 1.0;

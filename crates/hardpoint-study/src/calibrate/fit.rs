@@ -8,6 +8,7 @@ use crate::evaluation::StudyCost;
 use crate::request::RequestError;
 use crate::svd::singular;
 use crate::trust_region::{Recent, TrustRegion};
+use crate::vector::dot;
 use hardpoint::joint::Quantity;
 use hardpoint::measure::{Output, outputs};
 use hardpoint::model::{Dimension, DriverId, Model, VariableId};
@@ -18,7 +19,7 @@ use super::posture::{ReachedPosture, solve_posture};
 use super::prior::{PriorRows, parameters_of};
 use super::{
     BoundSide, Calibration, Certainty, FittedParameter, FittedReading, Loss, NextReading, Reading, Request,
-    Status, UnreachedPosture, Validation, dot,
+    Status, UnreachedPosture, Validation,
 };
 
 /// Maximum change of a variable from the nominal design, in natural steps (each about the mechanism's size or a

@@ -226,7 +226,3 @@ pub fn values_in_postures(
     };
     Ok(posture::planned(&models, formulation)?.iter().map(values).collect())
 }
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}

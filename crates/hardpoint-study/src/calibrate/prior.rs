@@ -7,8 +7,9 @@
 use hardpoint::measure::outputs;
 use hardpoint::model::{Model, Offset, OffsetSource, PriorGroup, VariableId, VariablePrior};
 
-use super::{FittedParameter, dot};
+use super::FittedParameter;
 use crate::svd::singular;
+use crate::vector::dot;
 
 /// A singular value of the priors below this fraction of the largest is round-off.
 const ROUND_OFF: f64 = 1e-13;

@@ -4,10 +4,10 @@ use hardpoint::model::Measurements;
 use hardpoint::run::Analysis;
 
 use super::certainty::Directions;
-use super::dot;
 use super::fit::{FitWorkspace, SearchResult};
 use super::posture::solve_posture;
 use super::{FittedParameter, UnreachedPosture};
+use crate::vector::dot;
 
 /// Residuals of validation data.
 #[derive(Clone, Debug, Default, PartialEq)]

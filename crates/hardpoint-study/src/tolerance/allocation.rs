@@ -13,7 +13,8 @@ use hardpoint::linalg::semidefinite;
 use hardpoint::model::{AllocationRule, AllocationSettings};
 
 use super::monte_carlo::MonteCarlo;
-use super::{Study, ToleranceResult, dot};
+use super::{Study, ToleranceResult};
+use crate::vector::dot;
 
 /// Maximum factor by which a tolerance is loosened: beyond it no limit constrains the tolerance, and the derivatives
 /// are not valid.

@@ -5,7 +5,8 @@ use crate::random::{design_stream, draw, moments};
 use hardpoint::linalg::semidefinite;
 use hardpoint::model::{Model, Scatter, ToleranceSettings, VariableId};
 
-use super::{SecondOrder, TolerancedVariable, dot};
+use super::{SecondOrder, TolerancedVariable};
+use crate::vector::dot;
 
 /// Toleranced variables with their distributions.
 #[derive(Clone, Debug)]

@@ -21,7 +21,6 @@ mod worst;
 use std::ops::ControlFlow;
 
 use hardpoint::model::{LimitTarget, Model, ToleranceSettings, VariableId};
-use hardpoint::number::Real;
 use hardpoint::run::Run;
 use hardpoint::sensitivity::Admissibility;
 
@@ -441,9 +440,4 @@ fn normal_below(x: f64, mean: f64, sigma: f64) -> f64 {
         return if x >= mean { 1.0 } else { 0.0 };
     }
     0.5 * libm::erfc((mean - x) / (sigma * std::f64::consts::SQRT_2))
-}
-
-/// Dot product.
-fn dot<T: Real>(a: &[T], b: &[T]) -> T {
-    a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
 }

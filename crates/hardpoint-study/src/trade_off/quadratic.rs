@@ -9,6 +9,8 @@
 
 use hardpoint::linalg::{least_squares, semidefinite};
 
+use crate::vector::{dot, norm};
+
 /// A column enters if it reduces the residual by more than this, relative to its length and that of the right-hand
 /// side.
 const ENTERS: f64 = 1e-14;
@@ -134,14 +136,6 @@ pub(super) fn non_negative(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
         }
     }
     u
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-pub(super) fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
 }
 
 #[cfg(test)]

@@ -10,9 +10,10 @@
 //! secant, which neighbouring points of the front inherit.
 
 use super::functions::{Criticality, Matrix, Role, Scale, State};
-use super::quadratic::{Linear, Minimum, dot, minimize, norm};
+use super::quadratic::{Linear, Minimum, minimize};
 use crate::optimize::{LIMIT_KEPT, Memory, Point};
 use crate::svd::{Singular, singular};
+use crate::vector::{dot, norm};
 use hardpoint::linalg::semidefinite;
 
 /// Residual at which a point of a front is found: a tenth of what is promised for each.

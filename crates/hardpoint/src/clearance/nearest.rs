@@ -482,10 +482,9 @@ fn cylinders(drums: [&Drum; 2]) -> Nearest {
         let points = [p + n * drums[0].middle.radius, q - n * drums[1].middle.radius];
         return found([Feature::Line; 2], points, apart);
     }
-    // A disc whose rims are all around the other cylinder is pierced by its axis.
-    let pierced = [0, 1].map(|k| segment_and_cylinder(drums[k].axis(), drums[1 - k]));
-    match pierced.iter().find(|axis| near.distance > 0.0 && axis.distance <= 0.0) {
-        Some(axis) => near.overlapping(axis.points[0]),
-        None => near,
-    }
+    // A disc whose rims are all around the other cylinder is pierced by its axis, which then is within its radius.
+    let is_near = |k: &usize| near.distance > 0.0 && sides.distance <= drums[1 - k].middle.radius;
+    let of_axis = |k: usize| segment_and_cylinder(drums[k].axis(), drums[1 - k]);
+    let mut pierced = [0, 1].into_iter().filter(is_near).map(of_axis).filter(|axis| axis.distance <= 0.0);
+    pierced.next().map_or(near, |axis| near.overlapping(axis.points[0]))
 }

@@ -172,9 +172,12 @@ pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
                 }
                 near.distance
             });
+            if best.distance <= 0.0 {
+                return best;
+            }
             // A cylinder that a triangle covers within its rims is pierced along its axis.
             let axis = segment_and_surface(drum.axis(), view);
-            if best.distance > 0.0 && axis.distance <= 0.0 { best.overlapping(axis.points[0]) } else { best }
+            if axis.distance <= 0.0 { best.overlapping(axis.points[0]) } else { best }
         }
         Core::HalfSpace { point, normal } => {
             let height = |p: &Vec3| normal.dot(*p - *point);

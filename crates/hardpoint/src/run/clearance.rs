@@ -3,8 +3,6 @@
 //! Times are found on motions that are solved anew at them, never on polynomials between output times: a distance may
 //! change its features there, where its acceleration jumps.
 
-use std::cmp::Ordering;
-
 use crate::clearance::{ChangingBodies, MovingBodies, PlacedShapes};
 use crate::design::{BodyFixed, ShapeGeometry};
 use crate::model::{BodyId, Clearance, ClearanceId, Model, PointId, Shape, ShapeId, ShapeKind, ShapePair};
@@ -104,8 +102,10 @@ pub struct PairClearance {
 impl PairClearance {
     /// The least of the minima: one where the cores meet, if there is any, since no other is known to be deeper.
     pub fn least(&self) -> Option<&ClearanceMinimum> {
-        let depth = |m: &ClearanceMinimum| (!m.at.cores_meet, m.at.distance[0]);
-        self.minima.iter().min_by(|a, b| depth(a).partial_cmp(&depth(b)).unwrap_or(Ordering::Equal))
+        let by_depth = |a: &ClearanceMinimum, b: &ClearanceMinimum| {
+            b.at.cores_meet.cmp(&a.at.cores_meet).then(a.at.distance[0].total_cmp(&b.at.distance[0]))
+        };
+        self.minima.iter().min_by(|a, b| by_depth(a, b))
     }
 
     /// Intervals in which the shapes touch, s; one that begins before the motion or ends after it has its first or last

@@ -19,12 +19,21 @@ use super::{Checker, Here};
 const UNIFORM: usize = 0;
 const HERE: Here = Here { section: Section::Tolerance, index: 0 };
 
+/// Play of a joint, whose coordinates have one tolerance: the pin is anywhere in its hole.
+#[derive(Clone, Copy, PartialEq)]
+struct Play<'d> {
+    /// Name of its entry in `[design]`.
+    entry: &'d str,
+    /// The joint, if it is of one alone.
+    joint: Option<JointId>,
+}
+
 impl<'d> Checker<'d> {
     pub(super) fn add_tolerancing(&mut self) {
         let draft = self.draft;
         // The coordinates of a play have one tolerance.
-        let has_play = (0..draft.design.len()).any(|k| self.entry_of_play(k).is_some());
-        let implied = draft.design.iter().any(|v| v.tolerance.is_some()) && has_play;
+        let is_loose = |k: usize| draft.design[k].tolerance.is_some() && self.play(k).is_some();
+        let implied = (0..draft.design.len()).any(is_loose);
         let default = ToleranceSettingsDraft::default();
         let Some(t) = draft.tolerancing.as_ref().or_else(|| implied.then_some(&default)) else { return };
         let default = self.scatter(t.scatter, ScatterDraft::default(), HERE, "the tolerances");
@@ -95,17 +104,15 @@ impl<'d> Checker<'d> {
             found.extend(self.tolerance(t, one, variables, here));
         }
         let others: Vec<usize> = (0..draft.design.len()).filter(|k| !of.contains_key(k)).collect();
-        for all in
-            others.chunk_by(|a, b| self.entry_of_play(*a).is_some_and(|e| self.entry_of_play(*b) == Some(e)))
-        {
+        for all in others.chunk_by(|a, b| self.play(*a).is_some_and(|play| self.play(*b) == Some(play))) {
             let variable = &draft.design[all[0]];
             let Some(reach) = variable.tolerance.filter(|reach| *reach > 0.0) else { continue };
-            let entry = self.entry_of_play(all[0]);
-            let own = ScatterDraft { kind: entry.map(|_| UNIFORM), ..ScatterDraft::default() };
+            let play = self.play(all[0]);
+            let own = ScatterDraft { kind: play.map(|_| UNIFORM), ..ScatterDraft::default() };
             let scatter = self.scatter_of(own, t.scatter);
             let variables = all.iter().map(|k| VariableId(*k)).collect();
-            let name = entry.unwrap_or(&variable.name).to_owned();
-            let play = self.joint_of_play(all[0]);
+            let name = play.map_or(variable.name.as_str(), |play| play.entry).to_owned();
+            let play = play.and_then(|play| play.joint);
             found.push(Tolerance { name, variables, play, reach, scatter, cost: None });
         }
         let unknown = !draft.unread.is_empty() || !self.faults.is_empty();
@@ -117,22 +124,14 @@ impl<'d> Checker<'d> {
         found
     }
 
-    /// Entry of `[design]` that a variable with this index comes from, if it is the play of a joint. Its coordinates
-    /// have one tolerance: the pin is anywhere in its hole.
-    fn entry_of_play(&self, variable: usize) -> Option<&'d str> {
+    /// Play that a variable with this index is a coordinate of, if it is one.
+    fn play(&self, variable: usize) -> Option<Play<'d>> {
         let variable = &self.draft.design[variable];
-        let is_play = matches!(variable.changes.first(), Some(ChangeDraft::Play { .. }));
-        variable.name.rsplit_once('_').filter(|_| is_play).map(|(entry, _)| entry)
-    }
-
-    /// Joint whose play a variable with this index is.
-    fn joint_of_play(&self, variable: usize) -> Option<JointId> {
-        match &self.draft.design[variable].changes[..] {
-            [ChangeDraft::Play { joint, .. }] => {
-                self.model.joints.iter().position(|j| j.name == *joint).map(JointId)
-            }
-            _ => None,
-        }
+        let Some(ChangeDraft::Play { joint, .. }) = variable.changes.first() else { return None };
+        let (entry, _) = variable.name.rsplit_once('_')?;
+        // A variable that changes both sides alike is of two joints.
+        let joint = self.number_of("joint", joint).filter(|_| variable.changes.len() == 1);
+        Some(Play { entry, joint: joint.and_then(|k| self.joint_ids[k]) })
     }
 
     /// Returns the variables of a tolerance: the one with its name, or the coordinates of the entry with its name.
@@ -161,8 +160,8 @@ impl<'d> Checker<'d> {
         let name = &one.name;
         let own = draft.unread.any(Section::Design, variables[0]);
         let quantity = self.model.variables.get(variables[0]).map(|v| v.quantity);
-        let play = self.entry_of_play(variables[0]).map(|_| UNIFORM);
-        let scatter = ScatterDraft { kind: one.scatter.kind.or(play), ..one.scatter };
+        let play = self.play(variables[0]);
+        let scatter = ScatterDraft { kind: one.scatter.kind.or(play.map(|_| UNIFORM)), ..one.scatter };
         let scatter = self.scatter(scatter, t.scatter, here, &format!("the tolerance of `{name}`"));
         if one.cost.is_some_and(|cost| !(cost > 0.0 && cost.is_finite())) {
             let message =
@@ -193,7 +192,7 @@ impl<'d> Checker<'d> {
                 reach
             }
         };
-        let play = self.joint_of_play(variables[0]);
+        let play = play.and_then(|play| play.joint);
         let variables = variables.into_iter().map(VariableId).collect();
         Some(Tolerance { name: name.clone(), variables, play, reach, scatter: scatter?, cost: one.cost })
     }
