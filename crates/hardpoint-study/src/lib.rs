@@ -93,6 +93,7 @@ mod comparison;
 mod evaluation;
 mod magnitude;
 mod progress;
+mod quadratic;
 mod random;
 mod samples;
 mod svd;

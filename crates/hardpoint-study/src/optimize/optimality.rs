@@ -5,11 +5,10 @@
 //! ```
 //!
 //! with goals on a maximum among the `c`: the weights of all points that attain it sum to one. The multipliers are
-//! found by least squares over the active constraints, independent of the solver.
-
-use hardpoint::linalg::least_squares;
+//! found by non-negative least squares over the active constraints, independent of the solver.
 
 use super::problem::{Point, Problem, Rows};
+use crate::quadratic::non_negative;
 
 /// Distance from its end, as a fraction of its scale, below which a constraint is active.
 pub(crate) const BINDS: f64 = 1e-7;
@@ -53,42 +52,49 @@ pub struct Optimality {
     pub binding: Vec<(ActiveConstraint, f64)>,
 }
 
-/// Row that may be active: its gradient by fractions of the bounds, and its constraint.
-struct Row {
-    d: Vec<f64>,
-    /// Index of its group of peaks.
-    peak: Option<usize>,
-    equal: bool,
-    /// Constraint, and the size of one of its SI units in the unit of its gradient.
-    binding: Option<(ActiveConstraint, f64)>,
+impl Rows {
+    /// Rows that attain the maximum, up to a fraction of their change over the bounds: their derivatives by fractions of
+    /// the bounds.
+    fn at_peak(&self, spans: &[f64]) -> Vec<Vec<f64>> {
+        let by_parts: Vec<Vec<f64>> = self.d.iter().map(|d| by_parts(d, spans)).collect();
+        let steepest = by_parts.iter().flatten().fold(0.0, |most: f64, d| most.max(d.abs()));
+        let least = self.greatest() - BINDS * steepest;
+        self.values.iter().zip(by_parts).filter(|(value, _)| **value >= least).map(|(_, d)| d).collect()
+    }
 }
 
-/// Derivatives of the rows that attain the maximum.
-fn at_peak(rows: &Rows) -> Vec<&Vec<f64>> {
-    let most = rows.greatest();
-    let least = rows.values.iter().copied().fold(f64::INFINITY, f64::min);
-    let all = rows.values.iter().zip(&rows.d);
-    all.filter(|(value, _)| **value >= most - BINDS * (most - least)).map(|(_, d)| d).collect()
+/// Derivatives by fractions of the bounds.
+fn by_parts(d: &[f64], spans: &[f64]) -> Vec<f64> {
+    d.iter().zip(spans).map(|(d, span)| d * span).collect()
 }
 
 impl Optimality {
     pub(super) fn of(problem: &Problem<'_>, point: &Point, limit_scales: &[f64], steepest: f64) -> Self {
         let n = problem.bounds.len();
         let spans: Vec<f64> = problem.bounds.iter().map(|[low, high]| high - low).collect();
-        let by_parts = |d: &[f64]| d.iter().zip(&spans).map(|(d, span)| d * span).collect::<Vec<f64>>();
         let smooth = Point { peaks: Vec::new(), ..point.clone() };
-        let gradient = by_parts(&smooth.gradient(n));
-        let peaks = point.peaks.len();
-        let mut rows = Vec::new();
+        let gradient = by_parts(&smooth.gradient(n), &spans);
+        let size = n + point.peaks.len();
+        let weight = gradient.iter().fold(steepest, |most, g| most.max(g.abs())).max(f64::MIN_POSITIVE);
+        let padded = |mut d: Vec<f64>| {
+            d.resize(size, 0.0);
+            d
+        };
+        // Columns: gradient by fractions of the bounds, and weight in the sum of each group of peaks. Beside each its
+        // constraint, and the size of one of its SI units in the unit of its gradient.
+        let mut columns: Vec<Vec<f64>> = Vec::new();
+        let mut constraints: Vec<Option<(ActiveConstraint, f64)>> = Vec::new();
         for (v, part) in problem.parts(&point.design).into_iter().enumerate() {
-            let unit = |sign: f64| (0..n).map(|i| if i == v { sign } else { 0.0 }).collect();
-            let mut push = |d: Vec<f64>, binding: ActiveConstraint| {
-                rows.push(Row { d, peak: None, equal: false, binding: Some((binding, spans[v])) });
+            let mut push = |sign: f64, binding: ActiveConstraint| {
+                let mut column = vec![0.0; size];
+                column[v] = sign;
+                columns.push(column);
+                constraints.push(Some((binding, spans[v])));
             };
             if part < BINDS {
-                push(unit(-1.0), ActiveConstraint::Lower(v));
+                push(-1.0, ActiveConstraint::Lower(v));
             } else if part > 1.0 - BINDS {
-                push(unit(1.0), ActiveConstraint::Upper(v));
+                push(1.0, ActiveConstraint::Upper(v));
             }
         }
         for row in &point.limits {
@@ -101,61 +107,47 @@ impl Optimality {
                 } else {
                     ActiveConstraint::Least(limit, motion)
                 };
-                let mut push = |d: &[f64]| {
-                    let d = by_parts(d).iter().map(|d| d / scale).collect();
-                    rows.push(Row { d, peak: None, equal: row.equal, binding: Some((binding, scale)) });
+                let mut push = |d: Vec<f64>| {
+                    for sign in if row.equal { [1.0, -1.0].as_slice() } else { &[1.0] } {
+                        columns.push(padded(d.iter().map(|d| sign * d / scale).collect()));
+                        constraints.push(Some((binding, sign * scale)));
+                    }
                 };
                 let spread = point.spreads.iter().find(|s| row.spread && s.of == row.of);
                 // For a range, every pair of a maximum and a minimum.
-                let [high, low] =
-                    spread.map_or([Vec::new(), Vec::new()], |s| [&s.ends[0], &s.ends[1]].map(at_peak));
+                let [high, low] = spread.map_or([Vec::new(), Vec::new()], |s| {
+                    [&s.ends[0], &s.ends[1]].map(|e| e.at_peak(&spans))
+                });
                 for (a, b) in high.iter().flat_map(|a| low.iter().map(move |b| (a, b))) {
-                    push(&a.iter().zip(*b).map(|(a, b)| a + b).collect::<Vec<_>>());
+                    push(a.iter().zip(b).map(|(a, b)| a + b).collect());
                 }
                 if spread.is_none() {
-                    push(&row.d);
+                    push(by_parts(&row.d, &spans));
                 }
             }
         }
-        for (group, values) in point.peaks.iter().enumerate() {
-            for d in at_peak(values) {
-                rows.push(Row { d: by_parts(d), peak: Some(group), equal: false, binding: None });
+        for (group, peaks) in point.peaks.iter().enumerate() {
+            for d in peaks.at_peak(&spans) {
+                let mut column = padded(d);
+                column[n + group] = weight;
+                columns.push(column);
+                constraints.push(None);
             }
         }
-        // Rows with negative multipliers are not active: the most negative one is released until none is left.
-        let mut active: Vec<usize> = (0..rows.len()).collect();
-        let weight = gradient.iter().fold(steepest, |most, g| most.max(g.abs())).max(f64::MIN_POSITIVE);
         let met = point.is_met(&spans);
         let scale = point.gradient_scale(&spans, steepest);
-        let solve = |active: &[usize]| {
-            let entry = |r: usize, c: usize| match (r < n, rows[active[c]].peak) {
-                (true, _) => rows[active[c]].d[r],
-                // The weights of the peaks of a group sum to one.
-                (false, Some(group)) if group == r - n => weight,
-                _ => 0.0,
-            };
-            let right = gradient.iter().map(|g| -g).chain((0..peaks).map(|_| weight)).collect();
-            least_squares([n + peaks, active.len()], entry, &[right]).swap_remove(0)
-        };
-        let multipliers = loop {
-            let multipliers = solve(&active);
-            let worst = (0..active.len())
-                .filter(|&c| !rows[active[c]].equal && multipliers[c] < 0.0)
-                .min_by(|a, b| multipliers[*a].total_cmp(&multipliers[*b]));
-            match worst {
-                Some(c) => drop(active.remove(c)),
-                None => break multipliers,
-            }
-        };
+        // The weights of the peaks of a group sum to one.
+        let right: Vec<f64> = gradient.iter().map(|g| -g).chain(point.peaks.iter().map(|_| weight)).collect();
+        let multipliers = non_negative(&columns, &right);
         let left = |i: usize| {
-            let taken: f64 = active.iter().zip(&multipliers).map(|(row, m)| m * rows[*row].d[i]).sum();
-            (gradient[i] + taken).abs()
+            let balanced: f64 = columns.iter().zip(&multipliers).map(|(column, m)| m * column[i]).sum();
+            (gradient[i] + balanced).abs()
         };
         let left = (0..n).map(left).fold(0.0, f64::max);
         let (residual, left_of_start) = if met { (0.0, 0.0) } else { (left / scale, left / weight) };
         let mut binding: Vec<(ActiveConstraint, f64)> = Vec::new();
-        for (row, multiplier) in active.iter().zip(multipliers) {
-            let Some((what, scale)) = rows[*row].binding else { continue };
+        for (constraint, multiplier) in constraints.into_iter().zip(multipliers).filter(|(_, m)| *m != 0.0) {
+            let Some((what, scale)) = constraint else { continue };
             // One limit may be active at several times of a curve at once.
             match binding.iter_mut().find(|(known, _)| *known == what) {
                 Some((_, worth)) => *worth += multiplier / scale,

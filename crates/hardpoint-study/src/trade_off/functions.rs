@@ -3,8 +3,8 @@
 //! Goals keep their own units: a goal of squares is the norm `|r|` of its residuals, which is the distance from the
 //! target or the root of the mean square. Designs are fractions of the bounds.
 
-use super::quadratic::non_negative;
 use crate::optimize::{BINDS, MET, Point, Problem};
+use crate::quadratic::non_negative;
 use crate::vector::{dot, norm};
 
 /// Weight of the sum of the multipliers, relative to the longest gradient, in their least squares.

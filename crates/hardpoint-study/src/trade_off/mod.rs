@@ -14,7 +14,6 @@
 
 mod front;
 mod functions;
-mod quadratic;
 mod request;
 mod scalarization;
 

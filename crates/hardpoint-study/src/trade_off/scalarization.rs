@@ -10,8 +10,8 @@
 //! secant, which neighbouring points of the front inherit.
 
 use super::functions::{Criticality, Matrix, Role, Scale, State};
-use super::quadratic::{Linear, Minimum, minimize};
 use crate::optimize::{LIMIT_KEPT, Memory, Point};
+use crate::quadratic::{Linear, Minimum, minimize};
 use crate::svd::{Singular, singular};
 use crate::vector::{dot, norm};
 use hardpoint::linalg::semidefinite;
