@@ -747,7 +747,7 @@ impl CalibrateFacts {
         page.summary.insert(0, fact);
         let duration = ("time taken", seconds(self.seconds));
         let lines = self.rows().into_iter().chain([duration]).collect();
-        page.put_first("Calibration", lines, &[], self.tables());
+        page.put_study("Calibration", lines, &[], self.tables());
         Payload { sweep: Some(of.plot()), ..page }
     }
 }

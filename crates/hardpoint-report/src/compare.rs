@@ -15,7 +15,7 @@ use crate::GENERATOR;
 use crate::columns;
 use crate::course::RoundOff;
 use crate::figures::{number, rounded, unit, with_unit};
-use crate::page::{Payload, Table};
+use crate::page::{Payload, StudyTables, Table};
 use crate::record::{Column, write_curves};
 
 /// Hardpoints with a smaller distance than this, m, coincide: numbers in different units agree only to round-off.
@@ -155,14 +155,12 @@ impl CompareFacts {
         differ.into_iter().chain(lacking).flatten().collect()
     }
 
-    /// Turns the page of the first design into the comparison: the second design is shown alongside, and the
-    /// differences come first among the checks.
+    /// Turns the page of the first design into the comparison: with the second design alongside, and a tab for the
+    /// differences.
     pub fn page(&self, mut page: Payload, asked: &[String], wanted: &dyn Fn(&str) -> bool) -> Payload {
         let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
         page.first = asked.first().and_then(|name| quantity(name)).or(page.first);
-        let mut checks = self.tables(wanted);
-        checks.append(&mut page.checks);
-        Payload { checks, ..page }
+        Payload { study: StudyTables::of("Differences", self.tables(wanted)), ..page }
     }
 
     /// Writes the curves of both files, one row per output time.

@@ -714,13 +714,13 @@ impl OptimizeFacts {
                 .is_some_and(|(value, objective)| squares(value, objective))
     }
 
-    /// Turns the page of the nominal design into that of the search: the result comes first among the checks, and the
-    /// page opens on the curve of the first goal of this motion, over its abscissa.
+    /// Turns the page of the nominal design into that of the search: with a tab for the result, and opened
+    /// on the curve of the first goal of this motion, over its abscissa.
     pub fn page(&self, mut page: Payload, model: &Model, outputs: &[Output]) -> Payload {
         let goal = |g: &GoalFact| model.metrics.iter().find(|m| m.name == g.metric);
         page.open_on(self.goals.iter().find_map(goal), outputs);
         let tables = self.tables().into_iter().chain([self.iteration_table()]);
-        page.put_first("The search", self.rows(), &[], tables);
+        page.put_study("Search", self.rows(), &[], tables);
         page
     }
 

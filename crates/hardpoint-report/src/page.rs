@@ -133,6 +133,15 @@ pub struct Payload {
     pub margin: Option<Margin>,
     /// Design variables with their sensitivities.
     pub variables: Vec<Variable>,
+    /// Square root R of the covariance matrix of the variables' deviations, in their units, for the page of a tolerance
+    /// study: a row for each variable. A curve with the derivatives g has the standard deviation |R^T g| to first order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
+    pub covariance_root: Option<Vec<Vec<f64>>>,
+    /// Result of the study of which this is the page.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, ts(optional))]
+    pub study: Option<StudyTables>,
     /// Facts about the model: bodies, joints, constraints, redundancy, admissibility.
     pub checks: Vec<Table>,
     /// Shapes and the distances between them; only for models with shapes.
@@ -141,6 +150,16 @@ pub struct Payload {
     pub clearance: Option<ClearanceMarks>,
     /// Text of the model, from which the page solves changed designs.
     pub model: Option<ModelText>,
+}
+
+/// Result of a study.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct StudyTables {
+    /// Title of its tab.
+    pub title: String,
+    /// Tables of the result, the summary first.
+    pub tables: Vec<Table>,
 }
 
 /// Text of a model with all other files that it needs.
@@ -994,6 +1013,8 @@ pub(crate) mod tests {
             sweep: None,
             margin: None,
             variables: vec![],
+            covariance_root: None,
+            study: None,
             checks: vec![],
             clearance: None,
             model: None,

@@ -247,6 +247,8 @@ fn composed(
             note: m.sentence(),
         }),
         variables: compose.variables(&summary.model, differences),
+        covariance_root: None,
+        study: None,
         metrics: MetricFact::page_table(&summary.metrics),
         checks: summary
             .assembly

@@ -8,7 +8,7 @@ use hardpoint_study::StudyCost;
 use serde::Serialize;
 
 use crate::figures::{number, rounded};
-use crate::page::{Fact, Payload, Table};
+use crate::page::{Fact, Payload, StudyTables, Table};
 use crate::record::{Column, record};
 
 impl Payload {
@@ -21,9 +21,9 @@ impl Payload {
         }
     }
 
-    /// Puts the result of a study first: its lines and tables among the checks, and the lines that `cards` names on the
+    /// Makes this the page of a study: with a tab for its lines and tables, and the lines that `cards` names on the
     /// cards.
-    pub(crate) fn put_first(
+    pub(crate) fn put_study(
         &mut self,
         title: &str,
         lines: Vec<(&'static str, String)>,
@@ -33,7 +33,15 @@ impl Payload {
         let shown = lines.iter().filter(|(what, _)| cards.contains(what));
         let shown = shown.map(|(what, is)| Fact { label: (*what).into(), value: is.clone() });
         self.summary.splice(0..0, shown);
-        self.checks.splice(0..0, std::iter::once(Table::of_lines(title, lines)).chain(tables));
+        let tables = std::iter::once(Table::of_lines("Summary", lines)).chain(tables).collect();
+        self.study = StudyTables::of(title, tables);
+    }
+}
+
+impl StudyTables {
+    /// Tables of a study under a title, if there are any.
+    pub(crate) fn of(title: &str, tables: Vec<Table>) -> Option<Self> {
+        (!tables.is_empty()).then(|| Self { title: title.into(), tables })
     }
 }
 

@@ -535,8 +535,7 @@ impl ToleranceInputs<'_> {
         Ok(())
     }
 
-    /// Turns the page of a motion into that of the study: its bands are shown along the curves, and the result comes
-    /// first among the checks.
+    /// Turns the page of a motion into that of the study: with bands along the curves, and a tab for the result.
     pub fn page(
         &self,
         facts: &ToleranceFacts,
@@ -552,13 +551,23 @@ impl ToleranceInputs<'_> {
             .into_iter()
             .collect();
         page.designs.extend(designs.into_iter().filter(|d| d.quantities.iter().any(Option::is_some)));
-        if page.designs.iter().any(|d| d.kind == DesignKind::Band) {
-            // Bands are computed at fixed times, so the abscissa is time.
-            page.over = None;
-        }
+        page.covariance_root = Some(self.covariance_root());
         let tables = facts.tables().into_iter().chain(self.histograms(motion));
-        page.put_first("Tolerances", facts.rows(), &["yield", "failed"], tables);
+        page.put_study("Tolerances", facts.rows(), &["yield", "failed"], tables);
         page
+    }
+
+    /// Square root of the covariance matrix of all variables, in their units.
+    fn covariance_root(&self) -> Vec<Vec<f64>> {
+        let variables = &self.model().variables;
+        let mut root = vec![vec![0.0; self.found.variables.len()]; variables.len()];
+        for (toleranced, row) in
+            self.found.variables.iter().zip(self.found.covariance_root(self.model(), self.asked))
+        {
+            let of = toleranced.variable.0;
+            root[of] = row.iter().map(|x| self.units().from_si(variables[of].quantity, *x)).collect();
+        }
+        root
     }
 
     /// Edge of the bands of a motion, as the curves of a design.

@@ -503,7 +503,7 @@ impl TradeOffFacts {
         let mut page = page;
         let goal = |g: &TradedGoal| model.metrics.iter().find(|m| m.name == g.metric);
         page.open_on(self.goals.iter().find_map(goal), outputs);
-        page.put_first("The trade-off", self.rows(), &["result", "balanced"], self.tables());
+        page.put_study("Trade-off", self.rows(), &["result", "balanced"], self.tables());
         let sweep = (self.points.len() > 1).then(|| self.plot());
         Payload { sweep, ..page }
     }

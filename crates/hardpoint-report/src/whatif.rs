@@ -19,7 +19,7 @@ use crate::diagnose::out_of_bounds;
 use crate::figures::{names, number, per, rounded, unit, variable_unit, with_unit};
 use crate::margin::MarginFact;
 use crate::metric::MetricChange;
-use crate::page::{Payload, Table};
+use crate::page::{Payload, StudyTables, Table};
 use crate::record::{Column, record, write_curves};
 
 /// Contents of `whatif.json`. Values are in the model's units, times in s.
@@ -284,8 +284,8 @@ impl WhatIfFacts {
         write_curves(out, &self.times, &curves.collect::<Vec<_>>())
     }
 
-    /// Turns the page of the nominal design into that of the changed one: the result comes first among the checks, and
-    /// the page opens on the first of the `asked` measures, over another one.
+    /// Turns the page of the nominal design into that of the changed one: with a tab for the result, and opened
+    /// on the first of the `asked` measures, over another one.
     pub fn page(
         &self,
         mut page: Payload,
@@ -296,10 +296,9 @@ impl WhatIfFacts {
         let quantity = |name: &str| page.quantities.iter().position(|q| q.name == name);
         page.first = asked.first().and_then(|name| quantity(name)).or(page.first);
         page.over = over.and_then(quantity);
-        let mut checks = self.changed_tables(wanted);
-        checks.extend(self.ranked().into_iter().filter(|m| wanted(m)).map(|m| self.ranking(m, MOST_RANKED)));
-        checks.append(&mut page.checks);
-        Payload { checks, ..page }
+        let mut tables = self.changed_tables(wanted);
+        tables.extend(self.ranked().into_iter().filter(|m| wanted(m)).map(|m| self.ranking(m, MOST_RANKED)));
+        Payload { study: StudyTables::of("What-if", tables), ..page }
     }
 
     /// Tables of the change, of the measures and of the metrics; none if the design is not changed.

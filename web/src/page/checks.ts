@@ -1,6 +1,6 @@
 import { css, el, onSchemeChange, prose, setText } from '../dom'
 import { Plot } from '../plot'
-import type { Table } from '../payload'
+import type { StudyTables, Table } from '../payload'
 import type { Report } from '../report'
 import type { State } from '../state'
 import { whileSeen } from './tabs'
@@ -36,17 +36,28 @@ export function checks(state: State): HTMLElement {
       const title = titleOf(table.querySelector('summary')!)
       if (open.has(title) || closed.has(title)) table.open = open.has(title)
     }
-    // What only the command computes, such as the effects of a what-if, stays as it was.
-    const titles = new Set(shown.checks.map(({ title }) => title))
-    const stored: HTMLElement[] = state.report.checks.filter(({ title }) => !titles.has(title)).map(factTable)
-    if (stored.length > 0) stored.unshift(el('p', { class: 'of-design' }, 'Results of the command'))
-    element.replaceChildren(heading, facts, ...(margin ? [margin.element] : []), ...tables, ...stored)
+    element.replaceChildren(heading, facts, ...(margin ? [margin.element] : []), ...tables)
     facts.replaceChildren(...factsOf(shown))
   }
   whileSeen(element, (listener) => state.onChoice(listener), render, state.ended)
   // uPlot measures its place, so it has to be in the page first.
   queueMicrotask(render)
   return element
+}
+
+/** Result of the study of which this is the page; nothing of it changes with the design. */
+export function studyTables(state: State, { title, tables }: StudyTables): HTMLElement {
+  const heading = el('p', { class: 'of-design', role: 'status' }, 'Result of the study, not of the present design')
+  const studied = JSON.stringify(state.settings)
+  const sync = () => (heading.hidden = JSON.stringify(state.settings) === studied)
+  state.onChoice(sync)
+  sync()
+  return el(
+    'section',
+    { class: 'checks', 'data-testid': 'study', 'aria-label': title },
+    heading,
+    ...tables.map(factTable),
+  )
 }
 
 /** Heading over numbers of another design than the present one; hidden otherwise. */

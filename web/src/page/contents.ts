@@ -52,6 +52,8 @@ export interface Subject {
 const CHANGED = 'changed'
 /** Number of sensitivities that are drawn with that of the selected variable. */
 const FEW = 5
+/** Standard deviations between the middle of a tolerance band and its edges. */
+const SIGMAS = 3
 const DASHED = [7, 5]
 const DOTTED = [2, 4]
 const DASH_DOTTED = [9, 4, 2, 4]
@@ -116,14 +118,7 @@ export function valueContent(state: State, subject: Subject): Content {
   }
   if (difference) content.caption = differenceCaption(reference)
   else addPredictions(state, subject, content, scale)
-  const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[index]?.[order].length)
-  // Over another quantity, which has a tolerance itself, bands would have another meaning.
-  if (over !== undefined && bands.length > 0)
-    content.caption = 'The tolerance band is known over time only: choose time to show it.'
-  for (const band of over === undefined && !difference ? bands : []) {
-    const curve = quiet(band.quantities[index]![order], scale)
-    content.lines.push({ label: band.name, color: css('--former'), curve, width: 1.3, dash: DOTTED })
-  }
+  if (!difference) addBands(state, subject, content, scale)
   if (order === 0 && !difference) {
     addTargets(state, quantity, content, present, over)
     addContacts(state, quantity, content, over)
@@ -187,6 +182,54 @@ function addPredictions(state: State, { quantity, order, over }: Subject, conten
       dash: DOTTED,
     })
   })
+}
+
+/**
+ * Edges of the tolerance band of a quantity, where the study has one: over time of the study itself. Over another
+ * quantity, which scatters as well, the band is that of the values at a fixed abscissa, to first order.
+ */
+function addBands(state: State, subject: Subject, content: Content, scale: number): void {
+  const { report } = state
+  const { quantity, order, over } = subject
+  const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[quantity]?.[order].length)
+  if (bands.length === 0) return
+  const edges = over === undefined ? bands.map(({ quantities }) => quantities[quantity]![order]) : edgesOver(report, subject)
+  if (typeof edges === 'string') {
+    content.caption = `No tolerance band: ${edges}`
+    return
+  }
+  const x = over === undefined ? undefined : report.quantities[over].curves[0]
+  bands.forEach(({ name }, k) =>
+    content.lines.push({
+      label: name,
+      color: css('--former'),
+      curve: quiet(edges[k], scale),
+      over: x,
+      width: 1.3,
+      dash: DOTTED,
+    }),
+  )
+  if (over !== undefined) content.caption = `Tolerance band at constant ${report.quantities[over].name}, to first order.`
+}
+
+/** Nominal value less and plus three standard deviations, at a fixed abscissa; a message where these are not known. */
+function edgesOver(report: Report, subject: Subject): Curve[] | string {
+  const at = atAbscissa({ sensitivityReport: report }, subject)
+  if (typeof at === 'string') return at
+  const nominal = report.quantities[subject.quantity].curves[0]
+  const sums = new Float64Array(nominal.length)
+  const [first] = report.covariance_root ?? []
+  for (let column = 0; column < (first?.length ?? 0); column++) {
+    const share = new Float64Array(nominal.length)
+    for (const [variable, row] of report.covariance_root!.entries()) {
+      if (row[column] === 0) continue
+      const sensitivity = report.variables[variable].sensitivities.get(subject.quantity)
+      if (!sensitivity) return `the effect of ${report.variables[variable].name} is not known over this abscissa.`
+      at.seen(sensitivity.curves[0], variable, false).forEach((d, k) => (share[k] += row[column] * d))
+    }
+    share.forEach((d, k) => (sums[k] += d * d))
+  }
+  return [-SIGMAS, SIGMAS].map((by) => nominal.map((value, k) => value + by * Math.sqrt(sums[k])))
 }
 
 /** Target curve and limits of the metrics of a quantity. */
@@ -324,7 +367,7 @@ interface AtAbscissa {
  * Conversion of the quantity's sensitivities to a fixed abscissa, if there is one; a message where it is not possible.
  * Where several drivers move, the one that moves the abscissa most holds it, and the others are fixed.
  */
-function atAbscissa({ sensitivityReport: report }: State, { quantity, order, over }: Subject): AtAbscissa | string {
+function atAbscissa({ sensitivityReport: report }: Pick<State, 'sensitivityReport'>, { quantity, order, over }: Subject): AtAbscissa | string {
   if (over === undefined) return { seen: (curve) => curve, note: '' }
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
   if (order > 0) return 'Over another quantity, only sensitivities of values are available: choose the value, or time.'

@@ -8,7 +8,7 @@ import type { State } from '../state'
 import { sweepPlot } from '../sweep/scatter'
 import { bar } from './bar'
 import { cards } from './cards'
-import { checks } from './checks'
+import { checks, studyTables } from './checks'
 import { comparison } from './comparison'
 import { Curves } from './curves'
 import { exports } from './exports'
@@ -27,7 +27,7 @@ import { valueStrip } from './value_strip'
 import { type VariableLimits, variables as variableList } from './variables'
 
 /** Tabs that the page of a study opens on. */
-const OPENS_ON = ['designs', 'maps']
+const OPENS_ON = ['designs', 'maps', 'study']
 
 /** Choices of a page beyond its state, to be made again on another one. */
 export interface PageMemory {
@@ -133,7 +133,7 @@ export function page(root: HTMLElement, state: State, tools: Tools = {}): PagePa
 
 /** Tabs for which the report has data; the checks are always shown. */
 function tableTabs(state: State, limits?: VariableLimits): Tab[] {
-  const { sweep, maps, quantities, variables, loads } = state.report
+  const { sweep, maps, study, quantities, variables, loads } = state.report
   const all: Tab[] = []
   if (variables.length > 0) all.push({ name: 'variables', title: 'Variables', content: variableList(state, limits) })
   if (sweep) {
@@ -147,6 +147,7 @@ function tableTabs(state: State, limits?: VariableLimits): Tab[] {
     const drawn = maps.map((map) => driverMap(map, selected))
     all.push({ name: 'maps', title: 'Maps', content: el('div', {}, recordHeading(state), ...drawn) })
   }
+  if (study) all.push({ name: 'study', title: study.title, content: studyTables(state, study) })
   if (quantities.length > 0 && variables.length > 0) {
     const content = el('div', { class: 'influence' }, rankingTable(state), heatMap(state))
     all.push({ name: 'table', title: 'Influence', content })

@@ -84,7 +84,7 @@ impl Deviations {
     }
 
     /// Row i of the square root of the covariance matrix.
-    fn root_row(&self, i: usize) -> Vec<f64> {
+    pub fn root_row(&self, i: usize) -> Vec<f64> {
         let sigma = self.variables[i].sigma;
         match &self.root {
             Some(root) => root[i].iter().map(|x| sigma * x).collect(),

@@ -148,6 +148,14 @@ impl ToleranceResult {
         let (deviations, seed) = (Deviations::new(model, settings, &self.left_out), settings.seed);
         move |number| deviations.sample(seed, number)
     }
+
+    /// Square root R of the covariance matrix of the deviations, SI, for the requested tolerances: a row for each of
+    /// [`variables`](Self::variables). A function with the derivatives g by these has the standard deviation |R^T g| to
+    /// first order.
+    pub fn covariance_root(&self, model: &Model, settings: &ToleranceSettings) -> Vec<Vec<f64>> {
+        let deviations = Deviations::new(model, settings, &self.left_out);
+        (0..deviations.variables.len()).map(|i| deviations.root_row(i)).collect()
+    }
 }
 
 /// Sampled designs by number: all variables, SI. Variables that are left out keep their design values.
