@@ -623,13 +623,15 @@ const AFTER_EXPORT: &str = "\
 The file name selects the format; `--list` shows the formats. Unsupported features, such as
 motions in URDF, are listed, and the file is written all the same (docs/import.md).
 `hardpoint run` writes the motion itself; `-o NAME.c` writes its formulas, a function of the
-drivers, as C99 (docs/export-c.md).
+drivers, as C99 (docs/export-c.md), and `-o NAME.fmu` as an FMI 3.0 unit for other simulators
+(docs/export-fmi.md). docs/export.md compares the formats.
 
 Examples:
   hardpoint export models/four_bar.toml -o four_bar.urdf
   hardpoint export models/double_wishbone.toml -o hardpoints.csv
   hardpoint export models/double_wishbone.toml -o skeleton.dxf
-  hardpoint export models/double_wishbone.toml -o corner.c
+  hardpoint export models/double_wishbone.toml -o corner.c --design
+  hardpoint export models/double_wishbone.toml -o corner.fmu
   hardpoint export models/double_wishbone.toml -o front.sub --json | jq '.unsaid[]'
   hardpoint export --list";
 
@@ -646,8 +648,11 @@ pub struct Export {
     /// Format [default: from the file name]
     #[arg(long, value_name = "NAME")]
     pub format: Option<String>,
+    /// Make the design variables arguments, with the derivatives by them (C, FMU)
+    #[arg(long)]
+    pub design: bool,
     /// List the formats
-    #[arg(long, conflicts_with_all = ["model", "output", "format"])]
+    #[arg(long, conflicts_with_all = ["model", "output", "format", "design"])]
     pub list: bool,
     /// Print one JSON document instead of text
     #[arg(long)]

@@ -1,16 +1,17 @@
 //! `hardpoint export`.
 
-use std::io::Write;
+use std::io::{Cursor, Write};
 use std::path::Path;
 
-use hardpoint_export::{ExportError, FORMATS, Format};
+use hardpoint_export::{ExportError, ExportOptions, FORMATS, Format};
 use hardpoint_report::GENERATOR;
 use hardpoint_study::RequestError;
 use hardpoint_study::request::Fault;
 use serde_json::json;
 
 use crate::args::Export;
-use crate::folder::write_alone;
+use crate::compile::compile;
+use crate::folder::{WriteError, write_alone};
 use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
@@ -49,31 +50,58 @@ fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Re
             Format::of(&name).ok_or_else(|| session.misunderstood(&why()))?
         }
     };
+    if options.design && !format.has_design() {
+        let with: Vec<&str> = FORMATS.iter().filter(|f| f.has_design()).map(|f| f.name).collect();
+        let why = format!(
+            "`--design`: the format {} does not contain the motion; leave it out, or export as {}",
+            format.name,
+            with.join(" or ")
+        );
+        return Err(session.misunderstood(&why));
+    }
     session.may_save(model, Some(to))?;
     let file = session.read(model)?;
     let stem = to.file_stem().unwrap_or_default().to_string_lossy();
-    let exported = format.export(&file, &stem).map_err(|error| match error {
+    let asked = ExportOptions { design: options.design };
+    let exported = format.export_with(&file, &stem, asked).map_err(|error| match error {
         ExportError::CannotBeDriven(fault) => session.cannot_be_driven(&file, &fault),
         ExportError::NotRecorded { why } => session.refused(&file, &not_recorded(format, &why)),
     })?;
-    let write = |to: &Path, text: &str| {
-        write_alone(to, |out| out.write_all(text.as_bytes())).map_err(|e| session.not_written(&e))
+    let write = |to: &Path, text: &[u8]| {
+        write_alone(to, |out| out.write_all(text)).map_err(|e| session.not_written(&e))
     };
-    write(to, &exported.text)?;
+    let library = exported.archive.as_ref().map(compile);
+    match (&exported.archive, &library) {
+        (Some(archive), Some(library)) => {
+            // A zip file is completed from its end.
+            let packed = archive.write(library.as_ref().ok(), Cursor::new(Vec::new()));
+            let packed =
+                packed.map_err(|error| session.not_written(&WriteError { path: to.into(), error }))?;
+            write(to, &packed.into_inner())?;
+        }
+        _ => write(to, exported.text.as_bytes())?,
+    }
     let companion = exported.companion.as_ref().map(|c| (to.with_extension(c.ending), c));
     if let Some((path, companion)) = &companion {
-        write(path, &companion.text)?;
+        write(path, companion.text.as_bytes())?;
     }
     if session.is_json() {
         session.print_json(&json!({
             "generator": GENERATOR, "status": "complete", "format": format.name, "file": to,
-            "companion": companion.as_ref().map(|(path, _)| path), "unsaid": exported.unsupported,
+            "companion": companion.as_ref().map(|(path, _)| path),
+            "platform": library.as_ref().and_then(|l| l.as_ref().ok()).map(|l| l.platform),
+            "unsaid": exported.unsupported,
         }));
         return Ok(Outcome::Done);
     }
     let mut out = format!("{}: {}\n", to.display(), format.about);
     if let Some((path, _)) = &companion {
         out += &format!("{}: its header\n", path.display());
+    }
+    match &library {
+        Some(Ok(library)) => out += &format!("  compiled for {}\n", library.platform),
+        Some(Err(why)) => out += &format!("  sources only, which the importer compiles: {why}\n"),
+        None => {}
     }
     if !exported.unsupported.is_empty() {
         out += "  unsupported, or exported with changes:\n";

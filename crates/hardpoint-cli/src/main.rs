@@ -5,6 +5,7 @@ mod calibrate;
 mod check;
 mod clearance;
 mod compare;
+mod compile;
 mod envelope;
 mod export;
 mod folder;

@@ -19,8 +19,10 @@
 //! ```
 
 mod animation;
+mod archive;
 mod c;
 mod dxf;
+mod fmu;
 mod links;
 pub mod long_table;
 mod mjcf;
@@ -31,12 +33,14 @@ mod stl;
 mod tables;
 mod urdf;
 mod workbook;
+mod xml;
 
 use hardpoint::topology::TopologyError;
 use hardpoint_file::ModelFile;
 use serde::Serialize;
 
 pub use animation::animation;
+pub use archive::{Archive, Library};
 pub use stl::write_stl;
 pub use tables::hardpoints;
 pub use workbook::RunDocument;
@@ -50,6 +54,8 @@ pub struct ExportedModel {
     pub unsupported: Vec<UnsupportedFeature>,
     /// Second file, which belongs to the first.
     pub companion: Option<Companion>,
+    /// Files that are packed as one, in place of the text.
+    pub archive: Option<Archive>,
 }
 
 /// A file that belongs to an exported one and has the same name but for its extension.
@@ -71,6 +77,13 @@ pub enum ExportError {
         /// Reason.
         why: String,
     },
+}
+
+/// Options of an export.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ExportOptions {
+    /// The design variables are arguments, with the derivatives by them: formats that contain the motion.
+    pub design: bool,
 }
 
 /// Feature of a model that a format does not support.
@@ -102,7 +115,7 @@ enum Writer {
     /// A description of the model.
     Described(fn(&ModelFile, &mut ExportedModel)),
     /// The solved motion as formulas, in a file with this name without its extension.
-    Recorded(fn(&ModelFile, &str, &mut ExportedModel) -> Result<(), ExportError>),
+    Recorded(fn(&ModelFile, &str, ExportOptions, &mut ExportedModel) -> Result<(), ExportError>),
 }
 
 impl std::fmt::Debug for Format {
@@ -113,12 +126,20 @@ impl std::fmt::Debug for Format {
 
 /// All export formats.
 pub const FORMATS: &[Format] =
-    &[tables::CSV, tables::TEIMORBIT, urdf::FORMAT, mjcf::FORMAT, dxf::FORMAT, c::FORMAT];
+    &[tables::CSV, tables::TEIMORBIT, urdf::FORMAT, mjcf::FORMAT, dxf::FORMAT, c::FORMAT, fmu::FORMAT];
 
 /// Formats whose writers quote names, so that these may contain any character.
 const QUOTES_NAMES: [&str; 1] = ["csv"];
 
 impl Format {
+    /// True if the design variables can be arguments in this format.
+    pub fn has_design(&self) -> bool {
+        match self.write {
+            Writer::Described(_) => false,
+            Writer::Recorded(_) => true,
+        }
+    }
+
     /// Returns the format with a name.
     pub fn named(name: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|f| f.name == name)
@@ -136,6 +157,20 @@ impl Format {
     ///
     /// Formats that contain the motion need a mechanism that can be driven and whose step has formulas.
     pub fn export(&self, file: &ModelFile, stem: &str) -> Result<ExportedModel, ExportError> {
+        self.export_with(file, stem, ExportOptions::default())
+    }
+
+    /// Exports as [`export`](Self::export), with options.
+    ///
+    /// # Errors
+    ///
+    /// The same.
+    pub fn export_with(
+        &self,
+        file: &ModelFile,
+        stem: &str,
+        options: ExportOptions,
+    ) -> Result<ExportedModel, ExportError> {
         let mut out = ExportedModel::default();
         let renamed = if QUOTES_NAMES.contains(&self.name) {
             None
@@ -145,7 +180,7 @@ impl Format {
         let file = renamed.as_ref().unwrap_or(file);
         match self.write {
             Writer::Described(write) => write(file, &mut out),
-            Writer::Recorded(write) => write(file, stem, &mut out)?,
+            Writer::Recorded(write) => write(file, stem, options, &mut out)?,
         }
         Ok(out)
     }

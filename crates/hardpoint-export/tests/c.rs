@@ -6,10 +6,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use hardpoint::joint::Quantity;
 use hardpoint::law::Law;
+use hardpoint::model::VariableId;
 use hardpoint::space::Vec3;
-use hardpoint::{Analysis, Solution};
-use hardpoint_export::{ExportError, Format};
+use hardpoint::{Analysis, Run, Solution};
+use hardpoint_export::{ExportError, ExportOptions, Format};
 use hardpoint_file::ModelFile;
 
 /// Largest difference from the engine, relative to the largest number of its kind in the motion: the formulas are those
@@ -51,6 +53,8 @@ struct Compiled {
     measures: Vec<String>,
     /// Measures that are reported as undefined at some output times.
     partial: Vec<String>,
+    /// Design variables that are arguments, in order.
+    design: Vec<String>,
 }
 
 /// Motion of every driver at a step: value, rate and acceleration.
@@ -72,13 +76,23 @@ struct Row {
 impl Compiled {
     /// Compiles with all warnings as errors.
     fn new(file: &ModelFile, stem: &str, optimise: &str) -> Result<Self, ExportError> {
-        let exported = Format::named("c").unwrap().export(file, stem)?;
+        Self::of(file, stem, optimise, ExportOptions::default(), include_str!("main.c"))
+    }
+
+    fn of(
+        file: &ModelFile,
+        stem: &str,
+        optimise: &str,
+        options: ExportOptions,
+        main: &str,
+    ) -> Result<Self, ExportError> {
+        let exported = Format::named("c").unwrap().export_with(file, stem, options)?;
         let header = exported.companion.expect("a header");
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
         write(&format!("{stem}.c"), &exported.text);
         write(&format!("{stem}.{}", header.ending), &header.text);
-        let main = include_str!("main.c").replace("@name@", stem);
+        let main = main.replace("@name@", stem);
         write("main.c", &main.replace("@NAME@", &stem.to_ascii_uppercase()));
         let compiled = Command::new("cc")
             .current_dir(folder.path())
@@ -87,29 +101,36 @@ impl Compiled {
             .output()
             .expect("a C compiler, `cc`");
         assert!(compiled.status.success(), "{stem}: {}", String::from_utf8_lossy(&compiled.stderr));
-        let marker = format!("    {}_MEASURE_", stem.to_ascii_uppercase());
-        let lines = header.text.lines().filter(|l| l.starts_with(&marker));
         let name = |line: &str| line.split_once("/* ").unwrap().1.split(", ").next().unwrap().to_owned();
-        let measures = lines.map(name).collect();
+        let enumerated = |kind: &str| -> Vec<String> {
+            let marker = format!("    {}_{kind}_", stem.to_ascii_uppercase());
+            header.text.lines().filter(|l| l.starts_with(&marker)).map(name).collect()
+        };
+        let (measures, design) = (enumerated("MEASURE"), enumerated("DESIGN"));
         let partial = exported.unsupported.iter().filter(|u| u.why.starts_with("NaN at"));
         let partial = partial.map(|u| u.name.clone()).collect();
         let unsupported = exported.unsupported.into_iter().map(|u| u.name).collect();
-        Ok(Self { folder, unsupported, measures, partial })
+        Ok(Self { folder, unsupported, measures, partial, design })
     }
 
-    /// Steps through these motions of the drivers.
-    fn run(&self, steps: &[Drivers], bodies: usize) -> Vec<Row> {
+    /// Output of the program for these numbers.
+    fn answer(&self, numbers: impl Iterator<Item = f64>) -> String {
         let mut child = Command::new(self.folder.path().join("main"))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
-        let input: String = steps.iter().flatten().flatten().map(|x| format!("{x:e} ")).collect();
+        let input: String = numbers.map(|x| format!("{x:e} ")).collect();
         let mut stdin = child.stdin.take().unwrap();
         let writer = std::thread::spawn(move || stdin.write_all(input.as_bytes()).unwrap());
         let output = child.wait_with_output().unwrap();
         writer.join().unwrap();
         assert!(output.status.success());
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Steps through these motions of the drivers.
+    fn run(&self, steps: &[Drivers], bodies: usize) -> Vec<Row> {
         let row = |line: &str| {
             let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
             let (head, rest) = numbers.split_at(2);
@@ -124,7 +145,7 @@ impl Compiled {
                 jacobian: jacobian.to_vec(),
             }
         };
-        String::from_utf8(output.stdout).unwrap().lines().map(row).collect()
+        self.answer(steps.iter().flatten().flatten().copied()).lines().map(row).collect()
     }
 }
 
@@ -295,4 +316,86 @@ fn what_is_not_written_is_reported() {
     let variables = exported.unsupported.iter().find(|u| u.kind == "design variables");
     let expected = (!file.model.variables.is_empty()).then(|| file.model.variables.len().to_string());
     assert_eq!(variables.map(|u| u.name.clone()), expected);
+}
+
+/// Models with design variables that are not arguments, with the reason.
+const FIXED_DESIGN: [(&str, &str); 0] = [];
+
+/// A changed design moves as in the engine, and the derivatives by the design are the engine's sensitivities.
+#[test]
+fn a_changed_design_in_c_is_that_of_the_engine() {
+    let (mut fixed, mut differ) = (Vec::new(), Vec::new());
+    let mut compared = 0;
+    for name in gallery() {
+        let file = model(&name);
+        let model = &file.model;
+        if model.variables.is_empty() || REFUSED.iter().any(|(other, _)| *other == name) {
+            continue;
+        }
+        let options = ExportOptions { design: true };
+        let c = match Compiled::of(&file, &name, "-O0", options, include_str!("design.c")) {
+            Ok(c) => c,
+            Err(ExportError::NotRecorded { why }) => {
+                fixed.push((name, why));
+                continue;
+            }
+            Err(ExportError::CannotBeDriven(fault)) => panic!("{name}: {fault}"),
+        };
+        let analysis = Analysis::new(model).unwrap();
+        let arguments: Vec<usize> =
+            c.design.iter().map(|d| model.variables.iter().position(|v| v.name == *d).unwrap()).collect();
+        // Every variable changes by about a hundredth of the mechanism, in either direction.
+        let change = |(at, k): (usize, &usize)| {
+            let size = match model.variables[*k].quantity {
+                Quantity::Length => 0.005 * model.size(),
+                Quantity::Angle | Quantity::Number => 0.01,
+            };
+            if at % 2 == 0 { size } else { -size }
+        };
+        let changes: Vec<f64> = arguments.iter().enumerate().map(change).collect();
+        let mut design = vec![0.0; model.variables.len()];
+        arguments.iter().zip(&changes).for_each(|(k, x)| design[*k] = *x);
+        let solution = analysis.solve(Run::new().at(&design));
+        let steps = drivers(&analysis, &solution);
+        let answer = c.answer(changes.iter().copied().chain(steps.iter().flatten().flatten().copied()));
+        let mut lines = answer.lines();
+        assert_eq!(lines.next(), Some("0"), "{name}: the design is not reached");
+        let rows: Vec<Vec<f64>> =
+            lines.map(|line| line.split(' ').map(|x| x.parse().unwrap()).collect()).collect();
+        assert_eq!(rows.len(), steps.len());
+        let reached = rows.iter().take_while(|row| row[0] == 0.0).count();
+        let ends = ENDS.iter().any(|(other, _)| *other == name);
+        assert_eq!(reached < rows.len(), ends, "{name}: {reached} of {} steps", rows.len());
+        let (rows, tolerance) = (&rows[..reached], if ends { NEAR_SINGULAR } else { SAME });
+        let numbers = |at: usize| -> Vec<f64> { rows.iter().map(|row| row[1 + at]).collect() };
+        for (m, measure) in c.measures.iter().enumerate() {
+            if PARTIAL.contains(&format!("{name}: {measure}").as_str()) {
+                continue;
+            }
+            let column = solution.measured.index(measure).unwrap();
+            for order in 0..3 {
+                let value = |k: usize| solution.measured.value(k, column)[order];
+                let expected: Vec<f64> = (0..rows.len()).map(value).collect();
+                let apart = difference(&numbers(3 * m + order), &expected);
+                if !(apart < tolerance) {
+                    differ.push(format!("{name}: {measure}, order {order}, by {apart:e}"));
+                }
+                for (b, variable) in arguments.iter().enumerate() {
+                    let d = |k: usize| solution.measured.d(k, VariableId(*variable), column)[order];
+                    let expected: Vec<f64> = (0..rows.len()).map(d).collect();
+                    let at = 3 * c.measures.len() + 3 * (m * arguments.len() + b) + order;
+                    let apart = difference(&numbers(at), &expected);
+                    let by = &c.design[b];
+                    if !(apart < tolerance) {
+                        differ.push(format!("{name}: d {measure} / d {by}, order {order}, by {apart:e}"));
+                    }
+                    compared += 1;
+                }
+            }
+        }
+    }
+    let expected = FIXED_DESIGN.map(|(name, why)| (name.to_owned(), why.to_owned()));
+    assert_eq!(fixed, expected);
+    assert_eq!(differ, Vec::<String>::new());
+    assert!(compared > 1000, "{compared} derivatives");
 }

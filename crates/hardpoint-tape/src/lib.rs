@@ -30,6 +30,7 @@
 //! | run the kernel with numbers that record | [`record`], [`Number`] |
 //! | fold constants, merge common operations, remove dead ones, fuse, order | [`Recording::program`] |
 //! | split off operations of uniforms or of the first inputs alone | [`Program::hoisted`], [`Program::staged`] |
+//! | differentiate in a direction | [`Program::tangent`] |
 //! | split a long program into pieces that share their code | [`Program::in_pieces`] |
 //! | run, in lanes or as scalars | [`Interpreter`], [`Program::evaluate`] |
 //!
@@ -46,6 +47,7 @@ mod number;
 mod pieces;
 pub mod program;
 mod stage;
+mod tangent;
 
 pub use counts::{Counts, Kinds};
 pub use graph::Options;

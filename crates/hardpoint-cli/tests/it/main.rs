@@ -4,6 +4,7 @@ mod bench;
 mod calibrate;
 mod client;
 mod dxf;
+mod fmu;
 mod gltf;
 mod golden;
 mod import;

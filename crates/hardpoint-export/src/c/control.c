@@ -25,11 +25,12 @@ static double @name@_greater(double a, double b)
     return a > b ? a : b;
 }
 
-/* Results at solved coordinates; counts the turns of angles from the position that is passed. */
-static int @name@_results(@name@_position *p, const double qd[], const double qdd[], double *w, @name@_output *o)
+@prepare@/* Results at solved coordinates; counts the turns of angles from the position that is passed. */
+static int @name@_results(@name@_position *p, @geometry_type@const double qd[], const double qdd[], double *w,
+                          @name@_output *o)
 {
     double check[@checks@];
-    @name@_motion(p->x, p->q, qd, qdd, w, check, o);
+    @name@_motion(p->x, p->q, @geometry@qd, qdd, w, check, o);
     o->residual = check[4];
     o->pivot_ratio = 1.0 / check[3];
     /* Comparisons are written so that NaN fails. */
@@ -46,8 +47,8 @@ static int @name@_results(@name@_position *p, const double qd[], const double qd
 }
 
 /* Moves all drivers straight from the position to q, if that is near enough. On failure the position is changed. */
-static int @name@_move(@name@_position *p, const double q[], const double qd[], const double qdd[], double *w,
-                       @name@_output *o)
+static int @name@_move(@name@_position *p, @geometry_type@const double q[], const double qd[], const double qdd[],
+                       double *w, @name@_output *o)
 {
     double line[@NAME@_DRIVERS], y[@outputs@], limit, moved = 0.0, travel = 0.0, size;
     const double rest[@NAME@_DRIVERS] = {0.0};
@@ -61,7 +62,7 @@ static int @name@_move(@name@_position *p, const double q[], const double qd[], 
         return @NAME@_TOO_FAR;
     if (travel > 0.0) {
         /* x + x' + x''/2 along the line from the last position */
-        @name@_path(p->x, p->q, line, rest, w, y);
+        @name@_path(p->x, p->q, @geometry@line, rest, w, y);
         for (k = 0; k < @NAME@_COORDINATES; ++k) {
             const double step = y[2 * k] + 0.5 * y[2 * k + 1];
             p->x[k] += step;
@@ -76,7 +77,7 @@ static int @name@_move(@name@_position *p, const double q[], const double qd[], 
     for (n = 0;; ++n) {
         if (n == @NAME@_MOST_CORRECTIONS)
             return @NAME@_NOT_CONVERGED;
-        @name@_correct(p->x, p->q, w, y);
+        @name@_correct(p->x, p->q, @geometry@w, y);
         o->corrections += 1;
         size = y[@NAME@_COORDINATES];
         if (!(size <= limit))
@@ -87,7 +88,7 @@ static int @name@_move(@name@_position *p, const double q[], const double qd[], 
             break;
         limit = 0.5 * size;
     }
-    result = @name@_results(p, qd, qdd, w, o);
+    result = @name@_results(p, @g@qd, qdd, w, o);
     if (result != @NAME@_OK)
         return result;
     /* Every determinant changes little: no singular position is passed. */
@@ -106,7 +107,9 @@ void @name@_init(@name@_state *s)
 @start@
 }
 
-int @name@_step(@name@_state *s, const double q[], const double qd[], const double qdd[], @name@_output *o)
+/* Moves from the position straight to q@and_design@. */
+static int @name@_travel(@name@_state *s, const double q[], const double qd[], const double qdd[],@design_type@
+                         @name@_output *o)
 {
     const @name@_position first = s->position;
     const double rest[@NAME@_DRIVERS] = {0.0};
@@ -128,11 +131,12 @@ int @name@_step(@name@_state *s, const double q[], const double qd[], const doub
             to[k] = is_last ? q[k] : first.q[k] + (q[k] - first.q[k]) * (done + part);
         if (moves == @NAME@_MOST_MOVES) {
             s->position = first;
-            return @NAME@_TOO_FAR;
+            result = @NAME@_TOO_FAR;
+            break;
         }
         moves += 1;
         o->moves = moves;
-        result = @name@_move(&s->position, to, is_last ? qd : rest, is_last ? qdd : rest, s->work, o);
+@part_of_design@        result = @name@_move(&s->position, @state_geometry@to, is_last ? qd : rest, is_last ? qdd : rest, s->work, o);
         if (result == @NAME@_OK) {
             if (is_last)
                 return @NAME@_OK;
@@ -143,8 +147,14 @@ int @name@_step(@name@_state *s, const double q[], const double qd[], const doub
             part *= 0.5;
             if (part < @NAME@_SHORTEST) {
                 s->position = first;
-                return result;
+                break;
             }
         }
     }
+@restore_design@    return result;
+}
+
+int @name@_step(@name@_state *s, const double q[], const double qd[], const double qdd[], @name@_output *o)
+{
+    return @name@_travel(s, q, qd, qdd,@no_design@ o);
 }

@@ -128,8 +128,8 @@ impl Function<'_> {
             let _ = writeln!(out, "static void {name}({parameters})\n{{");
             out.push_str(body);
             for (_, parameter) in self.parameters {
-                let is_used = [format!("{parameter}["), format!("{parameter}->")];
-                if !is_used.iter().any(|used| body.contains(used)) {
+                let uses = [format!("{parameter}["), format!("{parameter}->")];
+                if !uses.iter().any(|used| has_word(body, used)) {
                     let _ = writeln!(out, "    (void)({parameter});");
                 }
             }
@@ -176,6 +176,12 @@ impl Function<'_> {
             Call(function, a, _) => format!("{}({})", function_name(function), x(a)),
         }
     }
+}
+
+/// True if a text contains this one as the beginning of a word.
+fn has_word(text: &str, word: &str) -> bool {
+    let inside = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '>' | '.');
+    text.match_indices(word).any(|(at, _)| !text[..at].ends_with(inside))
 }
 
 /// Indices of the values that an instruction reads.

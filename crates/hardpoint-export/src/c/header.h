@@ -28,7 +28,7 @@ extern "C" {
 #define @NAME@_DRIVERS @drivers@
 #define @NAME@_BODIES @bodies@
 #define @NAME@_MEASURES @measures@
-#define @NAME@_COORDINATES @coordinates@
+@design_count@#define @NAME@_COORDINATES @coordinates@
 #define @NAME@_BLOCKS @blocks@
 
 /* Most moves of one step, which bound its time: the path from the last position is divided until each move is near
@@ -58,7 +58,7 @@ enum {
 enum {
 @body_names@
 };
-@measure_names@
+@design_names@@measure_names@
 /* Motion of a body's frame. */
 typedef struct @name@_body {
     double r[3];       /* position, m */
@@ -81,13 +81,13 @@ typedef struct @name@_output {
 typedef struct @name@_position {
     double x[@coordinates_or_one@]; /* unknown coordinates */
     double q[@NAME@_DRIVERS];
-    double determinant[@blocks_or_one@], determinant_before[@blocks_or_one@];
+@position_design@    double determinant[@blocks_or_one@], determinant_before[@blocks_or_one@];
     double angle[@counted_or_one@], turn[@counted_or_one@]; /* measures that count whole turns */
 } @name@_position;
 
 typedef struct @name@_state {
     @name@_position position;
-    double work[@work@];
+@state_design@    double work[@work@];
 } @name@_state;
 
 /* Sets the position at the model's first output time:
@@ -99,7 +99,7 @@ void @name@_init(@name@_state *state);
  * The path is a straight line in the space of the drivers. A failure returns the position of the state to that of the
  * step before, and leaves the output undefined. */
 int @name@_step(@name@_state *state, const double q[], const double qd[], const double qdd[], @name@_output *output);
-@jacobian@
+@jacobian@@derivative@
 #ifdef __cplusplus
 }
 #endif

@@ -9,7 +9,7 @@ int @name@_jacobian(@name@_state *s, double jacobian[@NAME@_MEASURES][@NAME@_DRI
         @name@_position position = s->position;
         int result;
         qd[d] = 1.0;
-        result = @name@_results(&position, qd, rest, s->work, o);
+        result = @name@_results(&position, @state_geometry@qd, rest, s->work, o);
         qd[d] = 0.0;
         if (result != @NAME@_OK)
             return result;

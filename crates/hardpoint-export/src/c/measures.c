@@ -2,7 +2,7 @@ static const int @name@_formula[] = {@formulas@}; /* measures that are formulas 
 static const int @name@_counted[] = {@counted@}; /* measures that count whole turns */
 
 /* Evaluates the formulas, counts whole turns from the last position, and marks what is undefined. */
-static void @name@_measure(@name@_position *p, double *w, @name@_output *o)
+static void @name@_measure(@name@_position *p, @geometry_type@double *w, @name@_output *o)
 {
     const double turn = 6.283185307179586;
     double guard[@NAME@_MEASURES];
@@ -10,7 +10,7 @@ static void @name@_measure(@name@_position *p, double *w, @name@_output *o)
 
     /* Formulas may use angles with their turns, so these are found first. */
     for (pass = 0; pass < 2; ++pass) {
-        @name@_formulas(p, w, guard, o);
+        @name@_formulas(p, @geometry@w, guard, o);
         differ = 0;
         for (k = 0; k < @counters@; ++k) {
             const double now = o->measure[@name@_counted[k]].value;

@@ -13,14 +13,15 @@ use std::path::Path;
 use hardpoint::measure::{MeasureFormulas, Output, outputs};
 use hardpoint::model::{Model, OutputSource};
 use hardpoint::motion::{DrivenStep, MotionCheck};
+use hardpoint::sensitivity::Admissibility;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::ModelFile;
 use hardpoint_report::GENERATOR;
 use hardpoint_report::figures::unit;
 use hardpoint_table::Units;
-use hardpoint_tape::Operand;
+use hardpoint_tape::{Operand, Program};
 
-use crate::{Companion, ExportError, ExportedModel, Format, Writer};
+use crate::{Companion, ExportError, ExportOptions, ExportedModel, Format, Writer};
 use emit::{Function, literal};
 use replay::{ReplayResult, replay};
 
@@ -41,23 +42,102 @@ const LARGER: &str = include_str!("larger.c");
 const MEASURES: &str = include_str!("measures.c");
 const CONTROL: &str = include_str!("control.c");
 const JACOBIAN: &str = include_str!("jacobian.c");
+// If requested: derivatives, and the design.
+const DERIVATIVE_DECLARED: &str = include_str!("derivative.h");
+const DERIVATIVE: &str = include_str!("derivative.c");
+const DERIVED_MEASURES: &str = include_str!("derived_measures.c");
+const DESIGN_DECLARED: &str = include_str!("design.h");
+const DESIGN: &str = include_str!("design.c");
+const GRADIENT_DECLARED: &str = include_str!("gradient.h");
+const GRADIENT: &str = include_str!("gradient.c");
+/// Numbers that depend on the design alone.
+const PREPARE: &str = "\
+static void @name@_prepare(const double *b, double *w, double *g)
+{
+@calls@}
+
+";
+/// The design at a part of the path.
+const PART_OF_DESIGN: &str = "        if (design) {
+            for (k = 0; k < @NAME@_DESIGN; ++k)
+                s->position.design[k] =
+                    is_last ? design[k] : first.design[k] + (design[k] - first.design[k]) * (done + part);
+            @name@_prepare(s->position.design, s->work, s->geometry);
+        }
+";
+/// The design before the path.
+const RESTORE_DESIGN: &str = "    if (design)
+        @name@_prepare(s->position.design, s->work, s->geometry);
+";
 /// Numbers of a body, in the order of the programs: r, the columns of A, v, omega, a, alpha.
 const BODY: usize = 24;
 
-fn write(file: &ModelFile, stem: &str, out: &mut ExportedModel) -> Result<(), ExportError> {
+/// Parts of the source that are written if they are requested.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts {
+    /// Derivatives of all results in a direction.
+    pub derivatives: bool,
+    /// The design variables as arguments, and the derivatives of the measures by them.
+    pub design: bool,
+}
+
+/// Generated source, with what it contains.
+pub struct Generated {
+    pub source: String,
+    pub header: String,
+    /// Prefix of all names.
+    pub name: String,
+    pub measures: Vec<Measure>,
+    /// Indices of the design variables that are arguments.
+    pub design: Vec<usize>,
+    /// Value of every driver at the start, m or rad.
+    pub start: Vec<f64>,
+    /// Name of the model file, without its folder, as in a comment.
+    pub origin: String,
+}
+
+fn write(
+    file: &ModelFile,
+    stem: &str,
+    options: ExportOptions,
+    out: &mut ExportedModel,
+) -> Result<(), ExportError> {
+    if options.design && file.model.variables.is_empty() {
+        let why = "the model has no design variables; export it without `--design`, or declare `variables`";
+        return Err(ExportError::NotRecorded { why: why.to_owned() });
+    }
+    let parts = Parts { derivatives: options.design, design: options.design };
+    let generated = generate(file, stem, parts, out)?;
+    if !options.design && !file.model.variables.is_empty() {
+        let why = "their nominal values are constants of the formulas; `--design` makes them arguments";
+        out.report_unsupported("design variables", &file.model.variables.len().to_string(), why);
+    }
+    out.text = generated.source;
+    out.companion = Some(Companion { ending: "h", text: generated.header });
+    Ok(())
+}
+
+/// Generates the source of a model, and reports what it does not contain.
+///
+/// # Errors
+///
+/// The mechanism cannot be driven, or its step has no formulas.
+pub fn generate(
+    file: &ModelFile,
+    stem: &str,
+    parts: Parts,
+    out: &mut ExportedModel,
+) -> Result<Generated, ExportError> {
     let model = &file.model;
     let analysis = Analysis::new(model).map_err(ExportError::CannotBeDriven)?;
     let refused = |why: String| ExportError::NotRecorded { why };
     if model.drivers.is_empty() {
         return Err(refused("there is no driver".to_owned()));
     }
-    let step = analysis.driven_step().map_err(refused)?;
-    let formulas = analysis.measure_formulas();
+    let step = analysis.driven_step(parts.design).map_err(refused)?;
+    let formulas = analysis.measure_formulas(parts.design);
     let measures = Measures::of(&analysis, &step, formulas.as_ref(), out);
-    if !model.variables.is_empty() {
-        let why = "their nominal values are constants of the formulas";
-        out.report_unsupported("design variables", &model.variables.len().to_string(), why);
-    }
+    let design = arguments(&analysis, &step, out);
     let ReplayResult { end, undefined } = replay(model, &step, formulas.as_ref());
     if let Some(t) = end {
         let why = "the formulas end there: the motion goes on with other rows of redundant constraints, or through a \
@@ -76,18 +156,59 @@ fn write(file: &ModelFile, stem: &str, out: &mut ExportedModel) -> Result<(), Ex
             out.report_unsupported("measure", &measure.output.name, why);
         }
     }
-    let source =
-        Source { file, stem, name: identifier(stem), step: &step, formulas: formulas.as_ref(), measures };
-    let (text, work) = source.text();
-    out.text = text;
-    out.companion = Some(Companion { ending: "h", text: source.header(work) });
-    Ok(())
+    let start = step.drivers.iter().map(|d| d.start).collect();
+    let source = Source {
+        file,
+        stem,
+        name: identifier(stem),
+        step: &step,
+        formulas: formulas.as_ref(),
+        measures,
+        design,
+        derivatives: parts.derivatives,
+    };
+    let (text, sizes) = source.text();
+    let (header, origin) = (source.header(sizes), source.origin());
+    let Source { name, measures: Measures { list: measures, .. }, design, .. } = source;
+    Ok(Generated { source: text, header, name, measures, design, start, origin })
+}
+
+/// Design variables that are arguments; the others are reported, and keep their nominal values.
+fn arguments(analysis: &Analysis<'_>, step: &DrivenStep, out: &mut ExportedModel) -> Vec<usize> {
+    let model = analysis.model();
+    if step.design.is_empty() {
+        return Vec::new();
+    }
+    let admissibility = analysis.solve(Run::new().without_measures()).sensitivities.admissibility;
+    let mut found = Vec::new();
+    for (k, variable) in step.design.iter().enumerate() {
+        let why = if variable.changes_law {
+            "nominal: it changes the law of a driver, which the caller passes"
+        } else if let Some(Admissibility::CannotFollow { .. }) = admissibility.get(k) {
+            "nominal: the mechanism cannot follow it, because redundant constraints contradict each other"
+        } else {
+            found.push(k);
+            continue;
+        };
+        out.report_unsupported("design variable", &model.variables[k].name, why);
+    }
+    found
 }
 
 /// A measure or component of a point that is written.
-struct Measure {
-    output: Output,
+pub struct Measure {
+    pub output: Output,
     from: MeasureSource,
+}
+
+impl Measure {
+    /// Number of known time derivatives, the value included.
+    pub fn orders(&self) -> usize {
+        match self.from {
+            MeasureSource::Formulas(_) => self.output.known.orders,
+            MeasureSource::Step(_) => 1,
+        }
+    }
 }
 
 /// Program that computes a measure.
@@ -169,91 +290,263 @@ struct Source<'a> {
     step: &'a DrivenStep,
     formulas: Option<&'a MeasureFormulas>,
     measures: Measures,
+    /// Indices of the design variables that are arguments.
+    design: Vec<usize>,
+    /// True if the derivatives are written.
+    derivatives: bool,
+}
+
+/// Sizes of the arrays of a state.
+#[derive(Clone, Copy, Default)]
+struct Sizes {
+    /// Working values.
+    work: usize,
+    /// Numbers that depend on the design alone.
+    geometry: usize,
+}
+
+/// Functions of the programs, while they are written.
+struct Functions<'a> {
+    name: &'a str,
+    larger: String,
+    text: String,
+    sizes: Sizes,
+    /// Calls of the functions that compute the numbers of the design.
+    prepare: String,
+}
+
+impl Functions<'_> {
+    /// Writes a program as a function. If its inputs from `design_at` on are the design variables, then what depends on
+    /// them alone is another function.
+    fn write(
+        &mut self,
+        (which, about): (&str, &str),
+        program: &Program,
+        parameters: &[(&str, &str)],
+        (mut inputs, design_at): (Vec<String>, Option<usize>),
+        outputs: Vec<Option<String>>,
+    ) {
+        let staged = design_at.map(|at| {
+            let is_design = |operand| matches!(operand, Operand::Input(k) if k as usize >= at);
+            program.clone().staged(is_design)
+        });
+        let (first, program) = match &staged {
+            Some((first, rest)) => (Some(first), rest),
+            None => (None, program),
+        };
+        if let Some(first) = first {
+            let at = self.sizes.geometry;
+            let numbers = |count: usize| (0..count).map(move |k| format!("g[{}]", at + k));
+            let to = numbers(first.outputs.len()).map(Some).collect();
+            let parameters = [("const double *", "b"), ("double *", "w"), ("double *", "g")];
+            let part = format!("{which}_geometry");
+            self.function(
+                (&part, "The part that depends on the design alone."),
+                first,
+                &parameters,
+                &inputs,
+                to,
+            );
+            let _ = writeln!(self.prepare, "    {}_{part}(b, w, g);", self.name);
+            inputs.extend(numbers(first.outputs.len()));
+            self.sizes.geometry += first.outputs.len();
+        }
+        self.function((which, about), program, parameters, &inputs, outputs);
+    }
+
+    fn function(
+        &mut self,
+        (which, about): (&str, &str),
+        program: &Program,
+        parameters: &[(&str, &str)],
+        inputs: &[String],
+        outputs: Vec<Option<String>>,
+    ) {
+        let _ = writeln!(self.text, "/* {about} */");
+        let name = format!("{}_{which}", self.name);
+        let inputs = inputs.to_vec();
+        let function = Function { name: &name, larger: &self.larger, program, parameters, inputs, outputs };
+        self.sizes.work = self.sizes.work.max(function.write(&mut self.text));
+    }
 }
 
 impl Source<'_> {
-    /// Text of the source file, and the number of its working values.
-    fn text(&self) -> (String, usize) {
-        let (functions, work) = self.functions();
+    /// Text of the source file, and the sizes of its state.
+    fn text(&self) -> (String, Sizes) {
+        let Functions { text: functions, sizes, prepare, .. } = self.functions();
         let mut text = self.filled(SOURCE, &self.heading());
         if functions.contains(&format!("{}_larger(", self.name)) {
             text += &self.filled(LARGER, &[]);
         }
         text += &functions;
-        text += &self.filled(CONTROL, &self.control());
-        if !self.measures.list.is_empty() {
+        text += &self.filled(CONTROL, &self.control(&prepare));
+        if self.has_measures() {
             text += &self.filled(JACOBIAN, &[]);
         }
-        (text, work)
+        if self.has_design() {
+            text += &self.filled(DESIGN, &[]);
+        }
+        if self.derivatives {
+            let derived = if self.has_formulas() {
+                let design = if self.has_design() { "p.design, " } else { "" };
+                format!("    {}_formulas_tangent(&p, {design}along, o, s->work, d);\n", self.name)
+            } else {
+                String::new()
+            };
+            let undefined =
+                if self.has_measures() { self.filled(DERIVED_MEASURES, &[]) } else { String::new() };
+            text += &self.filled(
+                DERIVATIVE,
+                &[
+                    ("outputs", self.step.coordinates.len().max(1).to_string()),
+                    ("derived_measures", derived + &undefined),
+                ],
+            );
+            if self.has_design() && self.has_measures() {
+                text += &self.filled(GRADIENT, &[]);
+            }
+        }
+        (text, sizes)
+    }
+
+    /// True if the design is an argument.
+    fn has_design(&self) -> bool {
+        !self.design.is_empty()
+    }
+
+    fn has_measures(&self) -> bool {
+        !self.measures.list.is_empty()
+    }
+
+    /// Expressions of the design variables that programs read: arguments, or nominal.
+    fn design_inputs(&self, of: &str) -> Vec<String> {
+        let input = |k: usize| match self.design.iter().position(|d| *d == k) {
+            Some(at) => format!("{of}[{at}]"),
+            None => "0.0".to_owned(),
+        };
+        (0..self.step.design.len()).map(input).collect()
     }
 
     /// The functions of all programs.
-    fn functions(&self) -> (String, usize) {
+    fn functions(&self) -> Functions<'_> {
         let (name, step) = (&self.name, self.step);
-        let larger = format!("{name}_larger");
         let (n, drivers) = (step.coordinates.len(), step.drivers.len());
         let mut inputs: Vec<String> = (0..n).map(|k| format!("x[{k}]")).collect();
         inputs.extend((0..drivers).flat_map(|d| ["q", "qd", "qdd"].map(|of| format!("{of}[{d}]"))));
+        let design_at = self.has_design().then_some(inputs.len());
+        inputs.extend(self.design_inputs("b"));
         let read = "const double *";
+        let geometry = if self.has_design() { vec![(read, "b"), (read, "g")] } else { Vec::new() };
+        let design = if self.has_design() { vec![(read, "b")] } else { Vec::new() };
         let position = [(read, "x"), (read, "q")];
         let rates = [(read, "qd"), (read, "qdd")];
         let work = ("double *", "w");
         let output_type = format!("{name}_output *");
         let position_type = format!("const {name}_position *");
-        let in_y = |count: usize| (0..count).map(|k| Some(format!("y[{k}]"))).collect();
+        let in_y = |count: usize| (0..count).map(|k| Some(format!("y[{k}]"))).collect::<Vec<_>>();
 
-        let mut text = String::new();
-        let mut most = 1;
-        let mut write = |which: &str, about: &str, program, parameters: &[_], inputs, outputs| {
-            let _ = writeln!(text, "/* {about} */");
-            let function = format!("{name}_{which}");
-            let function =
-                Function { name: &function, larger: &larger, program, parameters, inputs, outputs };
-            most = most.max(function.write(&mut text));
+        let mut functions = Functions {
+            name,
+            larger: format!("{name}_larger"),
+            text: String::new(),
+            sizes: Sizes::default(),
+            prepare: String::new(),
         };
-        write(
-            "correct",
-            "One Newton correction: the corrected coordinates, and the size of the correction.",
+        functions.write(
+            ("correct", "One Newton correction: the corrected coordinates, and the size of the correction."),
             &step.correction,
-            &[&position[..], &[work, ("double *", "y")]].concat(),
-            inputs.clone(),
+            &[&position[..], &geometry, &[work, ("double *", "y")]].concat(),
+            (inputs.clone(), design_at),
             in_y(n + 1),
         );
-        write(
-            "path",
-            "First and second derivative of every coordinate.",
+        functions.write(
+            ("path", "First and second derivative of every coordinate."),
             &step.path,
-            &[&position[..], &rates, &[work, ("double *", "y")]].concat(),
-            inputs.clone(),
+            &[&position[..], &geometry, &rates, &[work, ("double *", "y")]].concat(),
+            (inputs.clone(), design_at),
             in_y(2 * n),
         );
-        write(
-            "motion",
-            "Motion of all bodies, and the numbers that it is checked by.",
+        functions.write(
+            ("motion", "Motion of all bodies, and the numbers that it is checked by."),
             &step.motion,
-            &[&position[..], &rates, &[work, ("double *", "check"), (&output_type, "o")]].concat(),
-            inputs,
-            self.motion_outputs(),
+            &[&position[..], &geometry, &rates, &[work, ("double *", "check"), (&output_type, "o")]].concat(),
+            (inputs.clone(), design_at),
+            self.motion_outputs("o", true),
         );
+        // A direction in the space of the inputs of the step: coordinates, drivers, design.
+        let direction_type = format!("const {name}_direction *");
+        let direction = || {
+            let mut all: Vec<String> = (0..n).map(|k| format!("dx[{k}]")).collect();
+            let of_drivers = |d: usize| ["q", "qd", "qdd"].map(|of| format!("along->{of}[{d}]"));
+            all.extend((0..drivers).flat_map(of_drivers));
+            all.extend(self.design_inputs("along->design"));
+            all
+        };
+        let is_argument = |at: usize, k: usize| k < at || self.design.contains(&(k - at));
+        if self.derivatives {
+            let of_position = |k: usize| k >= n && (k >= n + 3 * drivers || (k - n).is_multiple_of(3));
+            functions.write(
+                ("correct_tangent", "Derivative of the coordinates in a direction."),
+                &step.correction.tangent(|k| of_position(k) && is_argument(n + 3 * drivers, k)),
+                &[&position[..], &design, &[(&direction_type, "along"), work, ("double *", "dx")]].concat(),
+                ([inputs.clone(), direction()].concat(), None),
+                (0..=n).map(|k| (k < n).then(|| format!("dx[{k}]"))).collect(),
+            );
+            let last = [(&direction_type[..], "along"), work, (&output_type, "d")];
+            functions.write(
+                ("motion_tangent", "Derivative of the motion in a direction."),
+                &step.motion.tangent(|k| is_argument(n + 3 * drivers, k)),
+                &[&position[..], &rates, &[(read, "dx")], &design, &last].concat(),
+                ([inputs, direction()].concat(), None),
+                self.motion_outputs("d", false),
+            );
+        }
         if let Some(formulas) = self.formulas.filter(|_| self.has_formulas()) {
-            let body = |b: &usize| (0..BODY).map(|k| body_number(*b, k)).collect::<Vec<_>>();
-            let mut inputs: Vec<String> = formulas.bodies.iter().flat_map(body).collect();
+            let bodies = |of: &str| -> Vec<String> {
+                let body = |b: &usize| (0..BODY).map(|k| body_number(of, *b, k)).collect::<Vec<_>>();
+                formulas.bodies.iter().flat_map(body).collect()
+            };
+            let moving = bodies("o").len();
+            let mut inputs = bodies("o");
             inputs.extend(formulas.turning.iter().map(|m| match self.counter_of(*m) {
                 Some(c) => format!("p->turn[{c}]"),
                 None => "0.0".to_owned(),
             }));
             inputs.push("0.0".to_owned());
-            let outputs = self.formula_outputs(formulas);
-            write(
-                "formulas",
-                "Measures; those whose guard is positive or NaN are undefined.",
+            let at = inputs.len();
+            inputs.extend(self.design_inputs("b"));
+            functions.write(
+                ("formulas", "Measures; those whose guard is positive or NaN are undefined."),
                 &formulas.program,
-                &[(&position_type[..], "p"), work, ("double *", "guard"), (&output_type, "o")],
-                inputs,
-                outputs,
+                &[
+                    &[(&position_type[..], "p")],
+                    &geometry[..],
+                    &[work, ("double *", "guard"), (&output_type, "o")],
+                ]
+                .concat(),
+                (inputs.clone(), self.has_design().then_some(at)),
+                self.formula_outputs(formulas, "o", true),
             );
+            if self.derivatives {
+                let mut direction = bodies("d");
+                direction.resize(at, "0.0".to_owned());
+                direction.extend(self.design_inputs("along->design"));
+                let result_type = format!("const {name}_output *");
+                functions.write(
+                    ("formulas_tangent", "Derivatives of the measures in a direction."),
+                    &formulas.program.tangent(|k| k < moving || k >= at && is_argument(at, k)),
+                    &[
+                        &[(&position_type[..], "p")],
+                        &design[..],
+                        &[(&direction_type, "along"), (&result_type, "o"), work, (&output_type, "d")],
+                    ]
+                    .concat(),
+                    ([inputs, direction].concat(), None),
+                    self.formula_outputs(formulas, "d", false),
+                );
+            }
         }
-        (text, most)
+        functions
     }
 
     fn has_formulas(&self) -> bool {
@@ -273,19 +566,21 @@ impl Source<'_> {
         MotionCheck::ALL.len() + self.step.logarithmic.len() + self.step.step_measures.len()
     }
 
-    fn motion_outputs(&self) -> Vec<Option<String>> {
-        let checks = (0..self.checks()).map(|k| Some(format!("check[{k}]")));
+    /// Lvalues of the motion's outputs, with or without the checks.
+    fn motion_outputs(&self, of: &str, checks: bool) -> Vec<Option<String>> {
+        let checks = (0..self.checks()).map(|k| checks.then(|| format!("check[{k}]")));
         let values = (0..self.step.step_measures.len()).map(|n| {
             let is_it = |m: &Measure| matches!(m.from, MeasureSource::Step(k) if k == n);
             let at = self.measures.list.iter().position(is_it)?;
-            Some(format!("o->measure[{at}].value"))
+            Some(format!("{of}->measure[{at}].value"))
         });
         let bodies = 1..self.file.model.bodies.len();
-        let bodies = bodies.flat_map(|b| (0..BODY).map(move |k| Some(body_number(b, k))));
+        let bodies = bodies.flat_map(|b| (0..BODY).map(move |k| Some(body_number(of, b, k))));
         checks.chain(values).chain(bodies).collect()
     }
 
-    fn formula_outputs(&self, formulas: &MeasureFormulas) -> Vec<Option<String>> {
+    /// Lvalues of the outputs of the formulas, with or without the guards.
+    fn formula_outputs(&self, formulas: &MeasureFormulas, of: &str, guards: bool) -> Vec<Option<String>> {
         let count = formulas.program.outputs.len() / 4;
         let mut at = vec![None; count];
         for (place, measure) in self.measures.list.iter().enumerate() {
@@ -293,15 +588,16 @@ impl Source<'_> {
                 at[k] = Some(place);
             }
         }
-        let guards = at.iter().map(|at| at.map(|at| format!("guard[{at}]")));
+        let guards = at.iter().map(|at| at.filter(|_| guards).map(|at| format!("guard[{at}]")));
         let numbers = at.iter().flat_map(|at| {
-            ["value", "rate", "acceleration"].map(|of| at.map(|at| format!("o->measure[{at}].{of}")))
+            let number = |order| at.map(|at| format!("{of}->measure[{at}].{order}"));
+            ["value", "rate", "acceleration"].map(number)
         });
         guards.chain(numbers).collect()
     }
 
     /// Parts of the control that depend on the model.
-    fn control(&self) -> Vec<(&'static str, String)> {
+    fn control(&self, prepare: &str) -> Vec<(&'static str, String)> {
         let step = self.step;
         let name = &self.name;
         let units = |which: &str, list: &[hardpoint::motion::DrivenCoordinate]| {
@@ -332,11 +628,19 @@ impl Source<'_> {
         }
         let mut measures = String::new();
         if self.has_formulas() {
-            let _ = writeln!(results, "    {name}_measure(p, w, o);");
+            let g = if self.has_design() { "g, " } else { "" };
+            let _ = writeln!(results, "    {name}_measure(p, {g}w, o);");
             measures = self.measuring();
         }
         let width = usize::max(2 * step.coordinates.len(), step.coordinates.len() + 1);
+        let when = |text: &str| if self.has_design() { self.filled(text, &[]) } else { String::new() };
         vec![
+            ("prepare", when(&PREPARE.replace("@calls@", prepare))),
+            ("part_of_design", when(PART_OF_DESIGN)),
+            ("restore_design", when(RESTORE_DESIGN)),
+            ("design_type", when(" const double design[],")),
+            ("no_design", when(" 0,")),
+            ("and_design", when(" and to the design, if one is passed")),
             ("tables", tables + &measures),
             ("checks", self.checks().to_string()),
             ("outputs", width.to_string()),
@@ -369,9 +673,10 @@ impl Source<'_> {
         };
         step.coordinates.iter().enumerate().for_each(|(k, c)| set("x", k, c.start));
         step.drivers.iter().enumerate().for_each(|(k, c)| set("q", k, c.start));
+        (0..self.design.len()).for_each(|k| set("design", k, 0.0));
         let coordinates = step.coordinates.iter().map(|c| c.start);
-        let inputs: Vec<f64> =
-            coordinates.chain(step.drivers.iter().flat_map(|d| [d.start, 0.0, 0.0])).collect();
+        let drivers = step.drivers.iter().flat_map(|d| [d.start, 0.0, 0.0]);
+        let inputs: Vec<f64> = coordinates.chain(drivers).chain(step.design.iter().map(|_| 0.0)).collect();
         let mut found = vec![0.0; step.motion.outputs.len()];
         step.motion.evaluate(&inputs, &[], &mut Vec::new(), &mut found);
         for b in 0..step.logarithmic.len() {
@@ -383,10 +688,13 @@ impl Source<'_> {
             set("angle", k, *angle);
             set("turn", k, 0.0);
         }
+        if self.has_design() {
+            let _ = writeln!(text, "    {}_prepare(s->position.design, s->work, s->geometry);", self.name);
+        }
         text.trim_end().to_owned()
     }
 
-    fn header(&self, work: usize) -> String {
+    fn header(&self, sizes: Sizes) -> String {
         let (model, step) = (&self.file.model, self.step);
         let upper = self.name.to_ascii_uppercase();
         let si = Units::default();
@@ -409,6 +717,11 @@ impl Source<'_> {
         let driver_names = enumerated("DRIVER", &mut drivers);
         let mut bodies = model.bodies.iter().skip(1).map(|body| (body.name.clone(), body.name.clone()));
         let body_names = enumerated("BODY", &mut bodies);
+        let mut variables = self.design.iter().map(|k| {
+            let variable = &model.variables[*k];
+            (variable.name.clone(), format!("{}, {}", variable.name, unit(si, variable.quantity)))
+        });
+        let design_names = enumerated("DESIGN", &mut variables);
         let mut measures = self.measures.list.iter().map(|m| {
             let note = match m.from {
                 MeasureSource::Formulas(_) => "",
@@ -418,7 +731,25 @@ impl Source<'_> {
             (name.clone(), format!("{name}, {}{note}", unit(si, *dimension)))
         });
         let measure_names = enumerated("MEASURE", &mut measures);
-        let has_measures = !self.measures.list.is_empty();
+        let (has_measures, has_design) = (self.has_measures(), self.has_design());
+        let count = |name: &str, count: usize| format!("#define {upper}_{name} {count}\n");
+        let designs =
+            format!("\n/* Design variables: indices of `design`. */\nenum {{\n{design_names}\n}};\n");
+        let with_design = |text: String| if has_design { text } else { String::new() };
+        let mut derivative = String::new();
+        if self.derivatives {
+            let places = [
+                ("and_of_design", with_design(" and of the design".to_owned())),
+                ("direction_field", with_design(format!("    double design[{upper}_DESIGN];\n"))),
+            ];
+            derivative += &self.filled(DERIVATIVE_DECLARED, &places);
+        }
+        if has_design {
+            derivative += &self.filled(DESIGN_DECLARED, &[]);
+            if has_measures {
+                derivative += &self.filled(GRADIENT_DECLARED, &[]);
+            }
+        }
         let measure_text = self.filled(MEASURE_TYPES, &[("measure_constants", measure_names)]);
         let jacobian = self.filled(JACOBIAN_DECLARED, &[]);
         let field = format!("    {}_measure_value measure[{upper}_MEASURES];\n", self.name);
@@ -445,7 +776,23 @@ impl Source<'_> {
             ("coordinates_or_one", step.coordinates.len().max(1).to_string()),
             ("blocks_or_one", step.logarithmic.len().max(1).to_string()),
             ("counted_or_one", self.measures.counted.len().max(1).to_string()),
-            ("work", work.to_string()),
+            ("work", sizes.work.max(1).to_string()),
+            ("design_count", with_design(count("DESIGN", self.design.len()))),
+            ("design_names", with_design(designs)),
+            (
+                "position_design",
+                with_design(format!(
+                    "    double design[{upper}_DESIGN]; /* changes of the design variables from their nominal values */\n"
+                )),
+            ),
+            (
+                "state_design",
+                with_design(format!(
+                    "    double geometry[{}]; /* numbers that depend on the design alone */\n",
+                    sizes.geometry.max(1)
+                )),
+            ),
+            ("derivative", derivative),
             ("driver_names", driver_names),
             ("body_names", body_names),
             ("measure_names", when(measure_text)),
@@ -479,12 +826,23 @@ impl Source<'_> {
         for (place, with) in places {
             text = text.replace(&format!("@{place}@"), with);
         }
+        // Arguments that functions have if the design is one.
+        let arguments = [
+            ("geometry_type", "const double *g, "),
+            ("geometry", "p->design, g, "),
+            ("g", "g, "),
+            ("nominal", "p.design, "),
+            ("state_geometry", "s->geometry, "),
+        ];
+        for (place, with) in arguments {
+            text = text.replace(&format!("@{place}@"), if self.has_design() { with } else { "" });
+        }
         text.replace("@name@", &self.name).replace("@NAME@", &self.name.to_ascii_uppercase())
     }
 }
 
 /// Lvalue of number k of a body.
-fn body_number(body: usize, k: usize) -> String {
+fn body_number(of: &str, body: usize, k: usize) -> String {
     let at = match k {
         0..3 => format!("r[{k}]"),
         3..12 => format!("axis[{}][{}]", (k - 3) / 3, k % 3),
@@ -493,7 +851,7 @@ fn body_number(body: usize, k: usize) -> String {
         18..21 => format!("a[{}]", k % 3),
         _ => format!("alpha[{}]", k % 3),
     };
-    format!("o->body[{}].{at}", body - 1)
+    format!("{of}->body[{}].{at}", body - 1)
 }
 
 /// A list that is not empty: C has no arrays without elements.
@@ -512,7 +870,7 @@ pub(crate) fn identifier(name: &str) -> String {
 }
 
 /// Text within a comment.
-fn comment(text: &str) -> String {
+pub fn comment(text: &str) -> String {
     let plain = |c: char| if c.is_control() { ' ' } else { c };
     text.chars().map(plain).collect::<String>().replace("*/", "* /").replace("/*", "/ *").replace('@', "(at)")
 }

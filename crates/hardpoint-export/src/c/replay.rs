@@ -29,6 +29,8 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
         found: vec![0.0; usize::max(step.motion.outputs.len(), step.path.outputs.len())],
     };
     replay.inputs.extend(step.drivers.iter().flat_map(|d| [d.start, 0.0, 0.0]));
+    // The nominal design.
+    replay.inputs.extend(step.design.iter().map(|_| 0.0));
     let outputs = formulas.map_or(0, |f| f.program.outputs.len());
     let mut undefined = vec![0; outputs / 4];
     let (mut inputs, mut found) = (Vec::new(), vec![0.0; outputs]);

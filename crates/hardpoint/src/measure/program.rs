@@ -196,13 +196,13 @@ impl RecordedFormulas {
     }
 }
 
-/// Measures and point components of the nominal design as a straight-line program of the motion of its bodies, for
-/// generators of source code.
+/// Measures and point components as a straight-line program of the motion of the bodies, and of the design if that was
+/// requested, for generators of source code.
 ///
 /// Inputs are 24 numbers of each of the [`bodies`](Self::bodies) (r, the columns of A, v, omega, a, alpha), the whole
-/// turns of the measures of [`turning`](Self::turning), rad, and a zero. Outputs are one guard for each of
-/// [`outputs`], then value, rate and acceleration of each. An output is undefined if its guard is positive or NaN. A
-/// guard that is the constant one belongs to an output that is not arithmetic.
+/// turns of the measures of [`turning`](Self::turning), rad, a zero, and the design variables if requested. Outputs are
+/// one guard for each of [`outputs`], then value, rate and acceleration of each. An output is undefined if its guard is
+/// positive or NaN. A guard that is the constant one belongs to an output that is not arithmetic.
 #[derive(Clone, Debug)]
 pub struct MeasureFormulas {
     /// The program.
@@ -215,8 +215,8 @@ pub struct MeasureFormulas {
 
 impl MeasureFormulas {
     /// Records the formulas; `None` if the body-fixed data are not arithmetic.
-    pub(crate) fn record(design_map: &DesignMap<'_>) -> Option<Self> {
-        let asked = ProgramKey { any_design: false, variables: 0, moved: Vec::new() };
+    pub(crate) fn record(design_map: &DesignMap<'_>, any_design: bool) -> Option<Self> {
+        let asked = ProgramKey { any_design, variables: 0, moved: Vec::new() };
         let RecordedFormulas { program, bodies, turning, .. } = RecordedFormulas::of(design_map, &asked)?;
         Some(Self { program, bodies, turning })
     }

@@ -1,8 +1,9 @@
 //! A step as straight-line programs of its drivers, for generators of source code.
 //!
 //! The programs are recorded from the kernel, like those that the solver runs itself ([`step_program`]). They differ in
-//! their inputs: the coordinates at which the step begins, and the drivers' values, rates and accelerations. There is
-//! no time, no law and no prediction in them, so the caller chooses the path of the drivers.
+//! their inputs: the coordinates at which the step begins, the drivers' values, rates and accelerations, and, if
+//! requested, the design variables. There is no time, no law and no prediction in them, so the caller chooses the path
+//! of the drivers.
 //!
 //! [`step_program`]: super::step_program
 
@@ -10,6 +11,7 @@ use hardpoint_tape::{Number, Options, Program, record};
 
 use crate::design::DesignMap;
 use crate::linalg::Factors;
+use crate::model::VariableId;
 use crate::number::record as recording;
 use crate::space::Vec3;
 
@@ -20,18 +22,20 @@ use super::parts::PlanGeometry;
 use super::predictor::{Channel, ORDERS};
 use super::step_program::{OFFSET, RecordedStep, largest_of};
 
-/// Step of the nominal design as straight-line programs of its drivers.
+/// Step of a mechanism as straight-line programs of its drivers, and of its design if that was requested.
 ///
 /// All numbers are in SI units. The three programs have the same inputs: the unknown coordinates, then value, rate and
-/// acceleration of every driver. A step corrects the coordinates by [`correction`](Self::correction) until the size of
-/// a correction is at most 1e-8, so that the remaining error is its square, and evaluates [`motion`](Self::motion)
-/// there.
+/// acceleration of every driver, then the values of [`design`](Self::design). A step corrects the coordinates by
+/// [`correction`](Self::correction) until the size of a correction is at most 1e-8, so that the remaining error is its
+/// square, and evaluates [`motion`](Self::motion) there.
 #[derive(Clone, Debug)]
 pub struct DrivenStep {
     /// Unknown coordinates; those of a ball are the four components of a unit quaternion.
     pub coordinates: Vec<DrivenCoordinate>,
     /// Value of every driver at the start, m or rad.
     pub drivers: Vec<DrivenCoordinate>,
+    /// Design variables that are inputs, in the order of the model: all of them, or none if the design is nominal.
+    pub design: Vec<DrivenVariable>,
     /// One Newton correction: the corrected coordinates, and its largest component in units of the coordinates.
     pub correction: Program,
     /// First and second derivative of every coordinate.
@@ -55,6 +59,13 @@ pub struct DrivenCoordinate {
     pub unit: f64,
 }
 
+/// Design variable of a step, in its unit; the nominal design is at 0.
+#[derive(Clone, Copy, Debug)]
+pub struct DrivenVariable {
+    /// True if the variable also changes the law of a driver, which is not part of the step.
+    pub changes_law: bool,
+}
+
 /// Numbers by which the motion of a step is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionCheck {
@@ -76,28 +87,29 @@ impl MotionCheck {
 }
 
 impl DrivenStep {
-    /// Records the step at the accepted position; `besides` records the measures that need more than the motion, with
-    /// further limits. `None` if the step is not arithmetic.
+    /// Records the step at the accepted position, of the nominal design or of any; `besides` records the measures that
+    /// need more than the motion, with further limits. `None` if the step is not arithmetic.
     pub(crate) fn record(
         one: &Mechanism<'_>,
-        design_map: &DesignMap<'_>,
+        (design_map, any_design): (&DesignMap<'_>, bool),
         step_measures: Vec<usize>,
         besides: impl FnOnce(&mut RecordedStep<'_>) -> Option<(Vec<Number>, Vec<Number>)>,
     ) -> Option<Self> {
         let (model, topology) = (one.model, &one.topology);
         let channels = Channel::all(topology);
+        let design = (design_map, any_design);
         // An offset below 1e-8 is corrected once; without an offset nothing is corrected.
-        let correction = recorded(one, design_map, OFFSET[0], |step, _| {
+        let correction = recorded(one, design, OFFSET[0], |step, _| {
             let state = &*step.state;
             let mut out: Vec<Number> = channels.iter().map(|c| c.of(state)[0]).collect();
             out.push(largest_of(state.corrections.iter().map(|(corrections, _)| corrections[0])));
             Some(out)
         })?;
-        let path = recorded(one, design_map, 0.0, |step, _| {
+        let path = recorded(one, design, 0.0, |step, _| {
             let rates = channels.iter().flat_map(|c| c.of(step.state).into_iter().skip(1));
             Some(rates.collect())
         })?;
-        let motion = recorded(one, design_map, 0.0, |step, parts| {
+        let motion = recorded(one, design, 0.0, |step, parts| {
             let bodies = BodyState::all(step.state);
             let state = &*step.state;
             let watched = || state.watched.iter();
@@ -122,7 +134,12 @@ impl DrivenStep {
             },
         });
         let drivers = one.saved.drivers.iter().zip(driver_units(model, topology));
+        let values = if any_design { model.whole(&[]) } else { Vec::new() };
+        let variable = |k: usize| DrivenVariable {
+            changes_law: !design_map.field(VariableId(k), &values).laws.is_empty(),
+        };
         Some(Self {
+            design: (0..values.len()).map(variable).collect(),
             coordinates: coordinates.collect(),
             drivers: drivers.map(|([start, ..], unit)| DrivenCoordinate { start: *start, unit }).collect(),
             correction,
@@ -134,11 +151,11 @@ impl DrivenStep {
     }
 }
 
-/// Records a step of the nominal design from a position at `offset` from the accepted one, and returns the program of
-/// these outputs.
+/// Records a step of the nominal design, or of any, from a position at `offset` from the accepted one, and returns the
+/// program of these outputs.
 fn recorded(
     one: &Mechanism<'_>,
-    design_map: &DesignMap<'_>,
+    (design_map, any_design): (&DesignMap<'_>, bool),
     offset: f64,
     outputs: impl FnOnce(&mut RecordedStep<'_>, &PlanGeometry<Number>) -> Option<Vec<Number>>,
 ) -> Option<Program> {
@@ -157,7 +174,8 @@ fn recorded(
             channel.put(Number::input(beside), &mut state);
         }
         let drivers: Vec<[Number; ORDERS]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
-        let values: Vec<Number> = model.whole(&[]).into_iter().map(Number::constant).collect();
+        let number = if any_design { Number::input } else { Number::constant };
+        let values: Vec<Number> = model.whole(&[]).into_iter().map(number).collect();
         let geometry = recording::strictly(|| design_map.geometry(&values));
         let parts = PlanGeometry::of(model, topology, &geometry);
         if state.solve(topology, &parts, &drivers, f64::INFINITY).is_err() {

@@ -35,7 +35,7 @@ pub(crate) mod tube;
 pub(crate) mod turns;
 mod walk;
 
-pub use driven_step::{DrivenCoordinate, DrivenStep, MotionCheck};
+pub use driven_step::{DrivenCoordinate, DrivenStep, DrivenVariable, MotionCheck};
 pub use execution::{Execution, StepMethod};
 pub use gap::{Assembly, AssemblyShift, Closing, Gap};
 pub use jerk::BodyJerk;

@@ -417,13 +417,13 @@ impl<'m> Analysis<'m> {
         })
     }
 
-    /// Returns the step of the nominal design as straight-line programs of its drivers, recorded at the first output
-    /// time.
+    /// Returns the step as straight-line programs of its drivers, recorded at the first output time of the nominal
+    /// design. If `any_design` is true, the design variables are inputs of the programs.
     ///
     /// # Errors
     ///
     /// The reason why the step cannot be recorded.
-    pub fn driven_step(&self) -> Result<DrivenStep, String> {
+    pub fn driven_step(&self, any_design: bool) -> Result<DrivenStep, String> {
         if self.equilibrium.is_some() {
             return Err(AT_EQUILIBRIUM.to_owned());
         }
@@ -439,7 +439,7 @@ impl<'m> Analysis<'m> {
         let slopes: Vec<usize> = slopes.collect();
         let record = |measures: Vec<usize>| {
             let is_asked = !measures.is_empty();
-            DrivenStep::record(&one.mechanism, &self.design_map, measures, |step| {
+            DrivenStep::record(&one.mechanism, (&self.design_map, any_design), measures, |step| {
                 if !is_asked {
                     return Some(Default::default());
                 }
@@ -452,10 +452,10 @@ impl<'m> Analysis<'m> {
         step.ok_or_else(|| "a decision of the step depends on its position".to_owned())
     }
 
-    /// Returns the measures of the nominal design as a straight-line program of the motion of its bodies; `None` if
-    /// they cannot be recorded.
-    pub fn measure_formulas(&self) -> Option<MeasureFormulas> {
-        MeasureFormulas::record(&self.design_map)
+    /// Returns the measures as a straight-line program of the motion of the bodies; `None` if they cannot be recorded.
+    /// If `any_design` is true, the design variables are inputs of the program.
+    pub fn measure_formulas(&self, any_design: bool) -> Option<MeasureFormulas> {
+        MeasureFormulas::record(&self.design_map, any_design)
     }
 
     /// The nominal design where its motion begins.
