@@ -73,6 +73,8 @@ pub enum Command {
     Clearance(Clearance),
     /// Compute the space that a shape sweeps over the motion, as a closed surface (STL)
     Envelope(Envelope),
+    /// Tabulate measures over one to three drivers, with a proved error of the interpolation
+    Map(Map),
     /// Export a model to a file of another program, and list its unsupported features
     Export(Export),
     /// Import a mechanism of another program as a model file, and check it
@@ -427,6 +429,51 @@ pub struct Envelope {
     /// The file to write [default: SHAPE_envelope.stl]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+}
+
+const AFTER_MAP: &str = "\
+The table has the values at the knots of a grid of the drivers, and for cubic Hermite
+interpolation the mixed first derivatives. The knots are chosen so that the error of
+the interpolation is below the permitted one everywhere in the ranges, which is proved
+in interval arithmetic, not sampled. Other drivers remain in the design configuration.
+
+The file's ending selects the format: .csv, .json (with units and errors), or .txt for
+CombiTable1Ds and CombiTable2Ds of Modelica, in SI and for linear interpolation.
+
+Examples:
+  hardpoint map models/double_wishbone.toml --over travel=-60..60 --of toe --error 0.001deg -o toe.csv
+  hardpoint map models/slider_crank.toml --over motor=0..90deg --of stroke --error 1e-6m -o stroke.txt";
+
+/// `hardpoint map`.
+#[derive(Args, Debug)]
+#[command(after_help = AFTER_MAP)]
+pub struct Map {
+    #[command(flatten)]
+    pub common: Common,
+    /// Range of a driver, such as `bump=-80..80` or `bump=-3in..3in`; one to three drivers
+    #[arg(long, value_name = "DRIVER=FROM..TO", allow_hyphen_values = true, required = true)]
+    pub over: Vec<String>,
+    /// Measures, and coordinates of points such as `wheel_centre.z` [default: all measures of positions]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub of: Vec<String>,
+    /// Permitted error: of all outputs with this unit, or of one, such as `toe=0.001deg`; may be repeated
+    #[arg(long, value_name = "[NAME=]ERROR", value_delimiter = ',', required = true)]
+    pub error: Vec<String>,
+    /// Interpolation of the table [default: hermite; for Modelica linear]
+    #[arg(long, value_enum)]
+    pub interpolation: Option<Interpolation>,
+    /// The file to write: .csv, .json or .txt (Modelica)
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+}
+
+/// Interpolation of a table.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Cubic, from values and derivatives
+    Hermite,
+    /// Linear between values
+    Linear,
 }
 
 const AFTER_VERIFY: &str = "\

@@ -11,6 +11,7 @@ mod export;
 mod folder;
 mod import;
 mod journal;
+mod map;
 mod maps;
 mod meter;
 mod new;
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
         Command::Check(options) => check::check(&options),
         Command::Clearance(options) => clearance::run(&options),
         Command::Envelope(options) => envelope::run(&options),
+        Command::Map(options) => map::run(&options),
         Command::Export(options) => export::export(&options),
         Command::Import(options) => import::import(&options),
         Command::Verify(options) => verify::verify(&options),

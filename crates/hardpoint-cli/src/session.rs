@@ -554,6 +554,11 @@ impl Session {
         Outcome::Misunderstood
     }
 
+    /// Reports that a map over drivers has no proved error.
+    pub fn not_mapped(&self, file: &ModelFile, why: &str, help: &str) {
+        self.refuse("HP0606", &format!("`{}`: {why}", file.file_name()), None, "nothing was written", help);
+    }
+
     /// Reports a failure of the server.
     pub fn not_served(&self, what: &str, why: &str, help: &str) -> Outcome {
         self.refuse("HP0604", what, None, why, help);

@@ -215,7 +215,7 @@ fn setting(file: &mut ModelFile, text: &str) -> Result<(usize, f64), String> {
 }
 
 /// Parses a change and converts it to SI: `2`, `2.5mm`, `2,5 mm`, `1/2 in`, `-1 1/2 IN`, `0.5 °`.
-fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String> {
+pub fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String> {
     let (value, written) = amount(text).ok_or_else(|| format!("`{text}` is not a number with a unit"))?;
     if !value.is_finite() {
         return Err(format!("`{text}` is not finite"));
@@ -235,7 +235,7 @@ fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String> {
 }
 
 /// Number and unit of a text, by the rules of the page's fields. The unit may be empty.
-fn amount(text: &str) -> Option<(f64, &str)> {
+pub fn amount(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let (negative, rest) = match text.strip_prefix(['-', '−']) {
         Some(rest) => (true, rest),

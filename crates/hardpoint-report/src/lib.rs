@@ -38,6 +38,7 @@ pub mod facts;
 pub mod gallery;
 pub mod joint_limits;
 pub mod loads;
+pub mod map_table;
 pub mod maps;
 pub mod margin;
 pub mod metric;

@@ -6,6 +6,7 @@
 //! - [`calibrate`]: fits a design to measurements, and states what the data determine.
 //! - [`sweep`]: metrics of designs drawn at random or on a grid, with sensitivity indices.
 //! - [`grid`]: outputs and clearances over a grid of driver positions.
+//! - [`map`]: tables of outputs over one to three drivers, whose interpolation has a proved error.
 //! - [`envelope`]: the space that a shape sweeps, as a closed surface.
 //! - [`synthesis`]: four-bars and slider-cranks from poses of a body, or from points of a path.
 //! - [`verify`]: exact sensitivities against differences of re-solved designs.
@@ -80,6 +81,7 @@ pub mod calibrate;
 pub mod difference;
 pub mod envelope;
 pub mod grid;
+pub mod map;
 pub mod optimize;
 pub mod request;
 pub mod sweep;

@@ -11,6 +11,7 @@ mod change_point;
 mod crossing;
 pub(crate) mod design_batch;
 mod driven_step;
+pub(crate) mod driver_box;
 pub(crate) mod execution;
 mod gap;
 mod guard;
@@ -36,6 +37,7 @@ pub(crate) mod turns;
 mod walk;
 
 pub use driven_step::{DrivenCoordinate, DrivenStep, DrivenVariable, MotionCheck};
+pub use driver_box::BoxFailure;
 pub use execution::{Execution, StepMethod};
 pub use gap::{Assembly, AssemblyShift, Closing, Gap};
 pub use jerk::BodyJerk;

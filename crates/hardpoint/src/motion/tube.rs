@@ -45,16 +45,16 @@ use super::parts::PlanGeometry;
 use super::path::Path;
 
 /// Number of boxes that are tried before an interval of time is considered too long.
-const MOST_BOXES: usize = 8;
+pub(super) const MOST_BOXES: usize = 8;
 /// Factor by which a box is larger than its prediction or the last image, so that the next image is inside of it.
-const SLACK: f64 = 1.1;
+pub(super) const SLACK: f64 = 1.1;
 /// Size that a box has at least, in units of its coordinate: far above the error of a solved position, which is
 /// round-off, and far below any motion of interest.
-const LEAST_BOX: f64 = 1e-11;
+pub(super) const LEAST_BOX: f64 = 1e-11;
 /// Size of a box, rad or sizes, above which the equations of a position are not nearly linear in it.
-const LARGEST_BOX: f64 = 1.0;
+pub(super) const LARGEST_BOX: f64 = 1.0;
 /// Largest `|I - Y J(X)|` for which bounds of rates are useful.
-const CONTRACTION: f64 = 0.9;
+pub(super) const CONTRACTION: f64 = 0.9;
 /// Number of times that an interval is halved, and the bounds of its parts are joined, where it is too long for one
 /// box: eight parts have the cost of eight intervals, but their bounds serve as those of one.
 const MOST_HALVINGS: usize = 3;
@@ -147,9 +147,9 @@ pub(crate) struct TubeSolver {
 }
 
 /// Preconditioned equations of a block over a box.
-struct Contraction {
+pub(super) struct Contraction {
     /// Y, row by row.
-    inverse: Vec<f64>,
+    pub inverse: Vec<f64>,
     /// I - Y J(X), row by row.
     rest: Vec<Interval>,
     n: usize,
@@ -157,7 +157,7 @@ struct Contraction {
 
 impl Contraction {
     /// `Y b`.
-    fn precondition(&self, b: &[Interval]) -> Vec<Interval> {
+    pub fn precondition(&self, b: &[Interval]) -> Vec<Interval> {
         self.inverse
             .chunks_exact(self.n)
             .map(|y| product(y.iter().map(|y| Interval::constant(*y)), b))
@@ -165,12 +165,12 @@ impl Contraction {
     }
 
     /// `(I - Y J) x`.
-    fn remainder(&self, x: &[Interval]) -> Vec<Interval> {
+    pub fn remainder(&self, x: &[Interval]) -> Vec<Interval> {
         self.rest.chunks_exact(self.n).map(|row| product(row.iter().copied(), x)).collect()
     }
 
     /// `|I - Y J|`, in the norm of the largest row sum.
-    fn norm(&self) -> f64 {
+    pub fn norm(&self) -> f64 {
         let sum = |row: &[Interval]| {
             row.iter().fold(Interval::zero(), |sum, x| sum + Interval::constant(x.magnitude())).high
         };
@@ -178,7 +178,7 @@ impl Contraction {
     }
 
     /// Bounds of x with `J x = b`, within those that are known.
-    fn solve(&self, b: &[Interval], known: &[Interval]) -> Vec<Interval> {
+    pub fn solve(&self, b: &[Interval], known: &[Interval]) -> Vec<Interval> {
         let y = self.precondition(b);
         let k = Interval::constant(self.norm());
         let size = Interval::constant(y.iter().map(|y| y.magnitude()).fold(0.0, f64::max));
@@ -463,7 +463,7 @@ impl TubeSolver {
 }
 
 impl Contraction {
-    fn of(inverse: Vec<f64>, jacobian: &[Interval], n: usize) -> Self {
+    pub fn of(inverse: Vec<f64>, jacobian: &[Interval], n: usize) -> Self {
         let mut rest = vec![Interval::zero(); n * n];
         for row in 0..n {
             for column in 0..n {
@@ -479,7 +479,7 @@ impl Contraction {
 }
 
 /// Inverse of the middle of a matrix, nearly; `None` if it is singular or unbounded.
-fn inverse_of(matrix: &[Interval], n: usize) -> Option<Vec<f64>> {
+pub(super) fn inverse_of(matrix: &[Interval], n: usize) -> Option<Vec<f64>> {
     let mut factors = Factors::<f64>::new(n, |_| (0..n).collect(), LARGEST_DENSE);
     for row in 0..n {
         let entries = (0..n).map(|column| (column, matrix[row * n + column].middle()));
@@ -499,7 +499,7 @@ fn inverse_of(matrix: &[Interval], n: usize) -> Option<Vec<f64>> {
 }
 
 /// Sets the unknowns of a block.
-fn set<T: Real>(
+pub(super) fn set<T: Real>(
     state: &mut State<T>,
     topology: &Topology,
     b: BlockId,
@@ -519,7 +519,7 @@ fn set<T: Real>(
 }
 
 /// Residuals of the selected rows of a block at the coordinates of the state.
-fn rows<T: Real>(
+pub(super) fn rows<T: Real>(
     state: &mut State<T>,
     topology: &Topology,
     parts: &PlanGeometry<T>,
@@ -541,23 +541,28 @@ fn narrowed_vector(
     Vec3::new(x.x.narrowed(narrow.x, since), x.y.narrowed(narrow.y, since), x.z.narrowed(narrow.z, since))
 }
 
-/// True if the unknowns of a narrow enclosure are in the box in which those of another one are unique.
-fn is_within(topology: &Topology, narrow: &Enclosure, other: &Enclosure) -> bool {
+/// True if the unknowns of a narrow enclosure are in the box in which those of another one are unique. Both are given
+/// by the rotations from which the coordinates of balls count, and by their bounds.
+pub(super) fn is_within(
+    topology: &Topology,
+    (from, narrow): (&[Quat], impl Fn(usize) -> Interval),
+    (centres, unique): (&[Quat], &[Interval]),
+) -> bool {
     topology.links.iter().flat_map(|link| &link.steps).all(|step| {
         let k = step.first.0;
         if step.is_driven {
             return true;
         }
         if step.freedom != Freedom::Ball {
-            return other.unique[k].encloses(narrow.coordinates[k].value());
+            return unique[k].encloses(narrow(k));
         }
         // The same rotation, counted from the centre of the other enclosure: (1, d/2) of it up to a factor.
-        let by = Vec3::new(0, 1, 2).map(|n| narrow.coordinates[k + n].value());
-        let rotation: Quat<Interval> = narrow.centres[k].spread().nudged(by);
-        let centre: Quat<Interval> = other.centres[k].spread();
+        let by = Vec3::new(0, 1, 2).map(|n| narrow(k + n));
+        let rotation: Quat<Interval> = from[k].spread().nudged(by);
+        let centre: Quat<Interval> = centres[k].spread();
         let w = rotation.w * centre.w + rotation.v.dot(centre.v);
         let v = centre.v * -rotation.w + rotation.v * centre.w - rotation.v.cross(centre.v);
-        (0..3).all(|n| other.unique[k + n].encloses(v[n] / w * 2.0))
+        (0..3).all(|n| unique[k + n].encloses(v[n] / w * 2.0))
     })
 }
 
@@ -756,7 +761,9 @@ impl<'m> ProvenMotion<'m> {
         let topology = &self.plans[plan];
         let enclosure = self.solver.enclose(topology, law, over, &middle.at, Some(&middle.enclosure))?;
         for (instant, time) in [(&start, from), (&end, to)] {
-            if !is_within(topology, &instant.enclosure, &enclosure) {
+            let narrow = &instant.enclosure;
+            let at = (&narrow.centres[..], |k: usize| narrow.coordinates[k].value());
+            if !is_within(topology, at, (&enclosure.centres, &enclosure.unique)) {
                 return Err(TubeFailure::OtherBranch { time });
             }
         }

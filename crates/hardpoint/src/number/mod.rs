@@ -5,6 +5,7 @@
 //! | `f64` | the value only |
 //! | [`Dual`] | the derivative with respect to one variable; nested: second derivatives |
 //! | [`Jet`] | up to three time derivatives |
+//! | [`Taylor`] | mixed partial derivatives by up to three variables |
 //! | [`Interval`] | bounds: all numbers that the value may be |
 //! | [`hardpoint_tape::Number`] | its recorded arithmetic: kernels are recorded with it |
 //!
@@ -18,9 +19,11 @@ mod interval;
 mod jet;
 mod real;
 pub(crate) mod record;
+mod taylor;
 
 pub use dual::Dual;
 pub use function::Function;
 pub use interval::Interval;
 pub use jet::{Jet, Rates};
 pub use real::Real;
+pub use taylor::{Exponents, Taylor};

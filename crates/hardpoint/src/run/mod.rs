@@ -7,6 +7,7 @@ mod between;
 mod clearance;
 mod curve;
 mod designs;
+mod driver_map;
 mod driver_rates;
 mod gradient;
 mod jerk;
@@ -29,6 +30,7 @@ pub use clearance::{
     ClearanceMinimum, Clearances, Contact, MinimumPlace, PairClearance, PairCurve, ShapeDistance,
     ShapeOnBodies,
 };
+pub use driver_map::{BoundsOfOutputs, DriverMap, OutputBounds};
 pub use driver_rates::DriverRates;
 pub use gradient::{GradientMethod, Gradients};
 pub use jerk::Jerks;

@@ -1,0 +1,307 @@
+//! Tables over drivers with a proved error: sentences, and the files of `hardpoint map`.
+
+use std::io::{self, Write};
+
+use hardpoint::model::{Dimension, Model};
+use hardpoint::motion::BoxFailure;
+use hardpoint::number::Exponents;
+use hardpoint_file::Units;
+use hardpoint_study::map::{MapError, MapTable, Request, Unproved};
+use hardpoint_table::csv::CsvWriter;
+use serde::Serialize;
+
+use crate::figures::{count, per, rounded, unit};
+use crate::record::record;
+
+/// Digits of errors in sentences.
+const DIGITS: usize = 3;
+/// Digits of drivers' values in sentences.
+const PLACE_DIGITS: usize = 6;
+
+/// Driver of a table.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapAxisFact {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// Knots, ascending, in the coordinate of its laws.
+    pub knots: Vec<f64>,
+}
+
+/// Numbers of one derivative at all positions.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapNumbers {
+    /// Names of the drivers by which it is derived; none for the value.
+    pub by: Vec<String>,
+    /// Unit.
+    pub unit: String,
+    /// Numbers, position by position; the last driver varies fastest.
+    pub values: Vec<f64>,
+}
+
+/// Output of a table.
+#[derive(Clone, Debug, Serialize)]
+pub struct MapColumnFact {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// Permitted error of the interpolation.
+    pub permitted_error: f64,
+    /// Proved bound of the error of the interpolation, everywhere in the ranges.
+    pub proved_error: f64,
+    /// The value, and for cubic Hermite interpolation the mixed first derivatives.
+    pub numbers: Vec<MapNumbers>,
+}
+
+record! {
+    /// A table over drivers, in the units of a model file or in SI.
+    pub MapTableFact::of(model: &Model, units: Units, request: &Request, table: &MapTable) {
+        let quantity = |n: usize| model.driven(&model.drivers[table.drivers[n].0]).quantity;
+        let by = |order: &Exponents| (0..table.drivers.len()).filter(|n| order[*n] == 1).collect::<Vec<usize>>();
+        let driver_name = |n: usize| model.drivers[table.drivers[n].0].name.clone();
+        let numbers = |column: usize, o: usize, order: &Exponents, dimension: Dimension| {
+            let count = table.orders().len();
+            let by = by(order);
+            // d^2 f / dx dy in units of f per unit of x per unit of y
+            let factor = by.iter().fold(units.per_si(dimension), |factor, n| factor / units.per_si(quantity(*n)));
+            MapNumbers {
+                by: by.iter().map(|n| driver_name(*n)).collect(),
+                unit: by.iter().fold(unit(units, dimension), |of, n| per(&of, &unit(units, quantity(*n)))),
+                values: table.columns[column].numbers.iter().skip(o).step_by(count).map(|x| x * factor).collect(),
+            }
+        };
+    }
+    /// Name of the model.
+    model: String = model.name.clone();
+    /// Interpolation for which the error is proved: `hermite` or `linear`.
+    interpolation: &'static str = table.interpolation.name();
+    /// True: the errors are proved in interval arithmetic, not sampled.
+    proved: bool = true;
+    /// Number of positions.
+    positions: usize = table.positions();
+    /// Number of cells between the positions.
+    cells: usize = table.cells();
+    /// Number of boxes of the drivers' ranges of which bounds were computed.
+    boxes: usize = table.boxes;
+    /// Drivers.
+    drivers: Vec<MapAxisFact> = table.knots.iter().enumerate().map(|(n, knots)| MapAxisFact {
+        name: driver_name(n),
+        unit: unit(units, quantity(n)),
+        knots: knots.iter().map(|x| units.from_si(quantity(n), *x)).collect(),
+    }).collect();
+    /// Outputs.
+    outputs: Vec<MapColumnFact> = request.outputs.iter().zip(&table.columns).enumerate().map(|(c, (asked, column))| {
+        let dimension = asked.dimension;
+        let orders = table.orders();
+        MapColumnFact {
+            name: asked.name.clone(),
+            unit: unit(units, dimension),
+            permitted_error: units.from_si(dimension, asked.error),
+            // A bound is rounded upwards.
+            proved_error: units.from_si(dimension, column.proved).next_up(),
+            numbers: orders.iter().enumerate().map(|(o, order)| numbers(c, o, order, dimension)).collect(),
+        }
+    }).collect();
+}
+
+impl MapTableFact {
+    /// The result in sentences.
+    pub fn sentences(&self) -> Vec<String> {
+        let axis = |axis: &MapAxisFact| {
+            let MapAxisFact { name, unit, knots } = axis;
+            let [from, to] =
+                [knots.first(), knots.last()].map(|x| rounded(x.copied().unwrap_or(f64::NAN), PLACE_DIGITS));
+            format!("  {name} from {from} to {to} {unit}: {}", count(knots.len(), "knot"))
+        };
+        let mut lines = vec![format!(
+            "{} in {}, {} interpolation",
+            count(self.positions, "position"),
+            count(self.cells, "cell"),
+            self.interpolation
+        )];
+        lines.extend(self.drivers.iter().map(axis));
+        lines.extend(self.outputs.iter().map(|output| {
+            let error = |x: f64| rounded(x, DIGITS);
+            format!(
+                "  {}: error at most {} {} everywhere, proved ({} permitted)",
+                output.name,
+                error(output.proved_error),
+                output.unit,
+                error(output.permitted_error)
+            )
+        }));
+        lines
+    }
+
+    /// Knots of position k.
+    fn place(&self, position: usize) -> Vec<f64> {
+        let mut rest = position;
+        let mut place: Vec<f64> = self
+            .drivers
+            .iter()
+            .rev()
+            .map(|axis| {
+                let x = axis.knots[rest % axis.knots.len()];
+                rest /= axis.knots.len();
+                x
+            })
+            .collect();
+        place.reverse();
+        place
+    }
+
+    /// Writes a row for each position: the drivers, then each output with its derivatives.
+    ///
+    /// # Errors
+    /// Fails if it cannot be written.
+    pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
+        let mut csv = CsvWriter::new(out);
+        let drivers = self.drivers.iter().map(|axis| format!("{} [{}]", axis.name, axis.unit));
+        let name = |output: &MapColumnFact, numbers: &MapNumbers| {
+            let by: String = numbers.by.iter().map(|by| format!(" by {by}")).collect();
+            format!("{}{by} [{}]", output.name, numbers.unit)
+        };
+        let outputs = self.outputs.iter().flat_map(|o| o.numbers.iter().map(move |n| name(o, n)));
+        csv.row(drivers.chain(outputs))?;
+        for position in 0..self.positions {
+            let of = self.outputs.iter().flat_map(|o| o.numbers.iter().map(|n| n.values[position]));
+            csv.numbers(self.place(position).into_iter().chain(of))?;
+            csv.end_row()?;
+        }
+        csv.end().map(|_| ())
+    }
+
+    /// Writes tables for `CombiTable1Ds` or `CombiTable2Ds` of the Modelica Standard Library, in these units: one table
+    /// `map` with a column for each output over one driver, or a table for each output over two.
+    ///
+    /// # Errors
+    /// Fails if it cannot be written.
+    pub fn write_modelica(&self, mut out: impl Write) -> io::Result<()> {
+        writeln!(out, "#1")?;
+        writeln!(
+            out,
+            "# {} over {}",
+            self.model,
+            self.drivers.iter().map(|a| a.name.as_str()).collect::<Vec<_>>().join(", ")
+        )?;
+        writeln!(out, "# smoothness = LinearSegments; extrapolation = NoExtrapolation")?;
+        for axis in &self.drivers {
+            writeln!(out, "# {} in {}", axis.name, axis.unit)?;
+        }
+        for output in &self.outputs {
+            writeln!(
+                out,
+                "# {} in {}, error at most {:e} (proved)",
+                output.name, output.unit, output.proved_error
+            )?;
+        }
+        let row = |out: &mut dyn Write, numbers: &mut dyn Iterator<Item = f64>| {
+            let texts: Vec<String> = numbers.map(|x| format!("{x:?}")).collect();
+            writeln!(out, "{}", texts.join(" "))
+        };
+        match &self.drivers[..] {
+            [u] => {
+                writeln!(out, "double map({},{})", u.knots.len(), 1 + self.outputs.len())?;
+                for (k, u) in u.knots.iter().enumerate() {
+                    row(
+                        &mut out,
+                        &mut [*u].into_iter().chain(self.outputs.iter().map(|o| o.numbers[0].values[k])),
+                    )?;
+                }
+            }
+            [u, v, ..] => {
+                for output in &self.outputs {
+                    writeln!(out, "double {}({},{})", output.name, 1 + u.knots.len(), 1 + v.knots.len())?;
+                    row(&mut out, &mut [0.0].into_iter().chain(v.knots.iter().copied()))?;
+                    for (i, u) in u.knots.iter().enumerate() {
+                        let values = &output.numbers[0].values[i * v.knots.len()..(i + 1) * v.knots.len()];
+                        row(&mut out, &mut [*u].into_iter().chain(values.iter().copied()))?;
+                    }
+                }
+            }
+            [] => {}
+        }
+        Ok(())
+    }
+}
+
+/// Description of the reason why there is no table, and an instruction; `None` if the mechanism cannot be driven, or the
+/// caller ended the study.
+pub fn reason(model: &Model, units: Units, request: &Request, error: &MapError) -> Option<(String, String)> {
+    let quantity = |n: usize| model.driven(&model.drivers[request.axes[n].driver.0]).quantity;
+    let name = |n: usize| &model.drivers[request.axes[n].driver.0].name;
+    let value = |n: usize, x: f64| {
+        format!("{} {}", rounded(units.from_si(quantity(n), x), PLACE_DIGITS), unit(units, quantity(n)))
+    };
+    let place = |x: &[f64]| {
+        let all: Vec<String> =
+            x.iter().enumerate().map(|(n, x)| format!("{} = {}", name(n), value(n, *x))).collect();
+        all.join(", ")
+    };
+    let smaller = "give smaller ranges with `--over`";
+    Some(match error {
+        MapError::Topology(_) | MapError::Interrupted => return None,
+        MapError::Equilibrium => (
+            "elastic joints open as the forces require, not by the drivers alone".to_owned(),
+            "remove `[equilibrium]` for a map of the rigid mechanism".to_owned(),
+        ),
+        MapError::Start(stop) => (
+            format!("the design configuration is not solved: {}", stop.happened(model)),
+            "`hardpoint check` shows the reason".to_owned(),
+        ),
+        MapError::NotReached { drivers, last, stop } => (
+            format!("{} is not reached: {} at {}", place(drivers), stop.happened(model), place(last)),
+            format!("{smaller} that end before"),
+        ),
+        MapError::NotProved { part, reason } => {
+            let ends = |(n, [from, to]): (usize, &[f64; 2])| {
+                format!("{} from {} to {}", name(n), value(n, *from), value(n, *to))
+            };
+            let part: Vec<String> = part.iter().enumerate().map(ends).collect();
+            let why = match reason {
+                Unproved::Output(k) => {
+                    format!(
+                        "`{}` is undefined, jumps by a turn or has a kink there",
+                        request.outputs[*k].name
+                    )
+                }
+                Unproved::Motion(failure) => motion(model, failure),
+            };
+            (format!("no error is proved for {}: {why}", part.join(", ")), smaller.to_owned())
+        }
+        MapError::TooLarge { positions, proved } => {
+            let errors: Vec<String> = request
+                .outputs
+                .iter()
+                .zip(proved)
+                .map(|(output, proved)| {
+                    let in_units = rounded(units.from_si(output.dimension, *proved), DIGITS);
+                    format!("{} {in_units} {}", output.name, unit(units, output.dimension))
+                })
+                .collect();
+            (
+                format!(
+                    "the table would have more than {positions} positions, where the errors are {}",
+                    errors.join(", ")
+                ),
+                "permit greater errors, give smaller ranges, or interpolate with `--interpolation hermite`"
+                    .to_owned(),
+            )
+        }
+    })
+}
+
+fn motion(model: &Model, failure: &BoxFailure) -> String {
+    match failure {
+        BoxFailure::FollowsCurve { joint } => {
+            let name = model.joints.get(joint.0).map_or("", |j| j.name.as_str());
+            format!("joint `{name}` follows a curve, of which there are no bounds")
+        }
+        BoxFailure::TooLarge { .. } => "a loop has too many unknowns".into(),
+        BoxFailure::NoContraction { .. } => "a singular position is near".into(),
+        BoxFailure::NotReached(stop) => stop.happened(model),
+        BoxFailure::OtherBranch => "another position of the mechanism is near".into(),
+    }
+}
