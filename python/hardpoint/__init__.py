@@ -24,22 +24,39 @@ from .errors import (
 )
 from .function import Function
 from .model import Model, Output, Variable, build, parse, read
-from .run import Body, Metric, Run
-from .studies import Study, SweepResult
+from .plots import plot
+from .positions import Positions
+from .run import Body, DriverLoad, Metric, Reaction, Run
+from .stored import load as load_run
+from .studies import Map, Study, SweepResult
+from .tools import (
+    compare,
+    export_formats,
+    import_formats,
+    import_model,
+    new,
+    schema,
+    synthesize,
+    templates,
+)
 
 __all__ = [
     "Body",
     "CannotFollow",
     "Designs",
+    "DriverLoad",
     "Diagnostic",
     "Function",
     "HardpointError",
     "HardpointWarning",
+    "Map",
     "Metric",
     "Model",
     "ModelError",
     "MotionStopped",
     "Output",
+    "Positions",
+    "Reaction",
     "Run",
     "Study",
     "StudyError",
@@ -49,6 +66,16 @@ __all__ = [
     "Variable",
     "__version__",
     "build",
+    "compare",
+    "export_formats",
+    "import_formats",
+    "import_model",
+    "load_run",
+    "new",
     "parse",
+    "plot",
     "read",
+    "schema",
+    "synthesize",
+    "templates",
 ]

@@ -93,7 +93,7 @@ def run(shown: Run) -> str:
 
 def study(shown: Study) -> str:
     """Formats the tables of a study."""
-    parts = [f"<b>{escape(shown.message or shown.model.name)}</b>"]
+    parts = [f"<b>{escape(shown.message or shown._title)}</b>"]
     for one in shown.tables:
         rows = [[cell.get("text", cell) if isinstance(cell, dict) else cell for cell in row] for row in one.get("rows", [])]
         head = [cell.get("text", cell) if isinstance(cell, dict) else cell for cell in one.get("head", one.get("header", []))]

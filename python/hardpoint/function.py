@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from .arguments import checked, count
 from .errors import CannotFollow, StudyError, UsageError, unknown
 from .model import Model
 
@@ -29,6 +31,7 @@ class Part:
     """Indices of its values in those of the function."""
 
 
+@checked
 class Function:
     """Metrics and curves of a mechanism, one after the other, as a function of the values of some design variables.
 
@@ -40,11 +43,30 @@ class Function:
     same design are solved once.
 
     Raises `MotionStopped` where a design does not move to its end, `CannotFollow` by a variable that the mechanism cannot follow,
-    `StudyError` where a metric has no number.
+    `StudyError` where a metric has no number. With `stopped`, a number such as `math.nan` or `math.inf`, the values of such designs are
+    that number instead, and their derivatives are NaN.
+
+    `many(designs)` solves a row for each design on all cores, and `value` of several designs suits methods that ask for populations:
+
+        >>> f = hardpoint.Function(model, of="toe_error", stopped=math.inf)
+        >>> scipy.optimize.differential_evolution(f.value, bounds=list(zip(*f.bounds)), vectorized=True)
     """
 
-    def __init__(self, model: Model, variables: Iterable[str] | None = None, of: str | Iterable[str] | None = None):
+    def __init__(
+        self,
+        model: Model,
+        variables: Iterable[str] | None = None,
+        of: str | Iterable[str] | None = None,
+        *,
+        stopped: float | None = None,
+        workers: int | None = None,
+    ):
         self.model = model
+        if stopped is not None and (isinstance(stopped, (bool, str)) or not np.isscalar(stopped)):
+            raise UsageError.saying(f"`stopped` is a number for designs that do not move to their end, such as `math.nan`, not {stopped!r}")
+        self.stopped: float | None = None if stopped is None else float(stopped)
+        """Value of designs that do not move to their end; `None` if they raise an exception."""
+        self._workers = count("workers", workers)
         chosen = [v.name for v in model.variables.values() if v.bounds] if variables is None else list(variables)
         if not chosen:
             raise UsageError.saying("the model has no design variables with bounds; name the variables")
@@ -115,13 +137,29 @@ class Function:
         """Derivatives of all outputs, `[size, variable]`."""
         return self._solved(x, True)[1].copy()
 
-    def value(self, x) -> float:
-        """Value of a scalar function."""
+    def value(self, x) -> Any:
+        """Value of a scalar function; of several designs, one per column as SciPy passes them, an array of values."""
+        if np.ndim(x) == 2:
+            return self._one(self.many(np.transpose(x)).T)[0]
         return float(self._one(self(x))[0])
 
     def gradient(self, x) -> np.ndarray:
         """Gradient of a scalar function."""
         return self._one(self.jacobian(x))[0]
+
+    def many(self, designs) -> np.ndarray:
+        """Values for many designs, one per row, solved on all cores: `[design, size]`."""
+        return self._batch(designs, False)[0]
+
+    def many_jacobians(self, designs) -> np.ndarray:
+        """Derivatives for many designs, one per row: `[design, size, variable]`."""
+        found = self._batch(designs, True)[1]
+        assert found is not None
+        return found
+
+    def __repr__(self) -> str:
+        parts = ", ".join(part.name for part in self.parts[:4]) + (", ..." if len(self.parts) > 4 else "")
+        return f"<hardpoint.Function of {self.model.name!r}: {parts} ({self.size} outputs) of {len(self.variables)} variables>"
 
     def _one(self, found: np.ndarray) -> np.ndarray:
         if self.size != 1:
@@ -137,46 +175,63 @@ class Function:
 
     def _solved(self, x, derivatives: bool) -> tuple[np.ndarray, np.ndarray | None]:
         x = np.ascontiguousarray(x, dtype=float).ravel()
-        if x.shape != (len(self.variables),) or not np.isfinite(x).all():
-            raise UsageError.saying(f"the function takes {len(self.variables)} finite numbers, one for each variable; given are {x.shape}")
         key = x.tobytes()
         if self._last and self._last[0] == key and (self._last[1] or not derivatives):
             return self._last[2], self._last[3]
-        values = np.empty(self.size)
-        jacobian = np.empty((self.size, len(self.variables))) if derivatives else None
-        design = np.full(len(self.model.variables), np.nan)
-        design[self._columns] = x
+        values, jacobians = self._batch(x[None], derivatives, 1)
+        self._last = (key, derivatives, values[0], None if jacobians is None else jacobians[0])
+        return self._last[2], self._last[3]
+
+    def _batch(self, designs, derivatives: bool, workers: int | None = None) -> tuple[np.ndarray, np.ndarray | None]:
+        rows = np.asarray(designs, dtype=float)
+        if rows.ndim != 2 or rows.shape[1] != len(self.variables) or not np.isfinite(rows).all():
+            given = rows.shape[1:] if len(rows) == 1 else rows.shape
+            raise UsageError.saying(
+                f"the function takes {len(self.variables)} finite numbers, one for each variable, or rows of them; given are {given}"
+            )
+        values = np.empty((len(rows), self.size))
+        jacobians = np.empty((len(rows), self.size, len(self.variables))) if derivatives else None
         for case in {part.case for part in self.parts}:
             parts = [part for part in self.parts if part.case == case]
             curves = [part for part in parts if not part.is_metric]
             found = self.model.designs(
-                design[None],
+                rows,
                 [part.of for part in curves],
+                variables=self.variables,
                 case=self._names[case],
                 sensitivities=derivatives,
                 metrics=any(part.is_metric for part in parts),
-                workers=1,
+                partial=self.stopped is not None,
+                workers=workers or self._workers,
             )
             for part in parts:
-                if part.is_metric:
-                    k = found.metric_names.index(part.of)
-                    values[part.place] = found.metrics[0, k]
-                    if derivatives:
-                        jacobian[part.place] = found.metric_sensitivities[0, k][self._columns]
-                else:
-                    k = curves.index(part)
-                    values[part.place] = found.values[0, k]
-                    if derivatives:
-                        jacobian[part.place] = found.sensitivities[0, k][self._columns].T
-                self._check(part, values, jacobian)
-        self._last = (key, derivatives, values, jacobian)
-        return values, jacobian
+                k = found.metric_names.index(part.of) if part.is_metric else curves.index(part)
+                values[:, part.place] = found.metrics[:, k, None] if part.is_metric else found.values[:, k]
+                if jacobians is not None:
+                    if part.is_metric:
+                        jacobians[:, part.place] = found.metric_sensitivities[:, k, None, :][..., self._columns]
+                    else:
+                        jacobians[:, part.place] = found.sensitivities[:, k][:, self._columns].transpose(0, 2, 1)
+            if found.stops:
+                assert self.stopped is not None
+                stops = list(found.stops)
+                for part in parts:
+                    values[stops, part.place] = self.stopped
+                    if jacobians is not None:
+                        jacobians[stops, part.place] = np.nan
+            moving = np.array([k for k in range(len(rows)) if k not in found.stops], dtype=int)
+            for part in parts:
+                self._check(part, values, jacobians, moving)
+        return values, jacobians
 
-    def _check(self, part: Part, values: np.ndarray, jacobian: np.ndarray | None) -> None:
-        if np.isnan(values[part.place]).any():
-            raise StudyError.saying(f"`{part.name}` is undefined in this design" + ("" if part.is_metric else " at some output times"))
-        if jacobian is None:
+    def _check(self, part: Part, values: np.ndarray, jacobians: np.ndarray | None, moving: np.ndarray) -> None:
+        undefined = np.isnan(values[moving, part.place]).any(axis=1)
+        if undefined.any():
+            if self.stopped is None:
+                raise StudyError.saying(f"`{part.name}` is undefined in this design" + ("" if part.is_metric else " at some output times"))
+            values[moving[undefined], part.place] = self.stopped
+        if jacobians is None:
             return
         for column, name in enumerate(self.variables):
-            if np.isnan(jacobian[part.place, column]).any():
+            if np.isnan(jacobians[moving[~undefined], part.place, column]).any():
                 raise CannotFollow.saying(f"there is no derivative of `{part.name}` by `{name}`: the variable is inadmissible")

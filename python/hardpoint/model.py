@@ -14,12 +14,14 @@ from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 
-from . import _native, display, files
+from . import _native, display, files, tools
+from .arguments import checked, count
 from .arrays import frozen
 from .designs import Designs
 from .errors import Diagnostic, HardpointWarning, MotionStopped, UsageError, unknown
+from .positions import Positions, Solver, names
 from .run import Run
-from .studies import Study, SweepResult, outcome
+from .studies import Map, Study, SweepResult, outcome
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -29,6 +31,8 @@ Design = Union[Mapping[str, float], "ArrayLike", None]
 Progress = Union[Callable[[int, int], Any], bool, None]
 """Receives the amount done and the total; `True` writes them to the standard error."""
 
+CHANGED = " (changed)"
+"""Ends the name of a file whose text was changed by `with_`."""
 MOST_RANKED = 200
 """Maximum number of hardpoints whose coordinates are variables of a what-if."""
 
@@ -65,18 +69,31 @@ class Output:
     """Their units."""
     by_position: bool
     """True if it depends on the position only; then it has second derivatives by the design."""
+    at_rest: bool
+    """True if it has a value in a position at rest: in `model.at()`."""
 
 
+@checked
 class Model:
     """A mechanism, read and checked, with its plan of solution.
 
     A model is immutable; all methods are thread-safe, and long ones release the interpreter lock. Models can be pickled. For a model
     with cases, select one: `model.case("bump").run()` or `model.run(case="bump")`; studies use all of them.
+
+    `hardpoint.read`, `hardpoint.parse`, `Model.new` and `Model.from_dict` make models, and `model.with_(...)` a changed one.
     """
 
-    def __init__(self, native: _native.Model, case: int | None = None, variables: tuple[bool, bool] = (False, False)):
+    def __init__(
+        self,
+        native: _native.Model,
+        case: int | None = None,
+        variables: tuple[bool, bool] = (False, False),
+        folder: str | None = None,
+    ):
         self._native = native
         self._case = case
+        self._folder = folder
+        self._solvers: dict[tuple, Solver] = {}
         self._added = variables
         info = self._info = json.loads(native.info())
         self.name: str = info["name"]
@@ -125,12 +142,12 @@ class Model:
 
     def case(self, name: str) -> Model:
         """Returns the model in one of its cases."""
-        return Model(self._native, self._named(name), self._added)
+        return Model(self._native, self._named(name), self._added, self._folder)
 
     def with_coordinates(self, tilts: bool = False) -> Model:
         """Returns the model with additional design variables: every coordinate of its hardpoints (`A.x`), and with `tilts` every tilt of
         its joint axes (`hinge.tilt_x`)."""
-        return Model(self._native.with_variables(True, tilts), self._case, (True, tilts or self._added[1]))
+        return Model(self._native.with_variables(True, tilts), self._case, (True, tilts or self._added[1]), self._folder)
 
     def __repr__(self) -> str:
         case = f", case {self.cases[self._case]!r}" if self._case is not None and self.cases else ""
@@ -143,15 +160,161 @@ class Model:
         named = tuple(sorted(self._native.files.items()))
         return _restored, (self.text, self.file, named, self._added, self._case)
 
+    # Contents of the file
+
+    @classmethod
+    def new(cls, name: str, *, folder: str | os.PathLike | None = None, **sections: Any) -> Model:
+        """Builds a model from nothing; the sections are those of the file (docs/file-format.md): `hardpoints`, `bodies`, `joints`, ...
+
+            >>> hardpoint.Model.new(
+            ...     "pendulum",
+            ...     units={"length": "mm", "angle": "deg"},
+            ...     hardpoints={"pivot": [0, 0, 500], "bob": [0, 0, 0]},
+            ...     bodies={"arm": {}},
+            ...     joints={"hinge": {"type": "revolute", "bodies": ["ground", "arm"], "at": "pivot", "axis": "y"}},
+            ...     drivers={"swing": {"joint": "hinge", "law": "30 * sin(t)"}},
+            ...     points={"bob": {"body": "arm", "at": "bob"}},
+            ...     time={"end": 6.0, "steps": 100},
+            ... )
+
+        `model.to_toml()` is the equivalent file; diagnostics refer to it.
+        """
+        return cls.from_dict({"name": name, **sections}, folder=folder)
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any], *, folder: str | os.PathLike | None = None) -> Model:
+        """Builds a model from the contents of a file, such as `model.to_dict()` of another model; files that it names are in `folder`."""
+        where = None if folder is None else os.fspath(folder)
+        name = f"{document.get('name', 'model')}.toml"
+        return _opened(_native.parse(written(document), name, folder=where, is_json=True), where)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Contents of the model file, with the names of the file; a copy."""
+        return json.loads(self._native.document())
+
+    def to_toml(self, design: Design = None) -> str:
+        """Text of the model file, with a design written into it; comments and layout are preserved."""
+        return self.text if design is None else self.edited(design)
+
+    def with_(self, changes: Mapping[str, Any] | None = None, /, **sections: Any) -> Model:
+        """Returns the model with other entries in its file.
+
+        The changes are nested mappings by the names of the file, which are merged into it; `None` removes an entry, anything that is
+        not a mapping replaces it. Comments and all other entries stay.
+
+            >>> stiffer = model.with_(hardpoints={"tie_rod_outer": [0, 680, 50]}, forces={"spring": {"stiffness": 32}})
+            >>> free = model.with_(joints={"tie_rod": None}, bodies={"tie_rod": None})
+            >>> faster = model.with_(cases={"bump": {"time": {"end": 0.5, "steps": 40}}})
+
+        Raises `ModelError` with all errors of the changed file. Changed design variables go with `run(design)` instead, which does not
+        read a file.
+        """
+        return self._changed({**(changes or {}), **sections})
+
+    def _changed(self, changes: Mapping[str, Any]) -> Model:
+        text = self._native.merged(written(changes))
+        name = self.file if self.file.endswith(CHANGED) else self.file + CHANGED
+        folder = self._folder if self._folder is not None and os.path.isdir(self._folder) else None
+        if folder is None:
+            native = _native.parse(text, name, files=dict(self._native.files))
+        else:
+            native = _native.parse(text, name, folder=folder)
+        whole = _opened(native, folder, 5)
+        if any(self._added):
+            whole = Model(whole._native.with_variables(*self._added), None, self._added, folder)
+        if self._case is None or not self.cases or self.cases[self._case] not in whole.cases:
+            return whole
+        return whole.case(self.cases[self._case])
+
+    def _moved(self, index: int, times: Any, laws: Mapping[str, Any] | None) -> tuple[Model, int]:
+        """Model with other output times and laws in a case, and the index of the case in it."""
+        if laws is not None and not isinstance(laws, Mapping):
+            raise UsageError.saying(f"laws are named: `laws={{'travel': '10 * t'}}`, not {laws!r}")
+        document = self.to_dict()
+        case = self.cases[index] if self.cases else None
+        place = document if case is None else document["cases"][case]
+        changes: dict[str, Any] = {}
+        at = np.array(self._info["motions"][index]["times"], dtype=float)
+        if times is not None:
+            if not isinstance(times, Mapping):
+                at = _increasing(times)
+                times = {"at": at.tolist()}
+            changes["time"] = _instead(place.get("time"), times)
+        drivers = [driver["name"] for driver in self.drivers]
+        for name, law in (laws or {}).items():
+            section = "drivers" if name in drivers else "forces"
+            if section == "forces" and name not in document.get("forces", {}):
+                raise unknown("driver or force", name, [*drivers, *document.get("forces", {})])
+            if case is None:
+                old = document.get(section, {}).get(name, {}).get("law")
+                changes.setdefault(section, {})[name] = {"law": _instead(old, _law(name, law, at))}
+            else:
+                changes.setdefault("laws", {})[name] = _instead(place.get("laws", {}).get(name), _law(name, law, at))
+        moved = self._changed(changes if case is None else {"cases": {case: changes}})
+        return moved, moved.cases.index(case) if case is not None else 0
+
+    # Positions
+
+    def at(
+        self,
+        drivers: Mapping[str, ArrayLike] | None = None,
+        /,
+        *,
+        design: Design = None,
+        forces: Mapping[str, float] | None = None,
+        sensitivities: bool = True,
+        partial: bool = False,
+        workers: int | None = None,
+        progress: Progress = None,
+        **values: ArrayLike,
+    ) -> Positions:
+        """Positions at rest as a function of the drivers, by their names and in the units of the file: `model.at(travel=12)`.
+
+        Values count as the driver's laws do: from the design configuration, unless the driver prescribes a measure or has
+        `counted_from = "zero"`. Drivers that are not named stay in the design configuration. Arrays are broadcast:
+        `model.at(travel=np.linspace(-40, 40, 81))`. Every position is reached from the design configuration by moving all drivers
+        together, on the branch of the design configuration; output times, laws and cases do not matter.
+
+            >>> position = model.at(travel=12)
+            >>> position["toe"], position.derivative("toe", "travel"), position.sensitivity("toe", "tie_rod_outer_z")
+
+        Loads are static. A force whose law changes over time needs a value in `forces`, N or N m. Raises `MotionStopped` where a
+        position cannot be reached; with `partial` its values are NaN, and `stops` has the reason. Names that are not Python's go into
+        a mapping: `model.at({"rack drive": 5})`.
+        """
+        key = tuple(sorted((forces or {}).items()))
+        if key not in self._solvers:
+            self._solvers[key] = Solver(self, forces or {})
+        return self._solvers[key].solve(names(drivers, values), design, sensitivities, partial, count("workers", workers), progress)
+
     # Motions
 
-    def run(self, design: Design = None, *, case: str | None = None, sensitivities: bool = True, partial: bool = False) -> Run:
+    def run(
+        self,
+        design: Design = None,
+        *,
+        case: str | None = None,
+        times: ArrayLike | Mapping[str, Any] | None = None,
+        laws: Mapping[str, Any] | None = None,
+        sensitivities: bool = True,
+        partial: bool = False,
+    ) -> Run:
         """Solves the motion of a design: position, velocity, acceleration, and their sensitivities by all design variables.
+
+        `times` are other output times, s, or a table as `[time]` has it (`{"end": 2, "steps": 100}`). `laws` are other laws of drivers
+        and forces by name: a text (`"10 * sin(t)"`), a number, a table as in the file, or an array of values at the output times, which
+        a smooth curve passes through. Both hold for this run only; `run.model` has them.
 
         Raises `MotionStopped` if the motion ends before its last output time; with `partial`, the solved part is returned, and
         `run.stop` has the reason.
         """
         index = self._index(case)
+        if times is not None or laws:
+            moved, index = self._moved(index, times, laws)
+            return moved._run(index, design, sensitivities, partial)
+        return self._run(index, design, sensitivities, partial)
+
+    def _run(self, index: int, design: Design, sensitivities: bool, partial: bool) -> Run:
         run = Run(self, index, self._native.run(index, self._values(design), sensitivities))
         if run.stop and not partial:
             error = MotionStopped((run.stop,))
@@ -191,7 +354,7 @@ class Model:
         numbers = np.arange(len(self._info["motions"][index]["times"]))
         numbers = numbers if at is None else np.atleast_1d(numbers[at])
         found = self._native.designs(
-            index, rows, [self._output(name) for name in names], order, numbers.tolist(), sensitivities, metrics, workers, listener(progress)
+            index, rows, [self._output(name) for name in names], order, numbers.tolist(), sensitivities, metrics, count("workers", workers), listener(progress)
         )
         found = Designs(self, index, rows, names, order, numbers, found, sensitivities)
         if found.stops and not partial:
@@ -230,9 +393,10 @@ class Model:
         found = self._native.jerk(self._index(case), self._values(design))
         return {body: found["jerk"][:, k] for k, body in enumerate(self.bodies)}
 
-    def maps(self, *, progress: Progress = None) -> list[dict]:
-        """Solves the cases that sweep two drivers over a grid; the result is that of `maps.json` of the command line."""
-        return json.loads(self._native.maps(listener(progress)))
+    def maps(self, *, progress: Progress = None) -> list[Map]:
+        """Solves the cases that sweep two drivers over a grid; the result is that of `maps.json` of the command line, and has
+        `to_xarray()` and `to_pandas()`."""
+        return [Map(found) for found in json.loads(self._native.maps(listener(progress)))]
 
     # Studies
 
@@ -262,7 +426,9 @@ class Model:
         self, *, starts: int | None = None, iterations: int | None = None, workers: int | None = None, progress: Progress = None
     ) -> Study:
         """Optimises the design for the goals of `[optimize]` in the model, in all cases."""
-        text, design, exact = self._native.optimize(0, starts, iterations, workers, listener(progress))
+        text, design, exact = self._native.optimize(
+            0, count("starts", starts), count("iterations", iterations), count("workers", workers), listener(progress)
+        )
         return outcome(self, text, design, exact)
 
     def trade_off(
@@ -280,8 +446,16 @@ class Model:
 
         `facts["points"]` lists the front; the study's design is that of `point`, by default the balanced compromise.
         """
-        names = list(goals)
-        text, design, exact = self._native.trade_off(names, points, point, starts, iterations, workers, listener(progress))
+        named = list(goals)
+        text, design, exact = self._native.trade_off(
+            named,
+            count("points", points),
+            count("point", point, 0),
+            count("starts", starts),
+            count("iterations", iterations),
+            count("workers", workers),
+            listener(progress),
+        )
         return outcome(self, text, design, exact)
 
     def tolerance(
@@ -294,7 +468,10 @@ class Model:
         progress: Progress = None,
     ) -> Study:
         """Analyses the tolerances of the design variables; `allocate` (`rss`, `worst_case`) finds the loosest tolerances that keep the limits."""
-        return outcome(self, self._native.tolerance(samples, seed, allocate, workers, listener(progress)))
+        found = self._native.tolerance(
+            count("samples", samples), count("seed", seed, 0), allocate, count("workers", workers), listener(progress)
+        )
+        return outcome(self, found)
 
     def calibrate(
         self,
@@ -323,7 +500,7 @@ class Model:
                 list((sigma or {}).items()),
                 list(variables),
                 loss,
-                iterations,
+                count("iterations", iterations),
                 list((prior or {}).items()),
                 priors,
                 list(offsets),
@@ -336,17 +513,48 @@ class Model:
         """Solves many designs in all cases, like `hardpoint sweep`: `method` (`sobol`, `latin_hypercube`, `factorial`, `sobol_indices`),
         `samples`, `seed`, `levels`, `ranges` (`{"lca_front_z": (-5, 5)}`), `curves` (names of measures whose curves are stored),
         `designs` (a CSV file of designs)."""
-        columns, curves, text = self.sweep_plan(**asked).run(workers, listener(progress))
+        columns, curves, text = self.sweep_plan(**asked).run(count("workers", workers), listener(progress))
         return SweepResult(self, dict(columns), dict(curves), json.loads(text))
 
     def sweep_plan(self, **asked) -> _native.Sweep:
         """Returns the sweep, to be solved in parts."""
+        for name, least in (("samples", 1), ("seed", 0), ("levels", 1)):
+            if isinstance(asked.get(name), (int, float, np.generic)):
+                asked[name] = count(name, asked[name], least)
         if "designs" in asked:
             asked["designs"] = os.fspath(asked["designs"])
         asked["ranges"] = {name: [float(a), float(b)] for name, (a, b) in dict(asked.get("ranges") or {}).items()}
         if self._case is not None and self.cases:
             asked["cases"] = [self._case]
         return self._native.sweep(json.dumps({key: value for key, value in asked.items() if value is not None}))
+
+    # The command's other jobs
+
+    def export(self, path: str | os.PathLike, format: str | None = None) -> dict[str, Any]:
+        """Writes the model as a file of another program (`hardpoint.export_formats()`), by default in the format of the file's name.
+        Returns the facts of `hardpoint export --json`; `unsaid` lists what the format cannot express."""
+        return tools.export(self, path, format)
+
+    def clearance(self, *, case: str | None = None, proof: bool = True) -> Study:
+        """Distances between the model's shapes over the motion, and the proof that nothing is nearer between output times."""
+        return tools.clearance(self, case, proof)
+
+    def envelope(
+        self,
+        shape: str,
+        path: str | os.PathLike,
+        *,
+        case: str | None = None,
+        relative_to: str | None = None,
+        error: float | None = None,
+        margin: float | None = None,
+    ) -> Study:
+        """Writes the space that a shape sweeps as a closed surface (STL), in the frame of the body `relative_to` (ground)."""
+        return tools.envelope(self, shape, path, case, relative_to, error, margin)
+
+    def compare(self, other: Model, *, case: str | None = None, measures: Iterable[str] = ()) -> Study:
+        """Compares the motion with that of another model: hardpoints, measures, metrics."""
+        return tools.compare(self, other, case, measures)
 
     # Designs
 
@@ -429,45 +637,62 @@ def listener(progress: Progress) -> Callable[[int, int], Any] | None:
     return display.counter() if progress is True else progress or None
 
 
-def _opened(native: _native.Model) -> Model:
+def _opened(native: _native.Model, folder: str | None = None, stacklevel: int = 3) -> Model:
     native.plan()
-    model = Model(native)
+    model = Model(native, folder=folder)
     for remark in model.diagnostics:
         if remark.severity == "warning":
-            warnings.warn(remark.rendered, HardpointWarning, stacklevel=3)
+            warnings.warn(remark.rendered, HardpointWarning, stacklevel=stacklevel)
     return model
 
 
 def read(path: str | os.PathLike) -> Model:
     """Reads a model file. Raises `ModelError` with all its errors, and `TopologyError` if it cannot be driven."""
-    return _opened(_native.read(os.fspath(path)))
+    return _opened(_native.read(os.fspath(path)), os.path.dirname(os.path.abspath(path)))
 
 
 def parse(text: str, name: str = "model.toml", folder: str | os.PathLike | None = None) -> Model:
     """Reads a model from a text; files that it names are in `folder`."""
-    return _opened(_native.parse(text, name, folder=None if folder is None else os.fspath(folder)))
+    where = None if folder is None else os.fspath(folder)
+    return _opened(_native.parse(text, name, folder=where), where)
 
 
 def build(folder: str | os.PathLike | None = None, **sections) -> Model:
-    """Builds a model in code; the names are those of the file (docs/file-format.md).
+    """Builds a model in code; the names are those of the file (docs/file-format.md), as for `Model.new`."""
+    return Model.from_dict(sections, folder=folder)
 
-        >>> hardpoint.build(
-        ...     name="pendulum",
-        ...     units={"length": "mm", "angle": "deg"},
-        ...     hardpoints={"pivot": [0, 0, 500], "bob": [0, 0, 0]},
-        ...     bodies={"arm": {}},
-        ...     joints={"hinge": {"type": "revolute", "bodies": ["ground", "arm"], "at": "pivot", "axis": "y"}},
-        ...     drivers={"swing": {"joint": "hinge", "law": "30 * sin(t)"}},
-        ...     points={"bob": {"body": "arm", "at": "bob"}},
-        ...     design={"bob_z": {"move": "bob", "along": "z"}},
-        ...     time={"end": 6.0, "steps": 100},
-        ... )
 
-    `model.text` is the equivalent file; diagnostics refer to it.
-    """
-    name = str(sections.get("name", "model"))
-    text = json.dumps(sections, default=_plain)
-    return _opened(_native.parse(text, f"{name}.toml", folder=None if folder is None else os.fspath(folder), is_json=True))
+def written(sections: Mapping[str, Any]) -> str:
+    """Converts contents of a file to JSON."""
+    try:
+        return json.dumps(dict(sections), default=_plain, allow_nan=False)
+    except UsageError:
+        raise
+    except ValueError:
+        raise UsageError.saying("a number of the model is infinite or not a number") from None
+
+
+def _instead(old: Any, new: Any) -> Any:
+    """Change that replaces a table, instead of merging into it."""
+    return {**dict.fromkeys(old), **new} if isinstance(old, Mapping) and isinstance(new, Mapping) else new
+
+
+def _increasing(times: Any) -> np.ndarray:
+    """Output times."""
+    at = np.atleast_1d(np.asarray(times, dtype=float))
+    if at.ndim != 1 or not np.isfinite(at).all() or not (np.diff(at) > 0).all():
+        raise UsageError.saying("output times are a list of increasing numbers, s, or a table such as `{'end': 2, 'steps': 100}`")
+    return at
+
+
+def _law(name: str, law: Any, times: np.ndarray) -> Any:
+    """A law as the file has it; an array of values at the output times becomes a table."""
+    if isinstance(law, (str, bool, Mapping)) or np.ndim(law) == 0:
+        return law
+    values = np.asarray(law, dtype=float)
+    if values.shape != times.shape:
+        raise UsageError.saying(f"the law of `{name}` has a value for each of the {len(times)} output times; the shape given is {values.shape}")
+    return {"type": "table", "points": np.column_stack([times, values]).tolist()}
 
 
 def _plain(value: Any) -> Any:
@@ -475,6 +700,8 @@ def _plain(value: Any) -> Any:
         return value.tolist()
     if hasattr(value, "__fspath__"):
         return os.fspath(value)
+    if isinstance(value, Mapping):
+        return dict(value)
     raise UsageError.saying(f"a model consists of numbers, texts, lists and dictionaries, not of {value!r}")
 
 

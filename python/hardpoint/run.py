@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 
-from . import _native, display
+from . import _native, display, plots, stored
+from .arguments import checked
 from .arrays import frozen
 from .errors import CannotFollow, Diagnostic, UsageError, diagnostics, unknown
 
@@ -48,6 +50,9 @@ class Body:
         self.acceleration = numbers[:, 13:16]
         self.angular_acceleration = numbers[:, 16:19]
 
+    def __repr__(self) -> str:
+        return f"<hardpoint.Body {self.name!r}: {len(self.position)} output times>"
+
 
 class BodySensitivity:
     """Derivatives of a body's motion by a design variable at fixed time, `[time, 3]` each, in the model's units per unit of it."""
@@ -62,12 +67,58 @@ class BodySensitivity:
         self.acceleration = numbers[:, 12:15]
         self.angular_acceleration = numbers[:, 15:18]
 
+    def __repr__(self) -> str:
+        return f"<hardpoint.BodySensitivity of {self.name!r}: {len(self.position)} output times>"
 
+
+class Reaction:
+    """The reaction of a joint on its second body over the output times, `[time, 3]` each; forces in N, moments in N m. Components that
+    redundant constraints leave undetermined are NaN."""
+
+    def __init__(self, name: str, body: str, numbers: np.ndarray):
+        self.name = name
+        self.body = body
+        """Second body of the joint, on which the reaction acts."""
+        self.place = numbers[:, 0:3]
+        """Point of application in the world, length."""
+        self.force = numbers[:, 3:6]
+        """Force in the world, N, with those of drivers on the joint's coordinates."""
+        self.moment = numbers[:, 6:9]
+        """Moment about the point in the world, N m."""
+        self.force_in_body = numbers[:, 9:12]
+        """Force in axes that coincide with the world's in the design configuration and turn with the body, N."""
+        self.moment_in_body = numbers[:, 12:15]
+        """Moment in the same axes, N m."""
+
+    def __repr__(self) -> str:
+        largest = np.sqrt(np.nansum(self.force**2, axis=1)).max(initial=0.0)
+        return f"<hardpoint.Reaction of {self.name!r} on {self.body!r}: force up to {largest:.6g} N>"
+
+
+class DriverLoad:
+    """What a driver has to apply over the output times, `[time]` each."""
+
+    def __init__(self, name: str, unit: str, numbers: np.ndarray):
+        self.name = name
+        self.unit = unit
+        """Unit of the force: N, or N m of a moment."""
+        self.force = numbers[:, 0]
+        """Force or moment; positive if it does positive work when the driven coordinate increases."""
+        self.speed = numbers[:, 1]
+        """Speed of the driven coordinate, in its unit per s."""
+        self.power = numbers[:, 2]
+        """Power, W."""
+
+    def __repr__(self) -> str:
+        return f"<hardpoint.DriverLoad of {self.name!r}: up to {np.abs(self.force).max(initial=0.0):.6g} {self.unit}>"
+
+
+@checked
 class Run:
     """The motion of one design in one case. Arrays cover the solved output times; they are created on first use, and slices are views.
     They are read-only: copy them to change values."""
 
-    def __init__(self, model: Model, case: int, native: _native.Run):
+    def __init__(self, model: Model, case: int, native: Union[_native.Run, stored.Stored]):
         self.model = model
         self._index = case
         self._native = native
@@ -170,6 +221,29 @@ class Run:
             raise UsageError.saying("the run was solved without sensitivities; leave `sensitivities=False` out")
         return BodySensitivity(name, self._native.body_sensitivity(self._body(name), by))
 
+    # Loads
+
+    @cached_property
+    def _loads(self) -> tuple[np.ndarray, np.ndarray]:
+        _, joints, drivers = self.model._native.loads(self._index, list(self._native.design))
+        return joints, drivers
+
+    def reaction(self, joint: str) -> Reaction:
+        """Reaction of a joint, by its name (docs/loads.md). The model needs masses or forces."""
+        names = [one["name"] for one in self.model.joints]
+        if joint not in names:
+            raise unknown("joint", joint, names)
+        k = names.index(joint)
+        return Reaction(joint, self.model.joints[k]["bodies"][1], self._loads[0][:, k])
+
+    def driver(self, name: str) -> DriverLoad:
+        """Force or moment of a driver, by its name, with its speed and power. The model needs masses or forces."""
+        names = [one["name"] for one in self.model.drivers]
+        if name not in names:
+            raise unknown("driver", name, names)
+        k = names.index(name)
+        return DriverLoad(name, self.model.drivers[k]["force_unit"], self._loads[1][:, k])
+
     # Metrics and diagnostics
 
     @cached_property
@@ -211,6 +285,40 @@ class Run:
 
     def _repr_html_(self) -> str:
         return display.run(self)
+
+    def plot(
+        self,
+        names: str | Sequence[str] | None = None,
+        *,
+        over: str | None = None,
+        order: int | str = 0,
+        by: str | None = None,
+        others: Mapping[str, Run] | None = None,
+        ax: Any = None,
+        **style: Any,
+    ) -> Any:
+        """Plots curves with matplotlib: `run.plot("toe", over="wheel_travel")`.
+
+        `names` are one or several measures or coordinates of points (all measures), each in a diagram of its own; `over` is the measure
+        on the horizontal axis (the time). `order` 1 is the rate, 2 the acceleration; `by` names a design variable whose sensitivity is
+        plotted. `others` are further runs by their labels. Returns the axes, an array of them for several quantities; `hardpoint.plot`
+        plots any runs.
+        """
+        runs = {"this run": self, **others} if others else self
+        return plots.plot(runs, names, over=over, order=order, by=by, ax=ax, **style)
+
+    def animate(self, *, seconds: float = 4.0, frames: int = 60, size: float = 5.0) -> Any:
+        """Animation of the mechanism's skeleton with matplotlib, `size` inches wide: a notebook plays it, `.save("motion.gif")` writes
+        it. `run.page()` has the mechanism in colour, with the engine."""
+        if not seconds > 0 or not frames >= 1 or not size > 0:
+            raise UsageError.saying("`seconds`, `frames` and `size` are positive")
+        if not len(self):
+            raise UsageError.saying("no output time was solved: there is nothing to animate")
+        return plots.animation(self, seconds, int(frames), size)
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Writes the run with its model, atomically; `hardpoint.load_run(path)` reads it without solving anything."""
+        stored.save(self, path)
 
     # Tables
 

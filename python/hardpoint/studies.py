@@ -9,20 +9,27 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import display
-from .errors import UsageError
+from .errors import UsageError, unknown
 
 if TYPE_CHECKING:
     from .model import Model
 
 
+PREFERRED = ("points", "metrics", "measures", "variables")
+"""Facts that a study's table has by default, the first that there is."""
+
+
 class Study:
     """A finished study: `facts` are those that the command line writes as JSON (docs/results.md), `tables` those that it prints."""
 
-    def __init__(self, model: Model, facts: dict[str, Any], tables: list[dict], rounded: list[float] | None, exact: list[float] | None):
+    def __init__(
+        self, model: Model | None, facts: dict[str, Any], tables: list[dict], rounded: list[float] | None, exact: list[float] | None
+    ):
         self.model = model
+        """Model of the study; `None` of a synthesis, which begins with a task."""
         self.facts = facts
         self.tables = tables
-        names = list(model.variables)
+        names = list(model.variables) if model else []
         self.design: dict[str, float] | None = dict(zip(names, exact)) if exact else None
         """Resulting design: the values of all design variables."""
         self.rounded: dict[str, float] | None = dict(zip(names, rounded)) if rounded else None
@@ -40,22 +47,78 @@ class Study:
 
     def text(self) -> str:
         """Text of the model file with the resulting design."""
-        return self.model.edited(self._found())
+        model, design = self._found()
+        return model.edited(design)
 
     def save(self, path: str | os.PathLike) -> None:
         """Writes the model file with the resulting design, atomically."""
-        self.model.save(path, self._found())
+        model, design = self._found()
+        model.save(path, design)
 
-    def _found(self) -> dict[str, float]:
-        if self.rounded is None:
+    def _found(self) -> tuple[Model, dict[str, float]]:
+        if self.model is None or self.rounded is None:
             raise UsageError.saying("the study has no resulting design")
-        return self.rounded
+        return self.model, self.rounded
+
+    @property
+    def _title(self) -> str:
+        return self.model.name if self.model else str(self.facts.get("task", ""))
+
+    @property
+    def records(self) -> tuple[str, ...]:
+        """Names of the facts that are tables, for `to_pandas` and `to_xarray`."""
+        return tuple(name for name, rows in self.facts.items() if isinstance(rows, list) and rows and all(isinstance(row, dict) for row in rows))
+
+    def to_pandas(self, name: str | None = None):
+        """Table of one of the `records`, by default the first of `points`, `metrics`, `measures` and `variables` that there is."""
+        import pandas
+
+        return pandas.json_normalize(self.facts[self._record(name)])
+
+    def to_xarray(self, name: str | None = None):
+        """Data set of one of the `records`, by the names of its rows, or else by their numbers."""
+        record = self._record(name)
+        frame = self.to_pandas(record)
+        is_named = "name" in frame and frame["name"].is_unique
+        frame = frame.set_index("name") if is_named else frame.rename_axis(record.rstrip("s"))
+        return frame.to_xarray().assign_attrs(model=self._title, study=str(self.facts.get("study", "")))
+
+    def _record(self, name: str | None) -> str:
+        if name is None:
+            name = next((one for one in (*PREFERRED, *self.records) if one in self.records), "")
+        if name not in self.records:
+            raise unknown("table of this study", name, self.records)
+        return name
 
     def __repr__(self) -> str:
-        return f"<hardpoint.Study of {self.model.name!r}: {self.message or self.facts.get('study', 'done')}>"
+        return f"<hardpoint.Study of {self._title!r}: {self.message or self.facts.get('study', 'done')}>"
 
     def _repr_html_(self) -> str:
         return display.study(self)
+
+
+class Map(dict):
+    """A map over the positions of two drivers, as `maps.json` has it (docs/results.md)."""
+
+    def to_xarray(self):
+        """Values and sensitivities of all measures by the positions of both drivers; NaN where a position was not reached."""
+        import xarray
+
+        first, second = self["drivers"]
+        axes = (second["name"], first["name"])
+        data = {}
+        for measure in self["measures"]:
+            values = np.array(measure["values"], dtype=float)
+            data[measure["name"]] = (axes, values, {"units": measure["unit"]})
+            for one in measure["sensitivities"]:
+                attributes = {"units": one["unit"]}
+                data[f"d {measure['name']} / d {one['variable']}"] = (axes, np.array(one["values"], dtype=float), attributes)
+        coordinates = {d["name"]: (d["name"], np.array(d["values"], dtype=float), {"units": d["unit"]}) for d in (first, second)}
+        return xarray.Dataset(data, coordinates, {"map": self["name"]})
+
+    def to_pandas(self):
+        """Table with a row for each position."""
+        return self.to_xarray().to_dataframe().reset_index()
 
 
 def outcome(model: Model, text: str, rounded: list[float] | None = None, exact: list[float] | None = None) -> Study:
@@ -76,11 +139,20 @@ class SweepResult(Study):
     def __len__(self) -> int:
         return len(self.columns["design"])
 
-    def to_pandas(self):
-        """Table of designs."""
+    def to_pandas(self, name: str | None = None):
+        """Table of designs; or `curves`; or one of the `records`."""
         import pandas
 
-        return pandas.DataFrame(self.columns)
+        if name == "curves":
+            return pandas.DataFrame(self.curves)
+        return pandas.DataFrame(self.columns) if name is None else super().to_pandas(name)
+
+    def to_xarray(self, name: str | None = None):
+        """Data set of designs; or `curves`, by design, case and time; or one of the `records`."""
+        if name is not None and name != "curves":
+            return super().to_xarray(name)
+        frame = self.to_pandas(name)
+        return frame.set_index([key for key in ("design", "case", "time [s]") if key in frame]).to_xarray()
 
     def to_arrow(self):
         """Table of designs."""

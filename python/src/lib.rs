@@ -5,9 +5,12 @@
 //! value itself for parameters, a change for all others.
 
 mod array;
+#[cfg(feature = "command")]
+mod command;
 mod design;
 mod designs;
 mod failure;
+mod loads;
 mod model;
 mod run;
 mod studies;
@@ -19,8 +22,11 @@ use pyo3::prelude::*;
 /// The engine.
 #[pymodule]
 mod _native {
+    #[cfg(feature = "command")]
     #[pymodule_export]
-    use crate::model::{Model, parse, read};
+    use crate::command::main;
+    #[pymodule_export]
+    use crate::model::{Model, parse, read, schema, to_toml};
     #[pymodule_export]
     use crate::run::Run;
     #[pymodule_export]

@@ -7,19 +7,22 @@ use std::sync::{Arc, OnceLock};
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity::{Angle, Length};
 use hardpoint::measure::outputs;
-use hardpoint::model::{CaseId, Change, OutputSource, VariableId};
+use hardpoint::model::{BodyId, CaseId, Change, DriverId, ElementId, JointId, OutputSource, VariableId};
+use hardpoint::space::Vec3;
 use hardpoint::topology::{Formulation, TopologyError};
-use hardpoint_file::ModelFile;
+use hardpoint_file::{Contents, ModelFile};
 use hardpoint_report::diagnose;
 use hardpoint_report::figures::variable_unit;
 use hardpoint_report::figures::{order_unit, symbol, unit};
-use hardpoint_study::Motions;
+use hardpoint_study::request::named;
 use hardpoint_study::whatif::{add_coordinates, add_tilts};
+use hardpoint_study::{Motions, position_model};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
 use crate::design::changes;
 use crate::failure::{Failure, Kind, diagnostic_json};
+use crate::run::json;
 
 /// A model with its plans, made once.
 #[pyclass(frozen, module = "hardpoint._native")]
@@ -96,9 +99,26 @@ pub(crate) fn parse(
 
 /// Converts a model in JSON to the text of a file.
 fn toml_of(json: &str) -> Result<String, Failure> {
+    written("", json)
+}
+
+/// Text of a model with the entries of a nested table in JSON merged into it.
+fn written(text: &str, changes: &str) -> Result<String, Failure> {
     let refused = |why: String| Failure::Misunderstood(format!("the model cannot be written as TOML: {why}"));
-    let value: toml::Value = serde_json::from_str(json).map_err(|error| refused(error.to_string()))?;
-    toml::to_string(&value).map_err(|error| refused(error.to_string()))
+    let changes: Contents = serde_json::from_str(changes).map_err(|error| refused(error.to_string()))?;
+    hardpoint_file::merged(text, &changes).map_err(refused)
+}
+
+/// Text of a file with contents in JSON.
+#[pyfunction]
+pub(crate) fn to_toml(contents: &str) -> PyResult<String> {
+    Ok(toml_of(contents)?)
+}
+
+/// JSON Schema of model files.
+#[pyfunction]
+pub(crate) fn schema() -> String {
+    hardpoint_file::schema()
 }
 
 #[pymethods]
@@ -119,6 +139,63 @@ impl Model {
     #[getter]
     fn files(&self) -> BTreeMap<String, String> {
         self.whole.texts.clone()
+    }
+
+    /// Contents of the file as JSON, with the names of the file.
+    fn document(&self) -> PyResult<String> {
+        let table: toml::Table = toml::from_str(self.whole.text())
+            .map_err(|error| Failure::Misunderstood(format!("the text is not TOML: {error}")))?;
+        // In the order of the file, which a value of JSON would not have.
+        Ok(json(&table))
+    }
+
+    /// Text of the file with the entries of a nested table in JSON merged into it.
+    fn merged(&self, changes: &str) -> PyResult<String> {
+        Ok(written(self.whole.text(), changes)?)
+    }
+
+    /// Returns the model of a position at rest: its variables are those of this model, then the drivers. Forces whose
+    /// laws change over time have the given values, N or N m.
+    fn positioned(&self, forces: Vec<(String, f64)>) -> PyResult<Self> {
+        let model = &self.whole.model;
+        let known = model.given_forces();
+        let name = |force: &ElementId| model.elements[force.0].name.as_str();
+        let mut values = Vec::new();
+        for (force, value) in forces {
+            let k = named("force with a law", &force, known.iter().map(name)).map_err(Failure::from)?;
+            values.push((known[k], value));
+        }
+        let is_given = |force: &ElementId| values.iter().any(|(other, _)| other == force);
+        if let Some(force) = known.iter().find(|force| model.varies(**force) && !is_given(force)) {
+            let force = name(force);
+            let why = format!(
+                "force `{force}` changes over time, and a position has none; give its value: `forces={{\"{force}\": 100.0}}`"
+            );
+            return Err(Failure::Misunderstood(why).into());
+        }
+        let mut whole = self.whole.clone();
+        whole.model = position_model(model, &values);
+        Ok(Self::new(whole))
+    }
+
+    /// Points of every body in its frame, by joint, and the ends of rods: `[body, x, y, z]`, as JSON.
+    fn skeleton(&self, case: usize, design: Vec<f64>) -> PyResult<String> {
+        let (model, units) = (&self.cases[case].model, self.whole.units);
+        let geometry = model.geometry(&self.changes(&design)?);
+        let place = |body: BodyId, at: Vec3| {
+            let [x, y, z] = at.to_array().map(|x| units.from_si(Length, x));
+            json!([body.0, x, y, z])
+        };
+        let ends = |id: JointId| {
+            let bodies = model.joints[id.0].bodies;
+            [0, 1].map(|end| place(bodies[end], geometry.markers[id.0][end].r))
+        };
+        let joints = model
+            .named_joints()
+            .map(|(id, j)| json!({ "name": j.name, "is_rod": j.kind.is_rod(), "ends": ends(id) }));
+        let points = model.points.iter().zip(&geometry.points).filter(|(point, _)| !point.unnamed);
+        let points = points.map(|(point, at)| json!({ "name": point.name, "at": place(point.body, *at) }));
+        Ok(json!({ "joints": joints.collect::<Vec<_>>(), "points": points.collect::<Vec<_>>() }).to_string())
     }
 
     /// Returns the model with a design variable for every coordinate of its hardpoints, and every tilt of its axes.
@@ -151,6 +228,8 @@ impl Model {
             })
         });
         let shown = outputs(model);
+        // Loads of a position are those at rest.
+        let is_load = |source| matches!(source, OutputSource::Measure(k) if model.measures[k].kind.is_load());
         let outputs = shown.iter().map(|o| {
             json!({
                 "name": o.name,
@@ -158,6 +237,7 @@ impl Model {
                 "columns": (0..o.known.orders).map(|k| o.order_name(k)).collect::<Vec<_>>(),
                 "units": (0..o.known.orders).map(|k| order_unit(units, o.dimension, k)).collect::<Vec<_>>(),
                 "by_position": o.known.by_position,
+                "at_rest": model.is_known_at_rest(o.source) || is_load(o.source),
             })
         });
         let motions = self.cases.iter().map(|case| {
@@ -171,8 +251,16 @@ impl Model {
         let joints = model
             .named_joints()
             .map(|(_, j)| json!({ "name": j.name, "type": j.kind.name, "bodies": j.bodies.map(body) }));
-        let drivers = model.drivers.iter().map(|d| {
-            json!({ "name": d.name, "joint": model.joints[d.joint.0].name, "coordinate": model.driven(d).name })
+        let drivers = model.drivers.iter().enumerate().map(|(k, d)| {
+            let quantity = model.driven(d).quantity;
+            json!({
+                "name": d.name,
+                "joint": model.joints[d.joint.0].name,
+                "coordinate": model.driven(d).name,
+                "unit": symbol(units, quantity),
+                "nominal": units.from_si(quantity, model.as_drawn(DriverId(k))),
+                "force_unit": unit(units, model.force_on(d)),
+            })
         });
         let hardpoints = model.hardpoints.iter().filter(|h| !h.unnamed).map(|h| {
             let place = h.position.to_array().map(|x| units.from_si(Length, x));
@@ -189,6 +277,7 @@ impl Model {
             "hardpoints": hardpoints.collect::<Vec<_>>(),
             "variables": variables.collect::<Vec<_>>(),
             "outputs": outputs.collect::<Vec<_>>(),
+            "has_loads": model.has_loads(),
             "motions": motions.collect::<Vec<_>>(),
             "grids": model.grids.iter().map(|g| &g.name).collect::<Vec<_>>(),
             "remarks": file.remarks.iter().map(|d| diagnostic_json(file, d)).collect::<Vec<Value>>(),

@@ -118,6 +118,15 @@ impl Run {
         Some(diagnostic_json(file, &found).to_string())
     }
 
+    /// Values of all drivers at the last solved position of a motion that ended early, counted from the design
+    /// configuration.
+    #[getter]
+    fn stopped_at(&self) -> Option<Vec<f64>> {
+        let (stop, model) = (self.solution.stop.as_ref()?, &self.file().model);
+        let shown = |(d, x): (_, &f64)| self.units().from_si(model.driven(d).quantity, *x);
+        Some(model.drivers.iter().zip(&stop.drivers).map(shown).collect())
+    }
+
     /// Admissibility of each variable: true, or the reason as the JSON of a diagnostic; `None` without sensitivities.
     #[getter]
     fn followed(&self) -> PyResult<Vec<(bool, Option<String>)>> {

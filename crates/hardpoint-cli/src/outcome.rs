@@ -1,7 +1,5 @@
 //! Outcomes of commands, for scripts.
 
-use std::process::ExitCode;
-
 /// Outcome of a command; `args.rs` explains the codes to the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -28,11 +26,5 @@ impl Outcome {
     /// Combines two outcomes: the worse one, with the larger exit code.
     pub fn and(self, other: Self) -> Self {
         if other as u8 > self as u8 { other } else { self }
-    }
-}
-
-impl From<Outcome> for ExitCode {
-    fn from(outcome: Outcome) -> Self {
-        Self::from(outcome as u8)
     }
 }

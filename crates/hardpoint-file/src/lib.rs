@@ -50,4 +50,4 @@ pub use read::{
     parse, parse_in, parse_with, read, triangles,
 };
 pub use values::{Diagnostic, Diagnostics, LARGEST_FILE, Severity, Source, Texts};
-pub use write::{at_keys, hardpoint_in, hardpoints_in, placed, schema, with_keys};
+pub use write::{Contents, at_keys, hardpoint_in, hardpoints_in, merged, placed, schema, with_keys};

@@ -36,6 +36,8 @@ use super::progress::{Control, Progress, Step};
 use super::request::{RequestError, named};
 
 pub use certainty::{Certainty, UnidentifiableChange};
+pub(crate) use posture::posture_model;
+
 pub use next::{Improvement, NextReading};
 pub use prior::Prior;
 pub use request::{Overrides, Request};
@@ -217,7 +219,7 @@ pub fn values_in_postures(
     postures: &[Vec<f64>],
     formulation: Formulation,
 ) -> Result<Vec<Result<Vec<f64>, String>>, TopologyError> {
-    let models: Vec<Model> = postures.iter().map(|p| posture::posture_model(model, p, &[], &[])).collect();
+    let models: Vec<Model> = postures.iter().map(|p| posture_model(model, p, &[], &[])).collect();
     let values = |analysis: &Analysis<'_>| {
         let solved = posture::solve_posture(analysis, design, &mut StudyCost::default());
         let values =

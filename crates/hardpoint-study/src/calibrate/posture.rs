@@ -45,7 +45,7 @@ pub(super) fn derivative(solution: &Solution, k: usize, output: usize, variable:
 
 /// Model in which every driver moves from the design configuration to its position in a posture, and forces grow to
 /// their values there. Drivers with an offset have a further variable each, after those of the model.
-pub(super) fn posture_model(
+pub(crate) fn posture_model(
     model: &Model,
     places: &[f64],
     forces: &[(ElementId, f64)],

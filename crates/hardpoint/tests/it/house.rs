@@ -62,7 +62,10 @@ const CRATES: &[(&str, &[&str])] = &[
         ],
     ),
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
-    ("hardpoint-python", &["hardpoint", "hardpoint-file", "hardpoint-report", "hardpoint-study"]),
+    (
+        "hardpoint-python",
+        &["hardpoint", "hardpoint-cli", "hardpoint-file", "hardpoint-report", "hardpoint-study"],
+    ),
     ("hardpoint-studio", &["hardpoint", "hardpoint-file", "hardpoint-report", "hardpoint-study"]),
 ];
 

@@ -1,4 +1,5 @@
-//! The `hardpoint` command: arguments, progress, exit codes and printing. It computes nothing itself.
+//! The `hardpoint` command: arguments, progress, exit codes and printing. It computes nothing itself. The program of
+//! this name and `python -m hardpoint` call [`main`].
 
 mod args;
 mod calibrate;
@@ -31,8 +32,8 @@ mod trade_off;
 mod verify;
 mod whatif;
 
+use std::ffi::OsString;
 use std::io::Write;
-use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
 
@@ -40,8 +41,9 @@ use args::{Arguments, Command};
 use outcome::Outcome;
 use session::Session;
 
-fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+/// Runs the command and returns its exit code. The first argument is the name of the program.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are results, everything else is an error.
@@ -49,7 +51,7 @@ fn main() -> ExitCode {
                 text::note_failure(failure);
             }
             let outcome = if error.use_stderr() { Outcome::Misunderstood } else { Outcome::Done };
-            return Session::not_printed(outcome).into();
+            return Session::not_printed(outcome) as u8;
         }
     };
     let outcome = match arguments.command {
@@ -83,5 +85,5 @@ fn main() -> ExitCode {
             Outcome::Done
         }
     };
-    Session::not_printed(outcome).into()
+    Session::not_printed(outcome) as u8
 }

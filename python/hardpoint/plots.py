@@ -1,0 +1,178 @@
+"""Curves of runs with matplotlib (`pip install 'hardpoint[plot]'`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .arguments import named
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    from .run import Run
+
+HEIGHT, WIDTH = 2.6, 6.4
+"""Size of one diagram, in."""
+
+
+def _matplotlib():
+    try:
+        import matplotlib.pyplot
+    except ImportError:
+        raise UsageError.saying("matplotlib is not installed; `pip install 'hardpoint[plot]'`") from None
+    return matplotlib.pyplot
+
+
+def titled(name: str, unit: str) -> str:
+    """Title of an axis, with the unit."""
+    return name if unit == "1" else f"{name} [{unit}]"
+
+
+@named
+def plot(
+    runs: Run | Mapping[str, Run] | Iterable[Run],
+    names: str | Sequence[str] | None = None,
+    *,
+    over: str | None = None,
+    order: int | str = 0,
+    by: str | None = None,
+    ax: Any = None,
+    **style: Any,
+) -> Any:
+    """Plots curves of one or several runs: a diagram for each quantity, a curve for each run.
+
+    `runs` is a run, a list of runs, or a mapping of labels to runs such as `model.runs()`. `names` are measures or coordinates of points,
+    by default all measures. `over` is the measure on the horizontal axis, by default the time. `order` 1 is the rate, 2 the
+    acceleration; `by` names a design variable whose sensitivity is plotted. Further arguments go to matplotlib. Returns the axes of a
+    single quantity, or an array of them.
+
+        >>> hardpoint.plot(strut.runs(), ["toe", "camber"], over="wheel_travel")
+    """
+    labelled = _labelled(runs)
+    model = next(iter(labelled.values())).model
+    quantities = [names] if isinstance(names, str) else list(names) if names is not None else list(model.measures)
+    if not quantities:
+        raise UsageError.saying("the model has no measures; name coordinates of points")
+    if ax is None:
+        pyplot = _matplotlib()
+        size = (WIDTH, HEIGHT * len(quantities) + 1)
+        _, axes = pyplot.subplots(len(quantities), 1, sharex=True, squeeze=False, figsize=size, layout="constrained")
+        axes = axes[:, 0]
+    else:
+        axes = np.atleast_1d(np.asarray(ax, dtype=object)).ravel()
+        if len(axes) != len(quantities):
+            raise UsageError.saying(f"there are {len(quantities)} quantities, and {len(axes)} axes in `ax`")
+    for axis, name in zip(axes, quantities):
+        for label, run in labelled.items():
+            x = run.times if over is None else run.values(over)
+            y = run.values(name, order) if by is None else run.sensitivity(name, by, order)
+            axis.plot(x, y, **{"label": label, **style})
+        axis.set_ylabel(_ordinate(model, name, order, by))
+        axis.grid(True, alpha=0.3)
+        if len(labelled) > 1:
+            axis.legend()
+    axes[-1].set_xlabel("time [s]" if over is None else titled(over, model._declared(over).units[0]))
+    if len(labelled) == 1:
+        (run,) = labelled.values()
+        axes[0].set_title(model.name + (f", {run.case}" if run.case else ""))
+    return axes[0] if len(quantities) == 1 else axes
+
+
+def _ordinate(model, name: str, order: int | str, by: str | None) -> str:
+    output, k = model._declared(name), model._order(order, [name])
+    if by is None:
+        return titled(output.columns[k], output.units[k])
+    unit = model.variables[by].unit
+    return f"d {output.columns[k]} / d {by} [{output.units[k]} / {unit}]"
+
+
+def _labelled(runs: Any) -> dict[str, Run]:
+    from .run import Run
+
+    if isinstance(runs, Run):
+        return {runs.case or runs.model.name: runs}
+    found = dict(runs) if isinstance(runs, Mapping) else {f"{k + 1}: {run.case or run.model.name}": run for k, run in enumerate(runs)}
+    if not found:
+        raise UsageError.saying("there are no runs to plot")
+    return found
+
+
+def animation(run: Run, seconds: float, frames: int, size: float) -> Any:
+    """Animation of a run with matplotlib; a notebook plays it."""
+    import json
+
+    pyplot = _matplotlib()
+    from matplotlib.animation import FuncAnimation
+
+    class Player(FuncAnimation):
+        def _repr_html_(self) -> str:
+            return self.to_jshtml()
+
+    model = run.model
+    parts = json.loads(model._native.skeleton(run._index, list(run._native.design)))
+    picked = np.unique(np.linspace(0, len(run) - 1, frames).round().astype(int))
+    bodies = [None, *(run.body(name) for name in model.bodies)]
+
+    def moved(place: list[float]) -> np.ndarray:
+        body, local = bodies[int(place[0])], np.array(place[1:])
+        if body is None:
+            return np.broadcast_to(local, (len(picked), 3))
+        return body.position[picked] + _turned(body.quaternion[picked], local)
+
+    groups: dict[int, list[np.ndarray]] = {}
+    lines: list[tuple[int, np.ndarray]] = []
+    for joint in parts["joints"]:
+        ends = [moved(place) for place in joint["ends"]]
+        if joint["is_rod"]:
+            lines.append((-1, np.stack(ends, axis=1)))
+        for place, end in zip(joint["ends"], ends):
+            groups.setdefault(int(place[0]), []).append(end)
+    for point in parts["points"]:
+        groups.setdefault(int(point["at"][0]), []).append(moved(point["at"]))
+    for body, points in groups.items():
+        if body:
+            lines += [(body, np.stack([points[a], points[b]], axis=1)) for a, b in _tree(np.array([p[0] for p in points]))]
+    figure = pyplot.figure(figsize=(size, size), layout="constrained")
+    axes = figure.add_subplot(projection="3d")
+    every = np.concatenate([line.reshape(-1, 3) for _, line in lines] + [p for points in groups.values() for p in points])
+    low, high = every.min(axis=0), every.max(axis=0)
+    middle, half = (low + high) / 2, max(float((high - low).max()) / 2, 1e-12)
+    for k, letter in enumerate("xyz"):
+        getattr(axes, f"set_{letter}lim")(middle[k] - half, middle[k] + half)
+        getattr(axes, f"set_{letter}label")(f"{letter} [{model.units['length']}]")
+    axes.set_box_aspect((1, 1, 1))
+    fixed = np.array([p[0] for p in groups.get(0, [])] or np.zeros((0, 3))).reshape(-1, 3)
+    axes.scatter(*fixed.T, color="0.3", marker="s", s=16)
+    drawn = [axes.plot(*line[0].T, color="0.4" if body < 0 else f"C{(body - 1) % 10}", lw=2)[0] for body, line in lines]
+    names = axes.set_title("")
+
+    def show(frame: int):
+        for artist, (_, line) in zip(drawn, lines):
+            artist.set_data_3d(*line[frame].T)
+        names.set_text(f"{model.name}, t = {run.times[picked[frame]]:.3g} s")
+        return [*drawn, names]
+
+    made = Player(figure, show, frames=len(picked), interval=1000 * seconds / max(len(picked), 1), blit=False)
+    pyplot.close(figure)
+    return made
+
+
+def _turned(quaternion: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Vectors of a body in world axes: v + 2 q x (q x v + w v)."""
+    w, q = quaternion[:, :1], quaternion[:, 1:]
+    return vector + 2 * np.cross(q, np.cross(q, np.broadcast_to(vector, q.shape)) + w * vector)
+
+
+def _tree(points: np.ndarray) -> list[tuple[int, int]]:
+    """Lines that connect points: all pairs of up to three, the shortest tree of more."""
+    if len(points) <= 3:
+        return [(a, b) for a in range(len(points)) for b in range(a)]
+    reached, left, found = [0], list(range(1, len(points))), []
+    while left:
+        near = np.linalg.norm(points[reached][:, None] - points[left][None], axis=2)
+        a, b = np.unravel_index(near.argmin(), near.shape)
+        found.append((reached[a], left[b]))
+        reached.append(left.pop(b))
+    return found

@@ -1,0 +1,142 @@
+"""Runs in files: a model with its results, as `run.save(path)` writes them."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _native, files
+from .arrays import frozen
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    from .run import Run
+
+FORMAT = 1
+"""Version of the file."""
+
+
+def save(run: Run, path: str | os.PathLike) -> None:
+    """Writes a run, atomically."""
+    of, model = run._native, run.model
+    with_d = bool(run._followed)
+    arrays: dict[str, np.ndarray] = {"times": run.times, "values": of.values(), "design": np.array(of.design, dtype=float)}
+    arrays["metrics"], arrays["metrics_d"] = of.metrics()
+    for b in range(1, len(model.bodies) + 1):
+        arrays[f"body_{b}"] = of.body(b)
+    if with_d:
+        for order in range(3):
+            arrays[f"sensitivities_{order}"] = of.sensitivities(order)
+        for b in range(1, len(model.bodies) + 1):
+            for v, (follows, _) in enumerate(run._followed):
+                if follows:
+                    arrays[f"body_{b}_by_{v}"] = of.body_sensitivity(b, v)
+    about = {
+        "format": FORMAT,
+        "hardpoint": _native.version,
+        "text": model.text,
+        "file": model.file,
+        "files": model._native.files,
+        "added": model._added,
+        "case": run.case,
+        "sensitivities": with_d,
+        "followed": run._followed,
+        "stop": of.stop,
+        "stopped_at": of.stopped_at,
+        "diagnostics": of.diagnostics(),
+        "summary": of.summary(),
+    }
+    arrays["about"] = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
+    out = io.BytesIO()
+    np.savez_compressed(out, **arrays)  # type: ignore[arg-type]
+    files.write_bytes(path, out.getvalue())
+
+
+def load(path: str | os.PathLike) -> Run:
+    """Reads a run that `run.save(path)` wrote, with its model. Nothing is solved again, except for its page and its loads."""
+    from .model import Model, _restored
+    from .run import Run
+
+    refused = UsageError.saying(f"`{os.fspath(path)}` is not a run of this package; `run.save(path)` writes one")
+    try:
+        with np.load(path, allow_pickle=False) as found:
+            arrays = {name: frozen(found[name]) for name in found.files}
+        about = json.loads(bytes(arrays.pop("about")))
+    except OSError as error:
+        if isinstance(error, FileNotFoundError):
+            raise UsageError.saying(f"there is no file `{os.fspath(path)}`") from None
+        raise refused from error
+    except (ValueError, KeyError, EOFError) as error:
+        raise refused from error
+    if about["format"] != FORMAT:
+        raise UsageError.saying(f"`{os.fspath(path)}` has format {about['format']}, of another version of the package ({about['hardpoint']})")
+    added = (bool(about["added"][0]), bool(about["added"][1]))
+    native = _restored(about["text"], about["file"], tuple(sorted(about["files"].items())), added, None)._native
+    model = Model(native, None, added)
+    index = model.cases.index(about["case"]) if about["case"] is not None else 0
+    return Run(model, index, Stored(model._native, index, arrays, about))
+
+
+class Stored:
+    """Results of a file, in place of the engine's."""
+
+    def __init__(self, model: _native.Model, case: int, arrays: dict[str, np.ndarray], about: dict[str, Any]):
+        self._model = model
+        self._case = case
+        self._arrays = arrays
+        self._about = about
+
+    @cached_property
+    def _again(self) -> _native.Run:
+        return self._model.run(self._case, self.design, self._about["sensitivities"])
+
+    @property
+    def times(self) -> np.ndarray:
+        return self._arrays["times"]
+
+    @property
+    def design(self) -> list[float]:
+        return self._arrays["design"].tolist()
+
+    @property
+    def stop(self) -> str | None:
+        return self._about["stop"]
+
+    @property
+    def stopped_at(self) -> list[float] | None:
+        return self._about["stopped_at"]
+
+    @property
+    def followed(self) -> list[tuple[bool, str | None]]:
+        return [(bool(yes), why) for yes, why in self._about["followed"]]
+
+    def values(self) -> np.ndarray:
+        return self._arrays["values"]
+
+    def sensitivities(self, order: int) -> np.ndarray:
+        return self._arrays[f"sensitivities_{order}"]
+
+    def body(self, body: int) -> np.ndarray:
+        return self._arrays[f"body_{body}"]
+
+    def body_sensitivity(self, body: int, variable: int) -> np.ndarray:
+        return self._arrays[f"body_{body}_by_{variable}"]
+
+    def metrics(self) -> list[np.ndarray]:
+        return [self._arrays["metrics"], self._arrays["metrics_d"]]
+
+    def summary(self) -> str:
+        return self._about["summary"]
+
+    def diagnostics(self) -> str:
+        return self._about["diagnostics"]
+
+    def page(self) -> str:
+        return self._again.page()
+
+

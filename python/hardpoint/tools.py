@@ -1,0 +1,229 @@
+"""Jobs of the command line: import, export, templates, comparisons, envelopes, clearances, synthesis.
+
+They run the command of this package, `python -m hardpoint`, in a process of its own, and return the facts that it prints with `--json`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _native
+from .arguments import count, named
+from .errors import Diagnostic, HardpointError, ModelError, MotionStopped, StudyError, TopologyError, UsageError
+from .studies import Study
+
+if TYPE_CHECKING:
+    from .model import Model
+
+CODES: dict[int, type[HardpointError]] = {2: UsageError, 3: ModelError, 4: TopologyError, 5: MotionStopped}
+"""Classes of errors by the command's exit codes."""
+FELL_SHORT = 1
+"""Exit code of a command that has a result, but not the requested one."""
+
+
+def command(*arguments: Any) -> subprocess.CompletedProcess[str]:
+    """Runs the command; its output is text."""
+    words = [sys.executable, "-m", "hardpoint", *(os.fspath(a) if isinstance(a, os.PathLike) else str(a) for a in arguments)]
+    # The package is that of this process, wherever it was found.
+    path = os.pathsep.join([str(Path(__file__).parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])])
+    environment = {**os.environ, "PYTHONPATH": path, "NO_COLOR": "1"}
+    return subprocess.run(words, capture_output=True, text=True, encoding="utf-8", env=environment, stdin=subprocess.DEVNULL)
+
+
+def facts(*arguments: Any) -> dict[str, Any]:
+    """Facts that the command prints with `--json`; raises its errors."""
+    done = command(*arguments, "--json")
+    try:
+        found = json.loads(done.stdout)
+    except ValueError:
+        found = {}
+    if done.returncode in (0, FELL_SHORT) and found:
+        return found
+    raise _error(done, found.get("diagnostics", []))
+
+
+def _error(done: subprocess.CompletedProcess[str], found: list[dict]) -> HardpointError:
+    of = CODES.get(done.returncode, StudyError)
+    if not found:
+        return of.saying(done.stderr.removeprefix("error: ").strip() or f"the command ended with code {done.returncode}")
+    return of(tuple(Diagnostic.of({**one, "rendered": _rendered(one)}) for one in found))
+
+
+def _rendered(one: dict) -> str:
+    code = f"[{one['code']}]" if one.get("code") else ""
+    place = f"\n  --> {one['file']}:{one['line']}:{one['column']}" if one.get("file") and one.get("line") else ""
+    notes = "".join(f"\n  = note: {note}" for note in one.get("notes", []))
+    return f"{one['severity']}{code}: {one['message']}{place}{notes}" + (f"\n  = help: {one['help']}" if one.get("help") else "")
+
+
+@contextlib.contextmanager
+def saved(model: Model) -> Iterator[Path]:
+    """The model as a file: its own one if that has the same text, or else one in a temporary folder, with the files that it names."""
+    own = Path(model.file)
+    with contextlib.suppress(OSError, UnicodeDecodeError):
+        if own.read_bytes().decode() == model.text:
+            yield own
+            return
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in model._native.files.items():
+            path = Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8", newline="\n")
+        path = Path(folder, "model.toml")
+        path.write_bytes(model.text.encode())
+        yield path
+
+
+def _case(model: Model, case: str | None) -> list[str]:
+    name = case if case is not None else model.cases[model._case] if model._case is not None and model.cases else None
+    if name is not None:
+        model._named(name)
+    return [] if name is None else ["--case", name]
+
+
+def _study(model: Model, found: dict[str, Any]) -> Study:
+    return Study(model, found, [], None, None)
+
+
+def export(model: Model, path: str | os.PathLike, format: str | None) -> dict[str, Any]:
+    with saved(model) as file:
+        return facts("export", file, "-o", os.path.abspath(path), *([] if format is None else ["--format", format]))
+
+
+def clearance(model: Model, case: str | None, proof: bool) -> Study:
+    with saved(model) as file:
+        return _study(model, facts("clearance", file, *_case(model, case), *([] if proof else ["--no-proof"])))
+
+
+def envelope(
+    model: Model,
+    shape: str,
+    path: str | os.PathLike,
+    case: str | None,
+    relative_to: str | None,
+    error: float | None,
+    margin: float | None,
+) -> Study:
+    options: list[Any] = []
+    for name, value in (("--relative-to", relative_to), ("--error", error), ("--margin", margin)):
+        options += [] if value is None else [f"{name}={value}"]
+    with saved(model) as file:
+        return _study(model, facts("envelope", file, shape, *_case(model, case), *options, "-o", os.path.abspath(path)))
+
+
+@named
+def compare(model: Model, other: Model, case: str | None = None, measures: Iterable[str] = ()) -> Study:
+    """Compares the motions of two models: hardpoints, measures, metrics, as `hardpoint compare` does."""
+    chosen = [f"--measure={name}" for name in ([measures] if isinstance(measures, str) else measures)]
+    with saved(model) as first, saved(other) as second:
+        return _study(model, facts("compare", first, second, *_case(model, case), *chosen))
+
+
+@named
+def synthesize(task: str | os.PathLike | Mapping[str, Any], *, answers: int | None = None, folder: str | os.PathLike | None = None) -> Study:
+    """Finds four-bars and slider-cranks for a task (docs/synthesis.md): a task file, or its contents. `facts["answers"]` lists them;
+    with `folder`, their models and pages are written there."""
+    from .model import written
+
+    options = [] if answers is None else [f"--answers={count('answers', answers)}"]
+    options += [] if folder is None else ["-o", os.path.abspath(folder)]
+    with tempfile.TemporaryDirectory() as place:
+        if isinstance(task, Mapping):
+            path = Path(place, "task.toml")
+            path.write_text(_native.to_toml(written(task)), encoding="utf-8")
+        else:
+            path = Path(task)
+        found = facts("synthesize", path, *options)
+    return Study(None, found, [], None, None)
+
+
+@named
+def templates() -> dict[str, str]:
+    """Templates of `hardpoint.new`, with their descriptions."""
+    return _listed("new", "--list")
+
+
+@named
+def export_formats() -> dict[str, str]:
+    """Formats of `model.export`, with their descriptions."""
+    return _listed("export", "--list")
+
+
+@named
+def import_formats() -> dict[str, str]:
+    """Formats of `hardpoint.import_model`, with their descriptions."""
+    return {one["name"]: one["about"] for one in facts("import", "--list")["formats"]}
+
+
+def _listed(*arguments: str) -> dict[str, str]:
+    done = command(*arguments)
+    if done.returncode:
+        raise _error(done, [])
+    pairs = (line.strip().split("  ", 1) for line in done.stdout.splitlines() if line.strip())
+    return {pair[0]: pair[-1].strip() for pair in pairs}
+
+
+@named
+def new(
+    path: str | os.PathLike,
+    template: str,
+    *,
+    hardpoints: Mapping[str, Iterable[float]] | str | os.PathLike | None = None,
+    units: str | None = None,
+    axes: str | None = None,
+) -> Model:
+    """Writes a commented model file from a template (`hardpoint.templates()`), and reads it. An existing file is not overwritten.
+
+    `hardpoints` are your own ones by the names of the template, or a table (CSV, .xlsx) of them, with their `units` (`mm`) and `axes`
+    (`iso`, `sae`, `adams`, `lotus`, or like `"x back, y right, z up"`).
+    """
+    from .model import read
+
+    path = Path(path)
+    target = path if path.suffix == ".toml" else path.with_name(path.name + ".toml")
+    with tempfile.TemporaryDirectory() as folder:
+        options = ["--template", template]
+        if isinstance(hardpoints, Mapping):
+            table = Path(folder, "hardpoints.csv")
+            with open(table, "w", newline="", encoding="utf-8") as out:
+                rows = csv.writer(out, lineterminator="\n")
+                rows.writerow(["name", "x", "y", "z"])
+                rows.writerows([name, *map(float, place)] for name, place in hardpoints.items())
+            options += ["--hardpoints", os.fspath(table)]
+        elif hardpoints is not None:
+            options += ["--hardpoints", os.path.abspath(hardpoints)]
+        for name, value in (("--units", units), ("--axes", axes)):
+            options += [] if value is None else [name, value]
+        done = command("new", os.path.abspath(target), *options)
+    if done.returncode:
+        raise _error(done, [])
+    return read(target)
+
+
+@named
+def import_model(
+    source: str | os.PathLike, path: str | os.PathLike, *, format: str | None = None, close: Iterable[str] = ()
+) -> tuple[Model, dict[str, Any]]:
+    """Writes another program's mechanism (`hardpoint.import_formats()`) as a model file, and reads it. Returns the model and the facts
+    of `hardpoint import --json`: `report` lists what was not taken. `close` closes loops of a robot, such as `"A=B:revolute:x"`."""
+    from .model import read
+
+    options = [] if format is None else ["--format", format]
+    closings = [close] if isinstance(close, str) else list(close)
+    found = facts("import", os.path.abspath(source), "-o", os.path.abspath(path), *options, *(f"--close={one}" for one in closings))
+    return read(path), found
+
+
+@named
+def schema() -> dict[str, Any]:
+    """JSON Schema of model files."""
+    return json.loads(_native.schema())

@@ -1,0 +1,158 @@
+"""Positions as functions of the drivers, and runs with other times and laws."""
+
+import numpy as np
+import pytest
+
+import hardpoint
+from conftest import MODELS
+
+SAME = 1e-9
+"""Relative difference of one position that is reached on two ways: the tolerance of the solver."""
+AGREE = 2e-6
+"""Accuracy of central differences, relative to the derivative."""
+
+
+@pytest.mark.parametrize(
+    ("name", "drivers"),
+    [
+        ("macpherson.toml", {"rack_drive": 12.0, "strut_drive": -20.0}),
+        ("double_wishbone.toml", None),
+        ("rssr.toml", None),
+        ("stewart.toml", None),
+        ("excavator.toml", None),
+        ("front_axle.toml", None),
+    ],
+)
+def test_a_position_is_that_of_a_run_through_it(name, drivers):
+    """A run's laws tell where its drivers are; the position there has the same measures and the same derivatives by the design."""
+    model = hardpoint.read(MODELS / name)
+    if model.cases:
+        model = model.case(model.cases[0])
+    names = [driver["name"] for driver in model.drivers]
+    drivers = drivers or {name: 0.02 * (1 + k) for k, name in enumerate(names)}
+    laws = {name: f"{driver['nominal']} + {drivers.get(name, 0.0)!r} * t" for name, driver in zip(names, model.drivers)}
+    at = {name: driver["nominal"] + drivers.get(name, 0.0) for name, driver in zip(names, model.drivers)}
+    run = model.run(times=[0.0, 1.0], laws=laws)
+    position = model.at(at)
+    compared = 0
+    for output in model.outputs.values():
+        if not output.by_position:
+            continue
+        assert position[output.name] == pytest.approx(run.values(output.name)[-1], rel=SAME, abs=SAME * 100, nan_ok=True)
+        for variable in run.followed[:3]:
+            expected = run.sensitivity(output.name, variable)[-1]
+            assert position.sensitivity(output.name, variable) == pytest.approx(expected, rel=1e-6, abs=1e-7, nan_ok=True)
+            compared += 1
+    assert compared or not model.variables
+    for body in model.bodies:
+        assert position.position(body) == pytest.approx(run.body(body).position[-1], rel=SAME, abs=SAME * 100)
+
+
+def test_derivatives_by_drivers_are_differences(strut):
+    at, by = {"rack_drive": 5.0, "strut_drive": 10.0}, 1e-3
+    position = strut.at(at)
+    for driver in at:
+        there, back = (strut.at({**at, driver: at[driver] + sign * by}) for sign in (1, -1))
+        for name in ("toe", "camber", "wheel_travel"):
+            slope = (there[name] - back[name]) / (2 * by)
+            assert position.derivative(name, driver) == pytest.approx(slope, rel=AGREE, abs=1e-8), (name, driver)
+    assert abs(position.derivative("toe", "rack_drive")) > 0.1
+
+
+def test_arrays_of_drivers_give_arrays_of_results(strut):
+    rack = np.linspace(-20, 20, 5)[:, None]
+    travel = np.linspace(-30, 30, 7)
+    grid = strut.at(rack_drive=rack, strut_drive=travel)
+    assert grid["toe"].shape == grid.derivative("toe", "rack_drive").shape == (5, 7) and len(grid) == 35
+    assert grid.position("knuckle").shape == (5, 7, 3) and grid.quaternion("knuckle").shape == (5, 7, 4)
+    one = strut.at(rack_drive=float(rack[3, 0]), strut_drive=float(travel[2]))
+    assert isinstance(one["toe"], float) and one["toe"] == pytest.approx(grid["toe"][3, 2], rel=1e-12)
+    assert not grid["toe"].flags.writeable
+    frame = grid.to_pandas()
+    assert frame.shape[0] == 35 and (frame["toe [deg]"] == grid["toe"].ravel()).all()
+    assert "rack_drive = -20 to 20 mm" in repr(grid)
+
+
+def test_a_changed_design_has_its_own_positions(strut):
+    design = {"tie_rod_outer_z": 2.0}
+    changed, nominal = strut.at(strut_drive=10, design=design), strut.at(strut_drive=10)
+    predicted = nominal["toe"] + 2.0 * nominal.sensitivity("toe", "tie_rod_outer_z")
+    assert changed["toe"] == pytest.approx(predicted, abs=0.02 * abs(changed["toe"] - nominal["toe"])) and changed["toe"] != nominal["toe"]
+
+
+def test_what_cannot_be_reached_is_reported_in_terms_of_the_drivers(strut):
+    with pytest.raises(hardpoint.MotionStopped, match="cannot be moved to `rack_drive` = 1000 mm.*it stops at `rack_drive` = 961") as raised:
+        strut.at(rack_drive=1000)
+    assert raised.value.code == "HP0401" and " t = " not in str(raised.value)
+    some = strut.at(rack_drive=[0.0, 1000.0, 10.0], partial=True)
+    assert list(some.stops) == [1] and np.isnan(some["toe"]).tolist() == [False, True, False]
+    assert np.isnan(some.position("knuckle")[1]).all() and "1 not reached" in repr(some)
+
+
+@pytest.mark.parametrize(
+    ("ask", "says"),
+    [
+        (lambda m: m.at(rack_drve=1), "did you mean `rack_drive`"),
+        (lambda m: m.at({"rack_drive": "far"}), "takes a number"),
+        (lambda m: m.at(rack_drive=float("nan")), "finite"),
+        (lambda m: m.at(rack_drive=[1, 2], strut_drive=[1, 2, 3]), "different shapes"),
+        (lambda m: m.at(3), "drivers are named"),
+        (lambda m: m.at(rack_drive=1, workers=-2), "whole number from 1"),
+        (lambda m: m.at(rack_drive=1, forces={"wind": 3.0}), "no force with a law"),
+        (lambda m: m.at(rack_drive=1).value("toee"), "did you mean `toe`"),
+        (lambda m: m.at(rack_drive=1).derivative("toe", "rack"), "no driver named"),
+        (lambda m: m.at(rack_drive=1, sensitivities=False).sensitivity("toe", "tie_rod_outer_z"), "without sensitivities"),
+        (lambda m: m.run(laws={"rack_drve": "t"}), "did you mean `rack_drive`"),
+        (lambda m: m.run(laws="t"), "laws are named"),
+        (lambda m: m.run(times=[1, 0]), "increasing"),
+        (lambda m: m.run(times=[0, 1], laws={"rack_drive": [1, 2, 3]}), "each of the 2 output times"),
+        (lambda m: m.run(tmes=[0, 1]), "did you mean `times`"),
+    ],
+)
+def test_invalid_positions_and_laws_are_reported(strut, ask, says):
+    with pytest.raises(hardpoint.UsageError, match=says):
+        ask(strut)
+
+
+def test_static_loads_of_a_position(press):
+    """The torque at rest is that of a run with static loads there; the force that changes over time is given."""
+    with pytest.raises(hardpoint.UsageError, match='force `work` changes over time.*forces={"work": 100.0}'):
+        press.at(motor=30)
+    here = press.with_(loads="static").at(motor=30, forces={"work": 1.0})
+    still = press.with_(loads="static", forces={"work": {"law": 1}}).at(motor=30)
+    assert here["torque"] == pytest.approx(still["torque"], rel=1e-9) and here["torque"] != 0
+    by = 1e-3
+    there, back = (press.at(motor=30 + sign * by, forces={"work": 1.0})["torque"] for sign in (1, -1))
+    assert here.derivative("torque", "motor") == pytest.approx((there - back) / (2 * by), rel=1e-5)
+
+
+@pytest.fixture(scope="module")
+def press():
+    return hardpoint.read(MODELS / "press.toml")
+
+
+def test_a_driver_of_a_measure_has_the_value_of_the_measure(strut):
+    start = strut.at()["wheel_travel"]
+    model = strut.with_(drivers={"strut_drive": {"joint": None, "measure": "wheel_travel", "law": f"{start} + t"}})
+    position = model.at(strut_drive=12)
+    assert position["wheel_travel"] == pytest.approx(12, abs=1e-9)
+    assert position.derivative("wheel_travel", "strut_drive") == pytest.approx(1, abs=1e-9)
+    assert position.derivative("toe", "strut_drive") != 0
+
+
+def test_laws_as_arrays_pass_through_their_values(strut):
+    times = np.linspace(0, 2, 9)
+    values = 10 * np.sin(times)
+    run = strut.run(times=times, laws={"strut_drive": values, "rack_drive": 0})
+    assert (run.times == times).all()
+    for k in (0, 4, 8):
+        assert run.values("toe")[k] == pytest.approx(strut.at(strut_drive=values[k])["toe"], rel=1e-9)
+    assert strut.run(times={"end": 1, "steps": 4}).times.tolist() == [0, 0.25, 0.5, 0.75, 1]
+
+
+def test_laws_hold_in_their_case_only(toe):
+    run = toe.run(case="bump", laws={"strut_drive": "20 * t"}, times=[0, 1])
+    assert run.case == "bump" and run.metrics and len(run) == 2
+    assert len(toe.run(case="bump")) == 81
+    assert "20 * t" in run.model.to_toml() and "20 * t" not in toe.to_toml()
+    assert len(run.model.run(case="steer")) == len(toe.run(case="steer"))
