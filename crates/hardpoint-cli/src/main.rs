@@ -10,12 +10,15 @@ mod export;
 mod folder;
 mod import;
 mod journal;
+mod lsp;
 mod maps;
+mod mcp;
 mod meter;
 mod new;
 mod optimize;
 mod outcome;
 mod pages;
+mod rpc;
 mod run;
 mod session;
 mod site;
@@ -69,6 +72,8 @@ fn main() -> ExitCode {
         Command::Sweep(options) => sweep::run(&options),
         Command::Studio(options) => studio::run(&options),
         Command::Site(options) => site::run(&options),
+        Command::Mcp => mcp::run(),
+        Command::Lsp(_) => lsp::run(),
         Command::Schema => {
             text::print(&hardpoint_file::schema());
             Outcome::Done
