@@ -102,6 +102,12 @@ pub enum Command {
     Studio(Studio),
     /// Write all models as a static site: a gallery, and a page for each model
     Site(Site),
+    /// Serve agents over the Model Context Protocol: check, run, change and optimise models
+    #[command(after_help = AFTER_MCP)]
+    Mcp,
+    /// Serve editors over the language server protocol: diagnostics, completion, references, renaming
+    #[command(after_help = AFTER_LSP)]
+    Lsp(Lsp),
     /// Print the JSON Schema of model files, for completion in editors
     #[command(after_help = "Example:\n  hardpoint schema > hardpoint.schema.json")]
     Schema,
@@ -115,6 +121,36 @@ pub enum Command {
     },
 }
 
+const AFTER_MCP: &str = "\
+Reads one JSON-RPC message per line from stdin and writes its answers to stdout; everything
+else goes to stderr. Clients start it themselves. Tools: check, run, what_if, optimize,
+tolerance, sweep, synthesize, explain, new_model, import_model. Resources: the documents, the
+JSON Schema of models, the templates (docs/agents.md).
+
+Configuration of a client:
+  { \"mcpServers\": { \"hardpoint\": { \"command\": \"hardpoint\", \"args\": [\"mcp\"] } } }
+
+Example:
+  echo '{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"ping\"}' | hardpoint mcp";
+
+const AFTER_LSP: &str = "\
+Speaks the language server protocol on stdin and stdout; editors start it themselves
+(docs/editors.md has configurations of VS Code, Neovim and Helix). It checks a model while you
+write, completes keys, names and words, shows the meaning of keys and the values of
+entries, finds references, and renames entries at all their places.
+
+Example, for Neovim 0.11 or later:
+  vim.lsp.config('hardpoint', { cmd = { 'hardpoint', 'lsp' }, filetypes = { 'toml' } })
+  vim.lsp.enable('hardpoint')";
+
+/// `hardpoint lsp`.
+#[derive(Args, Debug)]
+pub struct Lsp {
+    /// Communicate on stdin and stdout, which is the only way; editors add this option
+    #[arg(long, hide = true)]
+    pub stdio: bool,
+}
+
 /// Arguments of all analyses.
 #[derive(Args, Debug, Default)]
 pub struct Common {
@@ -122,7 +158,7 @@ pub struct Common {
     pub model: PathBuf,
     /// Solve in absolute coordinates: six per body, every joint cut
     #[arg(long)]
-    absolute: bool,
+    pub absolute: bool,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub json: bool,
@@ -554,7 +590,7 @@ Examples:
   hardpoint whatif models/macpherson.toml --set tie_rod_outer.z=+2mm --save strut_2.toml";
 
 /// `hardpoint whatif`.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 #[command(after_help = AFTER_WHATIF, group = ArgGroup::new("change").args(["set", "design"]).multiple(true))]
 pub struct Whatif {
     #[command(flatten)]
@@ -637,7 +673,7 @@ Examples:
   hardpoint optimize models/four_bar_inverse.toml -o results/found --save found.toml";
 
 /// `hardpoint optimize`.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 #[command(after_help = AFTER_OPTIMIZE)]
 pub struct Optimize {
     #[command(flatten)]
@@ -721,7 +757,7 @@ Examples:
   hardpoint import --list";
 
 /// `hardpoint import`.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 #[command(after_help = AFTER_IMPORT)]
 pub struct Import {
     /// Source file of the other program
@@ -820,7 +856,7 @@ pub struct TradeOff {
 }
 
 /// `hardpoint tolerance`.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 #[command(after_help = AFTER_TOLERANCE)]
 pub struct Tolerance {
     #[command(flatten)]
@@ -1041,7 +1077,8 @@ pub struct Site {
 }
 
 /// Method that chooses the designs.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, Deserialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Every combination of evenly spaced values
     Factorial,

@@ -5,6 +5,7 @@ use std::time::Instant;
 use hardpoint::Analysis;
 use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
+use hardpoint_report::course::Course;
 use hardpoint_report::diagnose;
 use hardpoint_report::facts::outline;
 use hardpoint_report::summary::{RunStatus, Summary};
@@ -21,9 +22,9 @@ pub fn check(options: &Check) -> Outcome {
     session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
 }
 
-fn check_in(session: &Session, options: &Check, file: &ModelFile) -> Result<Outcome, Outcome> {
+pub fn check_in(session: &Session, options: &Check, file: &ModelFile) -> Result<Outcome, Outcome> {
     let summary = examine(session, options.common.formulation(), file)?;
-    if options.common.json {
+    if session.is_json() {
         session.print_json(&summary);
     } else {
         text::print(&facts_text(&summary));
@@ -34,6 +35,15 @@ fn check_in(session: &Session, options: &Check, file: &ModelFile) -> Result<Outc
 
 /// Solves a model's motion and summarises it with all diagnostics.
 pub fn examine(session: &Session, formulation: Formulation, file: &ModelFile) -> Result<Summary, Outcome> {
+    solved(session, formulation, file).map(|(summary, _)| summary)
+}
+
+/// Solves a model's motion. Returns its summary with all diagnostics, and the motion.
+pub fn solved(
+    session: &Session,
+    formulation: Formulation,
+    file: &ModelFile,
+) -> Result<(Summary, Course), Outcome> {
     let analysis = Analysis::with(&file.model, formulation).map_err(|fault| {
         if !session.is_json() {
             text::print(&outline_text(file));
@@ -50,7 +60,7 @@ pub fn examine(session: &Session, formulation: Formulation, file: &ModelFile) ->
     summary.timings.solve = started.elapsed().as_secs_f64();
     summary.timings.total = session.seconds();
     summary.diagnostics = diagnose::all(file, &summary, &course, None);
-    Ok(summary)
+    Ok((summary, course))
 }
 
 /// Outcome of a check with this summary.

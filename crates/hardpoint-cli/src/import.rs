@@ -44,7 +44,7 @@ fn list(session: &Session) {
     text::print(&text::pairs(&FORMATS.iter().map(row).collect::<Vec<_>>()));
 }
 
-fn import_to(session: &Session, options: &Import, source: &Path, to: &Path) -> Result<Outcome, Outcome> {
+pub fn import_to(session: &Session, options: &Import, source: &Path, to: &Path) -> Result<Outcome, Outcome> {
     let format = options.format.as_deref().map(|name| format_named(session, name)).transpose()?;
     let closings: Result<Vec<Closing>, String> = options.close.iter().map(|text| text.parse()).collect();
     let closings = closings.map_err(|why| session.misunderstood(&format!("`--close`: {why}")))?;

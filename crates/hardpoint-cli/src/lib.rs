@@ -12,13 +12,16 @@ mod export;
 mod folder;
 mod import;
 mod journal;
+mod lsp;
 mod map;
 mod maps;
+mod mcp;
 mod meter;
 mod new;
 mod optimize;
 mod outcome;
 mod pages;
+mod rpc;
 mod run;
 mod session;
 mod site;
@@ -74,6 +77,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Sweep(options) => sweep::run(&options),
         Command::Studio(options) => studio::run(&options),
         Command::Site(options) => site::run(&options),
+        Command::Mcp => mcp::run(),
+        Command::Lsp(_) => lsp::run(),
         Command::Schema => {
             text::print(&hardpoint_file::schema());
             Outcome::Done

@@ -13,6 +13,8 @@ pub trait Listener: Send + Sync {
     fn line(&self, line: &str);
     /// Reports a failure: the diagnostics as JSON and as text.
     fn refused(&self, diagnostics: serde_json::Value, text: &str);
+    /// Receives a result as a JSON document; only agents do.
+    fn document(&self, _: serde_json::Value) {}
 }
 
 /// A progress bar, shown only on a terminal and after a delay; a listener receives the progress instead.

@@ -27,7 +27,7 @@ pub fn run(options: &Optimize) -> Outcome {
     optimize_in(&session, options).unwrap_or_else(|outcome| outcome)
 }
 
-fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome> {
+pub fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome> {
     let mut file = session.read(&options.common.model)?;
     session.keep_case(&mut file, options.motions.case.as_deref())?;
     let [starts, iterations] = [options.starts, options.iterations].map(|n| n.map(NonZero::get));

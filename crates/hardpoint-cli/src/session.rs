@@ -35,6 +35,8 @@ enum Audience {
     Program,
     /// A page.
     Page(Arc<dyn Listener>),
+    /// An agent, which gets the JSON documents one by one.
+    Agent(Arc<dyn Listener>),
 }
 
 /// A running command.
@@ -95,6 +97,11 @@ impl Session {
         Self::of(Audience::Page(listener), interrupted, Arc::new(AtomicBool::new(true)))
     }
 
+    /// Session for an agent, which may interrupt it with this flag.
+    pub fn for_agent(listener: Arc<dyn Listener>, interrupted: Arc<AtomicBool>) -> Self {
+        Self::of(Audience::Agent(listener), interrupted, Arc::new(AtomicBool::new(true)))
+    }
+
     fn of(audience: Audience, interrupted: Arc<AtomicBool>, patient: Arc<AtomicBool>) -> Self {
         Self {
             audience,
@@ -108,7 +115,7 @@ impl Session {
 
     fn listener(&self) -> Option<&Arc<dyn Listener>> {
         match &self.audience {
-            Audience::Page(listener) => Some(listener),
+            Audience::Page(listener) | Audience::Agent(listener) => Some(listener),
             Audience::Terminal | Audience::Program => None,
         }
     }
@@ -131,7 +138,7 @@ impl Session {
     pub fn line(&self, line: &str) {
         match &self.audience {
             Audience::Terminal => text::print(&format!("{line}\n")),
-            Audience::Page(listener) => listener.line(line),
+            Audience::Page(listener) | Audience::Agent(listener) => listener.line(line),
             Audience::Program => {}
         }
     }
@@ -182,7 +189,9 @@ impl Session {
             Audience::Terminal => {
                 text::complain(&format!("{}\n", diagnostics.render(text::stderr_in_color())));
             }
-            Audience::Page(listener) => listener.refused(json!(diagnostics), &diagnostics.render(false)),
+            Audience::Page(listener) | Audience::Agent(listener) => {
+                listener.refused(json!(diagnostics), &diagnostics.render(false));
+            }
         }
     }
 
@@ -427,7 +436,7 @@ impl Session {
 
     /// True if the result is one JSON document.
     pub fn is_json(&self) -> bool {
-        matches!(self.audience, Audience::Program)
+        matches!(self.audience, Audience::Program | Audience::Agent(_))
     }
 
     /// Solves motion and sensitivities with progress, for a motion that is studied as a whole ([`Session::fits`]).
@@ -534,7 +543,7 @@ impl Session {
         match &self.audience {
             Audience::Program => self.print_error(diagnostics),
             Audience::Terminal => self.tell(file, diagnostics),
-            Audience::Page(listener) => {
+            Audience::Page(listener) | Audience::Agent(listener) => {
                 let text: Vec<String> = diagnostics.iter().map(|d| file.render(d, false)).collect();
                 listener.refused(json!(diagnostics), &text.join("\n\n"));
             }
@@ -621,7 +630,7 @@ impl Session {
                 );
             }
             Audience::Terminal => text::complain(&text()),
-            Audience::Page(listener) => {
+            Audience::Page(listener) | Audience::Agent(listener) => {
                 listener.refused(diagnostics(), &anstream::adapter::strip_str(&text()).to_string());
             }
         }
@@ -631,6 +640,10 @@ impl Session {
     pub fn print_json(&self, document: &impl serde::Serialize) {
         if let Some(cases) = self.documents().as_mut() {
             cases.push(serde_json::to_value(document).expect("results are plain data"));
+            return;
+        }
+        if let Audience::Agent(listener) = &self.audience {
+            listener.document(serde_json::to_value(document).expect("results are plain data"));
             return;
         }
         text::print(&json_text(document));

@@ -34,7 +34,7 @@ pub fn run(options: &Sweep) -> Outcome {
     sweep_in(&session, options).unwrap_or_else(|outcome| outcome)
 }
 
-fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
+pub fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
     let finish = |results: &Results<'_>, folder| results.finish(session, folder);
     let (mut facts, written) = swept(session, &file, options, finish)?;

@@ -29,7 +29,7 @@ pub fn run(options: &Synthesize) -> Outcome {
     synthesize_in(&session, options).unwrap_or_else(|outcome| outcome)
 }
 
-fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome, Outcome> {
+pub fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome, Outcome> {
     let file = TaskFile::read(&options.task).map_err(|error| {
         session.not_read(error.diagnostics());
         Outcome::BadModel

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use comfy_table::{Cell, ColumnConstraint, ContentArrangement, LineStyle, TableStyle, Width};
@@ -17,9 +18,20 @@ const PLAIN: &str = "\x1b[0m";
 /// First error of writing to stdout.
 static FAILED: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
+/// True if stdout carries the messages of a protocol.
+static RESERVED: AtomicBool = AtomicBool::new(false);
+
+/// Reserves stdout for the messages of a protocol: all other text goes to stderr from now on.
+pub fn reserve_stdout() {
+    RESERVED.store(true, Ordering::SeqCst);
+}
+
 /// Prints to stdout, without colours unless it is a terminal. A closed pipe is not an error; any other failure is
 /// stored for [`failed`].
 pub fn print(text: &str) {
+    if RESERVED.load(Ordering::SeqCst) {
+        return complain(text);
+    }
     let mut out = anstream::stdout().lock();
     if let Err(error) = out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {
         note_failure(error);

@@ -23,7 +23,7 @@ pub fn run(options: &Tolerance) -> Outcome {
     tolerance_in(&session, options).unwrap_or_else(|outcome| outcome)
 }
 
-fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outcome> {
+pub fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outcome> {
     let file = session.read(&options.common.model)?;
     let numbers = session.numbers_of(&file, &options.motions)?;
     let overrides = overrides(options.samples, options.seed, options.allocate);

@@ -40,7 +40,7 @@ pub fn whatif(options: &Whatif) -> Outcome {
     session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
 }
 
-fn whatif_in(
+pub fn whatif_in(
     session: &Session,
     options: &Whatif,
     mut file: ModelFile,
@@ -140,7 +140,7 @@ fn whatif_in(
         written = Some(folder.path_of("whatif.html"));
         result.and_then(|()| folder.commit(&[])).map_err(|e| session.not_written(&e))?;
     }
-    if options.common.json {
+    if session.is_json() {
         session.print_json(&facts);
     } else {
         text::print(&facts_text(&facts, &wanted));

@@ -16,7 +16,7 @@
 //! assert_eq!(file.model.times.len(), 101);
 //! ```
 //!
-//! Data flows through four rooms, each of which uses those before it only:
+//! Data flows through five rooms, each of which uses those before it only:
 //!
 //! | room | contents |
 //! |---|---|
@@ -24,6 +24,7 @@
 //! | `compose` | one table from several texts: included files, planar shorthand, mirror images |
 //! | `read` | the sections of a model, one file each: from its table to its part of the draft; [`ModelFile`] |
 //! | `write` | edits for a changed design, JSON Schema, tables of the documentation |
+//! | `language` | completion, meanings, references and renaming, for editors |
 //!
 //! Properties of the reader:
 //!
@@ -39,12 +40,17 @@
 //!   are read.
 
 mod compose;
+mod language;
 mod read;
 mod values;
 mod write;
 
 pub use compose::{Plane, side_names};
 pub use hardpoint_table::{AngleUnit, LengthUnit, Units};
+pub use language::{
+    Completion, CompletionKind, Document, IncludedFile, KeyMeaning, LARGEST_DOCUMENT, NameAt, Reference,
+    RenameError, Symbol,
+};
 pub use read::{
     Appearance, Form, MeasuredData, Mesh, MeshFrame, ModelFile, ReadError, TaskAim, TaskFile, TaskRegion,
     parse, parse_in, parse_with, read, triangles,

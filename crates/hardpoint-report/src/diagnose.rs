@@ -9,10 +9,11 @@ use hardpoint::topology::TopologyError;
 use hardpoint::{
     draft::Section,
     model::{
-        ChangePointPolicy, DesignVariable, ENDS_MEET, ElementKind, JointId, MeasureKind, Model, OutputSource,
+        CaseId, ChangePointPolicy, DesignVariable, ENDS_MEET, ElementKind, JointId, MeasureKind, Model,
+        OutputSource,
     },
 };
-use hardpoint_file::{Diagnostic, ModelFile, Severity};
+use hardpoint_file::{Diagnostic, Diagnostics, ModelFile, Severity};
 
 use crate::assembly::GapFact;
 use crate::clearance::drivers;
@@ -41,6 +42,20 @@ pub fn all(file: &ModelFile, summary: &Summary, course: &Course, outputs: Option
     list.extend(loads(file, course));
     list.extend(ended.as_ref().map(|s| stop(file, s, course.steps, outputs)));
     list
+}
+
+/// Diagnostics of a model text that was read: its errors, or its remarks with the error of a mechanism that cannot be
+/// driven. A file with cases is checked in its first case.
+pub fn of_text(read: Result<ModelFile, Diagnostics>) -> (Option<ModelFile>, Vec<Diagnostic>) {
+    let file = match read {
+        Ok(file) => file,
+        Err(errors) => return (None, errors.list().to_vec()),
+    };
+    let first = (!file.model.cases.is_empty()).then(|| file.in_case(CaseId(0)));
+    let shown = first.as_ref().unwrap_or(&file);
+    let mut list = shown.remarks.clone();
+    list.extend(Analysis::new(&shown.model).err().map(|fault| topology_fault(shown, &fault)));
+    (Some(file), list)
 }
 
 /// Diagnostic of a mechanism that cannot be driven as defined.

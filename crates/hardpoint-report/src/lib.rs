@@ -22,6 +22,8 @@
 //! | [`payload`], [`page`], [`encoding`] | `report.html` |
 //! | [`gallery`] | pages of all models, and of a model that cannot be shown |
 //! | [`diagnose`] | diagnostics of runs that cannot start or ended early |
+//! | [`entry`] | an entry of a model in a few lines, for editors |
+//! | [`ranges`] | range of every measure over the motion |
 //! | [`columns`], [`results`], [`npy`], [`figures`] | tables of numbers, from `hardpoint-table` |
 
 pub mod assembly;
@@ -33,6 +35,7 @@ pub mod course;
 pub mod deflection;
 pub mod diagnose;
 pub mod encoding;
+pub mod entry;
 pub mod envelope;
 pub mod facts;
 pub mod gallery;
@@ -45,6 +48,7 @@ pub mod metric;
 pub mod optimize;
 pub mod page;
 pub mod payload;
+pub mod ranges;
 mod record;
 mod rigid;
 mod shifts;

@@ -261,7 +261,7 @@ fn positive(model: &Model, metric: &Metric) -> &'static str {
 }
 
 /// Description of a metric: `slope of toe over wheel_travel at 0 mm`.
-fn what(model: &Model, units: Units, metric: &Metric) -> String {
+pub(crate) fn what(model: &Model, units: Units, metric: &Metric) -> String {
     let name = |output| model.output_name(output);
     let x = model.abscissa(metric);
     let place = |at: f64| with_unit(units.from_si(x, at), &unit(units, x));

@@ -16,7 +16,7 @@ mod study;
 
 use std::ops::ControlFlow;
 
-use hardpoint_file::{ModelFile, Severity, parse_with};
+use hardpoint_file::{ModelFile, parse_with};
 use hardpoint_report::encoding::Plain;
 use hardpoint_report::page::ModelText;
 use serde::Serialize;
@@ -113,11 +113,15 @@ impl Engine {
 
 /// Parses a model in the requested case, or in its first case if there is no such case.
 fn parse_in_case(model: &ModelText) -> Result<ModelFile, EngineError> {
-    let file = parse_model(model)?;
-    let Some(name) = &model.case else { return Ok(first_case(file)) };
-    match file.model.cases.iter().position(|case| case.name == *name) {
-        Some(case) => Ok(file.in_case(hardpoint::model::CaseId(case))),
-        None => Ok(first_case(file)),
+    Ok(in_case(parse_model(model)?, model))
+}
+
+/// Returns a model in the requested case, or in its first case if there is no such case.
+fn in_case(file: ModelFile, model: &ModelText) -> ModelFile {
+    let asked = model.case.as_ref().and_then(|name| file.model.cases.iter().position(|c| c.name == *name));
+    match asked {
+        Some(case) => file.in_case(hardpoint::model::CaseId(case)),
+        None => first_case(file),
     }
 }
 
@@ -134,18 +138,9 @@ fn first_case(file: ModelFile) -> ModelFile {
 
 /// Returns the diagnostics of a text, including those of its topology.
 fn check(model: &ModelText) -> CheckReply {
-    let file = match parse_in_case(model) {
-        Ok(file) => file,
-        Err(messages) => return CheckReply { messages },
-    };
-    let mut messages: Vec<DiagnosticMessage> =
-        file.remarks.iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect();
-    if let Err(fault) = hardpoint::Analysis::new(&file.model) {
-        let fault = hardpoint_report::diagnose::topology_fault(&file, &fault);
-        assert_eq!(fault.severity, Severity::Error);
-        messages.push(DiagnosticMessage::of(&model.text, &fault));
-    }
-    CheckReply { messages }
+    let read = parse_with(&model.text, &model.file, &model.files).map(|file| in_case(file, model));
+    let (_, list) = hardpoint_report::diagnose::of_text(read);
+    CheckReply { messages: list.iter().map(|d| DiagnosticMessage::of(&model.text, d)).collect() }
 }
 
 /// Encodes a reply without curves.

@@ -19,10 +19,13 @@ use crate::text;
 use axes::Axes;
 
 /// A template.
-struct Template {
-    name: &'static str,
-    what: &'static str,
-    text: &'static str,
+pub struct Template {
+    /// Name.
+    pub name: &'static str,
+    /// Description in a few words.
+    pub what: &'static str,
+    /// Text of the model.
+    pub text: &'static str,
     /// True if its axes are those of a vehicle.
     is_vehicle: bool,
 }
@@ -45,7 +48,8 @@ macro_rules! templates {
     };
 }
 
-static TEMPLATES: &[Template] = templates! {
+/// All templates.
+pub static TEMPLATES: &[Template] = templates! {
     "double-wishbone": "front suspension on two wishbones, with a rack", true;
     "macpherson": "front suspension on a strut, with a rack", true;
     "k-and-c": "front axle on bushings, on a rig for kinematics and compliance", true;
@@ -143,12 +147,20 @@ fn template(session: &Session, name: Option<&str>) -> Result<&'static Template, 
             )
         })?,
     };
-    let wanted = plain(&name);
+    template_named(session, &name)
+}
+
+/// Template of that name.
+///
+/// # Errors
+/// Fails if there is none, which is reported.
+pub fn template_named(session: &Session, name: &str) -> Result<&'static Template, Outcome> {
+    let wanted = plain(name);
     TEMPLATES.iter().find(|t| plain(t.name) == wanted).ok_or_else(|| {
-        let near = did_you_mean(&name, TEMPLATES.iter().map(|t| t.name));
+        let near = did_you_mean(name, TEMPLATES.iter().map(|t| t.name));
         let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         let all: Vec<&str> = TEMPLATES.iter().map(|t| t.name).collect();
-        let what = format!("there is no template `{}`{near}", text::shown(&name));
+        let what = format!("there is no template `{}`{near}", text::shown(name));
         session.not_begun(&what, &format!("the templates: {}", all.join(", ")), "select one of them")
     })
 }

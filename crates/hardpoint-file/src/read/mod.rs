@@ -46,5 +46,6 @@ pub(crate) use model::MODEL;
 #[cfg(test)]
 pub(crate) use model::tables;
 pub(crate) use parse::parsed;
+pub(crate) use task::TASK;
 #[cfg(test)]
 pub(crate) use task::task_tables;

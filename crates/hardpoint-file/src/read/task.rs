@@ -23,7 +23,7 @@ const MOST_ANSWERS: u32 = 100;
 /// Default number of answers.
 const ANSWERS: usize = 10;
 
-const TASK: Table = table! {
+pub(crate) const TASK: Table = table! {
     /// A task for `hardpoint synthesize`.
     "Hardpoint task":
     /// Name of the task, for headings and the names of models.

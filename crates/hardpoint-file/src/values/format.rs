@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use hardpoint::joint::Quantity;
 
 /// A key of a table.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Key {
     pub key: &'static str,
     pub shape: Shape,
@@ -21,7 +21,7 @@ pub(crate) struct Key {
 }
 
 /// Presence of a key.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Need {
     Required,
     Optional,
@@ -57,7 +57,7 @@ macro_rules! table {
 pub(crate) use {keys, table};
 
 /// A table with keys of its own.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Table {
     /// Type of the table if `type` selects it; otherwise its name in the schema.
     pub name: &'static str,
@@ -98,6 +98,7 @@ impl Table {
 }
 
 /// A table that is one of several kinds.
+#[derive(Debug)]
 pub(crate) struct Kinds {
     pub name: &'static str,
     /// Meaning of the table; `{keys}` represents the first keys of its kinds.
@@ -133,7 +134,7 @@ impl Kinds {
 }
 
 /// Form of a value.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Shape {
     Text,
     /// Name of a file in the model's folder or below it.

@@ -21,4 +21,6 @@ pub(crate) use places::{EntryPlace, Places};
 pub(crate) use reader::{Reader, all_read, quoted};
 pub(crate) use scalars::axis_named;
 pub(crate) use tables::above_tables;
-pub(crate) use walk::{Leaf, in_expression, list_of, table_of, walk};
+pub(crate) use walk::{
+    Leaf, alternatives, in_expression, keys_of, list_form, list_of, names_in_expression, table_of, walk,
+};

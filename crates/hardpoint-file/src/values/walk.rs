@@ -1,6 +1,7 @@
 //! Traversal of a value by its declaration: its names, expressions and vectors, for rewriting.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use hardpoint::joint::Quantity;
 use toml::Spanned;
@@ -61,16 +62,9 @@ pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &m
             if list.len() == 2 && all.iter().any(is_vector) && (!pairs || list.iter().any(is_number)) {
                 visit(key, Leaf::Pair(list));
             }
-            // A list form with the right length takes precedence over one of any length.
-            let fits = |shape: &&Shape| match shape {
-                Shape::List(_, [least, most]) => (*least..=*most).contains(&list.len()),
-                _ => false,
-            };
-            let exact = |shape: &&Shape| matches!(shape, Shape::List(_, [least, most]) if least == most);
-            let of = all.iter().filter(fits).find(exact).or_else(|| all.iter().find(fits));
-            let Some(Shape::List(of, [least, most])) = of else { return };
+            let Some((of, [least, most])) = list_form(&all, list.len()) else { return };
             // Contents are visited before the whole value.
-            list.iter_mut().for_each(|value| walk(key, **of, value, visit));
+            list.iter_mut().for_each(|value| walk(key, *of, value, visit));
             match (of, least == most, list.len()) {
                 (Shape::Number(Quantity::Angle), true, 3) => visit(key, Leaf::Angles(list)),
                 (Shape::Number(_) | Shape::Plain(_), true, 3) => visit(key, Leaf::Vector(list)),
@@ -83,7 +77,8 @@ pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &m
                 entries(kind, **of, table, visit);
                 return;
             }
-            let keys = keys_of(&all, table);
+            let kind = table.get("type").and_then(|v| v.get_ref().as_str());
+            let keys = keys_of(&all, kind);
             for (name, value) in table.iter_mut() {
                 if let Some(key) = keys.iter().find(|key| key.key == name.get_ref()) {
                     walk(key.key, key.shape, value, visit);
@@ -116,8 +111,18 @@ fn entries<'a>(kind: &'static str, of: Shape, table: &mut DeTable<'a>, visit: &m
     }
 }
 
+/// Form of the elements of a list of this length, and its limits. A list form with the right length takes precedence
+/// over one of any length.
+pub(crate) fn list_form(all: &[Shape], length: usize) -> Option<(&'static Shape, [usize; 2])> {
+    let lists = all.iter().filter_map(|shape| match shape {
+        Shape::List(of, [least, most]) if (*least..=*most).contains(&length) => Some((*of, [*least, *most])),
+        _ => None,
+    });
+    lists.clone().find(|(_, [least, most])| least == most).or_else(|| lists.clone().next())
+}
+
 /// Alternatives of a form.
-fn alternatives(shape: Shape) -> Vec<Shape> {
+pub(crate) fn alternatives(shape: Shape) -> Vec<Shape> {
     match shape {
         Shape::Any(_, _, shapes) => shapes.iter().flat_map(|s| alternatives(*s)).collect(),
         shape => vec![shape],
@@ -125,8 +130,7 @@ fn alternatives(shape: Shape) -> Vec<Shape> {
 }
 
 /// Keys of a table with one of these forms: those of its `type`, if it has one.
-fn keys_of(all: &[Shape], table: &DeTable<'_>) -> Vec<&'static Key> {
-    let kind = table.get("type").and_then(|v| v.get_ref().as_str());
+pub(crate) fn keys_of(all: &[Shape], kind: Option<&str>) -> Vec<&'static Key> {
     let keys = |shape: &Shape| match shape {
         Shape::Table(table) => table.keys().collect::<Vec<_>>(),
         Shape::Kinds(kinds) if kinds.typed => {
@@ -139,28 +143,37 @@ fn keys_of(all: &[Shape], table: &DeTable<'_>) -> Vec<&'static Key> {
     all.iter().flat_map(keys).collect()
 }
 
-/// Rewrites the names in an expression: all names of numbers, with a coordinate after a point, like `A.x`.
-pub(crate) fn in_expression<'a>(text: &mut Cow<'a, str>, say: impl Fn(&str) -> Option<String>) {
-    let (mut out, mut changed, mut rest) = (String::with_capacity(text.len()), false, &**text);
+/// Ranges of the names of numbers in an expression, with a coordinate after a point, like `A.x`.
+pub(crate) fn names_in_expression(text: &str) -> Vec<Range<usize>> {
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
-    while let Some(first) = rest.chars().next() {
+    let (mut names, mut at) = (Vec::new(), 0);
+    while let Some(first) = text[at..].chars().next() {
         // A number with its exponent is not a name.
         let is_name = first.is_alphabetic() || first == '_';
         let length = match is_part(first) {
-            true => rest.find(|c| !is_part(c)).unwrap_or(rest.len()),
+            true => text[at..].find(|c| !is_part(c)).unwrap_or(text.len() - at),
             false => first.len_utf8(),
         };
-        let (word, after) = rest.split_at(length);
-        match say(word).filter(|_| is_name) {
-            Some(said) => {
-                out += &said;
-                changed = true;
-            }
-            None => out += word,
+        if is_name {
+            names.push(at..at + length);
         }
-        rest = after;
+        at += length;
+    }
+    names
+}
+
+/// Rewrites the names in an expression.
+pub(crate) fn in_expression<'a>(text: &mut Cow<'a, str>, say: impl Fn(&str) -> Option<String>) {
+    let (mut out, mut changed, mut end) = (String::with_capacity(text.len()), false, 0);
+    for name in names_in_expression(text) {
+        if let Some(said) = say(&text[name.clone()]) {
+            out += &text[end..name.start];
+            out += &said;
+            (changed, end) = (true, name.end);
+        }
     }
     if changed {
+        out += &text[end..];
         *text = Cow::Owned(out);
     }
 }

@@ -19,6 +19,7 @@ mod grid_clearance;
 mod grids;
 mod includes;
 mod joint_limits;
+mod language;
 mod loads;
 mod measures;
 mod meshes;

@@ -6,7 +6,7 @@ use hardpoint::space::Vec3;
 use crate::figures::{names, number, rounded};
 
 /// Short description of a variable's change.
-pub(super) fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String {
+pub(crate) fn change_text(model: &Model, changes: &[Change], fixed_length: bool) -> String {
     let said = model.describe_changes(changes, &direction_text, &number);
     let said =
         said.iter().map(|c| format!("{} {}{}", c.verb, names(c.names.iter().map(String::as_str)), c.how));

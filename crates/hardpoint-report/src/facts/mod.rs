@@ -7,13 +7,14 @@ mod notes;
 mod redundancy;
 mod text;
 
+pub(crate) use change::change_text;
 pub use redundancy::{JointReplacement, RedundancyFact};
 pub use text::outline;
 pub(crate) use text::table;
 
 use std::collections::{HashMap, HashSet};
 
-use change::{change_text, direction_text};
+use change::direction_text;
 use hardpoint::Solution;
 use hardpoint::constraint::Row;
 use hardpoint::joint::{self, Quantity};
@@ -338,7 +339,7 @@ fn bodies(model: &Model, topology: &Topology) -> Vec<BodyFact> {
 }
 
 /// Names of the joints on every body, ground included.
-fn joints_on(model: &Model) -> Vec<Vec<String>> {
+pub(crate) fn joints_on(model: &Model) -> Vec<Vec<String>> {
     let mut joints_on = vec![Vec::new(); model.bodies.len()];
     for (_, joint) in model.named_joints() {
         for body in joint.bodies {
@@ -395,7 +396,7 @@ fn why_cut(joint: &Joint, reason: CutReason) -> &'static str {
     }
 }
 
-fn couplers(model: &Model, units: Units) -> Vec<CouplerFact> {
+pub(crate) fn couplers(model: &Model, units: Units) -> Vec<CouplerFact> {
     let fact = |coupler: &Coupler| {
         let inside = |t: &hardpoint::model::CouplerTerm| units.to_si(model.coupled(t).quantity, 1.0);
         // The equation may be scaled. Coefficients from the file are shown unchanged; coefficients from teeth and radii
@@ -433,7 +434,7 @@ fn relation(terms: &[TermFact]) -> String {
 /// Names of the points in the model file, the first at each location.
 type Points<'m> = HashMap<(BodyId, HardpointId), &'m str>;
 
-fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
+pub(crate) fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
     let mut points = Points::new();
     for point in model.points.iter().filter(|p| !p.unnamed) {
         points.entry((point.body, point.at)).or_insert(&point.name);
@@ -631,7 +632,7 @@ fn defect(model: &Model, units: Units, (by, unit): (Quantity, &str), defect: &Jo
     }
 }
 
-fn measures(model: &Model, units: Units) -> Vec<MeasureFact> {
+pub(crate) fn measures(model: &Model, units: Units) -> Vec<MeasureFact> {
     let fact = |(k, m): (usize, &hardpoint::model::Measure)| MeasureFact {
         name: m.name.clone(),
         unit: unit(units, model.dimension(OutputSource::Measure(k))),

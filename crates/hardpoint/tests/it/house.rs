@@ -27,9 +27,9 @@ const ROOMS: [&str; 20] = [
     "run",
 ];
 
-/// The rooms of the crate that reads model files: values of a text, one table from several texts, its sections, and
-/// files written.
-const ROOMS_OF_FILES: [&str; 4] = ["values", "compose", "read", "write"];
+/// The rooms of the crate that reads model files: values of a text, one table from several texts, its sections,
+/// files written, and the language for editors.
+const ROOMS_OF_FILES: [&str; 5] = ["values", "compose", "read", "write", "language"];
 
 /// Crates with rooms, by the paths of their sources, and the minimum number of files there.
 const HOUSES: [(&str, &[&str], usize); 2] =

@@ -80,8 +80,10 @@ fn files(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_str().unwrap();
+        // A link to a folder leads to files that are counted there.
         if path.is_dir() {
-            if !["target", "node_modules", "dist", "page", "snapshots", "images"].contains(&name)
+            if !path.is_symlink()
+                && !["target", "node_modules", "dist", "page", "snapshots", "images"].contains(&name)
                 && !name.starts_with('.')
             {
                 files(&path, endings, found);
