@@ -9,13 +9,14 @@ use crate::bench::Bench;
 /// Paths and contents of an archive, in order.
 fn contents(bench: &Bench, name: &str) -> Vec<(String, Vec<u8>)> {
     let mut zip = zip::ZipArchive::new(File::open(bench.path(name)).unwrap()).unwrap();
+    let count = zip.len();
     let file = |k: usize| {
         let mut file = zip.by_index(k).unwrap();
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).unwrap();
-        (file.name().to_owned(), bytes)
+        (file.name().unwrap().into_owned(), bytes)
     };
-    (0..zip.len()).map(file).collect()
+    (0..count).map(file).collect()
 }
 
 fn text(contents: &[(String, Vec<u8>)], path: &str) -> String {

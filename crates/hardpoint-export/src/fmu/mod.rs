@@ -13,7 +13,7 @@ use hardpoint_report::figures::unit;
 use hardpoint_table::Units;
 
 use crate::archive::Archive;
-use crate::c::{Generated, Parts, comment, generate};
+use crate::c::{MotionSource, Parts, comment, generate};
 use crate::{ExportError, ExportOptions, ExportedModel, Format, Writer};
 
 /// FMU format.
@@ -117,7 +117,7 @@ fn write(
 }
 
 /// All variables, in the order of their value references.
-fn variables(file: &ModelFile, source: &Generated) -> Vec<Variable> {
+fn variables(file: &ModelFile, source: &MotionSource) -> Vec<Variable> {
     let model = &file.model;
     let dimension = |quantity: Quantity| Dimension::from(quantity);
     let mut list = vec![Variable {
@@ -200,7 +200,7 @@ fn structured(name: &str) -> String {
 
 fn places(
     file: &ModelFile,
-    source: &Generated,
+    source: &MotionSource,
     variables: &[Variable],
     token: &str,
 ) -> [(&'static str, String); 7] {
