@@ -76,6 +76,12 @@ fn a_unit_contains_its_sources_and_a_library() {
     bench.run(&["export", "slider.toml", "-o", "slider.fmu"]);
     assert_eq!(text(&contents(&bench, "slider.fmu"), "modelDescription.xml"), description);
 
+    // The name of the file need not be an identifier.
+    let shown = bench.shown(&["export", "slider.toml", "-o", "my slider-2.fmu"]);
+    assert!(shown.contains("compiled for"), "{shown}");
+    let named = contents(&bench, "my slider-2.fmu");
+    assert!(text(&named, "sources/my_slider_2.c").contains("#include \"my_slider_2.h\""));
+
     // A variable that would jam the mechanism is no parameter.
     assert!(
         shown.contains("design variable `guide_jam`: nominal: the mechanism cannot follow it"),
