@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import hardpoint
-from conftest import MODELS
+from conftest import MODELS, ROOT
 from test_motion import si
 
 fmpy = pytest.importorskip("fmpy")
@@ -19,6 +19,10 @@ from fmpy.validation import validate_fmu  # noqa: E402
 
 SAME = 1e-12
 """Largest difference from the engine, relative to the largest number of its kind: as in the Rust tests of the C export."""
+NEAR_POLE = 1e-11
+"""The same for measures that have a pole in the motion (Ackermann measures straight ahead), which magnifies round-off."""
+DERIVATIVE = 1e-11
+"""The same for derivatives by the design: those of accelerations divide by the Jacobian three times."""
 NAMES = ["slider_crank", "four_bar", "double_wishbone", "front_axle", "stewart", "delta"]
 """One and several drivers, planar and spatial, whole turns, measures of single drivers (`front_axle`)."""
 DESIGNS = ["double_wishbone", "four_bar", "macpherson", "front_axle"]
@@ -177,10 +181,10 @@ def test_model_exchange_has_the_numbers_of_the_engine(name, units):
         if measure.endswith(("ackermann", "ackermann_error")):
             # Formulas that take another case on the other side are undefined there.
             assert np.isfinite(values).any() and np.isnan(values).any()
-            expected = np.where(np.isnan(values), np.nan, expected)
+            assert difference(values, np.where(np.isnan(values), np.nan, expected)) < NEAR_POLE, of
         else:
             assert (np.isfinite(values) == np.isfinite(expected)).all(), of
-        assert difference(values, expected) < SAME, of
+            assert difference(values, expected) < SAME, of
     length = 1 / display_factor(unit.description, unit.variables[f"bodies.{body}.position"])
     assert difference(poses[:, :3], run.body(body).position * length) < SAME
     rotation = poses[:, 3:].reshape(-1, 3, 3)
@@ -290,10 +294,10 @@ def test_design_parameters_have_the_values_and_sensitivities_of_the_engine(name,
         for v, parameter in parameters.items():
             slopes[v].append(fmu.getDirectionalDerivative(references, [parameter.valueReference], [1.0]))
     for column, (of, measure, order) in enumerate(outputs):
-        assert difference(np.array(found)[:, column], engine(unit, run, measure, order)) < SAME, of
+        assert difference(np.array(found)[:, column], engine(unit, run, measure, order)) < 2 * SAME, of
         for v in parameters:
             expected = run.sensitivity(measure, v, order) * si_of(unit.model, measure, order) / in_si[v]
-            assert difference(np.array(slopes[v])[:, column], expected) < SAME, (of, v)
+            assert difference(np.array(slopes[v])[:, column], expected) < DERIVATIVE, (of, v)
 
 
 def test_a_parameter_is_tuned_during_a_simulation(units):
@@ -373,3 +377,12 @@ def test_a_wrong_token_is_refused(units):
     fmu = FMU3Model(guid="{0}", unzipDirectory=unit.folder, modelIdentifier="slider_crank", instanceName="one")
     with pytest.raises(Exception, match="instantiate"):
         fmu.instantiate()
+
+
+def test_the_example_of_the_page_runs(command, monkeypatch, tmp_path):
+    (example,) = re.findall(r"^```python\n(.*?)^```", (ROOT / "docs/export-fmi.md").read_text(), re.M | re.S)
+    monkeypatch.chdir(tmp_path)
+    assert command("export", MODELS / "double_wishbone.toml", "-o", "corner.fmu").returncode == 0
+    names = {}
+    exec(compile(example, "docs/export-fmi.md", "exec"), names)
+    assert np.isfinite(names["result"]["measures.camber.value"]).all()

@@ -20,6 +20,12 @@ const SAME: f64 = 1e-12;
 /// The same where the motion passes near singular positions, which magnify round-off.
 const NEAR_SINGULAR: f64 = 1e-11;
 
+/// The same for measures of changed designs, which are farther from round numbers.
+const CHANGED: f64 = 2e-12;
+/// The same for derivatives by the design: those of accelerations divide by the Jacobian three times, and each division
+/// magnifies round-off by the condition of the mechanism.
+const DERIVATIVE: f64 = 1e-11;
+
 /// Models that have no formulas, with the reason.
 const REFUSED: [(&str, &str); 2] =
     [("cam", "a point follows a curve"), ("gear_train", "couplers count angles by their predicted turns")];
@@ -321,10 +327,15 @@ fn what_is_not_written_is_reported() {
 /// Models with design variables that are not arguments, with the reason.
 const FIXED_DESIGN: [(&str, &str); 0] = [];
 
+/// Variables without derivatives at the changed design: its redundant constraints contradict each other. The engine
+/// still has derivatives by `y_knee_y`, which opens none of them.
+const JAMMED: [&str; 5] =
+    ["sarrus: x_knee_x", "sarrus: x_knee_z", "sarrus: x_base_x", "sarrus: y_knee_y", "sarrus: x_knee_skew"];
+
 /// A changed design moves as in the engine, and the derivatives by the design are the engine's sensitivities.
 #[test]
 fn a_changed_design_in_c_is_that_of_the_engine() {
-    let (mut fixed, mut differ) = (Vec::new(), Vec::new());
+    let (mut fixed, mut differ, mut jammed) = (Vec::new(), Vec::new(), Vec::new());
     let mut compared = 0;
     for name in gallery() {
         let file = model(&name);
@@ -366,7 +377,7 @@ fn a_changed_design_in_c_is_that_of_the_engine() {
         let reached = rows.iter().take_while(|row| row[0] == 0.0).count();
         let ends = ENDS.iter().any(|(other, _)| *other == name);
         assert_eq!(reached < rows.len(), ends, "{name}: {reached} of {} steps", rows.len());
-        let (rows, tolerance) = (&rows[..reached], if ends { NEAR_SINGULAR } else { SAME });
+        let (rows, tolerance) = (&rows[..reached], if ends { NEAR_SINGULAR } else { CHANGED });
         let numbers = |at: usize| -> Vec<f64> { rows.iter().map(|row| row[1 + at]).collect() };
         for (m, measure) in c.measures.iter().enumerate() {
             if PARTIAL.contains(&format!("{name}: {measure}").as_str()) {
@@ -384,9 +395,21 @@ fn a_changed_design_in_c_is_that_of_the_engine() {
                     let d = |k: usize| solution.measured.d(k, VariableId(*variable), column)[order];
                     let expected: Vec<f64> = (0..rows.len()).map(d).collect();
                     let at = 3 * c.measures.len() + 3 * (m * arguments.len() + b) + order;
-                    let apart = difference(&numbers(at), &expected);
+                    // Redundant constraints of the changed design may contradict each other, somewhere in the motion.
+                    let found = numbers(at);
+                    let is_defined = !solution.measured.value(0, column)[order].is_nan();
+                    let is_jammed = is_defined && expected.iter().all(|x| x.is_nan());
+                    if is_jammed || found.iter().zip(&expected).any(|(x, y)| x.is_nan() && !y.is_nan()) {
+                        let variable = format!("{name}: {}", c.design[b]);
+                        assert!(found.iter().any(|x| x.is_nan()), "{variable}: {measure} has derivatives");
+                        if !jammed.contains(&variable) {
+                            jammed.push(variable);
+                        }
+                        continue;
+                    }
+                    let apart = difference(&found, &expected);
                     let by = &c.design[b];
-                    if !(apart < tolerance) {
+                    if !(apart < DERIVATIVE) {
                         differ.push(format!("{name}: d {measure} / d {by}, order {order}, by {apart:e}"));
                     }
                     compared += 1;
@@ -397,5 +420,20 @@ fn a_changed_design_in_c_is_that_of_the_engine() {
     let expected = FIXED_DESIGN.map(|(name, why)| (name.to_owned(), why.to_owned()));
     assert_eq!(fixed, expected);
     assert_eq!(differ, Vec::<String>::new());
+    assert_eq!(jammed, JAMMED);
     assert!(compared > 1000, "{compared} derivatives");
+}
+
+/// The examples of `docs/export-c.md`, as one file.
+#[test]
+fn the_examples_of_the_page_compile() {
+    let page = include_str!("../../../docs/export-c.md");
+    let blocks = page.split("```c\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+    let main = "int main(void)\n{\n    static double zero[CORNER_DRIVERS], camber;\n    start();\n    \
+                return cycle(zero, zero, zero, &camber) + tune(zero, zero, zero);\n}\n";
+    let text: String = blocks.chain([main]).collect();
+    let options = ExportOptions { design: true };
+    let c = Compiled::of(&model("double_wishbone"), "corner", "-O1", options, &text).unwrap();
+    let run = Command::new(c.folder.path().join("main")).status().unwrap();
+    assert!(run.success(), "the examples end with {run}");
 }

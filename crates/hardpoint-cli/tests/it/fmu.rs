@@ -9,13 +9,14 @@ use crate::bench::Bench;
 /// Paths and contents of an archive, in order.
 fn contents(bench: &Bench, name: &str) -> Vec<(String, Vec<u8>)> {
     let mut zip = zip::ZipArchive::new(File::open(bench.path(name)).unwrap()).unwrap();
+    let count = zip.len();
     let file = |k: usize| {
         let mut file = zip.by_index(k).unwrap();
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).unwrap();
-        (file.name().to_owned(), bytes)
+        (file.name().unwrap().into_owned(), bytes)
     };
-    (0..zip.len()).map(file).collect()
+    (0..count).map(file).collect()
 }
 
 fn text(contents: &[(String, Vec<u8>)], path: &str) -> String {
@@ -74,6 +75,12 @@ fn a_unit_contains_its_sources_and_a_library() {
     std::fs::rename(bench.path("slider.fmu"), bench.path("first.fmu")).unwrap();
     bench.run(&["export", "slider.toml", "-o", "slider.fmu"]);
     assert_eq!(text(&contents(&bench, "slider.fmu"), "modelDescription.xml"), description);
+
+    // The name of the file need not be an identifier.
+    let shown = bench.shown(&["export", "slider.toml", "-o", "my slider-2.fmu"]);
+    assert!(shown.contains("compiled for"), "{shown}");
+    let named = contents(&bench, "my slider-2.fmu");
+    assert!(text(&named, "sources/my_slider_2.c").contains("#include \"my_slider_2.h\""));
 
     // A variable that would jam the mechanism is no parameter.
     assert!(

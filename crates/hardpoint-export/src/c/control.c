@@ -136,7 +136,8 @@ static int @name@_travel(@name@_state *s, const double q[], const double qd[], c
         }
         moves += 1;
         o->moves = moves;
-@part_of_design@        result = @name@_move(&s->position, @state_geometry@to, is_last ? qd : rest, is_last ? qdd : rest, s->work, o);
+@part_of_design@        result = @name@_move(&s->position, @state_geometry@to, is_last ? qd : rest, is_last ? qdd : rest,
+                             s->work, o);
         if (result == @NAME@_OK) {
             if (is_last)
                 return @NAME@_OK;

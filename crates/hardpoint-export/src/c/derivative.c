@@ -10,7 +10,7 @@ int @name@_derivative(@name@_state *s, const double qd[], const double qdd[], co
         return result;
     /* Where the constraints hold, the correction changes with a driver or the design as the coordinates must. */
     @name@_correct_tangent(p.x, p.q, @nominal@along, s->work, dx);
-    @name@_motion_tangent(p.x, p.q, qd, qdd, dx, @nominal@along, s->work, d);
+@follows@    @name@_motion_tangent(p.x, p.q, qd, qdd, dx, @nominal@along, s->work, d);
 @derived_measures@    d->residual = d->pivot_ratio = 0.0;
     d->moves = d->corrections = 0;
     return @NAME@_OK;

@@ -11,10 +11,13 @@ int @name@_gradient(@name@_state *s, const double qd[], const double qdd[],
         along.design[k] = 1.0;
         result = @name@_derivative(s, qd, qdd, &along, o, d);
         along.design[k] = 0.0;
-        if (result != @NAME@_OK)
+        if (result != @NAME@_OK && result != @NAME@_LOCKED)
             return result;
-        for (m = 0; m < @NAME@_MEASURES; ++m)
+        for (m = 0; m < @NAME@_MEASURES; ++m) {
             gradient[m][k] = d->measure[m];
+            if (result == @NAME@_LOCKED)
+                gradient[m][k].value = gradient[m][k].rate = gradient[m][k].acceleration = NAN;
+        }
     }
     return @NAME@_OK;
 }

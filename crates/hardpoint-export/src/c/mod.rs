@@ -48,6 +48,7 @@ const DERIVATIVE: &str = include_str!("derivative.c");
 const DERIVED_MEASURES: &str = include_str!("derived_measures.c");
 const DESIGN_DECLARED: &str = include_str!("design.h");
 const DESIGN: &str = include_str!("design.c");
+const FOLLOWS: &str = include_str!("follows.c");
 const GRADIENT_DECLARED: &str = include_str!("gradient.h");
 const GRADIENT: &str = include_str!("gradient.c");
 /// Numbers that depend on the design alone.
@@ -69,6 +70,12 @@ const PART_OF_DESIGN: &str = "        if (design) {
 const RESTORE_DESIGN: &str = "    if (design)
         @name@_prepare(s->position.design, s->work, s->geometry);
 ";
+/// Residual that is round-off of positions, rad or sizes of loops.
+const LEAST_MISFIT: f64 = 1e-9;
+/// Check of a direction that changes the design.
+const FOLLOWS_CALL: &str = "    if (!@name@_follows(s, &p, along, dx, o->residual, d))
+        return @NAME@_LOCKED;
+";
 /// Numbers of a body, in the order of the programs: r, the columns of A, v, omega, a, alpha.
 const BODY: usize = 24;
 
@@ -81,8 +88,8 @@ pub struct Parts {
     pub design: bool,
 }
 
-/// Generated source, with what it contains.
-pub struct Generated {
+/// Source of a motion, with a list of its arguments and results.
+pub struct MotionSource {
     pub source: String,
     pub header: String,
     /// Prefix of all names.
@@ -107,17 +114,17 @@ fn write(
         return Err(ExportError::NotRecorded { why: why.to_owned() });
     }
     let parts = Parts { derivatives: options.design, design: options.design };
-    let generated = generate(file, stem, parts, out)?;
+    let motion = generate(file, stem, parts, out)?;
     if !options.design && !file.model.variables.is_empty() {
         let why = "their nominal values are constants of the formulas; `--design` makes them arguments";
         out.report_unsupported("design variables", &file.model.variables.len().to_string(), why);
     }
-    out.text = generated.source;
-    out.companion = Some(Companion { ending: "h", text: generated.header });
+    out.text = motion.source;
+    out.companion = Some(Companion { ending: "h", text: motion.header });
     Ok(())
 }
 
-/// Generates the source of a model, and reports what it does not contain.
+/// Generates the source of a model, and reports unsupported features.
 ///
 /// # Errors
 ///
@@ -127,7 +134,7 @@ pub fn generate(
     stem: &str,
     parts: Parts,
     out: &mut ExportedModel,
-) -> Result<Generated, ExportError> {
+) -> Result<MotionSource, ExportError> {
     let model = &file.model;
     let analysis = Analysis::new(model).map_err(ExportError::CannotBeDriven)?;
     let refused = |why: String| ExportError::NotRecorded { why };
@@ -138,7 +145,7 @@ pub fn generate(
     let formulas = analysis.measure_formulas(parts.design);
     let measures = Measures::of(&analysis, &step, formulas.as_ref(), out);
     let design = arguments(&analysis, &step, out);
-    let ReplayResult { end, undefined } = replay(model, &step, formulas.as_ref());
+    let ReplayResult { end, undefined, residual } = replay(model, &step, formulas.as_ref());
     if let Some(t) = end {
         let why = "the formulas end there: the motion goes on with other rows of redundant constraints, or through a \
                    change point";
@@ -166,11 +173,12 @@ pub fn generate(
         measures,
         design,
         derivatives: parts.derivatives,
+        residual,
     };
     let (text, sizes) = source.text();
     let (header, origin) = (source.header(sizes), source.origin());
     let Source { name, measures: Measures { list: measures, .. }, design, .. } = source;
-    Ok(Generated { source: text, header, name, measures, design, start, origin })
+    Ok(MotionSource { source: text, header, name, measures, design, start, origin })
 }
 
 /// Design variables that are arguments; the others are reported, and keep their nominal values.
@@ -294,6 +302,8 @@ struct Source<'a> {
     design: Vec<usize>,
     /// True if the derivatives are written.
     derivatives: bool,
+    /// Largest residual of a constraint in the motion of the nominal design.
+    residual: f64,
 }
 
 /// Sizes of the arrays of a state.
@@ -395,13 +405,23 @@ impl Source<'_> {
             };
             let undefined =
                 if self.has_measures() { self.filled(DERIVED_MEASURES, &[]) } else { String::new() };
-            text += &self.filled(
-                DERIVATIVE,
-                &[
-                    ("outputs", self.step.coordinates.len().max(1).to_string()),
-                    ("derived_measures", derived + &undefined),
-                ],
-            );
+            let mut follows = String::new();
+            if self.has_design() {
+                text += &self.filled(
+                    FOLLOWS,
+                    &[
+                        ("checks", self.checks().to_string()),
+                        ("misfit", literal(10.0 * self.residual + LEAST_MISFIT)),
+                    ],
+                );
+                follows = self.filled(FOLLOWS_CALL, &[]);
+            }
+            let places = [
+                ("outputs", self.step.coordinates.len().max(1).to_string()),
+                ("follows", follows),
+                ("derived_measures", derived + &undefined),
+            ];
+            text += &self.filled(DERIVATIVE, &places);
             if self.has_design() && self.has_measures() {
                 text += &self.filled(GRADIENT, &[]);
             }
@@ -740,6 +760,13 @@ impl Source<'_> {
         if self.derivatives {
             let places = [
                 ("and_of_design", with_design(" and of the design".to_owned())),
+                (
+                    "locked",
+                    with_design(format!(
+                        " {upper}_LOCKED: redundant constraints would\n * contradict each other in this direction of \
+                         the design."
+                    )),
+                ),
                 ("direction_field", with_design(format!("    double design[{upper}_DESIGN];\n"))),
             ];
             derivative += &self.filled(DERIVATIVE_DECLARED, &places);

@@ -18,6 +18,8 @@ pub struct ReplayResult {
     pub end: Option<f64>,
     /// Per output: number of output times at which its formula is undefined.
     pub undefined: Vec<usize>,
+    /// Largest residual of a constraint at the output times, rad or sizes of loops.
+    pub residual: f64,
 }
 
 /// Replays the motion of the model.
@@ -33,6 +35,7 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
     replay.inputs.extend(step.design.iter().map(|_| 0.0));
     let outputs = formulas.map_or(0, |f| f.program.outputs.len());
     let mut undefined = vec![0; outputs / 4];
+    let mut residual: f64 = 0.0;
     let (mut inputs, mut found) = (Vec::new(), vec![0.0; outputs]);
     for &t in &model.times {
         let of = |driver: &Driver| {
@@ -41,8 +44,9 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
         };
         let drivers: Vec<[f64; 3]> = model.drivers.iter().map(of).collect();
         if !replay.reaches(&drivers) {
-            return ReplayResult { end: Some(t), undefined };
+            return ReplayResult { end: Some(t), undefined, residual };
         }
+        residual = residual.max(replay.found[MotionCheck::Residual as usize]);
         let Some(formulas) = formulas else { continue };
         let bodies = &replay.found[step.motion.outputs.len() - BODY * (model.bodies.len() - 1)..];
         inputs.clear();
@@ -54,7 +58,7 @@ pub fn replay(model: &Model, step: &DrivenStep, formulas: Option<&MeasureFormula
             *count += usize::from(!(*guard <= 0.0));
         }
     }
-    ReplayResult { end: None, undefined }
+    ReplayResult { end: None, undefined, residual }
 }
 
 struct Replay<'a> {

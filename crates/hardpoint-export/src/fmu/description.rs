@@ -1,4 +1,4 @@
-//! Descriptions of a unit: variables with their units and dependencies, sources, and a page for people.
+//! Descriptions of a unit: its variables with units and dependencies, its sources, and a page of documentation.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -9,7 +9,7 @@ use hardpoint_report::GENERATOR;
 use hardpoint_report::figures::unit;
 use hardpoint_table::Units;
 
-use crate::c::Generated;
+use crate::c::MotionSource;
 use crate::xml::Xml;
 use crate::{UnsupportedFeature, escaped};
 
@@ -18,7 +18,7 @@ use super::{Role, Variable};
 /// Description of a unit.
 pub struct Description<'a> {
     pub file: &'a ModelFile,
-    pub source: &'a Generated,
+    pub source: &'a MotionSource,
     pub variables: &'a [Variable],
 }
 
@@ -153,7 +153,7 @@ impl Description<'_> {
         xml.end();
     }
 
-    /// Value references of what an output depends on: the drivers up to its own order, and the design.
+    /// Value references of the dependencies of an output: the drivers up to its own order, and the design.
     fn dependencies(&self, of: Role) -> String {
         let is_one = |role: Role| match role {
             Role::Driver(_, order) => order <= of.order(),
@@ -179,7 +179,7 @@ impl Description<'_> {
         xml.finish()
     }
 
-    /// `documentation/index.html`: the variables, and what the unit does not contain.
+    /// `documentation/index.html`: the variables, and the unsupported features.
     pub fn page(&self, unsupported: &[UnsupportedFeature]) -> String {
         let title = escaped(&self.file.model.name);
         let mut page = format!(

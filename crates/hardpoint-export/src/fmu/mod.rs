@@ -13,7 +13,7 @@ use hardpoint_report::figures::unit;
 use hardpoint_table::Units;
 
 use crate::archive::Archive;
-use crate::c::{Generated, Parts, comment, generate};
+use crate::c::{MotionSource, Parts, comment, generate, identifier};
 use crate::{ExportError, ExportOptions, ExportedModel, Format, Writer};
 
 /// FMU format.
@@ -84,6 +84,8 @@ fn write(
     options: ExportOptions,
     out: &mut ExportedModel,
 ) -> Result<(), ExportError> {
+    // Files of the unit and its library are named by the identifier.
+    let stem = &identifier(stem);
     let design = options.design || !file.model.variables.is_empty();
     let source = match generate(file, stem, Parts { derivatives: true, design }, out) {
         Err(ExportError::NotRecorded { why }) if design && !options.design => {
@@ -117,7 +119,7 @@ fn write(
 }
 
 /// All variables, in the order of their value references.
-fn variables(file: &ModelFile, source: &Generated) -> Vec<Variable> {
+fn variables(file: &ModelFile, source: &MotionSource) -> Vec<Variable> {
     let model = &file.model;
     let dimension = |quantity: Quantity| Dimension::from(quantity);
     let mut list = vec![Variable {
@@ -200,7 +202,7 @@ fn structured(name: &str) -> String {
 
 fn places(
     file: &ModelFile,
-    source: &Generated,
+    source: &MotionSource,
     variables: &[Variable],
     token: &str,
 ) -> [(&'static str, String); 7] {
