@@ -26,7 +26,7 @@ from .function import Function
 from .model import Model, Output, Variable, build, parse, read
 from .plots import plot
 from .positions import Positions
-from .run import Body, DriverLoad, Metric, Reaction, Run
+from .run import Body, BodySensitivity, DriverLoad, Metric, Reaction, Run
 from .stored import load as load_run
 from .studies import Map, Study, SweepResult
 from .tools import (
@@ -42,6 +42,7 @@ from .tools import (
 
 __all__ = [
     "Body",
+    "BodySensitivity",
     "CannotFollow",
     "Designs",
     "DriverLoad",

@@ -37,6 +37,7 @@ class Diagnostic:
 
     @classmethod
     def of(cls, found: dict) -> Diagnostic:
+        """Diagnostic from its JSON form."""
         named = re.search(r"`([^`]+)`", found["message"])
         element = found.get("element") or (named and named[1])
         return cls(**{**found, "element": element, "notes": tuple(found["notes"])})
@@ -65,10 +66,12 @@ class HardpointError(Exception):
 
     @classmethod
     def of(cls, text: str):
+        """Error with diagnostics in JSON."""
         return cls(diagnostics(text))
 
     @classmethod
     def saying(cls, message: str):
+        """Error with a message alone."""
         return cls((Diagnostic.of(_plain(message)),))
 
     def __reduce__(self):

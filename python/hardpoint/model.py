@@ -427,7 +427,7 @@ class Model:
     ) -> Study:
         """Optimises the design for the goals of `[optimize]` in the model, in all cases."""
         text, design, exact = self._native.optimize(
-            0, count("starts", starts), count("iterations", iterations), count("workers", workers), listener(progress)
+            0, count("starts", starts, 0), count("iterations", iterations, 0), count("workers", workers), listener(progress)
         )
         return outcome(self, text, design, exact)
 
@@ -449,10 +449,10 @@ class Model:
         named = list(goals)
         text, design, exact = self._native.trade_off(
             named,
-            count("points", points),
+            count("points", points, 0),
             count("point", point, 0),
-            count("starts", starts),
-            count("iterations", iterations),
+            count("starts", starts, 0),
+            count("iterations", iterations, 0),
             count("workers", workers),
             listener(progress),
         )
@@ -469,7 +469,7 @@ class Model:
     ) -> Study:
         """Analyses the tolerances of the design variables; `allocate` (`rss`, `worst_case`) finds the loosest tolerances that keep the limits."""
         found = self._native.tolerance(
-            count("samples", samples), count("seed", seed, 0), allocate, count("workers", workers), listener(progress)
+            count("samples", samples, 0), count("seed", seed, 0), allocate, count("workers", workers), listener(progress)
         )
         return outcome(self, found)
 
@@ -500,7 +500,7 @@ class Model:
                 list((sigma or {}).items()),
                 list(variables),
                 loss,
-                count("iterations", iterations),
+                count("iterations", iterations, 0),
                 list((prior or {}).items()),
                 priors,
                 list(offsets),
@@ -518,9 +518,9 @@ class Model:
 
     def sweep_plan(self, **asked) -> _native.Sweep:
         """Returns the sweep, to be solved in parts."""
-        for name, least in (("samples", 1), ("seed", 0), ("levels", 1)):
+        for name in ("samples", "seed", "levels"):
             if isinstance(asked.get(name), (int, float, np.generic)):
-                asked[name] = count(name, asked[name], least)
+                asked[name] = count(name, asked[name], 0)
         if "designs" in asked:
             asked["designs"] = os.fspath(asked["designs"])
         asked["ranges"] = {name: [float(a), float(b)] for name, (a, b) in dict(asked.get("ranges") or {}).items()}

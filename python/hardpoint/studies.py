@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 PREFERRED = ("points", "metrics", "measures", "variables")
-"""Facts that a study's table has by default, the first that there is."""
+"""Facts that a study's table has by default: the first available one."""
 
 
 class Study:
@@ -70,7 +70,7 @@ class Study:
         return tuple(name for name, rows in self.facts.items() if isinstance(rows, list) and rows and all(isinstance(row, dict) for row in rows))
 
     def to_pandas(self, name: str | None = None):
-        """Table of one of the `records`, by default the first of `points`, `metrics`, `measures` and `variables` that there is."""
+        """Table of one of the `records`, by default the first available of `points`, `metrics`, `measures` and `variables`."""
         import pandas
 
         return pandas.json_normalize(self.facts[self._record(name)])

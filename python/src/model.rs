@@ -7,7 +7,9 @@ use std::sync::{Arc, OnceLock};
 use hardpoint::Analysis;
 use hardpoint::joint::Quantity::{Angle, Length};
 use hardpoint::measure::outputs;
-use hardpoint::model::{BodyId, CaseId, Change, DriverId, ElementId, JointId, OutputSource, VariableId};
+use hardpoint::model::{
+    BodyId, CaseId, Change, Direction, DriverId, ElementId, JointId, OutputSource, VariableId,
+};
 use hardpoint::space::Vec3;
 use hardpoint::topology::{Formulation, TopologyError};
 use hardpoint_file::{Contents, ModelFile};
@@ -181,7 +183,8 @@ impl Model {
     /// Points of every body in its frame, by joint, and the ends of rods: `[body, x, y, z]`, as JSON.
     fn skeleton(&self, case: usize, design: Vec<f64>) -> PyResult<String> {
         let (model, units) = (&self.cases[case].model, self.whole.units);
-        let geometry = model.geometry(&self.changes(&design)?);
+        let changes = self.changes(&design)?;
+        let geometry = model.geometry(&changes);
         let place = |body: BodyId, at: Vec3| {
             let [x, y, z] = at.to_array().map(|x| units.from_si(Length, x));
             json!([body.0, x, y, z])
@@ -193,8 +196,22 @@ impl Model {
         let joints = model
             .named_joints()
             .map(|(id, j)| json!({ "name": j.name, "is_rod": j.kind.is_rod(), "ends": ends(id) }));
+        // A bearing of each body at both hardpoints that define the axis of a hinge.
+        let places = model.hardpoint_places(&changes);
+        let bearings = model.named_joints().flat_map(|(_, joint)| {
+            let ends = match joint.axis {
+                Some(Direction::Through(a, b)) if joint.kind.is_hinge => vec![a, b],
+                _ => Vec::new(),
+            };
+            let on_both = ends.into_iter().flat_map(|h| joint.bodies.map(|body| (body, places[h.0])));
+            on_both.map(|(body, at)| {
+                let local = model.bodies[body.0].frame.inverse().point(at);
+                json!({ "name": joint.name, "at": place(body, local) })
+            })
+        });
         let points = model.points.iter().zip(&geometry.points).filter(|(point, _)| !point.unnamed);
         let points = points.map(|(point, at)| json!({ "name": point.name, "at": place(point.body, *at) }));
+        let points = points.chain(bearings);
         Ok(json!({ "joints": joints.collect::<Vec<_>>(), "points": points.collect::<Vec<_>>() }).to_string())
     }
 
@@ -213,7 +230,7 @@ impl Model {
     /// Contents of the model, as JSON.
     fn info(&self) -> String {
         let (file, model, units) = (&self.whole, &self.whole.model, self.whole.units);
-        let body = |b: hardpoint::model::BodyId| model.bodies[b.0].name.as_str();
+        let body = |b: BodyId| model.bodies[b.0].name.as_str();
         let variables = model.variables.iter().enumerate().map(|(k, v)| {
             let shown = |b: f64| file.value_of(VariableId(k), b);
             let is_parameter = v.changes.iter().any(|c| matches!(c, Change::Parameter(_)));

@@ -23,6 +23,9 @@ ASKED = {
         "sensitivity": ("toe", NAMES[0]),
         "sensitivities": ("toe", NAMES),
     },
+    "Positions": {"position": ("knuckle",), "quaternion": ("knuckle",)},
+    "Reaction": {},
+    "DriverLoad": {},
     "Body": {},
     "BodySensitivity": {},
     "Designs": {"metric": (next(iter(hardpoint.read(MODELS / "studies/strut_toe.toml").metrics("bump"))),)},
@@ -35,9 +38,13 @@ ASKED = {
 def results(strut):
     toe = hardpoint.read(MODELS / "studies/strut_toe.toml")
     run = strut.run()
+    press = hardpoint.read(MODELS / "press.toml").run()
     return {
         "Model": strut,
         "Run": run,
+        "Positions": strut.at(rack_drive=[1.0, 2.0]),
+        "Reaction": press.reaction("A"),
+        "DriverLoad": press.driver("motor"),
         "Body": run.body("knuckle" if "knuckle" in strut.bodies else strut.bodies[0]),
         "BodySensitivity": run.body_sensitivity(strut.bodies[0], NAMES[0]),
         "Designs": toe.designs([[v.drawn for v in toe.variables.values()]] * 2, "toe", case="bump"),

@@ -1,6 +1,7 @@
 """The example jobs run, and the types of examples and package are sound."""
 
 import importlib.util
+import os
 import re
 import subprocess
 import sys
@@ -50,7 +51,7 @@ def checked(*command):
 
 def test_mypy_finds_nothing_in_the_examples():
     pytest.importorskip("mypy")
-    checked(sys.executable, "-m", "mypy", "--config-file", "pyproject.toml", "--strict", "--follow-imports=silent", *map(str, EXAMPLES))
+    checked(sys.executable, "-m", "mypy", "--config-file", "pyproject.toml", "--strict", "--follow-imports=silent", f"--cache-dir={os.devnull}", *map(str, EXAMPLES))
 
 
 def test_pyright_finds_nothing_in_the_examples():

@@ -83,7 +83,7 @@ def test_a_model_from_nothing():
 def test_misspelt_and_negative_arguments_are_errors_of_the_package(toe):
     for ask, says in (
         (lambda: toe.run(cas="bump"), "`run` has no argument `cas`; did you mean `case`"),
-        (lambda: toe.optimize(starts=-1), "`starts` is a whole number from 1, not -1"),
+        (lambda: toe.optimize(starts=-1), "`starts` is a whole number from 0, not -1"),
         (lambda: toe.sweep(samples=-5, ranges={"outer_z": (-1, 1)}), "`samples` is a whole number"),
         (lambda: toe.designs([[0.0] * 5], workers=0, case="bump"), "`workers` is a whole number"),
         (lambda: hardpoint.Function(toe, variabels=["outer_z"]), "did you mean `variables`"),

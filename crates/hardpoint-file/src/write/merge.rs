@@ -208,9 +208,9 @@ mod tests {
 
     #[test]
     fn a_text_from_nothing_has_the_order_of_its_contents() {
-        let sections = r#"{ "name": "x", "hardpoints": { "B": [0, 1e-7, 2], "A": [true] }, "bodies": { "arm": {} },
+        let sections = r#"{ "name": "x", "hardpoints": { "B": [0, 0.1, 2], "A": [true] }, "bodies": { "arm": {} },
             "time": { "steps": 2, "end": 1.0 } }"#;
-        let expected = "name = \"x\"\n\n[hardpoints]\nB = [0, 1e-7, 2]\nA = [true]\n\n[bodies.arm]\n\n\
+        let expected = "name = \"x\"\n\n[hardpoints]\nB = [0, 0.1, 2]\nA = [true]\n\n[bodies.arm]\n\n\
             [time]\nsteps = 2\nend = 1.0\n";
         assert_eq!(merged("", &contents(sections)).unwrap(), expected);
     }

@@ -1,4 +1,5 @@
-//! Model files written: edits for a changed design, other entries, the JSON Schema, and the tables of the documentation.
+//! Model files written: edits for a changed design, other entries, the JSON Schema, and the tables of the
+//! documentation.
 
 #[cfg(test)]
 mod docs;
