@@ -136,9 +136,9 @@ def test_what_if_agrees_with_the_command(serve, command):
         serve, "what_if", path="models/macpherson.toml", changes={"tie_rod_outer.z": "+2 mm"}, measures=["toe"]
     )["cases"]
     done = command("whatif", MODELS / "macpherson.toml", "--set", "tie_rod_outer.z=+2mm", "--json")
-    told = json.loads(done.stdout)
+    answer = json.loads(done.stdout)
     (toe,) = case["measures"]
-    (exact,) = [m for m in told["measures"] if m["measure"] == "toe"]
+    (exact,) = [m for m in answer["measures"] if m["measure"] == "toe"]
     assert toe["unit"] == "deg"
     assert toe["change"] == pytest.approx(exact["change"], rel=1e-5)
     # Curves are ranges: an agent does not read 501 numbers.
@@ -185,8 +185,8 @@ def test_templates_diagnostics_and_imports(serve, tmp_path):
     to = tmp_path / "new.toml"
     assert called(serve, "new_model", template="delta", save=str(to))["saved"] == str(to)
     assert "exists already" in failed(serve, "new_model", template="delta", save=str(to))
-    told = called(serve, "explain", code="hp0204")
-    assert told["code"] == "HP0204" and told["remedy"]
+    answer = called(serve, "explain", code="hp0204")
+    assert answer["code"] == "HP0204" and answer["remedy"]
     assert "no diagnostic" in failed(serve, "explain", code="HP9999")
     source = sorted((ROOT / "crates").rglob("*.asmt"))[0]
     result = called(serve, "import_model", source=str(source), output=str(tmp_path / "imported.toml"))

@@ -18,7 +18,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::outcome::Outcome;
-use crate::rpc::{Framing, Message, Output, RpcError, params_of, read_message};
+use crate::rpc::{Message, MessageFormat, Output, RpcError, params_of, read_message};
 use crate::session::Session;
 use crate::text;
 
@@ -35,7 +35,7 @@ const INCREMENTAL: u8 = 2;
 /// Serves stdin until `exit`.
 pub fn run() -> Outcome {
     text::reserve_stdout();
-    let output = Output::new(std::io::stdout(), Framing::Headers);
+    let output = Output::new(std::io::stdout(), MessageFormat::Headers);
     let checker = Checker::new(output.clone());
     let server = Server { output, open: OpenTexts::new(), checker, phase: Phase::New };
     Session::not_printed(server.serve(&mut BufReader::new(std::io::stdin())))
@@ -84,7 +84,7 @@ type Reply = Result<Value, RpcError>;
 impl Server {
     fn serve(mut self, input: &mut impl std::io::BufRead) -> Outcome {
         let outcome = loop {
-            match read_message(input, Framing::Headers) {
+            match read_message(input, MessageFormat::Headers) {
                 Ok(Some(Message::Notification { method, .. })) if method == "exit" => {
                     // `exit` without `shutdown` is an error of the editor.
                     break if self.phase == Phase::ShutDown { Outcome::Done } else { Outcome::FellShort };

@@ -248,7 +248,10 @@ fn flat(shapes: &[Shape]) -> Vec<Shape> {
 
 /// Keys of a table with one of these forms: those of its `type`, or of all types.
 fn known_keys(all: &[Shape], kind: Option<&str>) -> Vec<&'static Key> {
-    let known = keys_of(all, kind);
+    // Of several tables, the `type` selects those that have it.
+    let selected: Vec<Shape> =
+        all.iter().copied().filter(|shape| kind.is_some_and(|k| has_type(*shape, k))).collect();
+    let known = keys_of(if selected.is_empty() { all } else { &selected }, kind);
     if !known.is_empty() {
         return known;
     }
@@ -263,6 +266,18 @@ fn known_keys(all: &[Shape], kind: Option<&str>) -> Vec<&'static Key> {
         }
     }
     keys
+}
+
+/// True if tables of this form may have this `type`.
+fn has_type(shape: Shape, kind: &str) -> bool {
+    match shape {
+        Shape::Kinds(kinds) => kinds.typed && (kinds.tables)().iter().any(|table| table.name == kind),
+        Shape::Table(table) => {
+            let words = table.keys().filter(|key| key.key == "type").flat_map(|key| flat(&[key.shape]));
+            words.flat_map(words_of).any(|(word, _)| word == kind)
+        }
+        _ => false,
+    }
 }
 
 /// A name as a key is written: in quotes if necessary.
