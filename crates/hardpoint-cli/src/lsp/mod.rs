@@ -9,6 +9,7 @@ mod position;
 
 use std::io::BufReader;
 use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
 
@@ -111,7 +112,11 @@ impl Server {
     fn message(&mut self, message: Message) {
         match message {
             Message::Request { id, method, params } => {
-                let reply = self.request(&method, params);
+                let reply = catch_unwind(AssertUnwindSafe(|| self.request(&method, params)));
+                let reply = reply.unwrap_or_else(|_| {
+                    let message = "an internal error of Hardpoint; stderr has the details";
+                    Err(RpcError::new(RpcError::INTERNAL, message))
+                });
                 self.output.answer(&id, reply);
             }
             Message::Notification { method, params } => {
@@ -256,7 +261,9 @@ impl Server {
     fn completion(&self, asked: At) -> Reply {
         let (text, byte) = self.at(&asked)?;
         let (document, lines) = (&text.document, &text.lines);
-        let items = document.completions(byte).into_iter().enumerate().map(|(k, c)| {
+        let models = self.checker.models.lock().unwrap_or_else(PoisonError::into_inner);
+        let model = models.get(&asked.text_document.uri).map(|file| &file.model);
+        let items = document.completions(byte, model).into_iter().enumerate().map(|(k, c)| {
             let range = lines.range(document.text(), &c.replaces);
             json!({
                 "label": c.label,

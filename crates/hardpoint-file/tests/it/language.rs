@@ -73,7 +73,7 @@ fn labels(found: &[Completion]) -> Vec<&str> {
 /// Completions at `|` in a text.
 fn completed(text: &str) -> Vec<Completion> {
     let at = text.find('|').unwrap();
-    Document::new(&text.replacen('|', "", 1)).completions(at)
+    Document::new(&text.replacen('|', "", 1)).completions(at, None)
 }
 
 /// Text after the first completion with a label.
@@ -272,6 +272,25 @@ fn values_are_names_and_words() {
 }
 
 #[test]
+fn measures_of_wheels_are_names_too() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/front_axle.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let file = read(&path).unwrap();
+    let wheel =
+        hardpoint::measure::outputs(&file.model).into_iter().map(|o| o.name).find(|n| n.ends_with(".toe"));
+    let measure = wheel.expect("the axle has wheels with toe");
+    let text = format!("{text}\n[metrics.one]\nof = \"\"\n");
+    let found = Document::new(&text).completions(text.len() - 2, Some(&file.model));
+    assert!(found.iter().any(|c| c.label == measure), "{found:?}");
+    // The name of the wheel is a part of that of its measure.
+    let text = text.replacen("of = \"\"\n", &format!("of = \"{measure}\"\n"), 1);
+    let document = Document::new(&text);
+    let name = document.name_at(text.len() - 3).unwrap();
+    assert_eq!(name.section, "wheels");
+    assert_eq!(&text[name.at], measure.strip_suffix(".toe").unwrap());
+}
+
+#[test]
 fn keys_and_words_have_meanings() {
     let document = Document::new(STRUT);
     let bodies = document.meaning_at(after(STRUT, "bodies = ") - 5).unwrap();
@@ -290,8 +309,12 @@ fn broken_texts_have_a_language_too() {
     // Every prefix, and every text without one of its lines.
     for end in (0..=STRUT.len()).filter(|at| STRUT.is_char_boundary(*at)) {
         let document = Document::new(&STRUT[..end]);
-        let _ =
-            (document.completions(end), document.symbols(), document.name_at(end), document.meaning_at(end));
+        let _ = (
+            document.completions(end, None),
+            document.symbols(),
+            document.name_at(end),
+            document.meaning_at(end),
+        );
     }
     let text =
         "[hardpoints]\nA = [0, 0\n\n[bodies]\narm = {\n[joints.hinge]\nbodies = [\"ground\", \"arm\"]\n";
@@ -312,7 +335,7 @@ fn tasks_have_their_own_keys() {
     let text = "name = \"gripper\"\nunits = { length = \"mm\", angle = \"deg\" }\nposes = [[0, 0, 0]]\n";
     let document = Document::new(text);
     assert!(document.is_task());
-    let found = document.completions(text.len());
+    let found = document.completions(text.len(), None);
     assert!(found.iter().any(|c| c.label == "fixed_region") && !found.iter().any(|c| c.label == "joints"));
     assert!(!Document::new(STRUT).is_task());
 }
