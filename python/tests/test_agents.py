@@ -136,9 +136,9 @@ def test_what_if_agrees_with_the_command(serve, command):
         serve, "what_if", path="models/macpherson.toml", changes={"tie_rod_outer.z": "+2 mm"}, measures=["toe"]
     )["cases"]
     done = command("whatif", MODELS / "macpherson.toml", "--set", "tie_rod_outer.z=+2mm", "--json")
-    told = json.loads(done.stdout)
+    answer = json.loads(done.stdout)
     (toe,) = case["measures"]
-    (exact,) = [m for m in told["measures"] if m["measure"] == "toe"]
+    (exact,) = [m for m in answer["measures"] if m["measure"] == "toe"]
     assert toe["unit"] == "deg"
     assert toe["change"] == pytest.approx(exact["change"], rel=1e-5)
     # Curves are ranges: an agent does not read 501 numbers.
@@ -185,8 +185,8 @@ def test_templates_diagnostics_and_imports(serve, tmp_path):
     to = tmp_path / "new.toml"
     assert called(serve, "new_model", template="delta", save=str(to))["saved"] == str(to)
     assert "exists already" in failed(serve, "new_model", template="delta", save=str(to))
-    told = called(serve, "explain", code="hp0204")
-    assert told["code"] == "HP0204" and told["remedy"]
+    answer = called(serve, "explain", code="hp0204")
+    assert answer["code"] == "HP0204" and answer["remedy"]
     assert "no diagnostic" in failed(serve, "explain", code="HP9999")
     source = sorted((ROOT / "crates").rglob("*.asmt"))[0]
     result = called(serve, "import_model", source=str(source), output=str(tmp_path / "imported.toml"))
@@ -278,3 +278,28 @@ def test_requests_with_an_unknown_version_name_the_supported_ones(program):
     (answer,) = raw(program, {"jsonrpc": "2.0", "id": 1, "method": "tools/list", "params": {"_meta": meta}})
     assert answer["error"]["code"] == -32022
     assert answer["error"]["data"] == {"supported": ["2026-07-28"], "requested": "2031-01-01"}
+
+
+def test_examples_of_the_document_work(program, serve):
+    text = (ROOT / "docs/agents.md").read_text()
+    blocks = [block.split("```")[0] for block in text.split("```json\n")[1:]]
+    servers, editor, arguments = map(json.loads, blocks)
+    for entry in [servers["mcpServers"]["hardpoint"], editor["servers"]["hardpoint"]]:
+        assert (entry["command"], entry["args"]) == ("hardpoint", ["mcp"])
+    (case,) = called(serve, "what_if", **arguments)["cases"]
+    assert [measure["measure"] for measure in case["measures"]] == arguments["measures"]
+    shell = text.split("$ echo '")[1]
+    asked, answer = shell.split("'")[0], shell.splitlines()[1]
+    assert raw(program, asked + "\n") == [json.loads(answer)]
+
+
+def test_the_document_lists_all_tools(serve):
+    async def work(client):
+        return (await client.list_tools()).tools
+
+    text = (ROOT / "docs/agents.md").read_text()
+    for tool in serve(work):
+        row = next(line for line in text.splitlines() if line.startswith(f"| `{tool.name}` |"))
+        named = row.split("|")[2]
+        for key in tool.input_schema["properties"]:
+            assert key in ("path", "text", "case") or f"`{key}`" in named, (tool.name, key)

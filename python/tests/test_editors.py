@@ -317,3 +317,17 @@ def test_order_of_the_protocol(program):
     # A text that is no message ends the server with an explanation.
     code, out = run("hello\r\n\r\n")
     assert code == 2 and out == ""
+
+
+def test_configurations_of_the_document_start_the_server(program):
+    tomllib = pytest.importorskip("tomllib", reason="needs Python 3.11")
+    text = (ROOT / "docs/editors.md").read_text()
+    helix = tomllib.loads(text.split("```toml\n")[1].split("```")[0])
+    server = helix["language-server"]["hardpoint"]
+    assert helix["language"][0]["language-servers"] == ["hardpoint"]
+    for command in [[server["command"], *server["args"]], ["hardpoint", "lsp"], ["hardpoint", "lsp", "--stdio"]]:
+        assert command[0] == "hardpoint"
+        done = subprocess.run([program, *command[1:]], input=b"", capture_output=True, timeout=60)
+        # Without `shutdown` the end of the input is an error of the editor.
+        assert done.returncode == 1 and done.stdout == b""
+    assert "cmd = { 'hardpoint', 'lsp' }" in text and '("hardpoint" "lsp")' in text

@@ -1,4 +1,4 @@
-//! JSON-RPC 2.0 over streams: messages in two framings, and answers to invalid ones. Agents and editors use it.
+//! JSON-RPC 2.0 over streams: messages in two formats, and answers to invalid ones. Agents and editors use it.
 
 use std::io::{self, BufRead, Read, Write};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,7 +13,7 @@ const MOST_HEADERS: usize = 32;
 
 /// Separation of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Framing {
+pub enum MessageFormat {
     /// One message on each line.
     Lines,
     /// Headers with the length of each message, as in the language server protocol.
@@ -82,7 +82,7 @@ pub enum Message {
     Answer,
     /// An invalid message, with the answer to it.
     Invalid {
-        /// Its `id`, if it has a valid one.
+        /// The `id` of the message, if it has a valid one.
         id: Value,
         /// Error.
         error: RpcError,
@@ -134,9 +134,9 @@ impl Message {
 ///
 /// # Errors
 /// Fails if the stream cannot be read, or its headers are invalid, so that the next message cannot be found.
-pub fn read_message(input: &mut impl BufRead, framing: Framing) -> io::Result<Option<Message>> {
-    match framing {
-        Framing::Lines => loop {
+pub fn read_message(input: &mut impl BufRead, format: MessageFormat) -> io::Result<Option<Message>> {
+    match format {
+        MessageFormat::Lines => loop {
             let mut line = Vec::new();
             let limit = LARGEST_MESSAGE as u64 + 1;
             if input.by_ref().take(limit).read_until(b'\n', &mut line)? == 0 {
@@ -149,7 +149,7 @@ pub fn read_message(input: &mut impl BufRead, framing: Framing) -> io::Result<Op
                 return Ok(Some(Message::of(line.trim_ascii())));
             }
         },
-        Framing::Headers => {
+        MessageFormat::Headers => {
             let Some(length) = content_length(input)? else { return Ok(None) };
             let mut text = vec![0; length];
             input.read_exact(&mut text)?;
@@ -199,21 +199,21 @@ fn invalid_data(why: &str) -> io::Error {
 #[derive(Clone)]
 pub struct Output {
     out: Arc<Mutex<Box<dyn Write + Send>>>,
-    framing: Framing,
+    format: MessageFormat,
 }
 
 impl Output {
     /// Messages to a stream.
-    pub fn new(out: impl Write + Send + 'static, framing: Framing) -> Self {
-        Self { out: Arc::new(Mutex::new(Box::new(out))), framing }
+    pub fn new(out: impl Write + Send + 'static, format: MessageFormat) -> Self {
+        Self { out: Arc::new(Mutex::new(Box::new(out))), format }
     }
 
     /// Sends a message. A closed stream is noticed when its other side ends.
     fn send(&self, message: &Value) {
         let text = message.to_string();
-        let framed = match self.framing {
-            Framing::Lines => format!("{text}\n"),
-            Framing::Headers => format!("Content-Length: {}\r\n\r\n{text}", text.len()),
+        let framed = match self.format {
+            MessageFormat::Lines => format!("{text}\n"),
+            MessageFormat::Headers => format!("Content-Length: {}\r\n\r\n{text}", text.len()),
         };
         let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);
         if let Err(error) = out.write_all(framed.as_bytes()).and_then(|()| out.flush()) {
@@ -253,11 +253,11 @@ pub fn params_of<T: serde::de::DeserializeOwned>(params: Value) -> Result<T, Rpc
 mod tests {
     use super::*;
 
-    fn all(text: &str, framing: Framing) -> Vec<io::Result<Message>> {
+    fn all(text: &str, format: MessageFormat) -> Vec<io::Result<Message>> {
         let mut input = text.as_bytes();
         let mut found = Vec::new();
         loop {
-            match read_message(&mut input, framing) {
+            match read_message(&mut input, format) {
                 Ok(None) => return found,
                 Ok(Some(message)) => found.push(Ok(message)),
                 Err(error) => {
@@ -279,7 +279,7 @@ mod tests {
     fn lines_are_requests_notifications_and_answers() {
         let text = "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"a\",\"params\":{\"x\":1}}\n\n\
                     {\"jsonrpc\":\"2.0\",\"method\":\"b\"}\r\n{\"jsonrpc\":\"2.0\",\"id\":1,\"result\":{}}";
-        let found: Vec<Message> = all(text, Framing::Lines).into_iter().map(Result::unwrap).collect();
+        let found: Vec<Message> = all(text, MessageFormat::Lines).into_iter().map(Result::unwrap).collect();
         assert_eq!(
             found,
             [
@@ -309,11 +309,11 @@ mod tests {
             ),
         ];
         for (line, expected) in lines {
-            let found = all(line, Framing::Lines);
+            let found = all(line, MessageFormat::Lines);
             assert_eq!(code(&found[0]), expected, "{line}");
         }
         // The next line is read after an invalid one.
-        let found = all("nonsense\n{\"jsonrpc\":\"2.0\",\"method\":\"b\"}\n", Framing::Lines);
+        let found = all("nonsense\n{\"jsonrpc\":\"2.0\",\"method\":\"b\"}\n", MessageFormat::Lines);
         assert!(matches!(&found[1], Ok(Message::Notification { method, .. }) if method == "b"));
     }
 
@@ -322,7 +322,7 @@ mod tests {
         let body = "{\"jsonrpc\":\"2.0\",\"method\":\"straße\"}";
         let framed =
             format!("content-length: {}\r\nContent-Type: x; charset=utf-8\r\n\r\n{body}", body.len());
-        let found = all(&framed.repeat(2), Framing::Headers);
+        let found = all(&framed.repeat(2), MessageFormat::Headers);
         assert_eq!(found.len(), 2);
         assert!(
             found.iter().all(|m| matches!(m, Ok(Message::Notification { method, .. }) if method == "straße"))
@@ -339,7 +339,7 @@ mod tests {
             "Content-Length: 5\r\n\r\n{}",
             "Content-Length: 99999999999\r\n\r\n",
         ] {
-            assert!(all(text, Framing::Headers)[0].is_err(), "{text:?}");
+            assert!(all(text, MessageFormat::Headers)[0].is_err(), "{text:?}");
         }
     }
 
@@ -356,13 +356,13 @@ mod tests {
                 Ok(())
             }
         }
-        for framing in [Framing::Lines, Framing::Headers] {
+        for format in [MessageFormat::Lines, MessageFormat::Headers] {
             let shared = Shared::default();
-            let output = Output::new(shared.clone(), framing);
+            let output = Output::new(shared.clone(), format);
             output.notify("näch\nste", &json!({ "x": "a\nb" }));
             output.answer(&4.into(), Err(RpcError::unknown_method("z")));
             let text = String::from_utf8(shared.0.lock().unwrap().clone()).unwrap();
-            let found = all(&text, framing);
+            let found = all(&text, format);
             assert_eq!(found.len(), 2, "{text}");
             assert!(
                 matches!(&found[0], Ok(Message::Notification { method, .. }) if method == "näch\nste"),

@@ -9,6 +9,7 @@ mod position;
 
 use std::io::BufReader;
 use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
 
@@ -18,7 +19,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::outcome::Outcome;
-use crate::rpc::{Framing, Message, Output, RpcError, params_of, read_message};
+use crate::rpc::{Message, MessageFormat, Output, RpcError, params_of, read_message};
 use crate::session::Session;
 use crate::text;
 
@@ -35,7 +36,7 @@ const INCREMENTAL: u8 = 2;
 /// Serves stdin until `exit`.
 pub fn run() -> Outcome {
     text::reserve_stdout();
-    let output = Output::new(std::io::stdout(), Framing::Headers);
+    let output = Output::new(std::io::stdout(), MessageFormat::Headers);
     let checker = Checker::new(output.clone());
     let server = Server { output, open: OpenTexts::new(), checker, phase: Phase::New };
     Session::not_printed(server.serve(&mut BufReader::new(std::io::stdin())))
@@ -84,7 +85,7 @@ type Reply = Result<Value, RpcError>;
 impl Server {
     fn serve(mut self, input: &mut impl std::io::BufRead) -> Outcome {
         let outcome = loop {
-            match read_message(input, Framing::Headers) {
+            match read_message(input, MessageFormat::Headers) {
                 Ok(Some(Message::Notification { method, .. })) if method == "exit" => {
                     // `exit` without `shutdown` is an error of the editor.
                     break if self.phase == Phase::ShutDown { Outcome::Done } else { Outcome::FellShort };
@@ -111,7 +112,11 @@ impl Server {
     fn message(&mut self, message: Message) {
         match message {
             Message::Request { id, method, params } => {
-                let reply = self.request(&method, params);
+                let reply = catch_unwind(AssertUnwindSafe(|| self.request(&method, params)));
+                let reply = reply.unwrap_or_else(|_| {
+                    let message = "an internal error of Hardpoint; stderr has the details";
+                    Err(RpcError::new(RpcError::INTERNAL, message))
+                });
                 self.output.answer(&id, reply);
             }
             Message::Notification { method, params } => {
@@ -256,7 +261,9 @@ impl Server {
     fn completion(&self, asked: At) -> Reply {
         let (text, byte) = self.at(&asked)?;
         let (document, lines) = (&text.document, &text.lines);
-        let items = document.completions(byte).into_iter().enumerate().map(|(k, c)| {
+        let models = self.checker.models.lock().unwrap_or_else(PoisonError::into_inner);
+        let model = models.get(&asked.text_document.uri).map(|file| &file.model);
+        let items = document.completions(byte, model).into_iter().enumerate().map(|(k, c)| {
             let range = lines.range(document.text(), &c.replaces);
             json!({
                 "label": c.label,

@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 
 use crate::meter::Listener;
 use crate::outcome::Outcome;
-use crate::rpc::{Framing, Message, Output, RpcError, params_of, read_message};
+use crate::rpc::{Message, MessageFormat, Output, RpcError, params_of, read_message};
 use crate::session::Session;
 use crate::text;
 
@@ -58,7 +58,7 @@ in the model. Every number has its unit next to it, or that of `units`; times ar
 pub fn run() -> Outcome {
     text::reserve_stdout();
     let server = Server {
-        output: Output::new(std::io::stdout(), Framing::Lines),
+        output: Output::new(std::io::stdout(), MessageFormat::Lines),
         running: Arc::default(),
         phase: Phase::New,
     };
@@ -94,7 +94,7 @@ enum Era {
 impl Server {
     fn serve(mut self, input: &mut impl std::io::BufRead) -> Outcome {
         let outcome = loop {
-            match read_message(input, Framing::Lines) {
+            match read_message(input, MessageFormat::Lines) {
                 Ok(Some(message)) => self.message(message),
                 Ok(None) => break Outcome::Done,
                 Err(error) => {

@@ -37,6 +37,8 @@ fn help_has_examples_and_exit_codes() {
         "sweep",
         "studio",
         "site",
+        "mcp",
+        "lsp",
         "schema",
         "completions",
     ] {

@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use crate::values::{Key, Need, Shape, alternatives, keys_of, noun};
+use hardpoint::model::Model;
+
+use crate::values::{Key, Need, Shape, alternatives, key_list, noun};
 
 use super::Document;
 use super::names::{offered, words_of};
@@ -39,13 +41,14 @@ pub enum CompletionKind {
 }
 
 impl Document {
-    /// Completions at a byte of the text.
-    pub fn completions(&self, at: usize) -> Vec<Completion> {
+    /// Completions at a byte of the text. The model of an earlier state of the text has further names, such as the
+    /// measures of wheels.
+    pub fn completions(&self, at: usize, model: Option<&Model>) -> Vec<Completion> {
         let Some(cursor) = syntax::cursor(&self.text, at) else { return Vec::new() };
         let mut found = match cursor.place {
             CursorPlace::Heading => self.headings(&cursor),
             CursorPlace::Key => self.keys(&cursor),
-            CursorPlace::Value(in_quotes) => self.values(&cursor, in_quotes),
+            CursorPlace::Value(in_quotes) => self.values(&cursor, in_quotes, model),
         };
         for completion in &mut found {
             let begun = std::mem::replace(&mut completion.replaces, 0..0).end;
@@ -122,22 +125,25 @@ impl Document {
         found
     }
 
-    fn values(&self, cursor: &Cursor, in_quotes: bool) -> Vec<Completion> {
+    fn values(&self, cursor: &Cursor, in_quotes: bool, model: Option<&Model>) -> Vec<Completion> {
         let shapes = flat(&self.shapes_at(&cursor.path));
         let write = |value: &str| if in_quotes { value.to_owned() } else { format!("\"{value}\"") };
         let mut found = Vec::new();
         for shape in &shapes {
             match shape {
-                Shape::Name(kind) => found.extend(self.names(kind).into_iter().map(|(name, detail)| {
-                    let one = completion(&name, write(&name), cursor, CompletionKind::Name);
-                    Completion { detail, ..one }
-                })),
+                Shape::Name(kind) => {
+                    let names = self.names(kind).into_iter().chain(names_of(kind, model));
+                    found.extend(names.map(|(name, detail)| {
+                        let one = completion(&name, write(&name), cursor, CompletionKind::Name);
+                        Completion { detail, ..one }
+                    }));
+                }
                 Shape::Flag if !in_quotes => found.extend(
                     ["true", "false"]
                         .map(|word| completion(word, word.to_owned(), cursor, CompletionKind::Word)),
                 ),
                 Shape::Expression | Shape::Number(_) if in_quotes => {
-                    found.extend(self.in_expression(cursor));
+                    found.extend(self.in_expression(cursor, model));
                 }
                 _ => found.extend(words_of(*shape).into_iter().map(|(word, meaning)| {
                     let one = completion(word, write(word), cursor, CompletionKind::Word);
@@ -183,7 +189,7 @@ impl Document {
     }
 
     /// Names for the word that was begun in an expression.
-    fn in_expression(&self, cursor: &Cursor) -> Vec<Completion> {
+    fn in_expression(&self, cursor: &Cursor, model: Option<&Model>) -> Vec<Completion> {
         let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
         let start = cursor
             .begun
@@ -200,7 +206,7 @@ impl Document {
         let of_measure = cursor.path.first().is_some_and(|section| section == "measures");
         let mut names = self.names("a parameter");
         if of_measure {
-            names.extend(self.names("a measure"));
+            names.extend(self.names("a measure").into_iter().chain(names_of("a measure", model)));
         } else {
             let coordinates = self.names("a hardpoint").into_iter().flat_map(|(name, detail)| {
                 ["x", "y", "z"].map(|axis| (format!("{name}.{axis}"), detail.clone()))
@@ -213,6 +219,17 @@ impl Document {
         };
         names.into_iter().map(one).collect()
     }
+}
+
+/// Names of a model that its text need not have as entries: measures of wheels and limits, metrics of clearances.
+fn names_of(kind: &str, model: Option<&Model>) -> Vec<(String, String)> {
+    let Some(model) = model else { return Vec::new() };
+    let names: Vec<String> = match kind {
+        "a measure" => hardpoint::measure::outputs(model).into_iter().map(|o| o.name).collect(),
+        "a metric" => model.metrics.iter().map(|m| m.name.clone()).collect(),
+        _ => Vec::new(),
+    };
+    names.into_iter().map(|name| (name, noun(kind).to_owned())).collect()
 }
 
 /// A completion that replaces the word that was begun; the end of the range is the length of that word.
@@ -248,7 +265,10 @@ fn flat(shapes: &[Shape]) -> Vec<Shape> {
 
 /// Keys of a table with one of these forms: those of its `type`, or of all types.
 fn known_keys(all: &[Shape], kind: Option<&str>) -> Vec<&'static Key> {
-    let known = keys_of(all, kind);
+    // Of several tables, the `type` selects those that have it.
+    let selected: Vec<Shape> =
+        all.iter().copied().filter(|shape| kind.is_some_and(|k| has_type(*shape, k))).collect();
+    let known = key_list(if selected.is_empty() { all } else { &selected }, kind);
     if !known.is_empty() {
         return known;
     }
@@ -263,6 +283,18 @@ fn known_keys(all: &[Shape], kind: Option<&str>) -> Vec<&'static Key> {
         }
     }
     keys
+}
+
+/// True if tables of this form may have this `type`.
+fn has_type(shape: Shape, kind: &str) -> bool {
+    match shape {
+        Shape::Kinds(kinds) => kinds.typed && (kinds.tables)().iter().any(|table| table.name == kind),
+        Shape::Table(table) => {
+            let words = table.keys().filter(|key| key.key == "type").flat_map(|key| flat(&[key.shape]));
+            words.flat_map(words_of).any(|(word, _)| word == kind)
+        }
+        _ => false,
+    }
 }
 
 /// A name as a key is written: in quotes if necessary.

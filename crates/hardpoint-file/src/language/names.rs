@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::compose::side_names::{WORDS, exchanged};
-use crate::values::{Key, Shape, Table, alternatives, keys_of, list_form, names_in_expression};
+use crate::values::{Key, Shape, Table, alternatives, key_list, list_form, names_in_expression};
 
 use super::syntax::{Member, Node, Tree};
 
@@ -96,6 +96,8 @@ fn sections_of(kind: &str) -> &'static [(&'static str, bool)] {
             ("measures", false),
             ("clearances", false),
             ("points", true),
+            ("wheels", true),
+            ("axles", true),
             ("joints", true),
             ("hardpoints", true),
         ],
@@ -128,11 +130,13 @@ fn sections_of(kind: &str) -> &'static [(&'static str, bool)] {
 }
 
 /// Sections of names in expressions.
-const IN_EXPRESSIONS: [(&str, bool); 5] = [
+const IN_EXPRESSIONS: [(&str, bool); 7] = [
     ("parameters", false),
     ("hardpoints", true),
     ("measures", false),
     ("points", true),
+    ("wheels", true),
+    ("axles", true),
     ("clearances", false),
 ];
 
@@ -230,7 +234,7 @@ impl Index {
                     return;
                 }
                 let kind = node.get("type").and_then(Node::text);
-                let keys = keys_of(&all, kind);
+                let keys = key_list(&all, kind);
                 for member in members {
                     if let Some(key) = keys.iter().find(|key| key.key == member.name) {
                         self.describe(member, Described::Key(key));

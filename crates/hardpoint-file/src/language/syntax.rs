@@ -154,6 +154,11 @@ impl<'t> Reader<'t> {
         }
     }
 
+    /// True if the token before is the end of a line.
+    fn is_line_start(&self) -> bool {
+        self.next.checked_sub(1).is_none_or(|k| self.tokens[k].kind() == TokenKind::Newline)
+    }
+
     /// True if the text ends within a comment.
     fn ends_in_comment(&self) -> bool {
         self.next.checked_sub(1).is_some_and(|k| self.tokens[k].kind() == TokenKind::Comment)
@@ -183,8 +188,12 @@ impl<'t> Reader<'t> {
             let start = self.span().start;
             match self.kind() {
                 TokenKind::Eof => {
-                    let table = table_at(&mut root, &heading, start..start, false);
-                    self.note(CursorPlace::Key, String::new(), table);
+                    // Nothing follows a value or a heading on its line.
+                    let line = self.text.rsplit('\n').next().unwrap_or_default();
+                    if line.trim().is_empty() {
+                        let table = table_at(&mut root, &heading, start..start, false);
+                        self.note(CursorPlace::Key, String::new(), table);
+                    }
                     break;
                 }
                 TokenKind::LeftSquareBracket => {
@@ -205,7 +214,10 @@ impl<'t> Reader<'t> {
                     let table = self.member(table);
                     *table_at(&mut root, &heading, at, false) = table;
                     extend(&mut root, &heading, self.end());
-                    self.rest_of_line();
+                    // A value that was not closed may end on a later line.
+                    if !self.is_line_start() {
+                        self.rest_of_line();
+                    }
                 }
             }
         }
@@ -377,8 +389,7 @@ impl<'t> Reader<'t> {
     /// True at the start of a line that can only be a heading, so that a bracket above it was left open.
     fn begins_a_statement(&self) -> bool {
         let kind = |k: usize| self.tokens.get(self.next + k).map_or(TokenKind::Eof, Token::kind);
-        let is_first = self.next.checked_sub(1).is_none_or(|k| self.tokens[k].kind() == TokenKind::Newline);
-        if !is_first || kind(0) != TokenKind::LeftSquareBracket {
+        if !self.is_line_start() || kind(0) != TokenKind::LeftSquareBracket {
             return false;
         }
         let mut k = 1 + usize::from(kind(1) == TokenKind::LeftSquareBracket);

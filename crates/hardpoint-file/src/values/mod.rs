@@ -22,5 +22,5 @@ pub(crate) use reader::{Reader, all_read, quoted};
 pub(crate) use scalars::axis_named;
 pub(crate) use tables::above_tables;
 pub(crate) use walk::{
-    Leaf, alternatives, in_expression, keys_of, list_form, list_of, names_in_expression, table_of, walk,
+    Leaf, alternatives, in_expression, key_list, list_form, list_of, names_in_expression, table_of, walk,
 };

@@ -78,7 +78,7 @@ pub(crate) fn walk<'a>(key: &str, shape: Shape, value: &mut Value<'a>, visit: &m
                 return;
             }
             let kind = table.get("type").and_then(|v| v.get_ref().as_str());
-            let keys = keys_of(&all, kind);
+            let keys = key_list(&all, kind);
             for (name, value) in table.iter_mut() {
                 if let Some(key) = keys.iter().find(|key| key.key == name.get_ref()) {
                     walk(key.key, key.shape, value, visit);
@@ -130,7 +130,7 @@ pub(crate) fn alternatives(shape: Shape) -> Vec<Shape> {
 }
 
 /// Keys of a table with one of these forms: those of its `type`, if it has one.
-pub(crate) fn keys_of(all: &[Shape], kind: Option<&str>) -> Vec<&'static Key> {
+pub(crate) fn key_list(all: &[Shape], kind: Option<&str>) -> Vec<&'static Key> {
     let keys = |shape: &Shape| match shape {
         Shape::Table(table) => table.keys().collect::<Vec<_>>(),
         Shape::Kinds(kinds) if kinds.typed => {

@@ -34,13 +34,14 @@ tip = { body = "arm", at = "C" }
 [design.C]
 move = "C"
 along = "xyz"
+bounds = [-5, 5]
 
 [measures]
 height = { type = "position", point = "tip", along = "z" }
-twice = { type = "expression", of = "2*height" }
+twice = { type = "expression", expression = "2*height" }
 
 [metrics]
-peak = { measure = "height", take = "max" }
+peak = { of = "height", take = "max" }
 
 [optimize]
 variables = ["C_x", "C_z"]
@@ -72,7 +73,7 @@ fn labels(found: &[Completion]) -> Vec<&str> {
 /// Completions at `|` in a text.
 fn completed(text: &str) -> Vec<Completion> {
     let at = text.find('|').unwrap();
-    Document::new(&text.replacen('|', "", 1)).completions(at)
+    Document::new(&text.replacen('|', "", 1)).completions(at, None)
 }
 
 /// Text after the first completion with a label.
@@ -170,7 +171,7 @@ fn every_entry_of_every_model_can_be_renamed_and_back() {
         let document = Document::new(&text);
         let sections = document.symbols();
         // A few entries of each section: the test reads the model twice for each.
-        const FEW: usize = 3;
+        const FEW: usize = 2;
         for entry in sections.iter().flat_map(|s| s.children.iter().take(FEW)) {
             let section = entry.section.unwrap();
             let Some(name) = document.name_at(entry.at.start + 1) else { continue };
@@ -191,7 +192,7 @@ fn every_entry_of_every_model_can_be_renamed_and_back() {
             }
         }
     }
-    assert!(done > 400, "only {done} entries were renamed: {refused:#?}");
+    assert!(done > 300, "only {done} entries were renamed: {refused:#?}");
     assert!(refused.len() * 50 < done, "{} of {done} are refused: {refused:#?}", refused.len());
 }
 
@@ -206,11 +207,11 @@ bodies = { left_arm = {} }
 joints.left_hinge = { type = "revolute", bodies = ["ground", "left_arm"], at = "left_A", axis = "x" }
 drivers.left_swing = { joint = "left_hinge", law = "10*t" }
 points.left_tip = { body = "left_arm", at = "left_B" }
-measures.gap = { type = "distance", points = ["left_tip", "right_tip"] }
+measures.gap = { type = "distance", from = "left_tip", to = "right_tip" }
 time = { end = 1.0, steps = 2 }
 "#;
     let other = renamed(text, after(text, "points.left_t"), "left_end", None).unwrap();
-    assert!(other.contains("[\"left_end\", \"right_end\"]"), "{other}");
+    assert!(other.contains("from = \"left_end\", to = \"right_end\""), "{other}");
     // The image has no entry of its own.
     let why = renamed(text, after(text, "\"right_t"), "right_end", None).unwrap_err();
     assert!(why.contains("mirror image of `left_tip`"), "{why}");
@@ -239,7 +240,7 @@ fn keys_are_those_of_the_table_that_are_missing() {
     // Keys of a kind follow its `type`.
     let found = completed("[measures]\nm = { type = \"distance\", | }");
     assert!(
-        found.iter().any(|c| c.label == "points") && !found.iter().any(|c| c.label == "wheel"),
+        found.iter().any(|c| c.label == "from") && !found.iter().any(|c| c.label == "wheel"),
         "{found:?}"
     );
     assert!(completed("# a comment |").is_empty());
@@ -252,7 +253,7 @@ fn values_are_names_and_words() {
         |line: &str| STRUT.replacen("[joints.hinge]", &format!("[joints.other]\n{line}\n[joints.hinge]"), 1);
     let found = completed(&with("bodies = [\"gr|"));
     assert_eq!(labels(&found), ["ground", "arm"]);
-    assert_eq!(inserted(&with("bodies = [\"ground\", |]"), "arm").contains("[\"ground\", \"arm\"]"), true);
+    assert!(inserted(&with("bodies = [\"ground\", |]"), "arm").contains("[\"ground\", \"arm\"]"));
     let found = completed(&with("at = |"));
     assert_eq!(labels(&found), ["A", "obere Öse", "C"]);
     let found = completed(&with("type = \"rev|"));
@@ -268,14 +269,35 @@ fn values_are_names_and_words() {
     assert!(labels(&terms).contains(&"A.x"), "{terms:?}");
     let terms = completed(&STRUT.replace("2*height", "2*he|"));
     assert!(labels(&terms).contains(&"height"), "{terms:?}");
-    assert!(STRUT.replace("2*height", "2*he").len() < STRUT.len());
+}
+
+#[test]
+fn measures_of_wheels_are_names_too() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/front_axle.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let file = read(&path).unwrap();
+    let wheel =
+        hardpoint::measure::outputs(&file.model).into_iter().map(|o| o.name).find(|n| n.ends_with(".toe"));
+    let measure = wheel.expect("the axle has wheels with toe");
+    let text = format!("{text}\n[metrics.one]\nof = \"\"\n");
+    let found = Document::new(&text).completions(text.len() - 2, Some(&file.model));
+    assert!(found.iter().any(|c| c.label == measure), "{found:?}");
+    // The name of the wheel is a part of that of its measure.
+    let text = text.replacen("of = \"\"\n", &format!("of = \"{measure}\"\n"), 1);
+    let document = Document::new(&text);
+    let name = document.name_at(text.len() - 3).unwrap();
+    assert_eq!(name.section, "wheels");
+    assert_eq!(&text[name.at], measure.strip_suffix(".toe").unwrap());
 }
 
 #[test]
 fn keys_and_words_have_meanings() {
     let document = Document::new(STRUT);
     let bodies = document.meaning_at(after(STRUT, "bodies = ") - 5).unwrap();
-    assert!(bodies.is_required && bodies.meaning.contains("body") && bodies.example.is_some(), "{bodies:?}");
+    assert!(
+        bodies.is_required && bodies.meaning.contains("bodies i and j") && bodies.example.is_some(),
+        "{bodies:?}"
+    );
     let revolute = document.meaning_at(after(STRUT, "\"revolute") - 2).unwrap();
     assert_eq!(revolute.name, "revolute");
     let section = document.meaning_at(after(STRUT, "[hardpoints") - 2).unwrap();
@@ -287,8 +309,12 @@ fn broken_texts_have_a_language_too() {
     // Every prefix, and every text without one of its lines.
     for end in (0..=STRUT.len()).filter(|at| STRUT.is_char_boundary(*at)) {
         let document = Document::new(&STRUT[..end]);
-        let _ =
-            (document.completions(end), document.symbols(), document.name_at(end), document.meaning_at(end));
+        let _ = (
+            document.completions(end, None),
+            document.symbols(),
+            document.name_at(end),
+            document.meaning_at(end),
+        );
     }
     let text =
         "[hardpoints]\nA = [0, 0\n\n[bodies]\narm = {\n[joints.hinge]\nbodies = [\"ground\", \"arm\"]\n";
@@ -309,7 +335,7 @@ fn tasks_have_their_own_keys() {
     let text = "name = \"gripper\"\nunits = { length = \"mm\", angle = \"deg\" }\nposes = [[0, 0, 0]]\n";
     let document = Document::new(text);
     assert!(document.is_task());
-    let found = document.completions(text.len());
+    let found = document.completions(text.len(), None);
     assert!(found.iter().any(|c| c.label == "fixed_region") && !found.iter().any(|c| c.label == "joints"));
     assert!(!Document::new(STRUT).is_task());
 }
