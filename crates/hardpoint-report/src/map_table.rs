@@ -213,7 +213,9 @@ impl MapTableFact {
             }
             [u, v, ..] => {
                 for output in &self.outputs {
-                    writeln!(out, "double {}({},{})", output.name, 1 + u.knots.len(), 1 + v.knots.len())?;
+                    // Names of tables have no dots.
+                    let name = output.name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+                    writeln!(out, "double {name}({},{})", 1 + u.knots.len(), 1 + v.knots.len())?;
                     row(&mut out, &mut [0.0].into_iter().chain(v.knots.iter().copied()))?;
                     for (i, u) in u.knots.iter().enumerate() {
                         let values = &output.numbers[0].values[i * v.knots.len()..(i + 1) * v.knots.len()];

@@ -20,6 +20,7 @@ mod grids;
 mod includes;
 mod joint_limits;
 mod loads;
+mod maps;
 mod measures;
 mod meshes;
 mod metamorphic;

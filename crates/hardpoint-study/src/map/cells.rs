@@ -17,8 +17,9 @@ use super::{MOST_VALUES, MapColumn, MapError, MapTable, Request, Unproved};
 
 /// Bounds within this factor of the derivatives at points are not improved by smaller boxes.
 const SHARP: f64 = 1.5;
-/// Number of times that the boxes of a cell are halved to sharpen bounds, per driver.
-const MOST_HALVINGS: usize = 3;
+/// Number of times that the boxes of a cell are halved to sharpen bounds, by the number of drivers: a box of three
+/// drivers has the cost of some hundred boxes of one.
+const MOST_HALVINGS: [usize; 3] = [3, 4, 2];
 /// Number of times that a range is halved before nothing is proved in a part of it.
 const MOST_PARTS: i32 = 14;
 /// Error of a conversion of units and of the drivers' values, in units of the value.
@@ -83,7 +84,7 @@ pub fn solve(
         request.axes.iter().zip(&design).map(|(a, design)| a.range.map(|x| x - design)).collect();
     let remainders = request.interpolation.remainders(drivers.len());
     let slopes = (0..drivers.len()).map(|n| [0, 1, 2].map(|k| u8::from(k == n)));
-    let asked = remainders.iter().map(|(_, order)| *order).chain(slopes).collect();
+    let asked = remainders.iter().map(|(_, order)| *order).chain(slopes).chain([[0; 3]]).collect();
     let mut search = Search {
         map: map.map_err(MapError::Start)?,
         request,
@@ -109,7 +110,8 @@ struct Search<'a> {
     orders: Vec<Exponents>,
     /// Orders of the remainders, with their drivers.
     remainders: Vec<(usize, Exponents)>,
-    /// Orders of the derivatives that are bounded: the remainders, then the first derivative by each driver.
+    /// Orders of the derivatives that are bounded: the remainders, the first derivative by each driver, and the value,
+    /// which jumps where an angle is a half turn although its derivatives do not.
     asked: Vec<Exponents>,
     /// Drivers' values in the design configuration.
     design: Vec<f64>,
@@ -204,7 +206,7 @@ impl Search<'_> {
             }
             if at_points > 1.0
                 || cell.is_sharp && error.ratio > SHARP
-                || halvings == MOST_HALVINGS * part.len()
+                || halvings == MOST_HALVINGS[part.len() - 1]
             {
                 return Ok(Some(error.along));
             }
