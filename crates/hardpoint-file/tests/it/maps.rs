@@ -6,7 +6,7 @@ use hardpoint::run::Run;
 use hardpoint::topology::Formulation;
 use hardpoint_file::parse;
 use hardpoint_study::map::{
-    ErrorScope, Interpolation, MapError, MapTable, Overrides, Request, Unproved, solve,
+    ErrorScope, Interpolation, MapError, MapTable, Overrides, ProofError, Request, solve,
 };
 
 /// Positions at which errors are compared with their bounds; `HARDPOINT_MAP_POSITIONS` sets another number.
@@ -294,11 +294,11 @@ fn outputs_that_jump_or_have_a_kink_have_no_proved_error() {
     let angle = "[measures]\nangle = { type = \"coordinate\", joint = \"bearing\" }\n[time]";
     let text = SLIDER_CRANK.replace("[time]", angle);
     let error = refused(&text, &[("motor", [2.0, 4.1])], &[("angle", 1e-6)]);
-    let MapError::NotProved { part, reason: Unproved::Output(0) } = error else { panic!("{error:?}") };
+    let MapError::NotProved { part, reason: ProofError::Output(0) } = error else { panic!("{error:?}") };
     assert!(part[0][0] <= std::f64::consts::PI && std::f64::consts::PI <= part[0][1], "{part:?}");
     let kink = "[measures]\nheight = { type = \"expression\", expression = \"abs(pin.x - 150)\" }\n[time]";
     let error = refused(&SLIDER_CRANK.replace("[time]", kink), &[("motor", [0.5, 2.1])], &[("height", 1e-6)]);
-    assert!(matches!(error, MapError::NotProved { reason: Unproved::Output(0), .. }), "{error:?}");
+    assert!(matches!(error, MapError::NotProved { reason: ProofError::Output(0), .. }), "{error:?}");
 }
 
 #[test]

@@ -13,7 +13,7 @@ use hardpoint::number::{Exponents, Interval, Real};
 use hardpoint::run::{Analysis, BoundsOfOutputs, DriverMap};
 use hardpoint::topology::Formulation;
 
-use super::{MOST_VALUES, MapColumn, MapError, MapTable, Request, Unproved};
+use super::{MOST_VALUES, MapColumn, MapError, MapTable, ProofError, Request};
 
 /// Bounds within this factor of the derivatives at points are not improved by smaller boxes.
 const SHARP: f64 = 1.5;
@@ -117,7 +117,7 @@ struct Search<'a> {
     design: Vec<f64>,
     /// Ranges relative to it.
     ranges: Part,
-    boxes: HashMap<Key, Result<Rc<Vec<Vec<f64>>>, Unproved>>,
+    boxes: HashMap<Key, Result<Rc<Vec<Vec<f64>>>, ProofError>>,
     nodes: HashMap<Key, Rc<Node>>,
     more: &'a (dyn Fn() -> bool + Sync),
 }
@@ -187,7 +187,7 @@ impl Search<'_> {
             let middle = part.iter().map(|[from, to]| 0.5 * (from + to)).collect();
             for point in corners(part).chain([middle]) {
                 let found =
-                    self.map.at(&point).map_err(|failure| self.failed(part, Unproved::Motion(failure)))?;
+                    self.map.at(&point).map_err(|failure| self.failed(part, ProofError::Motion(failure)))?;
                 let found = self.magnitudes_of(&found);
                 join(&mut most, &found);
             }
@@ -304,8 +304,8 @@ impl Search<'_> {
                 }
                 Err(reason) => {
                     let may_be_halved = match &reason {
-                        Unproved::Motion(failure) => failure.may_be_halved(),
-                        Unproved::Output(_) => true,
+                        ProofError::Motion(failure) => failure.may_be_halved(),
+                        ProofError::Output(_) => true,
                     };
                     let is_least = (0..part.len()).all(|n| size(n) <= 0.5_f64.powi(MOST_PARTS));
                     if !may_be_halved || is_least {
@@ -336,15 +336,15 @@ impl Search<'_> {
     }
 
     /// Magnitudes over one box.
-    fn over_box(&mut self, part: &Part) -> Result<Rc<Vec<Vec<f64>>>, Unproved> {
+    fn over_box(&mut self, part: &Part) -> Result<Rc<Vec<Vec<f64>>>, ProofError> {
         let key = key(part.iter().flatten());
         if let Some(known) = self.boxes.get(&key) {
             return known.clone();
         }
-        let found = self.map.over(&intervals(part)).map_err(Unproved::Motion).and_then(|bounds| {
+        let found = self.map.over(&intervals(part)).map_err(ProofError::Motion).and_then(|bounds| {
             let of = self.magnitudes_of(&bounds);
             match of.iter().position(|of| !of.iter().all(|x| x.is_finite())) {
-                Some(output) => Err(Unproved::Output(output)),
+                Some(output) => Err(ProofError::Output(output)),
                 None => Ok(Rc::new(of)),
             }
         });
@@ -359,7 +359,7 @@ impl Search<'_> {
             return Ok(known.clone());
         }
         let point: Part = at.iter().map(|x| [*x; 2]).collect();
-        let bounds = self.map.at(at).map_err(|failure| self.failed(&point, Unproved::Motion(failure)))?;
+        let bounds = self.map.at(at).map_err(|failure| self.failed(&point, ProofError::Motion(failure)))?;
         let mut numbers = Vec::new();
         for (k, output) in bounds.iter().enumerate() {
             let of = |order: &Exponents| {
@@ -370,7 +370,7 @@ impl Search<'_> {
             };
             let of: Vec<[f64; 2]> = self.orders.iter().map(of).collect();
             if of.iter().flatten().any(|x| !x.is_finite()) {
-                return Err(self.failed(&point, Unproved::Output(k)));
+                return Err(self.failed(&point, ProofError::Output(k)));
             }
             numbers.push(of);
         }
@@ -379,8 +379,8 @@ impl Search<'_> {
         Ok(node)
     }
 
-    /// Proves that the numbers at all knots belong to the branch of the boxes around them, and this to the branch of the
-    /// design configuration.
+    /// Proves that the numbers at all knots belong to the branch of the boxes around them, and this to the branch of
+    /// the design configuration.
     fn connect(&mut self, knots: &[Vec<f64>], cells: &[Cell]) -> Result<(), MapError> {
         let begins: Vec<f64> = self.ranges.iter().map(|[from, to]| 0.0_f64.clamp(*from, *to)).collect();
         for (c, cell) in cells.iter().enumerate() {
@@ -391,7 +391,7 @@ impl Search<'_> {
                 let around = known.boxes.iter().find(|b| contains(b, &point));
                 let around = around.expect("boxes tile a part that contains the cell").clone();
                 let same = self.map.connect(&intervals(&around), &point);
-                same.map_err(|failure| self.failed(&around, Unproved::Motion(failure)))?;
+                same.map_err(|failure| self.failed(&around, ProofError::Motion(failure)))?;
             }
         }
         let design = vec![0.0; begins.len()];
@@ -402,8 +402,8 @@ impl Search<'_> {
     fn connect_points(&mut self, from: &[f64], to: &[f64], halvings: i32) -> Result<(), MapError> {
         let part: Part = from.iter().zip(to).map(|(a, b)| [a.min(*b), a.max(*b)]).collect();
         match self.over_box(&part) {
-            Ok(_) | Err(Unproved::Output(_)) => Ok(()),
-            Err(Unproved::Motion(failure)) if failure.may_be_halved() && halvings > 0 => {
+            Ok(_) | Err(ProofError::Output(_)) => Ok(()),
+            Err(ProofError::Motion(failure)) if failure.may_be_halved() && halvings > 0 => {
                 let middle: Vec<f64> = part.iter().map(|[from, to]| 0.5 * (from + to)).collect();
                 self.connect_points(from, &middle, halvings - 1)?;
                 self.connect_points(&middle, to, halvings - 1)
@@ -439,7 +439,7 @@ impl Search<'_> {
         }
         let of_laws = |(n, knots): (usize, Vec<f64>)| {
             let last = knots.len() - 1;
-            // The ends are those that were asked for, to the last bit.
+            // The ends are those of the request, to the last bit.
             let place = |(k, x): (usize, f64)| match k {
                 0 => self.request.axes[n].range[0],
                 k if k == last => self.request.axes[n].range[1],
@@ -452,10 +452,10 @@ impl Search<'_> {
         Ok(MapTable { drivers, knots, interpolation, columns, boxes: self.map.computed() })
     }
 
-    fn failed(&self, part: &Part, reason: Unproved) -> MapError {
+    fn failed(&self, part: &Part, reason: ProofError) -> MapError {
         let values = |relative: &[f64]| relative.iter().zip(&self.design).map(|(x, d)| x + d).collect();
         match reason {
-            Unproved::Motion(BoxFailure::NotReached(stop)) => {
+            ProofError::Motion(BoxFailure::NotReached(stop)) => {
                 let middle: Vec<f64> = part.iter().map(|[from, to]| 0.5 * (from + to)).collect();
                 let last: Vec<f64> = self
                     .request

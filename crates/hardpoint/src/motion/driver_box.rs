@@ -7,8 +7,9 @@
 //! K(X) = m - Y (phi(m, d) + phi_d(m, D) (D - d)) + (I - Y J(X)) (X - m)
 //! ```
 //!
-//! inside of X proves that exactly one position in X belongs to each point of D. The Taylor coefficients of the unknowns
-//! in the drivers follow degree by degree: `J q_e = -r_e`, with r_e the coefficient of the rows as if q_e were zero.
+//! inside of X proves that exactly one position in X belongs to each point of D. The Taylor coefficients of the
+//! unknowns in the drivers follow degree by degree: `J q_e = -r_e`, with r_e the coefficient of the rows as if q_e were
+//! zero.
 //! Bounds at the middle narrow those over the box ([`Taylor::narrowed`]), and these narrow all of higher degree.
 //!
 //! Boxes with a corner in common belong to the same branch if the position there is in both of their boxes X. Over a
