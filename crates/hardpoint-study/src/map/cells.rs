@@ -10,7 +10,7 @@ use std::rc::Rc;
 use hardpoint::model::{DriverId, Model};
 use hardpoint::motion::BoxFailure;
 use hardpoint::number::{Exponents, Interval, Real};
-use hardpoint::run::{Analysis, BoundsOfOutputs, DriverMap};
+use hardpoint::run::{Analysis, BoundsOfOutputs, DriverMap, OutputBounds};
 use hardpoint::topology::Formulation;
 
 use super::{MOST_VALUES, MapColumn, MapError, MapTable, ProofError, Request};
@@ -29,6 +29,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 type Part = Vec<[f64; 2]>;
 /// Values of drivers, bit by bit.
 type Key = Vec<u64>;
+/// Magnitudes of derivatives over a box, per output and order, or the reason why there are none.
+type BoxResult = Result<Rc<Vec<Vec<f64>>>, ProofError>;
 
 /// Largest magnitudes of derivatives over a part of the ranges.
 struct Magnitudes {
@@ -117,7 +119,7 @@ struct Search<'a> {
     design: Vec<f64>,
     /// Ranges relative to it.
     ranges: Part,
-    boxes: HashMap<Key, Result<Rc<Vec<Vec<f64>>>, ProofError>>,
+    boxes: HashMap<Key, BoxResult>,
     nodes: HashMap<Key, Rc<Node>>,
     more: &'a (dyn Fn() -> bool + Sync),
 }
@@ -278,10 +280,10 @@ impl Search<'_> {
     }
 
     fn magnitudes_of(&self, bounds: &BoundsOfOutputs) -> Vec<Vec<f64>> {
-        let of = |output: &Box<dyn hardpoint::run::OutputBounds>| {
+        let of = |output: &dyn OutputBounds| {
             self.asked.iter().map(|order| output.derivative(*order).magnitude()).collect()
         };
-        bounds.iter().map(of).collect()
+        bounds.iter().map(|output| of(&**output)).collect()
     }
 
     /// Magnitudes over a part that is halved this often, and where there are no bounds over a box.
@@ -336,7 +338,7 @@ impl Search<'_> {
     }
 
     /// Magnitudes over one box.
-    fn over_box(&mut self, part: &Part) -> Result<Rc<Vec<Vec<f64>>>, ProofError> {
+    fn over_box(&mut self, part: &Part) -> BoxResult {
         let key = key(part.iter().flatten());
         if let Some(known) = self.boxes.get(&key) {
             return known.clone();
