@@ -32,6 +32,7 @@ Exit codes:
     0  done; for verify: every variable passed
     1  verify: a sensitivity and its re-solved designs disagree;
        clearance: shapes are nearer than required;
+       map: no error is proved, or the table would be too large;
        optimize: the search did not converge, or limits are violated;
        synthesize: no linkage fulfils the task
     2  invalid command line
@@ -477,8 +478,8 @@ The file's ending selects the format: .csv, .json (with units and errors), or .t
 CombiTable1Ds and CombiTable2Ds of Modelica, in SI and for linear interpolation.
 
 Examples:
-  hardpoint map models/double_wishbone.toml --over travel=-60..60 --of toe --error 0.001deg -o toe.csv
-  hardpoint map models/slider_crank.toml --over motor=0..90deg --of stroke --error 1e-6m -o stroke.txt";
+  hardpoint map models/double_wishbone.toml --over spring_drive=-16..24 --of toe --error 0.001deg -o toe.csv
+  hardpoint map models/slider_crank.toml --over crank_drive=0..90deg --of stroke --error 1e-6m -o stroke.txt";
 
 /// `hardpoint map`.
 #[derive(Args, Debug)]

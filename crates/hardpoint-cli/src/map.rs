@@ -1,6 +1,6 @@
 //! `hardpoint map`.
 
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::Path;
 
 use hardpoint::joint::Quantity;
@@ -96,7 +96,7 @@ fn map_of(session: &Session, options: &args::Map) -> Result<Outcome, Outcome> {
     let written = write_alone(to, |out| match format {
         Format::Csv => fact.write_csv(out),
         Format::Json => out.write_all(json_text(&fact).as_bytes()),
-        Format::Modelica => fact.write_modelica(out).map_err(io::Error::from),
+        Format::Modelica => fact.write_modelica(out),
     });
     written.map_err(|e| session.not_written(&e))?;
     if options.common.json {

@@ -6,7 +6,7 @@ use hardpoint::model::{Dimension, Model};
 use hardpoint::motion::BoxFailure;
 use hardpoint::number::Exponents;
 use hardpoint_file::Units;
-use hardpoint_study::map::{MapError, MapTable, Request, Unproved};
+use hardpoint_study::map::{MapError, MapTable, ProofError, Request};
 use hardpoint_table::csv::CsvWriter;
 use serde::Serialize;
 
@@ -213,7 +213,9 @@ impl MapTableFact {
             }
             [u, v, ..] => {
                 for output in &self.outputs {
-                    writeln!(out, "double {}({},{})", output.name, 1 + u.knots.len(), 1 + v.knots.len())?;
+                    // Names of tables have no dots.
+                    let name = output.name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+                    writeln!(out, "double {name}({},{})", 1 + u.knots.len(), 1 + v.knots.len())?;
                     row(&mut out, &mut [0.0].into_iter().chain(v.knots.iter().copied()))?;
                     for (i, u) in u.knots.iter().enumerate() {
                         let values = &output.numbers[0].values[i * v.knots.len()..(i + 1) * v.knots.len()];
@@ -227,8 +229,8 @@ impl MapTableFact {
     }
 }
 
-/// Description of the reason why there is no table, and an instruction; `None` if the mechanism cannot be driven, or the
-/// caller ended the study.
+/// Description of the reason why there is no table, and an instruction; `None` if the mechanism cannot be driven, or
+/// the caller ended the study.
 pub fn reason(model: &Model, units: Units, request: &Request, error: &MapError) -> Option<(String, String)> {
     let quantity = |n: usize| model.driven(&model.drivers[request.axes[n].driver.0]).quantity;
     let name = |n: usize| &model.drivers[request.axes[n].driver.0].name;
@@ -261,13 +263,13 @@ pub fn reason(model: &Model, units: Units, request: &Request, error: &MapError) 
             };
             let part: Vec<String> = part.iter().enumerate().map(ends).collect();
             let why = match reason {
-                Unproved::Output(k) => {
+                ProofError::Output(k) => {
                     format!(
                         "`{}` is undefined, jumps by a turn or has a kink there",
                         request.outputs[*k].name
                     )
                 }
-                Unproved::Motion(failure) => motion(model, failure),
+                ProofError::Motion(failure) => motion(model, failure),
             };
             (format!("no error is proved for {}: {why}", part.join(", ")), smaller.to_owned())
         }

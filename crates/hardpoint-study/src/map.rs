@@ -1,7 +1,7 @@
 //! Tables of outputs as functions of one to three drivers, with a proved error of their interpolation.
 //!
-//! Input: ranges of drivers, outputs, and the error that each of them may have. Output: a [`MapTable`] in SI, the values
-//! and mixed first derivatives at the knots of a rectilinear grid. The intervals of the grid are halved where the
+//! Input: ranges of drivers, outputs, and the permitted error of each. Output: a [`MapTable`] in SI, the values and
+//! mixed first derivatives at the knots of a rectilinear grid. The intervals of the grid are halved where the
 //! proved bound of a cell is above the permitted error, along the driver that contributes most to it
 //! (`docs/theory.md`, section 20).
 
@@ -44,7 +44,7 @@ pub enum MapError {
         /// Lower and upper values of the drivers there, m or rad.
         part: Vec<[f64; 2]>,
         /// Reason.
-        reason: Unproved,
+        reason: ProofError,
     },
     /// The table would have too many values.
     TooLarge {
@@ -59,7 +59,7 @@ pub enum MapError {
 
 /// Reason why nothing is proved in a part of the ranges.
 #[derive(Clone, Debug)]
-pub enum Unproved {
+pub enum ProofError {
     /// The positions of the mechanism have no bounds.
     Motion(BoxFailure),
     /// An output, by its index in the request, is undefined, or jumps or has a kink.

@@ -96,7 +96,7 @@ impl Server {
                 }
                 Err(error) => {
                     text::complain(&text::error(
-                        "HP0606",
+                        "HP0607",
                         "the input cannot be read",
                         &error.to_string(),
                         "write messages with `Content-Length`, as editors do",

@@ -99,7 +99,7 @@ impl Server {
                 Ok(None) => break Outcome::Done,
                 Err(error) => {
                     text::complain(&text::error(
-                        "HP0606",
+                        "HP0607",
                         "the input cannot be read",
                         &error.to_string(),
                         "write one JSON-RPC message on each line",

@@ -21,6 +21,7 @@ mod includes;
 mod joint_limits;
 mod language;
 mod loads;
+mod maps;
 mod measures;
 mod meshes;
 mod metamorphic;

@@ -10,15 +10,16 @@ use std::rc::Rc;
 use hardpoint::model::{DriverId, Model};
 use hardpoint::motion::BoxFailure;
 use hardpoint::number::{Exponents, Interval, Real};
-use hardpoint::run::{Analysis, BoundsOfOutputs, DriverMap};
+use hardpoint::run::{Analysis, BoundsOfOutputs, DriverMap, OutputBounds};
 use hardpoint::topology::Formulation;
 
-use super::{MOST_VALUES, MapColumn, MapError, MapTable, Request, Unproved};
+use super::{MOST_VALUES, MapColumn, MapError, MapTable, ProofError, Request};
 
 /// Bounds within this factor of the derivatives at points are not improved by smaller boxes.
 const SHARP: f64 = 1.5;
-/// Number of times that the boxes of a cell are halved to sharpen bounds, per driver.
-const MOST_HALVINGS: usize = 3;
+/// Number of times that the boxes of a cell are halved to sharpen bounds, by the number of drivers: a box of three
+/// drivers has the cost of some hundred boxes of one.
+const MOST_HALVINGS: [usize; 3] = [3, 4, 2];
 /// Number of times that a range is halved before nothing is proved in a part of it.
 const MOST_PARTS: i32 = 14;
 /// Error of a conversion of units and of the drivers' values, in units of the value.
@@ -28,6 +29,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 type Part = Vec<[f64; 2]>;
 /// Values of drivers, bit by bit.
 type Key = Vec<u64>;
+/// Magnitudes of derivatives over a box, per output and order, or the reason why there are none.
+type BoxResult = Result<Rc<Vec<Vec<f64>>>, ProofError>;
 
 /// Largest magnitudes of derivatives over a part of the ranges.
 struct Magnitudes {
@@ -83,7 +86,7 @@ pub fn solve(
         request.axes.iter().zip(&design).map(|(a, design)| a.range.map(|x| x - design)).collect();
     let remainders = request.interpolation.remainders(drivers.len());
     let slopes = (0..drivers.len()).map(|n| [0, 1, 2].map(|k| u8::from(k == n)));
-    let asked = remainders.iter().map(|(_, order)| *order).chain(slopes).collect();
+    let asked = remainders.iter().map(|(_, order)| *order).chain(slopes).chain([[0; 3]]).collect();
     let mut search = Search {
         map: map.map_err(MapError::Start)?,
         request,
@@ -109,13 +112,14 @@ struct Search<'a> {
     orders: Vec<Exponents>,
     /// Orders of the remainders, with their drivers.
     remainders: Vec<(usize, Exponents)>,
-    /// Orders of the derivatives that are bounded: the remainders, then the first derivative by each driver.
+    /// Orders of the derivatives that are bounded: the remainders, the first derivative by each driver, and the value,
+    /// which jumps where an angle is a half turn although its derivatives do not.
     asked: Vec<Exponents>,
     /// Drivers' values in the design configuration.
     design: Vec<f64>,
     /// Ranges relative to it.
     ranges: Part,
-    boxes: HashMap<Key, Result<Rc<Vec<Vec<f64>>>, Unproved>>,
+    boxes: HashMap<Key, BoxResult>,
     nodes: HashMap<Key, Rc<Node>>,
     more: &'a (dyn Fn() -> bool + Sync),
 }
@@ -185,7 +189,7 @@ impl Search<'_> {
             let middle = part.iter().map(|[from, to]| 0.5 * (from + to)).collect();
             for point in corners(part).chain([middle]) {
                 let found =
-                    self.map.at(&point).map_err(|failure| self.failed(part, Unproved::Motion(failure)))?;
+                    self.map.at(&point).map_err(|failure| self.failed(part, ProofError::Motion(failure)))?;
                 let found = self.magnitudes_of(&found);
                 join(&mut most, &found);
             }
@@ -204,7 +208,7 @@ impl Search<'_> {
             }
             if at_points > 1.0
                 || cell.is_sharp && error.ratio > SHARP
-                || halvings == MOST_HALVINGS * part.len()
+                || halvings == MOST_HALVINGS[part.len() - 1]
             {
                 return Ok(Some(error.along));
             }
@@ -276,10 +280,10 @@ impl Search<'_> {
     }
 
     fn magnitudes_of(&self, bounds: &BoundsOfOutputs) -> Vec<Vec<f64>> {
-        let of = |output: &Box<dyn hardpoint::run::OutputBounds>| {
+        let of = |output: &dyn OutputBounds| {
             self.asked.iter().map(|order| output.derivative(*order).magnitude()).collect()
         };
-        bounds.iter().map(of).collect()
+        bounds.iter().map(|output| of(&**output)).collect()
     }
 
     /// Magnitudes over a part that is halved this often, and where there are no bounds over a box.
@@ -302,8 +306,8 @@ impl Search<'_> {
                 }
                 Err(reason) => {
                     let may_be_halved = match &reason {
-                        Unproved::Motion(failure) => failure.may_be_halved(),
-                        Unproved::Output(_) => true,
+                        ProofError::Motion(failure) => failure.may_be_halved(),
+                        ProofError::Output(_) => true,
                     };
                     let is_least = (0..part.len()).all(|n| size(n) <= 0.5_f64.powi(MOST_PARTS));
                     if !may_be_halved || is_least {
@@ -334,15 +338,15 @@ impl Search<'_> {
     }
 
     /// Magnitudes over one box.
-    fn over_box(&mut self, part: &Part) -> Result<Rc<Vec<Vec<f64>>>, Unproved> {
+    fn over_box(&mut self, part: &Part) -> BoxResult {
         let key = key(part.iter().flatten());
         if let Some(known) = self.boxes.get(&key) {
             return known.clone();
         }
-        let found = self.map.over(&intervals(part)).map_err(Unproved::Motion).and_then(|bounds| {
+        let found = self.map.over(&intervals(part)).map_err(ProofError::Motion).and_then(|bounds| {
             let of = self.magnitudes_of(&bounds);
             match of.iter().position(|of| !of.iter().all(|x| x.is_finite())) {
-                Some(output) => Err(Unproved::Output(output)),
+                Some(output) => Err(ProofError::Output(output)),
                 None => Ok(Rc::new(of)),
             }
         });
@@ -357,7 +361,7 @@ impl Search<'_> {
             return Ok(known.clone());
         }
         let point: Part = at.iter().map(|x| [*x; 2]).collect();
-        let bounds = self.map.at(at).map_err(|failure| self.failed(&point, Unproved::Motion(failure)))?;
+        let bounds = self.map.at(at).map_err(|failure| self.failed(&point, ProofError::Motion(failure)))?;
         let mut numbers = Vec::new();
         for (k, output) in bounds.iter().enumerate() {
             let of = |order: &Exponents| {
@@ -368,7 +372,7 @@ impl Search<'_> {
             };
             let of: Vec<[f64; 2]> = self.orders.iter().map(of).collect();
             if of.iter().flatten().any(|x| !x.is_finite()) {
-                return Err(self.failed(&point, Unproved::Output(k)));
+                return Err(self.failed(&point, ProofError::Output(k)));
             }
             numbers.push(of);
         }
@@ -377,8 +381,8 @@ impl Search<'_> {
         Ok(node)
     }
 
-    /// Proves that the numbers at all knots belong to the branch of the boxes around them, and this to the branch of the
-    /// design configuration.
+    /// Proves that the numbers at all knots belong to the branch of the boxes around them, and this to the branch of
+    /// the design configuration.
     fn connect(&mut self, knots: &[Vec<f64>], cells: &[Cell]) -> Result<(), MapError> {
         let begins: Vec<f64> = self.ranges.iter().map(|[from, to]| 0.0_f64.clamp(*from, *to)).collect();
         for (c, cell) in cells.iter().enumerate() {
@@ -389,7 +393,7 @@ impl Search<'_> {
                 let around = known.boxes.iter().find(|b| contains(b, &point));
                 let around = around.expect("boxes tile a part that contains the cell").clone();
                 let same = self.map.connect(&intervals(&around), &point);
-                same.map_err(|failure| self.failed(&around, Unproved::Motion(failure)))?;
+                same.map_err(|failure| self.failed(&around, ProofError::Motion(failure)))?;
             }
         }
         let design = vec![0.0; begins.len()];
@@ -400,8 +404,8 @@ impl Search<'_> {
     fn connect_points(&mut self, from: &[f64], to: &[f64], halvings: i32) -> Result<(), MapError> {
         let part: Part = from.iter().zip(to).map(|(a, b)| [a.min(*b), a.max(*b)]).collect();
         match self.over_box(&part) {
-            Ok(_) | Err(Unproved::Output(_)) => Ok(()),
-            Err(Unproved::Motion(failure)) if failure.may_be_halved() && halvings > 0 => {
+            Ok(_) | Err(ProofError::Output(_)) => Ok(()),
+            Err(ProofError::Motion(failure)) if failure.may_be_halved() && halvings > 0 => {
                 let middle: Vec<f64> = part.iter().map(|[from, to]| 0.5 * (from + to)).collect();
                 self.connect_points(from, &middle, halvings - 1)?;
                 self.connect_points(&middle, to, halvings - 1)
@@ -437,7 +441,7 @@ impl Search<'_> {
         }
         let of_laws = |(n, knots): (usize, Vec<f64>)| {
             let last = knots.len() - 1;
-            // The ends are those that were asked for, to the last bit.
+            // The ends are those of the request, to the last bit.
             let place = |(k, x): (usize, f64)| match k {
                 0 => self.request.axes[n].range[0],
                 k if k == last => self.request.axes[n].range[1],
@@ -450,10 +454,10 @@ impl Search<'_> {
         Ok(MapTable { drivers, knots, interpolation, columns, boxes: self.map.computed() })
     }
 
-    fn failed(&self, part: &Part, reason: Unproved) -> MapError {
+    fn failed(&self, part: &Part, reason: ProofError) -> MapError {
         let values = |relative: &[f64]| relative.iter().zip(&self.design).map(|(x, d)| x + d).collect();
         match reason {
-            Unproved::Motion(BoxFailure::NotReached(stop)) => {
+            ProofError::Motion(BoxFailure::NotReached(stop)) => {
                 let middle: Vec<f64> = part.iter().map(|[from, to]| 0.5 * (from + to)).collect();
                 let last: Vec<f64> = self
                     .request

@@ -267,7 +267,8 @@ impl<const N: usize> Taylor<Interval, N> {
             for ((n, since), above) in since.iter().enumerate().zip(raised) {
                 at += self.0[*above] * f64::from(m.exponents[k][n] + 1) * *since;
             }
-            if at.is_bounded() {
+            // A coefficient without bounds may be undefined somewhere: it remains so.
+            if at.is_bounded() && self.0[k].is_bounded() {
                 self.0[k] = self.0[k].and(at);
             }
         }
@@ -303,7 +304,8 @@ impl<T: Real, const N: usize> Mul for Taylor<T, N> {
         let mut f = self;
         for k in 0..N {
             let mut sum = self.0[k] * o.0[0];
-            for (i, j) in m.of(k) {
+            // Most coefficients are zero where not every quantity depends on every variable.
+            for (i, j) in m.of(k).filter(|(i, j)| !self.0[*i].is_zero() && !o.0[*j].is_zero()) {
                 sum += self.0[i] * o.0[j];
             }
             f.0[k] = sum;

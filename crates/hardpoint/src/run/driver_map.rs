@@ -152,7 +152,7 @@ impl Analysis<'_> {
         let boxes: DriverBoxes<'_, N> = DriverBoxes::new(one, drivers.iter().map(|d| d.0).collect())?;
         let fixed: BodyFixed<f64> = self.design_map().fixed(&model.whole(design));
         let bodies = bodies_asked_for(model);
-        let fixed = fixed.map(|x| Real::constant(x));
+        let fixed = fixed.map(Real::constant);
         Ok(Box::new(OutputMap { model, outputs, bodies, boxes, fixed }))
     }
 }

@@ -1,0 +1,90 @@
+"""Tables of `hardpoint map`, read back by SciPy: its interpolations are those whose error is proved."""
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy
+import pytest
+
+interpolate = pytest.importorskip("scipy.interpolate")
+
+ERROR = 1e-3
+"""Permitted error, deg."""
+OVER = ["--over", "spring_drive=-16..24", "--over", "rack_drive=-12..12"]
+
+
+@pytest.fixture
+def model():
+    return Path(__file__).resolve().parents[2] / "models/double_wishbone.toml"
+
+
+@pytest.fixture
+def solved(command, model, tmp_path):
+    """Drivers and toe at the output times of a run, mm and deg."""
+    assert command("run", model, "-o", tmp_path / "run", "--no-sensitivities").returncode == 0
+    with open(tmp_path / "run/motion.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    time, toe = (next(name for name in rows[0] if name.startswith(start)) for start in ("t [", "toe ["))
+    turns = [2 * math.pi * float(row[time]) for row in rows]
+    # The laws of the model file.
+    drivers = numpy.array([[4 + 20 * math.sin(t), 12 * math.sin(0.5 * t)] for t in turns])
+    return drivers, numpy.array([float(row[toe]) for row in rows])
+
+
+def table(command, model, path, *options):
+    done = command("map", model, *OVER, "--of", "toe", "--error", f"{ERROR}deg", "-o", path, *options)
+    assert done.returncode == 0, done.stderr
+    return path
+
+
+def test_hermite_interpolation_of_the_json_file_is_within_the_proved_error(command, model, solved, tmp_path):
+    found = json.loads(table(command, model, tmp_path / "toe.json").read_text())
+    assert found["proved"] is True and found["interpolation"] == "hermite"
+    x, y = (numpy.array(axis["knots"]) for axis in found["drivers"])
+    (toe,) = found["outputs"]
+    assert toe["unit"] == "deg" and 0 < toe["proved_error"] <= toe["permitted_error"] == pytest.approx(ERROR)
+    by = {tuple(n["by"]): numpy.reshape(n["values"], (x.size, y.size)) for n in toe["numbers"]}
+    spring, rack = "spring_drive", "rack_drive"
+    value = interpolate.CubicHermiteSpline(x, by[()], by[(spring,)], axis=0)
+    slope = interpolate.CubicHermiteSpline(x, by[(rack,)], by[(spring, rack)], axis=0)
+    drivers, exact = solved
+    got = [interpolate.CubicHermiteSpline(y, value(a), slope(a))(b) for a, b in drivers]
+    errors = numpy.abs(got - exact)
+    assert errors.max() <= toe["proved_error"]
+    # The derivatives count: linear interpolation of the same values is worse.
+    linear = interpolate.RegularGridInterpolator((x, y), by[()])(numpy.clip(drivers, [x[0], y[0]], [x[-1], y[-1]]))
+    assert numpy.abs(linear - exact).max() > 2 * toe["proved_error"]
+
+
+def test_linear_interpolation_of_the_csv_file_is_within_the_permitted_error(command, model, solved, tmp_path):
+    path = table(command, model, tmp_path / "toe.csv", "--interpolation", "linear")
+    with open(path, newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head == ["spring_drive [mm]", "rack_drive [mm]", "toe [deg]"]
+    numbers = numpy.array(rows, dtype=float)
+    x, y = numpy.unique(numbers[:, 0]), numpy.unique(numbers[:, 1])
+    at = interpolate.RegularGridInterpolator((x, y), numbers[:, 2].reshape(x.size, y.size))
+    drivers, exact = solved
+    errors = numpy.abs(at(numpy.clip(drivers, [x[0], y[0]], [x[-1], y[-1]])) - exact)
+    assert ERROR / 100 < errors.max() <= ERROR
+
+
+def test_tables_of_modelica_are_in_si_with_both_grids(command, model, tmp_path):
+    text = table(command, model, tmp_path / "toe.txt").read_text()
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    assert text.startswith("#1\n") and lines[0].startswith("double toe(")
+    rows, columns = map(int, lines[0][len("double toe(") : -1].split(","))
+    numbers = numpy.array([[float(x) for x in line.split()] for line in lines[1:]])
+    assert numbers.shape == (rows, columns)
+    assert numbers[0, 1] == pytest.approx(-0.012) and numbers[0, -1] == pytest.approx(0.012)
+    assert numbers[1, 0] == pytest.approx(-0.016) and numbers[-1, 0] == pytest.approx(0.024)
+    assert numpy.abs(numbers[1:, 1:]).max() < 0.5
+
+
+def test_a_range_that_is_not_reached_names_the_place(command, model, tmp_path):
+    path = tmp_path / "toe.json"
+    done = command("map", model, "--over", "spring_drive=-160..24", "--of", "toe", "--error", "1deg", "-o", path)
+    assert done.returncode == 5 and not path.exists()
+    assert "HP0606" in done.stderr and "spring_drive = -160 mm is not reached" in done.stderr
