@@ -333,6 +333,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             note: "The least margin is 0.05 at t = 0 s: about one of 16 digits is lost there.".into(),
         }),
         variables: variables(&times),
+        covariance_root: None,
+        study: None,
         checks: checks(),
         clearance: None,
         model: None,
