@@ -141,6 +141,16 @@ margin: Margin | null,
  */
 variables: Array<Variable>,
 /**
+ * Square root R of the covariance matrix of the variables' deviations, in their units, for the page of a tolerance
+ * study: a row for each variable. A curve with the derivatives g has the standard deviation |R^T g| to first
+ * order.
+ */
+covariance_root?: Array<Array<number>>,
+/**
+ * Result of the study of which this is the page.
+ */
+study?: StudyTables,
+/**
  * Facts about the model: bodies, joints, constraints, redundancy, admissibility.
  */
 checks: Array<Table>,
@@ -1068,6 +1078,19 @@ value: Curve,
  * Meaning of its minimum.
  */
 note: string, };
+
+/**
+ * Result of a study.
+ */
+export type StudyTables = {
+/**
+ * Title of its tab.
+ */
+title: string,
+/**
+ * Tables of the result, the summary first.
+ */
+tables: Array<Table>, };
 
 /**
  * Design variable: its design velocities, admissibility and sensitivities.

@@ -134,7 +134,8 @@ pub struct Payload {
     /// Design variables with their sensitivities.
     pub variables: Vec<Variable>,
     /// Square root R of the covariance matrix of the variables' deviations, in their units, for the page of a tolerance
-    /// study: a row for each variable. A curve with the derivatives g has the standard deviation |R^T g| to first order.
+    /// study: a row for each variable. A curve with the derivatives g has the standard deviation |R^T g| to first
+    /// order.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, ts(optional))]
     pub covariance_root: Option<Vec<Vec<f64>>>,
@@ -1098,7 +1099,7 @@ pub(crate) mod tests {
         declare!(
             Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark SlideMark JointCurve CouplerMark CouplerTerm
             DriverMark BodyPlace WheelMark ClearanceMarks ShapeMark ClearanceMark PairTrack DesignShapes DistanceMark LoadMark VehicleAxes Quantity Plot NamedDesign NamedChange Value Gate Design DesignKind DesignCurves
-            GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin Variable Admissibility Arrow Sensitivity FiniteDifference Table
+            GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin StudyTables Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/payload.ts");
         if fs::read_to_string(&path).ok().as_deref() != Some(&expected) {

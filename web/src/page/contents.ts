@@ -193,7 +193,8 @@ function addBands(state: State, subject: Subject, content: Content, scale: numbe
   const { quantity, order, over } = subject
   const bands = report.designs.filter(({ kind, quantities }) => kind === 'band' && quantities[quantity]?.[order].length)
   if (bands.length === 0) return
-  const edges = over === undefined ? bands.map(({ quantities }) => quantities[quantity]![order]) : edgesOver(report, subject)
+  const edges =
+    over === undefined ? bands.map(({ quantities }) => quantities[quantity]![order]) : edgesOver(report, subject)
   if (typeof edges === 'string') {
     content.caption = `No tolerance band: ${edges}`
     return
@@ -209,7 +210,8 @@ function addBands(state: State, subject: Subject, content: Content, scale: numbe
       dash: DOTTED,
     }),
   )
-  if (over !== undefined) content.caption = `Tolerance band at constant ${report.quantities[over].name}, to first order.`
+  if (over !== undefined)
+    content.caption = `Tolerance band at constant ${report.quantities[over].name}, to first order.`
 }
 
 /** Nominal value less and plus three standard deviations, at a fixed abscissa; a message where these are not known. */
@@ -367,7 +369,10 @@ interface AtAbscissa {
  * Conversion of the quantity's sensitivities to a fixed abscissa, if there is one; a message where it is not possible.
  * Where several drivers move, the one that moves the abscissa most holds it, and the others are fixed.
  */
-function atAbscissa({ sensitivityReport: report }: Pick<State, 'sensitivityReport'>, { quantity, order, over }: Subject): AtAbscissa | string {
+function atAbscissa(
+  { sensitivityReport: report }: Pick<State, 'sensitivityReport'>,
+  { quantity, order, over }: Subject,
+): AtAbscissa | string {
   if (over === undefined) return { seen: (curve) => curve, note: '' }
   const [y, x] = [report.quantities[quantity], report.quantities[over]]
   if (order > 0) return 'Over another quantity, only sensitivities of values are available: choose the value, or time.'

@@ -258,7 +258,7 @@ fn two_files_are_compared_in_every_case_that_both_have() {
     }
     let page = bench.page("out/bump/compare.html");
     assert_eq!(page["designs"][0]["name"], "higher.toml");
-    assert!(page["checks"].as_array().unwrap()[0]["title"] == "Hardpoints that differ");
+    assert!(page["study"]["tables"][0]["title"] == "Hardpoints that differ");
 
     let same = bench.run(&["compare", "strut_toe.toml", "strut_toe.toml", "--case", "steer"]);
     assert!(

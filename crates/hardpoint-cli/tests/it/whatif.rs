@@ -69,7 +69,7 @@ fn the_tutorial_takes_the_bump_steer_out() {
         assert_eq!(*value("lca_angle"), quantities[quantity("lca_angle")]["value"]);
         assert_ne!(*value("toe"), quantities[quantity("toe")]["value"]);
     }
-    assert_eq!(page["checks"][1]["title"], "What if tie_rod_inner_z by 32 mm");
+    assert_eq!(page["study"]["tables"][1]["title"], "What if tie_rod_inner_z by 32 mm");
     let asked = bench.run(&["whatif", "ride.toml", "--measure", "camber", "-o", "today"]);
     assert_eq!(asked.status.code(), Some(0));
     let page = bench.page("today/whatif.html");

@@ -53,8 +53,8 @@ pub struct Optimality {
 }
 
 impl Rows {
-    /// Rows that attain the maximum, up to a fraction of their change over the bounds: their derivatives by fractions of
-    /// the bounds.
+    /// Derivatives, by fractions of the bounds, of the rows that attain the maximum up to a fraction of their change
+    /// over the bounds.
     fn at_peak(&self, spans: &[f64]) -> Vec<Vec<f64>> {
         let by_parts: Vec<Vec<f64>> = self.d.iter().map(|d| by_parts(d, spans)).collect();
         let steepest = by_parts.iter().flatten().fold(0.0, |most: f64, d| most.max(d.abs()));
