@@ -351,7 +351,7 @@ impl Index {
             }
             let own = |variable: &&String| {
                 section == "design"
-                    && self.declared[*variable].iter().any(|s| *s == section)
+                    && self.declared[*variable].contains(&section)
                     && variable.rsplit_once('_').is_some_and(|(base, _)| base == name)
             };
             let mut variables: Vec<&String> = self.declared.keys().filter(own).collect();
