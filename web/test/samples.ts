@@ -19,6 +19,8 @@ export interface Samples {
   tutorial: string
   /** The strut over wheel travel and steer: a page with a map. */
   map: string
+  /** The strut with tolerances: a page with bands. */
+  tolerance: string
   /** A front axle on bushings, in equilibrium over wheel travel. */
   elastic: string
   /** A four-bar whose rods pass screws: shapes, one of which hits another. */
@@ -89,6 +91,15 @@ export default async function setup(project: TestProject): Promise<() => void> {
     () => command(hardpoint, ['whatif', join(MODELS, 'macpherson.toml'), ...change]),
     () => command(hardpoint, ['whatif', ride, ...higher, '--over', 'wheel_travel', '-o', join(folder, 'tutorial')]),
     () => command(hardpoint, ['run', join(MODELS, 'studies', 'strut_map.toml'), '-o', join(folder, 'map')]),
+    () =>
+      command(hardpoint, [
+        'tolerance',
+        join(MODELS, 'studies', 'strut_tolerances.toml'),
+        '--samples',
+        '100',
+        '-o',
+        join(folder, 'tolerance'),
+      ]),
     () => command(hardpoint, ['run', join(MODELS, 'studies', 'knee.toml'), '-o', join(folder, 'knee')]),
     ...files.map(
       (file) => () => command(hardpoint, ['run', join(MODELS, file), '-o', join(folder, basename(file, '.toml'))]),
@@ -102,6 +113,7 @@ export default async function setup(project: TestProject): Promise<() => void> {
     changed: page('changed', 'whatif.html'),
     tutorial: page('tutorial', 'whatif.html'),
     map: page('map', 'ride', 'report.html'),
+    tolerance: page('tolerance', 'report-bump.html'),
     elastic: page('elastic', 'report.html'),
     knee: page('knee', 'report.html'),
     large: page('large', 'report.html'),

@@ -75,7 +75,7 @@ fn the_tutorial_takes_the_bump_steer_out() {
     let page = bench.page("today/whatif.html");
     assert_eq!(page["first"], quantity("camber"));
     assert!(page["designs"].as_array().unwrap().is_empty() && page["over"].is_null());
-    assert_eq!(page["checks"][0]["title"], "Most influential variables of camber");
+    assert_eq!(page["study"]["tables"][0]["title"], "Most influential variables of camber");
     assert_eq!(bench.text("out/whatif.csv").lines().count(), 502);
 
     // The same, written into the file, is the exact curve.
