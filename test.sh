@@ -19,6 +19,7 @@ need node nodejs
 need npm npm
 need chromium chromium
 need valgrind valgrind
+need clang clang
 need python3 python3
 python3 -c 'import ensurepip' 2>/dev/null || install python3-venv
 
