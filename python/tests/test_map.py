@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy
@@ -39,18 +40,21 @@ def table(command, model, path, *options):
     return path
 
 
-def test_hermite_interpolation_of_the_json_file_is_within_the_proved_error(command, model, solved, tmp_path):
+def test_hermite_interpolation_of_the_json_file_is_within_the_proved_error(command, model, solved, tmp_path, monkeypatch):
     found = json.loads(table(command, model, tmp_path / "toe.json").read_text())
     assert found["proved"] is True and found["interpolation"] == "hermite"
     x, y = (numpy.array(axis["knots"]) for axis in found["drivers"])
     (toe,) = found["outputs"]
     assert toe["unit"] == "deg" and 0 < toe["proved_error"] <= toe["permitted_error"] == pytest.approx(ERROR)
     by = {tuple(n["by"]): numpy.reshape(n["values"], (x.size, y.size)) for n in toe["numbers"]}
-    spring, rack = "spring_drive", "rack_drive"
-    value = interpolate.CubicHermiteSpline(x, by[()], by[(spring,)], axis=0)
-    slope = interpolate.CubicHermiteSpline(x, by[(rack,)], by[(spring, rack)], axis=0)
+    # The interpolation is that of the document.
+    document = (Path(__file__).resolve().parents[2] / "docs/maps.md").read_text()
+    (block,) = re.findall(r"^```python\n(.*?)^```", document, re.M | re.S)
+    names = {}
+    monkeypatch.chdir(tmp_path)
+    exec(compile(block, "maps.md", "exec"), names)
     drivers, exact = solved
-    got = [interpolate.CubicHermiteSpline(y, value(a), slope(a))(b) for a, b in drivers]
+    got = [names["toe"](a, b) for a, b in drivers]
     errors = numpy.abs(got - exact)
     assert errors.max() <= toe["proved_error"]
     # The derivatives count: linear interpolation of the same values is worse.
