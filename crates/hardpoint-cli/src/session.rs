@@ -236,12 +236,16 @@ impl Session {
         let cases: Vec<&str> = file.model.cases.iter().map(|c| c.name.as_str()).collect();
         let grids = if each_grid.is_some() { &file.model.grids[..] } else { &[] };
         if let Some(name) = &motions.case {
-            let grid = grids.iter().find(|grid| grid.name == *name);
-            if let (Some(grid), Some(each_grid)) = (grid, &mut each_grid) {
-                return each_grid(&file, grid);
-            }
-            let id = self.case(&file, name)?;
-            return each(file.in_case(id), None);
+            let Some(each_grid) = &mut each_grid else {
+                let id = self.case(&file, name)?;
+                return each(file.in_case(id), None);
+            };
+            let known = cases.iter().copied().chain(grids.iter().map(|grid| grid.name.as_str()));
+            let k = named("case", name, known).map_err(|error| self.refused(&file, &error))?;
+            return match k.checked_sub(cases.len()) {
+                Some(grid) => each_grid(&file, &grids[grid]),
+                None => each(file.in_case(CaseId(k)), None),
+            };
         }
         if cases.is_empty() && grids.is_empty() {
             return each(file, None);

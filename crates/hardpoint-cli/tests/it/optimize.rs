@@ -218,6 +218,10 @@ fn a_grid_is_solved_by_itself_and_every_page_of_the_file_has_it() {
     let check = bench.run(&["check", "mapped.toml", "--case", "map"]);
     assert_eq!(check.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&check.stderr).contains("a grid of positions, not a motion"));
+    // Commands that take grids name them as well.
+    let unknown = bench.run(&["run", "mapped.toml", "--case", "mapp", "-o", "none"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&unknown.stderr).contains("did you mean `map`?"));
 }
 
 #[test]
