@@ -192,10 +192,10 @@ fn grid_alone(
     whole: &Path,
 ) -> Result<Option<Outcome>, Outcome> {
     let mut file = session.read(&options.common.model)?;
-    file.model.grids.retain(|grid| grid.name == name);
-    if file.model.grids.is_empty() {
+    if session.case_or_grid(&file, name)?.is_ok() {
         return Ok(None);
     }
+    file.model.grids.retain(|grid| grid.name == name);
     let mut folder = Folder::open(whole).map_err(|e| session.not_written(&e))?;
     let maps = maps::solved(session, &file, options.common.formulation());
     if options.common.json {

@@ -240,11 +240,9 @@ impl Session {
                 let id = self.case(&file, name)?;
                 return each(file.in_case(id), None);
             };
-            let known = cases.iter().copied().chain(grids.iter().map(|grid| grid.name.as_str()));
-            let k = named("case", name, known).map_err(|error| self.refused(&file, &error))?;
-            return match k.checked_sub(cases.len()) {
-                Some(grid) => each_grid(&file, &grids[grid]),
-                None => each(file.in_case(CaseId(k)), None),
+            return match self.case_or_grid(&file, name)? {
+                Ok(id) => each(file.in_case(id), None),
+                Err(grid) => each_grid(&file, grid),
             };
         }
         if cases.is_empty() && grids.is_empty() {
@@ -297,6 +295,21 @@ impl Session {
             )),
             false => self.refused(file, &error),
         })
+    }
+
+    /// Case that the command line names, or a grid, for commands that take both.
+    ///
+    /// # Errors
+    /// Fails if there is neither.
+    pub fn case_or_grid<'f>(
+        &self,
+        file: &'f ModelFile,
+        name: &str,
+    ) -> Result<Result<CaseId, &'f Grid>, Outcome> {
+        let (cases, grids) = (&file.model.cases, &file.model.grids);
+        let known = cases.iter().map(|case| &*case.name).chain(grids.iter().map(|grid| &*grid.name));
+        let found = named("case", name, known).map_err(|error| self.refused(file, &error))?;
+        Ok(found.checked_sub(cases.len()).map_or(Ok(CaseId(found)), |grid| Err(&grids[grid])))
     }
 
     /// Restricts a model to the case that the command line names, if it names one.
