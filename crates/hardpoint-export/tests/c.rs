@@ -449,7 +449,7 @@ fn the_example_compiles_for_a_controller_without_an_operating_system() {
     let document = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/export-c.md");
     let document = std::fs::read_to_string(document).unwrap();
     let example = document.split("```c\n").nth(1).unwrap().split("```").next().unwrap();
-    let options = ExportOptions { design: true, ..ExportOptions::default() };
+    let options = ExportOptions { design: true };
     let exported =
         Format::named("c").unwrap().export_with(&model("double_wishbone"), "corner", options).unwrap();
     let folder = tempfile::tempdir().unwrap();
@@ -473,6 +473,6 @@ fn the_example_compiles_for_a_controller_without_an_operating_system() {
         let called: Vec<&str> = names.lines().filter_map(|line| line.trim().strip_prefix("U ")).collect();
         assert!(called.contains(&"sqrt") || called.contains(&"rint"), "{compiler}: {names}");
         let is_known = |name: &&str| OF_A_CONTROLLER.contains(name) || name.starts_with("corner_");
-        assert!(called.iter().all(|name| is_known(&name)), "{compiler}: {called:?}");
+        assert!(called.iter().all(|name| is_known(name)), "{compiler}: {called:?}");
     }
 }
