@@ -473,6 +473,6 @@ fn the_example_compiles_for_a_controller_without_an_operating_system() {
         let called: Vec<&str> = names.lines().filter_map(|line| line.trim().strip_prefix("U ")).collect();
         assert!(called.contains(&"sqrt") || called.contains(&"rint"), "{compiler}: {names}");
         let is_known = |name: &&str| OF_A_CONTROLLER.contains(name) || name.starts_with("corner_");
-        assert!(called.iter().all(|name| is_known(name)), "{compiler}: {called:?}");
+        assert!(called.iter().all(is_known), "{compiler}: {called:?}");
     }
 }
