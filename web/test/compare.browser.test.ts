@@ -41,6 +41,7 @@ describe('a changed design beside the original', () => {
   })
 
   test('is the original again when all changes are reset', async () => {
+    await page.getByTestId('tab-variables').click()
     await page.getByTestId('reset-all').click()
     expect(await page.locator('.ghost-key').isVisible()).toBe(false)
     expect(await lines()).not.toMatch(/original/)

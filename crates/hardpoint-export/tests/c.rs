@@ -438,7 +438,7 @@ fn the_examples_of_the_page_compile() {
     assert!(run.success(), "the examples end with {run}");
 }
 
-/// Functions that code for a controller may call: those of `math.h`, and what compilers put in for copies of structures.
+/// Functions that code for a controller may call: those of `math.h`, and what compilers insert to copy structures.
 const OF_A_CONTROLLER: [&str; 17] = [
     "acos", "asin", "atan", "atan2", "cos", "exp", "fabs", "fmod", "log", "pow", "rint", "round", "sin",
     "sqrt", "tan", "memcpy", "memset",
