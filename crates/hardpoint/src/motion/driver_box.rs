@@ -19,20 +19,18 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::model::JointId;
-use crate::number::{Dual, Interval, Taylor};
+use crate::number::{Interval, Taylor};
 use crate::space::{Pose, Quat, Real};
 use crate::topology::{BlockId, Topology};
 
 use super::Stop;
 use super::advance::{accept_at_rest, start_at_rest};
-use super::kinematics::State;
+use super::contraction::{
+    BlockSolver, CONTRACTION, Contracted, Contraction, LEAST_BOX, inverse_of, is_within,
+};
 use super::mechanism::{AcceptedPosition, Mechanism};
-use super::parts::PlanGeometry;
 use super::path::Path;
 use super::stepper::Stepper;
-use super::tube::{
-    CONTRACTION, Contraction, LARGEST_BOX, LEAST_BOX, MOST_BOXES, SLACK, inverse_of, is_within, rows, set,
-};
 use super::walk::walk;
 use crate::linalg::LARGEST_DENSE;
 
@@ -109,34 +107,12 @@ struct Wanted<'w, const N: usize> {
 }
 
 /// Computes enclosures of one mechanism.
-struct BoxSolver<const N: usize> {
-    /// The same state over intervals, over duals of them, and over Taylor numbers of them.
-    values: State<Interval>,
-    columns: State<Dual<Interval>>,
-    series: State<Taylor<Interval, N>>,
-    parts: PlanGeometry<Interval>,
-    parts_of_columns: PlanGeometry<Dual<Interval>>,
-    parts_of_series: PlanGeometry<Taylor<Interval, N>>,
-    drivers: Vec<[Interval; 3]>,
-    drivers_of_columns: Vec<[Dual<Interval>; 3]>,
-    drivers_of_series: Vec<[Taylor<Interval, N>; 3]>,
-}
+struct BoxSolver<const N: usize>(BlockSolver<Taylor<Interval, N>>);
 
 impl<const N: usize> BoxSolver<N> {
     fn new(mechanism: &Mechanism<'_>) -> Self {
         let Mechanism { model, topology, parts, .. } = mechanism;
-        let drivers = model.drivers.len();
-        Self {
-            values: State::new(model, topology),
-            columns: State::new(model, topology),
-            series: State::new(model, topology),
-            parts: parts.spread(),
-            parts_of_columns: parts.spread(),
-            parts_of_series: parts.spread(),
-            drivers: vec![[Interval::zero(); 3]; drivers],
-            drivers_of_columns: vec![[Dual::zero(); 3]; drivers],
-            drivers_of_series: vec![[Taylor::zero(); 3]; drivers],
-        }
+        Self(BlockSolver::new(model, topology, parts, Taylor::value))
     }
 
     fn enclose(
@@ -147,17 +123,7 @@ impl<const N: usize> BoxSolver<N> {
         if let Some((c, _)) = topology.contacts().next() {
             return Err(BoxFailure::FollowsCurve { joint: topology[c].joint });
         }
-        for (d, law) in wanted.drivers.iter().enumerate() {
-            self.drivers[d][0] = law.value();
-            self.drivers_of_columns[d][0] = Dual::constant(law.value());
-            self.drivers_of_series[d][0] = *law;
-        }
-        for r in topology.coupler_terms() {
-            let near = wanted.at.coupled[r.0][0];
-            self.values.near[r.0] = Real::constant(near);
-            self.columns.near[r.0] = Real::constant(near);
-            self.series.near[r.0] = Real::constant(near);
-        }
+        self.0.drive(topology, &wanted.drivers, wanted.at);
         let centres =
             wanted.narrow.map_or_else(|| Rc::new(wanted.at.balls.clone()), |narrow| narrow.centres.clone());
         let o = topology.coordinates.len();
@@ -171,20 +137,11 @@ impl<const N: usize> BoxSolver<N> {
         for (c, d) in topology.driven_coordinates() {
             let law = wanted.drivers[d.0];
             (found.coordinates[c.0], found.unique[c.0]) = (law, law.value());
-            self.values.q[c.0] = law.value();
-            self.columns.q[c.0] = Dual::constant(law.value());
-            self.series.q[c.0] = law;
         }
-        self.values.place(topology, &self.parts, topology.driven_links());
-        self.values.place_bodies(topology, &self.parts, topology.driven_links());
-        self.columns.place(topology, &self.parts_of_columns, topology.driven_links());
-        self.columns.place_bodies(topology, &self.parts_of_columns, topology.driven_links());
-        self.series.place(topology, &self.parts_of_series, topology.driven_links());
-        self.series.place_bodies(topology, &self.parts_of_series, topology.driven_links());
         for b in topology.block_ids() {
             self.enclose_block(topology, b, wanted, &mut found)?;
         }
-        found.poses = self.series.pose.clone();
+        found.poses = self.0.series.state.pose.clone();
         if let Some(narrow) = wanted.narrow {
             let since = &wanted.since;
             for (pose, at) in found.poses.iter_mut().zip(&narrow.poses) {
@@ -214,86 +171,45 @@ impl<const N: usize> BoxSolver<N> {
             return Err(BoxFailure::TooLarge { block: b });
         }
         let failed = || BoxFailure::NoContraction { block: b };
-        let unit = |k: usize| topology[unknowns[k]].unit;
         let points: Vec<Interval> = unknowns.iter().map(|c| Interval::constant(wanted.at.q[c.0])).collect();
-        // phi(m, D), and phi(m, d) + phi_d(m, D) (D - d)
-        set(&mut self.values, topology, b, |k| points[k], &found.centres);
-        let mut residual = rows(&mut self.values, topology, &self.parts, &self.drivers, b);
-        if let Some(narrow) = wanted.narrow {
-            set(&mut self.series, topology, b, |k| Taylor::constant(points[k]), &found.centres);
-            let moved = rows(&mut self.series, topology, &self.parts_of_series, &self.drivers_of_series, b);
-            // One term for each variable, to be preconditioned before it is added.
-            let start = narrow.residuals[b.0].clone();
-            let terms: Vec<Vec<Interval>> = (0..wanted.since.len())
-                .map(|v| moved.iter().map(|row| row.coefficients()[1 + v]).collect())
-                .collect();
-            return self.contract(topology, b, wanted, found, &points, (&start, &terms), &unit, failed);
-        }
-        found.residuals.push(std::mem::take(&mut residual));
-        let start = found.residuals[b.0].clone();
-        self.contract(topology, b, wanted, found, &points, (&start, &[]), &unit, failed)
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "the parts of one contraction")]
-    fn contract(
-        &mut self,
-        topology: &Topology,
-        b: BlockId,
-        wanted: &Wanted<'_, N>,
-        found: &mut BoxEnclosure<N>,
-        points: &[Interval],
-        (start, terms): (&[Interval], &[Vec<Interval>]),
-        unit: &dyn Fn(usize) -> f64,
-        failed: impl Fn() -> BoxFailure,
-    ) -> Result<(), BoxFailure> {
-        let unknowns = &topology[b].unknowns;
-        let n = unknowns.len();
-        let mut radius: Vec<f64> = (0..n).map(|k| LEAST_BOX * unit(k)).collect();
-        let (mut contraction, mut first): (Option<Contraction>, Option<Vec<f64>>) = (None, None);
-        for _ in 0..MOST_BOXES {
-            let boxed: Vec<Interval> =
-                points.iter().zip(&radius).map(|(m, r)| *m + Interval::symmetric(*r)).collect();
-            let jacobian = self.jacobian(topology, b, &boxed, &found.centres);
-            let inverse = match &first {
-                Some(inverse) => inverse.clone(),
-                None => inverse_of(&jacobian, n).ok_or_else(&failed)?,
-            };
-            first = Some(inverse.clone());
-            let step = Contraction::of(inverse, &jacobian, n);
-            let away: Vec<Interval> = boxed.iter().zip(points).map(|(x, m)| *x - *m).collect();
-            let mut newton = step.precondition(start);
+        // phi(m, d) + phi_d(m, D) (D - d): one term for each variable, to be preconditioned before it is added.
+        let (start, terms) = match wanted.narrow {
+            Some(narrow) => {
+                let fixed = |k: usize| Taylor::constant(points[k]);
+                let moved = self.0.series.rows(topology, b, fixed, &found.centres);
+                let term = |v: usize| moved.iter().map(|row| row.coefficients()[1 + v]).collect::<Vec<_>>();
+                (narrow.residuals[b.0].clone(), (0..wanted.since.len()).map(term).collect())
+            }
+            None => {
+                let residual = self.0.values.rows(topology, b, |k| points[k], &found.centres);
+                found.residuals.push(residual.clone());
+                (residual, Vec::new())
+            }
+        };
+        let newton = |step: &Contraction| {
+            let mut newton = step.precondition(&start);
             for (term, since) in terms.iter().zip(&wanted.since) {
                 for (x, rate) in newton.iter_mut().zip(step.precondition(term)) {
                     *x += rate * *since;
                 }
             }
-            let rest = step.remainder(&away);
-            let image: Vec<Interval> = newton.iter().zip(&rest).map(|(p, q)| *q - *p).collect();
-            if away.iter().zip(&image).all(|(x, k)| x.strictly_encloses(*k)) {
-                for (k, c) in unknowns.iter().enumerate() {
-                    found.unique[c.0] = boxed[k];
-                    // The derivatives are not known yet.
-                    found.coordinates[c.0] = Taylor::constant(points[k] + image[k]);
-                    found.coordinates[c.0].coefficients_mut()[1..].fill(Interval::ENTIRE);
-                }
-                contraction = Some(step);
-                break;
-            }
-            for k in 0..n {
-                let reached = image[k].magnitude();
-                if !(reached <= LARGEST_BOX * unit(k)) {
-                    return Err(failed());
-                }
-                radius[k] = SLACK * reached + LEAST_BOX * unit(k);
-            }
+            newton
+        };
+        let radius = unknowns.iter().map(|c| LEAST_BOX * topology[*c].unit).collect();
+        let Contracted { unique, bounds } =
+            self.0.contract(topology, b, (&points, radius), &found.centres, newton).ok_or_else(failed)?;
+        for (k, c) in unknowns.iter().enumerate() {
+            found.unique[c.0] = unique[k];
+            // The derivatives are not known yet.
+            found.coordinates[c.0] = Taylor::constant(bounds[k]);
+            found.coordinates[c.0].coefficients_mut()[1..].fill(Interval::ENTIRE);
         }
-        contraction.filter(|step| step.norm() <= CONTRACTION).ok_or_else(&failed)?;
         let mut inverse = None;
         for _ in 0..if wanted.narrow.is_some() { PASSES } else { 1 } {
             let boxed: Vec<Interval> = unknowns.iter().map(|c| found.coordinates[c.0].value()).collect();
-            let jacobian = self.jacobian(topology, b, &boxed, &found.centres);
+            let jacobian = self.0.jacobian(topology, b, &boxed, &found.centres);
             if inverse.is_none() {
-                inverse = Some(inverse_of(&jacobian, n).ok_or_else(&failed)?);
+                inverse = Some(inverse_of(&jacobian, n).ok_or_else(failed)?);
             }
             let step = Contraction::of(inverse.clone().unwrap_or_default(), &jacobian, n);
             if !(step.norm() <= CONTRACTION) {
@@ -307,18 +223,8 @@ impl<const N: usize> BoxSolver<N> {
                 }
             }
         }
-        // The bodies of the block, for those that depend on it, and as results.
         let all: Vec<Taylor<Interval, N>> = unknowns.iter().map(|c| found.coordinates[c.0]).collect();
-        let links = topology[b].link_ids();
-        set(&mut self.values, topology, b, |k| all[k].value(), &found.centres);
-        self.values.place(topology, &self.parts, links.clone());
-        self.values.place_bodies(topology, &self.parts, links.clone());
-        set(&mut self.columns, topology, b, |k| Dual::constant(all[k].value()), &found.centres);
-        self.columns.place(topology, &self.parts_of_columns, links.clone());
-        self.columns.place_bodies(topology, &self.parts_of_columns, links.clone());
-        set(&mut self.series, topology, b, |k| all[k], &found.centres);
-        self.series.place(topology, &self.parts_of_series, links.clone());
-        self.series.place_bodies(topology, &self.parts_of_series, links);
+        self.0.place(topology, b, &all, &found.centres);
         Ok(())
     }
 
@@ -341,8 +247,7 @@ impl<const N: usize> BoxSolver<N> {
                 x.coefficients_mut()[begin..].fill(Interval::zero());
                 x
             };
-            set(&mut self.series, topology, b, lower, &found.centres);
-            let demand = rows(&mut self.series, topology, &self.parts_of_series, &self.drivers_of_series, b);
+            let demand = self.0.series.rows(topology, b, lower, &found.centres);
             for e in begin..end {
                 let demand: Vec<Interval> = demand.iter().map(|row| -row.coefficients()[e]).collect();
                 let mut x: Vec<Interval> =
@@ -357,28 +262,6 @@ impl<const N: usize> BoxSolver<N> {
             }
             begin = end;
         }
-    }
-
-    /// Jacobian of the selected rows by the unknowns of a block, row by row.
-    fn jacobian(
-        &mut self,
-        topology: &Topology,
-        b: BlockId,
-        q: &[Interval],
-        centres: &[Quat],
-    ) -> Vec<Interval> {
-        let n = q.len();
-        let mut jacobian = vec![Interval::zero(); n * n];
-        for column in 0..n {
-            let of = |k: usize| if k == column { Dual::variable(q[k]) } else { Dual::constant(q[k]) };
-            set(&mut self.columns, topology, b, of, centres);
-            let found =
-                rows(&mut self.columns, topology, &self.parts_of_columns, &self.drivers_of_columns, b);
-            for (row, x) in found.into_iter().enumerate() {
-                jacobian[row * n + column] = x.d;
-            }
-        }
-        jacobian
     }
 }
 

@@ -8,6 +8,7 @@
 pub(crate) mod advance;
 pub(crate) mod assembly;
 mod change_point;
+mod contraction;
 mod crossing;
 pub(crate) mod design_batch;
 mod driven_step;

@@ -31,35 +31,22 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::law::TimeJet;
-use crate::linalg::{Factors, LARGEST_DENSE};
+use crate::linalg::LARGEST_DENSE;
 use crate::model::{DriverId, JointId, Model};
-use crate::number::{Dual, Interval, Jet};
+use crate::number::{Interval, Jet};
 use crate::space::{Mat3, Pose, Quat, Real, Vec3};
 use crate::topology::{BlockId, CoordinateId, Topology};
 
-use crate::joint::Freedom;
-
-use super::kinematics::State;
+use super::contraction::{
+    BlockSolver, CONTRACTION, Contracted, Contraction, LEAST_BOX, SLACK, inverse_of, is_within,
+};
 use super::mechanism::{AcceptedPosition, Mechanism};
 use super::parts::PlanGeometry;
 use super::path::Path;
 
-/// Number of boxes that are tried before an interval of time is considered too long.
-pub(super) const MOST_BOXES: usize = 8;
-/// Factor by which a box is larger than its prediction or the last image, so that the next image is inside of it.
-pub(super) const SLACK: f64 = 1.1;
-/// Size that a box has at least, in units of its coordinate: far above the error of a solved position, which is
-/// round-off, and far below any motion of interest.
-pub(super) const LEAST_BOX: f64 = 1e-11;
-/// Size of a box, rad or sizes, above which the equations of a position are not nearly linear in it.
-pub(super) const LARGEST_BOX: f64 = 1.0;
-/// Largest `|I - Y J(X)|` for which bounds of rates are useful.
-pub(super) const CONTRACTION: f64 = 0.9;
 /// Number of times that an interval is halved, and the bounds of its parts are joined, where it is too long for one
 /// box: eight parts have the cost of eight intervals, but their bounds serve as those of one.
 const MOST_HALVINGS: usize = 3;
-/// Number of passes of a linear system over its bounds.
-const PASSES: usize = 2;
 /// Number of passes that narrow boxes and rates with each other, at most.
 const MOST_PASSES: usize = 8;
 /// A pass that leaves more than this part of the width of the accelerations is the last one.
@@ -133,85 +120,11 @@ pub(crate) struct Enclosure {
 }
 
 /// Computes enclosures of one mechanism.
-pub(crate) struct TubeSolver {
-    /// The same state over intervals, over duals of them, and over jets of them.
-    values: State<Interval>,
-    columns: State<Dual<Interval>>,
-    rates: State<TimeJet<Interval>>,
-    parts: PlanGeometry<Interval>,
-    parts_of_columns: PlanGeometry<Dual<Interval>>,
-    parts_of_rates: PlanGeometry<TimeJet<Interval>>,
-    drivers: Vec<[Interval; 3]>,
-    drivers_of_columns: Vec<[Dual<Interval>; 3]>,
-    drivers_of_rates: Vec<[TimeJet<Interval>; 3]>,
-}
-
-/// Preconditioned equations of a block over a box.
-pub(super) struct Contraction {
-    /// Y, row by row.
-    pub inverse: Vec<f64>,
-    /// I - Y J(X), row by row.
-    rest: Vec<Interval>,
-    n: usize,
-}
-
-impl Contraction {
-    /// `Y b`.
-    pub fn precondition(&self, b: &[Interval]) -> Vec<Interval> {
-        self.inverse
-            .chunks_exact(self.n)
-            .map(|y| product(y.iter().map(|y| Interval::constant(*y)), b))
-            .collect()
-    }
-
-    /// `(I - Y J) x`.
-    pub fn remainder(&self, x: &[Interval]) -> Vec<Interval> {
-        self.rest.chunks_exact(self.n).map(|row| product(row.iter().copied(), x)).collect()
-    }
-
-    /// `|I - Y J|`, in the norm of the largest row sum.
-    pub fn norm(&self) -> f64 {
-        let sum = |row: &[Interval]| {
-            row.iter().fold(Interval::zero(), |sum, x| sum + Interval::constant(x.magnitude())).high
-        };
-        self.rest.chunks_exact(self.n).map(sum).fold(0.0, f64::max)
-    }
-
-    /// Bounds of x with `J x = b`, within those that are known.
-    pub fn solve(&self, b: &[Interval], known: &[Interval]) -> Vec<Interval> {
-        let y = self.precondition(b);
-        let k = Interval::constant(self.norm());
-        let size = Interval::constant(y.iter().map(|y| y.magnitude()).fold(0.0, f64::max));
-        let most = (size / (Interval::one() - k)).high;
-        let mut x: Vec<Interval> = known.iter().map(|known| known.and(Interval::symmetric(most))).collect();
-        for _ in 0..PASSES {
-            let rest = self.remainder(&x);
-            for ((x, y), rest) in x.iter_mut().zip(&y).zip(rest) {
-                *x = x.and(*y + rest);
-            }
-        }
-        x
-    }
-}
-
-fn product(row: impl Iterator<Item = Interval>, x: &[Interval]) -> Interval {
-    row.zip(x).fold(Interval::zero(), |sum, (a, x)| sum + a * *x)
-}
+pub(crate) struct TubeSolver(BlockSolver<TimeJet<Interval>>);
 
 impl TubeSolver {
     pub fn new(model: &Model, topology: &Topology, parts: &PlanGeometry<f64>) -> Self {
-        let drivers = model.drivers.len();
-        Self {
-            values: State::new(model, topology),
-            columns: State::new(model, topology),
-            rates: State::new(model, topology),
-            parts: parts.spread(),
-            parts_of_columns: parts.spread(),
-            parts_of_rates: parts.spread(),
-            drivers: vec![[Interval::zero(); 3]; drivers],
-            drivers_of_columns: vec![[Dual::zero(); 3]; drivers],
-            drivers_of_rates: vec![[TimeJet::zero(); 3]; drivers],
-        }
+        Self(BlockSolver::new(model, topology, parts, TimeJet::value))
     }
 
     /// Bounds over an interval of time. `at` is the solved position in the middle of it, and `narrow` its enclosure, if
@@ -219,7 +132,7 @@ impl TubeSolver {
     pub fn enclose(
         &mut self,
         topology: &Topology,
-        laws: impl Fn(usize) -> TimeJet<Interval>,
+        laws: &[TimeJet<Interval>],
         over: Interval,
         at: &AcceptedPosition,
         narrow: Option<&Enclosure>,
@@ -227,22 +140,10 @@ impl TubeSolver {
         if let Some((c, _)) = topology.contacts().next() {
             return Err(TubeFailure::FollowsCurve { joint: topology[c].joint });
         }
-        let zero = Interval::zero();
-        for d in 0..self.drivers.len() {
-            let law = laws(d);
-            if !law.value().is_bounded() {
-                return Err(TubeFailure::Law { driver: DriverId(d) });
-            }
-            self.drivers[d] = [law.value(), zero, zero];
-            self.drivers_of_columns[d] = self.drivers[d].map(Dual::constant);
-            self.drivers_of_rates[d] = [law, Jet::constant(zero), Jet::constant(zero)];
+        if let Some(d) = laws.iter().position(|law| !law.value().is_bounded()) {
+            return Err(TubeFailure::Law { driver: DriverId(d) });
         }
-        for r in topology.coupler_terms() {
-            let near = at.coupled[r.0][0];
-            self.values.near[r.0] = Real::constant(near);
-            self.columns.near[r.0] = Real::constant(near);
-            self.rates.near[r.0] = Real::constant(near);
-        }
+        self.0.drive(topology, laws, at);
         let centres = narrow.map_or_else(|| Rc::new(at.balls.clone()), |narrow| narrow.centres.clone());
         let o = topology.coordinates.len();
         let mut found = Enclosure {
@@ -250,27 +151,18 @@ impl TubeSolver {
             poses: Vec::new(),
             middle: at.time,
             centres,
-            unique: vec![zero; o],
+            unique: vec![Interval::zero(); o],
             residuals: Vec::new(),
             coordinates: vec![TimeJet::zero(); o],
         };
         for (c, d) in topology.driven_coordinates() {
-            let law = self.drivers_of_rates[d.0][0];
+            let law = laws[d.0];
             (found.coordinates[c.0], found.unique[c.0]) = (law, law.value());
-            self.values.q[c.0] = law.value();
-            self.columns.q[c.0] = Dual::constant(law.value());
-            self.rates.q[c.0] = law;
         }
-        self.values.place(topology, &self.parts, topology.driven_links());
-        self.values.place_bodies(topology, &self.parts, topology.driven_links());
-        self.columns.place(topology, &self.parts_of_columns, topology.driven_links());
-        self.columns.place_bodies(topology, &self.parts_of_columns, topology.driven_links());
-        self.rates.place(topology, &self.parts_of_rates, topology.driven_links());
-        self.rates.place_bodies(topology, &self.parts_of_rates, topology.driven_links());
         for b in topology.block_ids() {
             self.enclose_block(topology, b, at, narrow, &mut found)?;
         }
-        found.poses = self.rates.pose.clone();
+        found.poses = self.0.series.state.pose.clone();
         if let Some(narrow) = narrow {
             let since = over - Interval::constant(at.time);
             for (pose, narrow) in found.poses.iter_mut().zip(&narrow.poses) {
@@ -305,9 +197,9 @@ impl TubeSolver {
         let predicted = |c: &CoordinateId| {
             (at.qd[c.0].abs() + 0.5 * half * at.qdd[c.0].abs()) * half * SLACK + LEAST_BOX * unit(c)
         };
-        let mut radius: Vec<f64> = unknowns.iter().map(predicted).collect();
+        let radius: Vec<f64> = unknowns.iter().map(predicted).collect();
         let points: Vec<Interval> = middle.iter().map(|m| Interval::constant(*m)).collect();
-        let residual = self.residuals(topology, b, &points, &found.centres);
+        let residual = self.0.values.rows(topology, b, |k| points[k], &found.centres);
         let since = found.over - Interval::constant(found.middle);
         // phi(m, T) in phi(m, t) + phi_t(m, T) (T - t)
         let moved = narrow.map(|narrow| {
@@ -316,19 +208,7 @@ impl TubeSolver {
             }
             (&narrow.residuals[b.0], self.rates_of_rows(topology, b, 1, found))
         });
-        let mut contraction = None;
-        let mut first: Option<Vec<f64>> = None;
-        for _ in 0..MOST_BOXES {
-            let boxed: Vec<Interval> =
-                points.iter().zip(&radius).map(|(m, r)| *m + Interval::symmetric(*r)).collect();
-            let jacobian = self.jacobian(topology, b, &boxed, &found.centres);
-            let inverse = match &first {
-                Some(inverse) => inverse.clone(),
-                None => inverse_of(&jacobian, n).ok_or(failed)?,
-            };
-            first = Some(inverse.clone());
-            let step = Contraction::of(inverse, &jacobian, n);
-            let away: Vec<Interval> = boxed.iter().zip(&points).map(|(x, m)| *x - *m).collect();
+        let newton = |step: &Contraction| {
             let mut newton = step.precondition(&residual);
             if let Some((start, rate)) = &moved {
                 let (start, rate) = (step.precondition(start), step.precondition(rate));
@@ -338,37 +218,24 @@ impl TubeSolver {
                     }
                 }
             }
-            let rest = step.remainder(&away);
-            // m - Y phi(m, T) + (I - Y J(X)) (X - m), less m
-            let image: Vec<Interval> = newton.iter().zip(&rest).map(|(p, q)| *q - *p).collect();
-            if away.iter().zip(&image).all(|(x, k)| x.strictly_encloses(*k)) {
-                for (k, c) in unknowns.iter().enumerate() {
-                    found.unique[c.0] = boxed[k];
-                    found.coordinates[c.0] =
-                        Jet([points[k] + image[k], Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE]);
-                }
-                contraction = Some(step);
-                break;
-            }
-            for (k, c) in unknowns.iter().enumerate() {
-                let reached = image[k].magnitude();
-                if !(reached <= LARGEST_BOX * unit(c)) {
-                    return Err(failed);
-                }
-                radius[k] = SLACK * reached + LEAST_BOX * unit(c);
-            }
+            newton
+        };
+        let Contracted { unique, bounds } =
+            self.0.contract(topology, b, (&points, radius), &found.centres, newton).ok_or(failed)?;
+        for (k, c) in unknowns.iter().enumerate() {
+            found.unique[c.0] = unique[k];
+            found.coordinates[c.0] = Jet([bounds[k], Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE]);
         }
-        let contraction = contraction.filter(|step| step.norm() <= CONTRACTION).ok_or(failed)?;
         found.residuals.push(residual);
-        let mut inverse = contraction.inverse;
+        let mut inverse = None;
         let mut width = f64::INFINITY;
-        for pass in 0..MOST_PASSES {
+        for _ in 0..MOST_PASSES {
             let boxed: Vec<Interval> = unknowns.iter().map(|c| found.coordinates[c.0].value()).collect();
-            let jacobian = self.jacobian(topology, b, &boxed, &found.centres);
-            if pass == 0 {
-                inverse = inverse_of(&jacobian, n).ok_or(failed)?;
+            let jacobian = self.0.jacobian(topology, b, &boxed, &found.centres);
+            if inverse.is_none() {
+                inverse = Some(inverse_of(&jacobian, n).ok_or(failed)?);
             }
-            let step = Contraction::of(inverse.clone(), &jacobian, n);
+            let step = Contraction::of(inverse.clone().unwrap_or_default(), &jacobian, n);
             if !(step.norm() <= CONTRACTION) {
                 return Err(failed);
             }
@@ -393,53 +260,9 @@ impl TubeSolver {
             }
             width = now;
         }
-        // The bodies of the block, for those that depend on it, and as results.
         let all: Vec<TimeJet<Interval>> = unknowns.iter().map(|c| found.coordinates[c.0]).collect();
-        let links = topology[b].link_ids();
-        set(&mut self.values, topology, b, |k| all[k].value(), &found.centres);
-        self.values.place(topology, &self.parts, links.clone());
-        self.values.place_bodies(topology, &self.parts, links.clone());
-        set(&mut self.columns, topology, b, |k| Dual::constant(all[k].value()), &found.centres);
-        self.columns.place(topology, &self.parts_of_columns, links.clone());
-        self.columns.place_bodies(topology, &self.parts_of_columns, links.clone());
-        set(&mut self.rates, topology, b, |k| all[k], &found.centres);
-        self.rates.place(topology, &self.parts_of_rates, links.clone());
-        self.rates.place_bodies(topology, &self.parts_of_rates, links);
+        self.0.place(topology, b, &all, &found.centres);
         Ok(())
-    }
-
-    /// Residuals of the selected rows of a block at these coordinates.
-    fn residuals(
-        &mut self,
-        topology: &Topology,
-        b: BlockId,
-        q: &[Interval],
-        centres: &[Quat],
-    ) -> Vec<Interval> {
-        set(&mut self.values, topology, b, |k| q[k], centres);
-        rows(&mut self.values, topology, &self.parts, &self.drivers, b)
-    }
-
-    /// Jacobian of the selected rows by the unknowns of a block, row by row.
-    fn jacobian(
-        &mut self,
-        topology: &Topology,
-        b: BlockId,
-        q: &[Interval],
-        centres: &[Quat],
-    ) -> Vec<Interval> {
-        let n = q.len();
-        let mut jacobian = vec![Interval::zero(); n * n];
-        for column in 0..n {
-            let of = |k: usize| if k == column { Dual::variable(q[k]) } else { Dual::constant(q[k]) };
-            set(&mut self.columns, topology, b, of, centres);
-            let found =
-                rows(&mut self.columns, topology, &self.parts_of_columns, &self.drivers_of_columns, b);
-            for (row, x) in found.into_iter().enumerate() {
-                jacobian[row * n + column] = x.d;
-            }
-        }
-        jacobian
     }
 
     /// The rates of an order of the selected rows, with a minus, if those of the unknowns were zero at this order.
@@ -456,81 +279,9 @@ impl TubeSolver {
             x.0[order..].fill(Interval::zero());
             x
         };
-        set(&mut self.rates, topology, b, lower, &found.centres);
-        let found = rows(&mut self.rates, topology, &self.parts_of_rates, &self.drivers_of_rates, b);
+        let found = self.0.series.rows(topology, b, lower, &found.centres);
         found.into_iter().map(|x| -x.0[order]).collect()
     }
-}
-
-impl Contraction {
-    pub fn of(inverse: Vec<f64>, jacobian: &[Interval], n: usize) -> Self {
-        let mut rest = vec![Interval::zero(); n * n];
-        for row in 0..n {
-            for column in 0..n {
-                let mut sum = Interval::constant(f64::from(u8::from(row == column)));
-                for k in 0..n {
-                    sum -= Interval::constant(inverse[row * n + k]) * jacobian[k * n + column];
-                }
-                rest[row * n + column] = sum;
-            }
-        }
-        Self { inverse, rest, n }
-    }
-}
-
-/// Inverse of the middle of a matrix, nearly; `None` if it is singular or unbounded.
-pub(super) fn inverse_of(matrix: &[Interval], n: usize) -> Option<Vec<f64>> {
-    let mut factors = Factors::<f64>::new(n, |_| (0..n).collect(), LARGEST_DENSE);
-    for row in 0..n {
-        let entries = (0..n).map(|column| (column, matrix[row * n + column].middle()));
-        factors.set_row(row, entries, 0.0);
-    }
-    factors.factor();
-    let mut inverse = vec![0.0; n * n];
-    for column in 0..n {
-        let mut unit = vec![0.0; n];
-        unit[column] = 1.0;
-        factors.solve(&mut unit);
-        for row in 0..n {
-            inverse[row * n + column] = unit[row];
-        }
-    }
-    inverse.iter().all(|x| x.is_finite()).then_some(inverse)
-}
-
-/// Sets the unknowns of a block.
-pub(super) fn set<T: Real>(
-    state: &mut State<T>,
-    topology: &Topology,
-    b: BlockId,
-    q: impl Fn(usize) -> T,
-    centres: &[Quat],
-) {
-    for (k, c) in topology[b].unknowns.iter().enumerate() {
-        state.q[c.0] = q(k);
-    }
-    for step in topology[b].link_ids().flat_map(|link| &topology[link].steps) {
-        if step.freedom == Freedom::Ball {
-            let k = step.first.0;
-            let by = Vec3::new(state.q[k], state.q[k + 1], state.q[k + 2]);
-            state.balls[k] = centres[k].spread().nudged(by);
-        }
-    }
-}
-
-/// Residuals of the selected rows of a block at the coordinates of the state.
-pub(super) fn rows<T: Real>(
-    state: &mut State<T>,
-    topology: &Topology,
-    parts: &PlanGeometry<T>,
-    drivers: &[[T; 3]],
-    b: BlockId,
-) -> Vec<T> {
-    state.place(topology, parts, topology[b].link_ids());
-    for &c in &topology[b].closures {
-        state.place_ends(topology, parts, c);
-    }
-    topology[b].selected.iter().map(|&r| state.residual_of(topology, parts, drivers, r)).collect()
 }
 
 fn narrowed_vector(
@@ -539,31 +290,6 @@ fn narrowed_vector(
     since: Interval,
 ) -> Vec3<TimeJet<Interval>> {
     Vec3::new(x.x.narrowed(narrow.x, since), x.y.narrowed(narrow.y, since), x.z.narrowed(narrow.z, since))
-}
-
-/// True if the unknowns of a narrow enclosure are in the box in which those of another one are unique. Both are given
-/// by the rotations from which the coordinates of balls count, and by their bounds.
-pub(super) fn is_within(
-    topology: &Topology,
-    (from, narrow): (&[Quat], impl Fn(usize) -> Interval),
-    (centres, unique): (&[Quat], &[Interval]),
-) -> bool {
-    topology.links.iter().flat_map(|link| &link.steps).all(|step| {
-        let k = step.first.0;
-        if step.is_driven {
-            return true;
-        }
-        if step.freedom != Freedom::Ball {
-            return unique[k].encloses(narrow(k));
-        }
-        // The same rotation, counted from the centre of the other enclosure: (1, d/2) of it up to a factor.
-        let by = Vec3::new(0, 1, 2).map(|n| narrow(k + n));
-        let rotation: Quat<Interval> = from[k].spread().nudged(by);
-        let centre: Quat<Interval> = centres[k].spread();
-        let w = rotation.w * centre.w + rotation.v.dot(centre.v);
-        let v = centre.v * -rotation.w + rotation.v * centre.w - rotation.v.cross(centre.v);
-        (0..3).all(|n| unique[k + n].encloses(v[n] / w * 2.0))
-    })
 }
 
 /// A motion, with proven bounds of its parts.
@@ -692,8 +418,9 @@ impl<'m> ProvenMotion<'m> {
     fn solve_instant(&mut self, plan: usize, t: f64) -> Result<Rc<Instant>, TubeFailure> {
         let at = self.solve(plan, t)?;
         let (laws, over) = (&self.mechanism.parts, Interval::constant(t));
-        let law = |d: usize| laws.law_of(d).enclosure(over);
-        let enclosure = self.solver.enclose(&self.plans[plan], law, over, &at, None)?;
+        let drivers = self.mechanism.model.drivers.len();
+        let laws: Vec<_> = (0..drivers).map(|d| laws.law_of(d).enclosure(over)).collect();
+        let enclosure = self.solver.enclose(&self.plans[plan], &laws, over, &at, None)?;
         Ok(Rc::new(Instant { at, enclosure }))
     }
 
@@ -757,9 +484,10 @@ impl<'m> ProvenMotion<'m> {
         let (start, end) = (self.instant(plan, from)?, self.instant(plan, to)?);
         let middle = self.instant(plan, over.middle())?;
         let laws = &self.mechanism.parts;
-        let law = |d: usize| laws.law_of(d).enclosure(over);
+        let drivers = self.mechanism.model.drivers.len();
+        let laws: Vec<_> = (0..drivers).map(|d| laws.law_of(d).enclosure(over)).collect();
         let topology = &self.plans[plan];
-        let enclosure = self.solver.enclose(topology, law, over, &middle.at, Some(&middle.enclosure))?;
+        let enclosure = self.solver.enclose(topology, &laws, over, &middle.at, Some(&middle.enclosure))?;
         for (instant, time) in [(&start, from), (&end, to)] {
             let narrow = &instant.enclosure;
             let at = (&narrow.centres[..], |k: usize| narrow.coordinates[k].value());
