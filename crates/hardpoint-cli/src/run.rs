@@ -87,16 +87,16 @@ const FILES: [&str; 21] = [
 pub fn run(options: &Run) -> Outcome {
     let session = Session::begin(options.common.json);
     let whole = options.output.clone().unwrap_or_else(|| default_folder(&options.common.model));
-    if let Some(name) = &options.motions.case {
-        match grid_alone(&session, options, name, &whole) {
-            Ok(None) => {}
-            Ok(Some(outcome)) | Err(outcome) => return outcome,
-        }
-    }
     let file = match session.read(&options.common.model) {
         Ok(file) => file,
         Err(outcome) => return outcome,
     };
+    if let Some(name) = &options.motions.case {
+        match grid_alone(&session, options, &file, name, &whole) {
+            Ok(None) => {}
+            Ok(Some(outcome)) | Err(outcome) => return outcome,
+        }
+    }
     // Every page has the maps of the whole file.
     let maps = match options.motions.case {
         None => maps::solved(&session, &file, options.common.formulation()),
@@ -188,13 +188,14 @@ fn page_of_cases(all: &ModelFile, options: &Run, results: &CaseResults, maps: &[
 fn grid_alone(
     session: &Session,
     options: &Run,
+    file: &ModelFile,
     name: &str,
     whole: &Path,
 ) -> Result<Option<Outcome>, Outcome> {
-    let mut file = session.read(&options.common.model)?;
-    if session.case_or_grid(&file, name)?.is_ok() {
+    if session.case_or_grid(file, name)?.is_ok() {
         return Ok(None);
     }
+    let mut file = file.clone();
     file.model.grids.retain(|grid| grid.name == name);
     let mut folder = Folder::open(whole).map_err(|e| session.not_written(&e))?;
     let maps = maps::solved(session, &file, options.common.formulation());
