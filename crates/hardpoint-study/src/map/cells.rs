@@ -1,8 +1,8 @@
 //! Refinement of a table until the error of every cell is proved.
 //!
 //! The derivatives that bound the error of a cell are bounded over boxes that tile it, or tile a larger box around it.
-//! Where the bounds are much larger than the derivatives at some points, the boxes are halved; where the derivatives
-//! themselves are too large, the cell is.
+//! The boxes are halved if the bounds are much larger than the derivatives at some points, the cell if the derivatives
+//! themselves are too large.
 
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
