@@ -96,13 +96,10 @@ mod evaluation;
 mod magnitude;
 mod position;
 mod progress;
-mod quadratic;
 mod random;
+mod recent;
 mod samples;
-mod svd;
-mod trust_region;
 mod validity;
-mod vector;
 
 pub use comparison::{Comparison, StepError};
 pub use evaluation::{DesignEvaluation, EvaluationError, Motions, StudyCost};

@@ -2,7 +2,7 @@
 
 use super::BoundSide;
 use super::fit::{FitWorkspace, SearchResult, information};
-use crate::vector::dot;
+use hardpoint_search::dot;
 
 /// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not reported.
 const VAGUE: f64 = 1.0;

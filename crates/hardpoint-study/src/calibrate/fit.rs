@@ -1,20 +1,17 @@
-//! Fit by bounded steps of basin's trust region over the directions that the readings determine.
+//! Fit by bounded steps of a trust region over the directions that the readings determine.
 
 use std::cell::RefCell;
 
-use basin::DenseMatrix;
-
 use crate::evaluation::StudyCost;
+use crate::recent::Recent;
 use crate::request::RequestError;
-use crate::svd::singular;
-use crate::trust_region::{Recent, TrustRegion};
-use crate::vector::dot;
 use hardpoint::joint::Quantity;
 use hardpoint::measure::{Output, outputs};
 use hardpoint::model::{Dimension, DriverId, Model, VariableId};
 use hardpoint::run::Analysis;
 
-use super::bounded::bounded_least_squares;
+use hardpoint_search::{LeastSquares, bounded_least_squares, dot, singular};
+
 use super::posture::{ReachedPosture, solve_posture};
 use super::prior::{PriorRows, parameters_of};
 use super::{
@@ -544,7 +541,7 @@ impl<'b> FitWorkspace<'b> {
                 z,
                 || find(z),
                 |rows| {
-                    DenseMatrix::from_fn(readings + priors, n, |i, j| {
+                    let entry = |i: usize, j: usize| {
                         if i >= readings {
                             return scale * prior_scale * dot(&self.priors.a[i - readings], &directions[j]);
                         }
@@ -552,14 +549,16 @@ impl<'b> FitWorkspace<'b> {
                             rows.d[i].iter().zip(&directions[j]).map(|(d, v)| d * v).sum::<f64>()
                         };
                         rows.as_ref().map_or(f64::NAN, |rows| scale * roots[i] * by(rows))
-                    })
+                    };
+                    let row = |i: usize| (0..n).map(|j| entry(i, j)).collect();
+                    (0..readings + priors).map(row).collect()
                 },
             )
         };
         // Directions are as long as their priors are narrow.
         let farthest = FARTHEST * self.priors.strongest(self.parameters.len());
         let bounds = [-farthest, farthest];
-        let mut solver = TrustRegion::new(none.clone(), bounds, Box::new(residuals), Box::new(derivatives))?;
+        let mut solver = LeastSquares::new(none.clone(), bounds, Box::new(residuals), Box::new(derivatives))?;
         // A robust loss needs new weights after every iteration; squares keep theirs.
         let most = if self.request.loss == Loss::Squares { self.request.iterations } else { 1 };
         let z = (0..most).map_while(|_| solver.step()).last().unwrap_or(none);

@@ -15,7 +15,6 @@
 //! the same formula is the covariance of the posterior (Tarantola, Inverse Problem Theory, 2005, section 3.2). All
 //! other directions are reported and keep their design values (`docs/theory.md`, section 13).
 
-mod bounded;
 mod certainty;
 mod fit;
 mod next;

@@ -8,8 +8,8 @@ use hardpoint::measure::outputs;
 use hardpoint::model::{Model, Offset, OffsetSource, PriorGroup, VariableId, VariablePrior};
 
 use super::FittedParameter;
-use crate::svd::singular;
-use crate::vector::dot;
+use hardpoint_search::dot;
+use hardpoint_search::singular;
 
 /// A singular value of the priors below this fraction of the largest is round-off.
 const ROUND_OFF: f64 = 1e-13;

@@ -7,7 +7,7 @@ use super::certainty::Directions;
 use super::fit::{FitWorkspace, SearchResult};
 use super::posture::solve_posture;
 use super::{FittedParameter, UnreachedPosture};
-use crate::vector::dot;
+use hardpoint_search::dot;
 
 /// Residuals of validation data.
 #[derive(Clone, Debug, Default, PartialEq)]

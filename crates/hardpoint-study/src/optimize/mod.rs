@@ -35,7 +35,7 @@ pub(crate) use optimality::{BINDS, MET};
 pub(crate) use problem::{Point, Problem, Refusal};
 pub use request::{Overrides, Request, Selection};
 pub(crate) use solver::Memory;
-use solver::{Sequential, Solver, least_squares};
+use solver::{ScaledSequential, Solver, least_squares};
 
 /// A limit is satisfied if it is exceeded by less than this fraction of its scale: the rest is round-off of the search.
 pub const LIMIT_KEPT: f64 = 1e-8;
@@ -442,7 +442,7 @@ impl<'p> Descent<'p> {
         if squares {
             least_squares(self.memory, &self.at, &self.here).map(|s| Box::new(s) as Box<dyn Solver + 'p>)
         } else {
-            let found = Sequential::new(self.memory, &self.at, &self.here, &self.scales);
+            let found = ScaledSequential::new(self.memory, &self.at, &self.here, &self.scales);
             found.map(|s| Box::new(s) as Box<dyn Solver + 'p>)
         }
     }

@@ -8,7 +8,7 @@
 //! found by non-negative least squares over the active constraints, independent of the solver.
 
 use super::problem::{Point, Problem, Rows};
-use crate::quadratic::non_negative;
+use hardpoint_search::quadratic::non_negative;
 
 /// Distance from its end, as a fraction of its scale, below which a constraint is active.
 pub(crate) const BINDS: f64 = 1e-7;

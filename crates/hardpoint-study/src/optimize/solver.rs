@@ -1,24 +1,16 @@
-//! Solvers of basin applied to optimisation problems: bounded least squares, and sequential programming with limits.
+//! Solvers applied to optimisation problems: bounded least squares, and sequential programming with limits.
 //!
 //! Both use the design as fractions of its bounds, so that every variable ranges from 0 to 1.
 
 use std::cell::RefCell;
-use std::convert::Infallible;
-
-use basin::{
-    ConstraintSolveError, CostFunction, DenseMatrix, Executor, Gradient, SelectedFirstOrderState, Slsqp,
-    Stepper,
-};
 
 use crate::evaluation::StudyCost;
-use crate::trust_region::{Recent, TrustRegion, next};
+use crate::recent::Recent;
 use hardpoint::linalg::folded_rows;
+use hardpoint_search::{LeastSquares, Program, Sequential};
 
 use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
 
-/// Convergence threshold of the sequential solver on changes of objective and limits, with curvatures scaled to order
-/// one: the square of the required distance from stationarity. The search itself detects round-off.
-const SETTLED: f64 = 1e-30;
 /// Minimum curvature assumed in any direction, as a fraction of the largest.
 pub(super) const FLAT: f64 = 1e-4;
 /// Length of a first step without known curvature, as a fraction of the bounds.
@@ -83,7 +75,7 @@ pub(super) fn least_squares<'p>(
     memory: &'p Memory<'p>,
     start: &[f64],
     point: &Point,
-) -> Option<TrustRegion<'p>> {
+) -> Option<LeastSquares<'p>> {
     let spans = memory.spans();
     let size = point.misfits.values.iter().map(|r| r * r).sum::<f64>().sqrt();
     let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
@@ -94,9 +86,14 @@ pub(super) fn least_squares<'p>(
     };
     let derivatives = move |x: &[f64]| {
         let rows = folded_misfits(memory, &same, scale, x);
-        DenseMatrix::from_fn(rows.len(), x.len(), |row, v| rows[row][v])
+        rows.into_iter()
+            .map(|mut row| {
+                row.truncate(x.len());
+                row
+            })
+            .collect()
     };
-    TrustRegion::new(start.to_vec(), [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
+    LeastSquares::new(start.to_vec(), [0.0, 1.0], Box::new(residuals), Box::new(derivatives))
 }
 
 /// Misfits of a design with their derivatives, `[J r]`, reduced to one row for every variable plus one with the same
@@ -112,7 +109,7 @@ fn folded_misfits(memory: &Memory<'_>, spans: &[f64], scale: f64, x: &[f64]) -> 
     })
 }
 
-impl Solver for TrustRegion<'_> {
+impl Solver for LeastSquares<'_> {
     fn step(&mut self) -> Option<Vec<f64>> {
         self.step()
     }
@@ -178,7 +175,7 @@ impl Programming<'_> {
     }
 
     /// The inequalities `c <= 0`, in order: lower bounds, upper bounds, limits, peaks, limited ranges.
-    fn inequalities(&self, y: &[f64], point: &Point) -> Vec<f64> {
+    fn inequalities_at(&self, y: &[f64], point: &Point) -> Vec<f64> {
         let n = self.searched();
         let along = |i: usize| self.x0[i] + (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
         let mut c: Vec<f64> = (0..n).map(|i| -along(i)).chain((0..n).map(|i| along(i) - 1.0)).collect();
@@ -199,41 +196,30 @@ impl Programming<'_> {
     }
 }
 
-impl basin::Constraints for Programming<'_> {
-    type Set = basin::ConstraintSet<
-        basin::NoBounds,
-        basin::NoLinearConstraints,
-        basin::NonlinearBlocks<basin::NonlinearBlock, basin::NonlinearBlock>,
-    >;
-    fn constraints(&self) -> <Self::Set as basin::ConstraintDescription>::Borrowed<'_> {
-        basin::ConstraintSet::new()
-            .with_nonlinear_equalities(self.equal)
-            .with_nonlinear_inequalities(self.inequal)
+impl Program for Programming<'_> {
+    fn equal(&self) -> usize {
+        self.equal
     }
-}
 
-impl CostFunction for Programming<'_> {
-    type Param = Vec<f64>;
-    type Output = f64;
-    type Error = Infallible;
-    fn cost(&self, y: &Vec<f64>) -> Result<f64, Infallible> {
+    fn inequal(&self) -> usize {
+        self.inequal
+    }
+
+    fn objective(&self, y: &[f64]) -> f64 {
         let n = self.searched();
-        Ok(self.memory.at(&self.x(y), |found| match found {
+        self.memory.at(&self.x(y), |found| match found {
             Ok(Point { misfits, plain, .. }) => {
                 let squares: f64 = misfits.values.iter().map(|r| r * r).sum();
                 let plain: f64 = plain.values.iter().sum();
                 self.scale * (squares + plain) + y[n..n + self.peaks].iter().sum::<f64>()
             }
             Err(_) => f64::INFINITY,
-        }))
+        })
     }
-}
 
-impl Gradient for Programming<'_> {
-    type Gradient = Vec<f64>;
-    fn gradient(&self, y: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
+    fn gradient(&self, y: &[f64]) -> Vec<f64> {
         let n = self.searched();
-        Ok(self.memory.at(&self.x(y), |found| match found {
+        self.memory.at(&self.x(y), |found| match found {
             Ok(point) => {
                 let smooth = Point { peaks: Vec::new(), ..point.clone() };
                 let mut g = self.by_z(&self.by_parts(&smooth.gradient(n)));
@@ -242,46 +228,31 @@ impl Gradient for Programming<'_> {
                 g
             }
             Err(_) => vec![f64::NAN; y.len()],
-        }))
+        })
     }
-}
 
-impl basin::NonlinearInequalityValues for Programming<'_> {
-    type Param = Vec<f64>;
-    type Values = Vec<f64>;
-    type Error = Infallible;
-    fn nonlinear_inequalities(&self, y: &Vec<f64>) -> Result<Vec<f64>, ConstraintSolveError<Infallible>> {
-        Ok(self.memory.at(&self.x(y), |found| match found {
-            Ok(point) => self.inequalities(y, point),
-            Err(_) => vec![f64::NAN; self.inequal],
-        }))
-    }
-}
-
-impl basin::NonlinearEqualityValues for Programming<'_> {
-    type Param = Vec<f64>;
-    type Values = Vec<f64>;
-    type Error = Infallible;
-    fn nonlinear_equalities(&self, y: &Vec<f64>) -> Result<Vec<f64>, ConstraintSolveError<Infallible>> {
-        Ok(self.memory.at(&self.x(y), |found| match found {
+    fn equalities(&self, y: &[f64]) -> Vec<f64> {
+        self.memory.at(&self.x(y), |found| match found {
             Ok(point) => {
                 let rows = point.limits.iter().filter(|row| row.equal);
                 rows.map(|row| self.limit_scales[row.of] * row.exceeds).collect()
             }
             Err(_) => vec![f64::NAN; self.equal],
-        }))
+        })
     }
-}
 
-impl basin::ConstraintJacobian for Programming<'_> {
-    type Param = Vec<f64>;
-    type Jacobian = DenseMatrix;
-    type Error = Infallible;
-    fn constraint_jacobian(&self, y: &Vec<f64>) -> Result<DenseMatrix, ConstraintSolveError<Infallible>> {
+    fn inequalities(&self, y: &[f64]) -> Vec<f64> {
+        self.memory.at(&self.x(y), |found| match found {
+            Ok(point) => self.inequalities_at(y, point),
+            Err(_) => vec![f64::NAN; self.inequal],
+        })
+    }
+
+    fn jacobian(&self, y: &[f64]) -> Vec<Vec<f64>> {
         let n = self.searched();
-        Ok(self.memory.at(&self.x(y), |found| {
+        self.memory.at(&self.x(y), |found| {
             let Ok(point) = found else {
-                return DenseMatrix::from_fn(self.equal + self.inequal, y.len(), |_, _| f64::NAN);
+                return vec![vec![f64::NAN; y.len()]; self.equal + self.inequal];
             };
             let limit = |row: &LimitRow| {
                 let scale = self.limit_scales[row.of];
@@ -317,22 +288,20 @@ impl basin::ConstraintJacobian for Programming<'_> {
                 row[ends..ends + 2].fill(1.0);
                 rows.push(row);
             }
-            DenseMatrix::from_fn(rows.len(), y.len(), |row, v| rows[row][v])
-        }))
+            rows
+        })
     }
 }
 
-type Sqp<'p> = Stepper<Programming<'p>, SelectedFirstOrderState<Vec<f64>, f64>, Slsqp<f64>>;
-
-/// Sequential programming by basin's SLSQP.
-pub(super) struct Sequential<'p> {
-    stepper: Sqp<'p>,
-    /// Map from z to x, copied from the problem because the stepper owns it.
+/// Sequential programming in these coordinates.
+pub(super) struct ScaledSequential<'p> {
+    solver: Sequential<'p>,
+    /// Map from z to x, copied from the problem because the solver owns it.
     x0: Vec<f64>,
     t: Vec<Vec<f64>>,
 }
 
-impl<'p> Sequential<'p> {
+impl<'p> ScaledSequential<'p> {
     pub fn new(memory: &'p Memory<'p>, start: &[f64], point: &Point, limit_scales: &[f64]) -> Option<Self> {
         let (n, spans) = (start.len(), memory.spans());
         let by_parts = |d: &[f64]| d.iter().zip(&spans).map(|(d, span)| d * span).collect::<Vec<f64>>();
@@ -362,17 +331,15 @@ impl<'p> Sequential<'p> {
         let (peaks, spreads) = (point.peaks.len(), point.spreads.len());
         let mut problem =
             Programming { memory, spans, x0, t, scale, limit_scales, peaks, spreads, equal, inequal: 0 };
-        problem.inequal = problem.inequalities(&y, point).len();
-        let solver = Slsqp::new().with_absolute_accuracy_tolerance(SETTLED);
-        let run = Executor::new(problem, solver, SelectedFirstOrderState::new(y));
-        let stepper = run.into_stepper().ok()?;
-        Some(Self { stepper, x0: start.to_vec(), t: t_too })
+        problem.inequal = problem.inequalities_at(&y, point).len();
+        let solver = Sequential::new(Box::new(problem), y)?;
+        Some(Self { solver, x0: start.to_vec(), t: t_too })
     }
 }
 
-impl Solver for Sequential<'_> {
+impl Solver for ScaledSequential<'_> {
     fn step(&mut self) -> Option<Vec<f64>> {
-        let y = next(&mut self.stepper)?;
+        let y = self.solver.step()?;
         let n = self.x0.len();
         let along = |i: usize| (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
         Some((0..n).map(|i| (self.x0[i] + along(i)).clamp(0.0, 1.0)).collect())

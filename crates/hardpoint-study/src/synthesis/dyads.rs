@@ -13,7 +13,7 @@
 
 use hardpoint::linalg::least_squares;
 
-use crate::svd::singular;
+use hardpoint_search::singular;
 
 use super::plane::{Complex, Displacement};
 use super::polynomial::real_roots;

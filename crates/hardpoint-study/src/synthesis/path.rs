@@ -8,7 +8,7 @@
 use hardpoint::linalg::{least_squares, semidefinite};
 use hardpoint::number::{Dual, Real};
 
-use crate::svd::singular;
+use hardpoint_search::singular;
 
 use super::linkage::{Guide, Linkage};
 use super::plane::{Complex, Displacement};

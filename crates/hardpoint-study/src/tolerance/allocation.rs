@@ -14,7 +14,7 @@ use hardpoint::model::{AllocationRule, AllocationSettings};
 
 use super::monte_carlo::MonteCarlo;
 use super::{Study, ToleranceResult};
-use crate::vector::dot;
+use hardpoint_search::dot;
 
 /// Maximum factor by which a tolerance is loosened: beyond it no limit constrains the tolerance, and the derivatives
 /// are not valid.

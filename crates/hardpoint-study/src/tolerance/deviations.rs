@@ -6,7 +6,7 @@ use hardpoint::linalg::semidefinite;
 use hardpoint::model::{Model, Scatter, ToleranceSettings, VariableId};
 
 use super::{SecondOrder, TolerancedVariable};
-use crate::vector::dot;
+use hardpoint_search::dot;
 
 /// Toleranced variables with their distributions.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Worst case: every deviation anywhere within its reach, regardless of its probability.
 
 use super::deviations::{Block, Deviations};
-use crate::vector::dot;
+use hardpoint_search::dot;
 
 /// Maximum number of ascent rounds over all tolerances; most ascents end after two or three.
 const ROUNDS: usize = 50;

@@ -4,8 +4,8 @@
 //! target or the root of the mean square. Designs are fractions of the bounds.
 
 use crate::optimize::{BINDS, MET, Point, Problem};
-use crate::quadratic::non_negative;
-use crate::vector::{dot, norm};
+use hardpoint_search::quadratic::non_negative;
+use hardpoint_search::{dot, norm};
 
 /// Weight of the sum of the multipliers, relative to the longest gradient, in their least squares.
 const HEAVY: f64 = 10.0;

@@ -11,10 +11,10 @@
 
 use super::functions::{Criticality, Matrix, Role, Scale, State};
 use crate::optimize::{LIMIT_KEPT, Memory, Point};
-use crate::quadratic::{Linear, Minimum, minimize};
-use crate::svd::{Singular, singular};
-use crate::vector::{dot, norm};
 use hardpoint::linalg::semidefinite;
+use hardpoint_search::quadratic::{Linear, Minimum, minimize};
+use hardpoint_search::{Singular, singular};
+use hardpoint_search::{dot, norm};
 
 /// Residual at which a point of a front is found: a tenth of what is promised for each.
 const SHARP: f64 = 1e-7;

@@ -9,14 +9,14 @@ const MOST_SWEEPS: usize = 60;
 
 /// Singular values, largest first, and the right singular vector of each.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Singular {
+pub struct Singular {
     pub values: Vec<f64>,
     /// Unit vectors, in the same order.
     pub directions: Vec<Vec<f64>>,
 }
 
 /// Singular values of a matrix given by its rows of n numbers.
-pub(crate) fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
+pub fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
     let mut columns: Vec<Vec<f64>> = (0..n).map(|j| rows.iter().map(|row| row[j]).collect()).collect();
     let mut v: Vec<Vec<f64>> =
         (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect();

@@ -21,21 +21,21 @@ const ROUNDS: usize = 4;
 
 /// A linear constraint `a p <= b`.
 #[derive(Clone, Debug)]
-pub(crate) struct Linear {
+pub struct Linear {
     pub a: Vec<f64>,
     pub b: f64,
 }
 
 /// Solution of a quadratic program.
 #[derive(Clone, Debug)]
-pub(crate) struct Minimum {
+pub struct Minimum {
     pub p: Vec<f64>,
     /// Multiplier of each constraint, at least 0: `H p + g + A^T m = 0`.
     pub multipliers: Vec<f64>,
 }
 
 /// Solves the program; `None` if H is not positive definite, or no `p` satisfies all constraints.
-pub(crate) fn minimize(h: &[Vec<f64>], g: &[f64], constraints: &[Linear]) -> Option<Minimum> {
+pub fn minimize(h: &[Vec<f64>], g: &[f64], constraints: &[Linear]) -> Option<Minimum> {
     let n = g.len();
     let root = semidefinite::root(h).filter(|l| (0..n).all(|k| l[k][k] > 0.0))?;
     // L^-1 v
@@ -83,7 +83,7 @@ pub(crate) fn minimize(h: &[Vec<f64>], g: &[f64], constraints: &[Linear]) -> Opt
 }
 
 /// The `u >= 0` that minimises `|E u - f|`, for the columns of E.
-pub(crate) fn non_negative(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
+pub fn non_negative(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let m = columns.len();
     let mut u = vec![0.0; m];
     let mut passive: Vec<usize> = Vec::new();

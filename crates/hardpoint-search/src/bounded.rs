@@ -9,11 +9,11 @@ const MOST_PASSES: usize = 10;
 const ROUND_OFF: f64 = 1e-12;
 
 /// Directions over free parameters, with the sizes of their columns: `v` and `|J v|`.
-pub(super) type FreeDirections<'a> = &'a dyn Fn(&[usize]) -> Vec<(Vec<f64>, f64)>;
+pub type FreeDirections<'a> = &'a dyn Fn(&[usize]) -> Vec<(Vec<f64>, f64)>;
 
 /// Minimises `|J (x - start) + r|^2` within bounds. `directions` lists the determined directions over free parameters,
 /// which make the columns of J perpendicular. A parameter at a bound has exactly its value.
-pub(super) fn bounded_least_squares(
+pub fn bounded_least_squares(
     start: &[f64],
     rows: &[Vec<f64>],
     right: &[f64],
