@@ -16,6 +16,13 @@ pub(crate) fn lanes_of(lines: &mut [AlignedLanes]) -> &mut [Lanes] {
     bytemuck::cast_slice_mut(lines)
 }
 
+/// So many lines of zeros.
+pub(crate) fn zeros(length: usize) -> Vec<AlignedLanes> {
+    let mut lines = Vec::with_capacity(length);
+    lengthen(&mut lines, length);
+    lines
+}
+
 /// Appends lines of zeros up to this length, in copies of many lines: `resize` writes one line after another.
 fn lengthen(lines: &mut Vec<AlignedLanes>, length: usize) {
     static ZEROS: [AlignedLanes; 32] = [AlignedLanes([0.0; LANES]); 32];

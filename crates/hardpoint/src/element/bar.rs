@@ -42,7 +42,7 @@ impl CheckElement for Bar {
 
 impl MassFormula for Bar {
     fn solid<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Solid<T> {
-        let [p, q] = [self.from, self.to].map(|p| at.point(p));
+        let (p, q) = (at.point(self.from), at.point(self.to));
         let (outer, bore) = (at.number(self.diameter.0), at.or_zero(self.bore.map(|b| b.0)));
         let d = q - p;
         let length = d.norm();

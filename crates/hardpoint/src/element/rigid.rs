@@ -4,7 +4,7 @@ use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, MassFormula, Solid, Spread};
 use crate::model::element::{MassProperties, Rigid};
 use crate::model::{BodyId, Inertia, Model, NumberId, PointId, about_centre};
-use crate::number::Real;
+use crate::number::{Real, each};
 use crate::space::{Mat3, Vec3};
 
 /// Relative tolerance by which a moment of inertia may exceed the sum of the other two: rounding of the typed digits of
@@ -96,13 +96,13 @@ impl MassFormula for Rigid {
     fn solid<T: Real>(&self, at: &AppliedLoads<'_, T>) -> Solid<T> {
         let Self { centre, mass, ixx, iyy, izz, ixy, iyz, izx, about } = self;
         let of = |n: &Option<Inertia>| n.map(|n| at.number(n.0));
-        let given = [[ixx, iyy, izz].map(of), [ixy, iyz, izx].map(of)];
+        let given = [[of(ixx), of(iyy), of(izz)], [of(ixy), of(iyz), of(izx)]];
         let (body, mass) = (self.body(at.model), at.number(mass.0));
         let [[a, b, c], [d, e, f]] = match about {
             Some(about) => {
                 about_centre(mass, at.design_position(*centre) - at.design_position(*about), given)
             }
-            None => given.map(|list| list.map(|n| n.unwrap_or(T::zero()))),
+            None => each(&given, |list| each(&list, |n| n.unwrap_or(T::zero()))),
         };
         let cols = [Vec3::new(a, -d, -f), Vec3::new(-d, b, -e), Vec3::new(-f, -e, c)];
         let inertia = Spread::Matrix(at.turned(body.0), Mat3 { cols });

@@ -35,7 +35,9 @@ impl<T: Real> Factors<T> {
         match self {
             Self::Dense(lu) => {
                 let row = lu.row_mut(k);
-                row.fill(zero);
+                for x in &mut *row {
+                    *x = zero;
+                }
                 for (column, x) in entries {
                     row[column] = x;
                 }

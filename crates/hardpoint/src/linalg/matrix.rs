@@ -114,8 +114,11 @@ impl<T: Real> Elimination<T> {
     fn eliminate(&mut self) -> (Factored<T>, f64) {
         let n = self.n;
         let (rows, a) = (&self.rows[..n * n], &mut self.a[..n * n]);
-        for (to, &from) in a.chunks_exact_mut(n).zip(&self.order) {
-            to.copy_from_slice(&rows[from * n..(from + 1) * n]);
+        for k in 0..n {
+            let (to, from) = (&mut a[k * n..(k + 1) * n], &rows[self.order[k] * n..][..n]);
+            for c in 0..n {
+                to[c] = from[c];
+            }
         }
         let (zero, one) = (T::zero(), T::one());
         // Largest pivot, largest inverse of a pivot, product of the pivots, and largest factor.
@@ -202,7 +205,10 @@ impl<T: Real> Elimination<T> {
             }
             x[k] = s * a[k * n + k];
         }
-        b[..n].copy_from_slice(x);
+        let b = &mut b[..n];
+        for k in 0..n {
+            b[k] = x[k];
+        }
     }
 
     /// Replaces the right-hand side by the solution with the transposed matrix.
@@ -213,7 +219,10 @@ impl<T: Real> Elimination<T> {
         let n = self.n;
         let a = &self.a[..n * n];
         let x = &mut self.scratch[..n];
-        x.copy_from_slice(&b[..n]);
+        let from = &b[..n];
+        for k in 0..n {
+            x[k] = from[k];
+        }
         for k in 0..n {
             // U^T y = b, column by column: y_k = b_k / u_kk, then subtracted from all later ones
             x[k] = x[k] * a[k * n + k];
@@ -226,8 +235,8 @@ impl<T: Real> Elimination<T> {
                 x[c] = (-a[k * n + c]).times_plus(x[k], x[c]);
             }
         }
-        for (&row, x) in self.order.iter().zip(x) {
-            b[row] = *x;
+        for k in 0..n {
+            b[self.order[k]] = x[k];
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::model::{
     Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, UnitForce,
     Wheel, WheelId, elements, if_mass,
 };
-use crate::number::Dual;
+use crate::number::{Dual, each};
 use crate::space::{Mat3, Pose, Real, Twist, Vec3, Wrench};
 
 use super::opening::Opening;
@@ -278,7 +278,7 @@ impl<T: Real> AppliedLoads<'_, T> {
     fn row_of(&self, (joint, coordinate): (JointId, usize)) -> (MarkerPair<T>, Row) {
         let j = &self.model.joints[joint.0];
         let [m_i, m_j] = self.geometry.markers[joint.0];
-        let [i, j_pose] = j.bodies.map(|b| self.bodies[b.0].pose);
+        let [i, j_pose] = each(&j.bodies, |b| self.bodies[b.0].pose);
         let axes = Mat3::IDENTITY.spread();
         let ends = MarkerPair { i: i.compose(m_i), j: j_pose.compose(m_j), axes };
         (ends, j.kind.coordinates[coordinate].row)
@@ -288,7 +288,7 @@ impl<T: Real> AppliedLoads<'_, T> {
     pub fn opening(&self, joint: JointId) -> Option<Opening<T>> {
         self.model.equilibrium.as_ref()?;
         let [m_i, m_j] = self.geometry.markers[joint.0];
-        let [i, j] = self.model.joints[joint.0].bodies.map(|b| self.bodies[b.0].pose);
+        let [i, j] = each(&self.model.joints[joint.0].bodies, |b| self.bodies[b.0].pose);
         Some(Opening::between(&i.compose(m_i), &j.compose(m_j)))
     }
 
@@ -354,9 +354,14 @@ impl<T: Real> AppliedLoads<'_, T> {
 
     /// Elastic wrench of a law on body j of an opening; its opposite acts on body i.                            (51)
     pub fn elastic_wrench(&self, opening: &Opening<T>, law: &ElasticLaw<'_>) -> Wrench<T> {
-        let forces = self.elastic_forces(opening, law).into_iter().zip(&opening.wrenches);
-        let acting = forces.filter(|(force, _)| !force.vanishes());
-        acting.fold(Wrench::zero(), |sum, (force, wrench)| wrench.times_plus(force, sum))
+        let forces = self.elastic_forces(opening, law);
+        let mut sum = Wrench::zero();
+        for (k, wrench) in opening.wrenches.iter().enumerate() {
+            if !forces[k].vanishes() {
+                sum = wrench.times_plus(forces[k], sum);
+            }
+        }
+        sum
     }
 
     /// Unit wrench on body j that does work on a coordinate.
@@ -408,7 +413,7 @@ impl<T: Real> AppliedLoads<'_, T> {
 
     /// Angular velocity of the second body of a joint relative to the first.
     fn turn(&self, joint: JointId) -> Vec3<T> {
-        let [i, j] = self.model.joints[joint.0].bodies.map(|b| self.bodies[b.0].v.w);
+        let [i, j] = each(&self.model.joints[joint.0].bodies, |b| self.bodies[b.0].v.w);
         j - i
     }
 
@@ -516,7 +521,7 @@ impl<T: Real> AppliedLoads<'_, T> {
     pub fn coordinate(&self, e: ElementId, at: (JointId, usize)) -> [T; 2] {
         let ((ends, row), joint) = (self.row_of(at), at.0.0);
         let kept = self.geometry.kept[joint].by(row);
-        let [i, j] = self.model.joints[joint].bodies.map(|b| self.bodies[b.0].v);
+        let [i, j] = each(&self.model.joints[joint].bodies, |b| self.bodies[b.0].v);
         let value = row.value(&ends, self.near[e.0] + kept) - kept;
         // chi. = l . (V_j - V_i)
         [value, row.wrench(&ends).on(j - i)]

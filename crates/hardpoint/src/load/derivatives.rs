@@ -18,6 +18,7 @@ use std::mem::take;
 use crate::design::Geometry;
 use crate::model::{DriverId, ElementId, MeasureKind, Model};
 use crate::motion::kinematics::State;
+use crate::motion::level::of_body;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Differentiated, Turning};
 use crate::space::{Twist, Wrench};
@@ -81,10 +82,12 @@ impl<'a, T: Real> LoadAdjoint<'a, T> {
 
     /// Adds `k` times a friction equation.
     fn add_times(&mut self, equation: &Self, k: T) {
-        let twists = self.virtual_twists.iter_mut().zip(&equation.virtual_twists);
-        twists.for_each(|(to, y)| *to = y.times_plus(k, *to));
-        let wrenches = self.by_twists.as_flattened_mut().iter_mut();
-        wrenches.zip(equation.by_twists.as_flattened()).for_each(|(to, p)| *to = p.times_plus(k, *to));
+        for b in 0..self.virtual_twists.len() {
+            self.virtual_twists[b] = equation.virtual_twists[b].times_plus(k, self.virtual_twists[b]);
+            for n in 0..3 {
+                self.by_twists[b][n] = equation.by_twists[b][n].times_plus(k, self.by_twists[b][n]);
+            }
+        }
         self.turning.add_times(&equation.turning, k);
         self.multipliers.push(k);
     }
@@ -229,7 +232,9 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         virtual_motion.solve(&at.sites, topology, state, weights);
         // The wrench on ground is -sum F.
         let ground = weights.of_ground();
-        virtual_twists.iter_mut().zip(virtual_motion.twists()).for_each(|(to, y)| *to = *y - ground);
+        for (b, y) in virtual_motion.twists().iter().enumerate() {
+            virtual_twists[b] = *y - ground;
+        }
         for (b, to) in by_twists.iter_mut().enumerate() {
             *to = self.inertia[b].weights(model, &self.inertial[b], virtual_twists[b]);
         }
@@ -284,8 +289,8 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
                 }
             }
             self.position.bodies[b] = self.nominal[b];
-            for (load, slopes) in self.loads.iter_mut().zip(&self.slopes) {
-                load.by_twists[b][0] += Wrench::from_work(*slopes);
+            for (n, load) in self.loads.iter_mut().enumerate() {
+                load.by_twists[b][0] += Wrench::from_work(self.slopes[n]);
             }
         }
     }
@@ -332,7 +337,10 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         for &b in &self.forced {
             sum += self.required[b].derivative().on(load.virtual_twists[b]);
         }
-        load.multipliers.iter().zip(&self.residuals).fold(sum, |sum, (k, e)| e.times_plus(*k, sum))
+        for (n, k) in load.multipliers.iter().enumerate() {
+            sum = self.residuals[n].times_plus(*k, sum);
+        }
+        sum
     }
 
     /// Computes the derivatives of all loads by a variable whose sensitivities have been solved; calls `each` with the
@@ -345,7 +353,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
     ) {
         let Differentiated { variable, topology, state, field, flow } = by;
         for (b, body) in at.position.bodies.iter().enumerate().skip(1) {
-            self.position.bodies[b] = body.along(flow.twists.each_ref().map(|w| w[b]));
+            self.position.bodies[b] = body.along(of_body(&flow.twists, b));
         }
         for (d, speed) in self.transmitted.speeds.iter_mut().enumerate() {
             speed.d = field.law_rate(DriverId(d), 1);

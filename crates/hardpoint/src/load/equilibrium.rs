@@ -201,11 +201,11 @@ impl<'a, T: Real> Equilibrium<'a, T> {
         position.loads(model, geometry).required(required);
         transmission.load[0].copy_from_slice(required);
         transmission.transmit(topology, Transposed::of(state), &sites.way, 0);
-        for (site, to) in sites.joints.iter().zip(&mut transmitted.joints) {
-            *to = joint_wrench(site, topology, transmission, &state.l[0]);
+        for (j, site) in sites.joints.iter().enumerate() {
+            transmitted.joints[j] = joint_wrench(site, topology, transmission, &state.l[0]);
         }
-        for (site, to) in sites.drivers.iter().zip(&mut transmitted.drivers) {
-            *to = match *site {
+        for (d, site) in sites.drivers.iter().enumerate() {
+            transmitted.drivers[d] = match *site {
                 Some(DriverSite::Coordinate(c)) => {
                     transmission.links[0][topology[c].link.0].on(state.x[0][c.0])
                 }

@@ -53,10 +53,10 @@ impl<T: Real> SpatialInertia<T> {
     fn add(&mut self, Solid { mass, centre: c, inertia, .. }: &Solid<T>) {
         self.mass += *mass;
         self.first += *c * *mass;
-        for (col, axis) in self.second.cols.iter_mut().zip(Vec3::AXES) {
+        for k in 0..3 {
             // I + m (c^2 1 - c c^T)
-            let axis = axis.spread();
-            *col += inertia.on(axis) + (axis * c.dot(*c) - *c * c.dot(axis)) * *mass;
+            let axis = Vec3::AXES[k].spread();
+            self.second.cols[k] += inertia.on(axis) + (axis * c.dot(*c) - *c * c.dot(axis)) * *mass;
         }
     }
 

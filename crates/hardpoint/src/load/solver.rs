@@ -82,8 +82,8 @@ impl<'a> LoadSolver<'a> {
         let (topology, state, model) = (&mechanism.topology, &mut mechanism.state, equilibrium.model);
         equilibrium.set_motion(state, |d| mechanism.parts.law_of(d).at(t).d());
         let position = &mut equilibrium.position;
-        for (law, element) in position.laws.iter_mut().zip(&model.elements) {
-            *law = element.kind.law(model).map_or(1.0, |law| law.at(t).value());
+        for (e, element) in model.elements.iter().enumerate() {
+            position.laws[e] = element.kind.law(model).map_or(1.0, |law| law.at(t).value());
         }
         let counted = counted.as_ref().map(|turns| &turns.values[..]);
         Turns::write(turns, state, counted, &mut position.near);
@@ -101,10 +101,10 @@ impl<'a> LoadSolver<'a> {
             derivatives.set_equilibrium(equilibrium, topology, state, |y| friction.solve_multipliers(y));
         }
         let applied = equilibrium.applied();
-        for (&m, value) in measures.iter().zip(values) {
+        for (n, &m) in measures.iter().enumerate() {
             let kind = &model.measures[m].kind;
             let is_known = equilibrium.is_determined(kind);
-            *value = if is_known { equilibrium.measures(&applied).measure(kind) } else { f64::NAN };
+            values[n] = if is_known { equilibrium.measures(&applied).measure(kind) } else { f64::NAN };
         }
     }
 
@@ -190,8 +190,9 @@ impl<'a> LoadSolver<'a> {
     pub fn enter(&self, out: &mut StepValues) {
         for (n, &m) in self.measures.iter().enumerate() {
             out.set(m, self.values[n]);
-            let by_variables = self.slopes.iter().skip(n).step_by(self.measures.len());
-            by_variables.enumerate().for_each(|(v, d)| out.set_d(v, m, *d));
+            for v in 0..self.slopes.len() / self.measures.len() {
+                out.set_d(v, m, self.slopes[v * self.measures.len() + n]);
+            }
         }
     }
 

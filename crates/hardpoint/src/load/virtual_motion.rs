@@ -5,7 +5,7 @@ use crate::constraint::MarkerPairRates;
 use crate::model::{BodyId, DriverId, GROUND, JointId, MeasureKind, of_bodies};
 use crate::motion::kinematics::State;
 use crate::motion::level::Flow;
-use crate::number::{Dual, Real};
+use crate::number::{Dual, Real, array};
 use crate::sensitivity::{Transmission, Turning};
 use crate::space::{Twist, Wrench};
 use crate::topology::{ClosureId, LinkId, Topology};
@@ -200,12 +200,13 @@ impl<T: Real> VirtualMotion<T> {
             turning.starts[k.0] = later;
         }
         for (c, closure) in ClosureId::each(&topology.closures) {
-            let [i, j] = closure.bodies.map(|b| flow.twists[0][b.0]);
+            let [i, j] = closure.bodies;
+            let (i, j) = (flow.twists[0][i.0], flow.twists[0][j.0]);
             let opened = weights.joint.filter(|(joint, _)| sites.joints[joint.0].closures.contains(&c));
             let apart = j - i - opened.map_or(Twist::zero(), |(_, twist)| twist);
             let by_ends = &turned.by_ends[c.0];
-            turning.ends[c.0] =
-                [0, 6].map(|first| Wrench::from_work(std::array::from_fn(|k| by_ends[first + k].on(apart))));
+            let end = |first: usize| Wrench::from_work(array(|k| by_ends[first + k].on(apart)));
+            turning.ends[c.0] = [end(0), end(6)];
         }
         // D = W + z: the frames turn with W of their body; ground has none.
         let mut on = |body: BodyId, load: Wrench<T>| {
@@ -213,11 +214,13 @@ impl<T: Real> VirtualMotion<T> {
                 on(body, load);
             }
         };
-        for ((_, link), start) in LinkId::each(&topology.links).zip(&turning.starts) {
-            on(link.parent, *start);
+        for (k, link) in LinkId::each(&topology.links) {
+            on(link.parent, turning.starts[k.0]);
         }
-        for ((_, closure), ends) in ClosureId::each(&topology.closures).zip(&turning.ends) {
-            closure.bodies.into_iter().zip(*ends).for_each(|(body, end)| on(body, end));
+        for (c, closure) in ClosureId::each(&topology.closures) {
+            let ([i, j], [at_i, at_j]) = (closure.bodies, turning.ends[c.0]);
+            on(i, at_i);
+            on(j, at_j);
         }
     }
 }

@@ -20,7 +20,7 @@ pub(super) fn moving<T: Real>([r, x, y, z, v, omega, a, alpha]: [Vec3<T>; 8]) ->
         Vec3::of_rates([e, e1, e2])
     };
     // r, r. = v, r.. = a of the frame's origin are known as they are.
-    Pose { rot: Mat3 { cols: [x, y, z].map(column) }, r: Vec3::of_rates([r, v, a]) }
+    Pose { rot: Mat3 { cols: [column(x), column(y), column(z)] }, r: Vec3::of_rates([r, v, a]) }
 }
 
 /// The same, with the derivatives of all of it by one design variable.

@@ -57,14 +57,14 @@ pub(crate) struct StepValues {
 }
 
 impl StepValues {
-    /// Those of a model, with derivatives by that many variables.
-    pub fn new(model: &Model, variables: usize) -> Self {
+    /// Those of a model, with derivatives by that many variables, and memory for that many output times.
+    pub fn new(model: &Model, variables: usize, steps: usize) -> Self {
         let count = model.measures.len();
         let measures: Vec<usize> = (0..count).filter(|m| model.depends_on_step(*m)).collect();
         let mut places = vec![None; count];
         measures.iter().enumerate().for_each(|(n, m)| places[*m] = Some(n));
         let mut numbers = Blocks::default();
-        numbers.shape(measures.len() * (1 + variables), 0);
+        numbers.shape(measures.len() * (1 + variables), steps);
         Self { measures, places, variables, steps: 0, numbers }
     }
 
@@ -106,7 +106,7 @@ impl StepValues {
         // NaN is not known.
         let all_known = excess.iter().all(|excess| excess.0.iter().fold(true, |all, x| all & (*x <= 0.0)));
         if all_known && lanes.len() == LANES {
-            to.iter_mut().zip(found).for_each(|(to, from)| *to = from.0);
+            to.copy_from_slice(bytemuck::cast_slice(found));
         } else {
             for (to, found) in to.chunks_exact_mut(excess.len()).zip(found.chunks_exact(excess.len())) {
                 for ((to, found), excess) in to.iter_mut().zip(found).zip(excess) {

@@ -4,6 +4,7 @@ use hardpoint_tape::{LANES, Lanes};
 
 use crate::blocks::Blocks;
 use crate::model::{Dimension, KnownOrders, Model, OutputSource, PointId, VariableId};
+use crate::number::array;
 
 use super::StepValues;
 
@@ -68,7 +69,7 @@ impl MeasureResults {
     /// where its point rests, the instant centre of a body that does not turn.
     pub fn value(&self, k: usize, m: usize) -> [f64; 3] {
         let row = self.values.row(k);
-        std::array::from_fn(|order| finite(row.get(3 * m + order)))
+        array(|order| finite(row.get(3 * m + order)))
     }
 
     /// Derivatives by variable b; NaN if the variable is not admissible, see
@@ -82,7 +83,7 @@ impl MeasureResults {
             return std::array::from_fn(|order| if order < orders { 0.0 } else { f64::NAN });
         };
         let row = self.d.row(k);
-        std::array::from_fn(|order| finite(row.get(place + order)))
+        array(|order| finite(row.get(place + order)))
     }
 
     /// One of them: of the value (`order` 0), the rate (1) or the acceleration (2).
@@ -151,19 +152,18 @@ impl MeasureResults {
         let enter = |to: &mut [Lanes], x: &Lanes| {
             to[0] = *x;
             if !by_program {
-                to[1..3].fill([f64::NAN; LANES]);
+                (to[1], to[2]) = ([f64::NAN; LANES], [f64::NAN; LANES]);
             }
         };
         let (now, changes) = block.split_at(given.measures().len());
-        for (&m, x) in given.measures().iter().zip(now) {
-            enter(&mut values[3 * m..], x);
+        for (n, &m) in given.measures().iter().enumerate() {
+            enter(&mut values[3 * m..], &now[n]);
         }
-        for (places, changes) in
-            self.places.chunks_exact(outputs).zip(changes.chunks_exact(given.measures().len()))
-        {
-            for (&m, x) in given.measures().iter().zip(changes) {
+        let count = given.measures().len();
+        for (b, places) in self.places.chunks_exact(outputs).enumerate() {
+            for (n, &m) in given.measures().iter().enumerate() {
                 if let Some(place) = places[m] {
-                    enter(&mut derivatives[place..], x);
+                    enter(&mut derivatives[place..], &changes[b * count + n]);
                 }
             }
         }

@@ -231,8 +231,8 @@ fn speeds(mechanism: &Mechanism<'_>, h: f64) -> [f64; 2] {
 
 /// Returns true if all curves are nearly straight from the former contact to the present one.
 fn contacts_are_near(Mechanism { state, saved, parts, .. }: &Mechanism<'_>) -> bool {
-    let contacts = state.contacts.iter().zip(&saved.contacts);
-    contacts.zip(&parts.curves).all(|((now, before), curve)| curve.bend(before.u, now.u) <= MOST_BEND)
+    (0..state.contacts.len())
+        .all(|k| parts.curves[k].bend(saved.contacts[k].u, state.contacts[k].u) <= MOST_BEND)
 }
 
 #[cfg(test)]

@@ -8,8 +8,9 @@ use std::sync::Arc;
 
 use hardpoint_tape::{LANES, Lanes};
 
-use crate::blocks::{AlignedLanes, Blocks, ResultBlock, lanes_of};
+use crate::blocks::{AlignedLanes, Blocks, ResultBlock, lanes_of, zeros};
 use crate::model::{BodyId, VariableId};
+use crate::number::each;
 
 use super::advance::laws_are_resolved;
 use super::guard::{StepGuard, Steps};
@@ -163,7 +164,7 @@ impl<'m> DesignBatch<'m> {
         for (lines, width) in [&mut self.states, &mut self.coordinates].into_iter().zip(widths) {
             // Results of former designs that are still in use are not overwritten.
             if Arc::get_mut(lines).is_none_or(|lines| lines.len() != width * steps) {
-                *lines = Arc::new(vec![AlignedLanes::default(); width * steps]);
+                *lines = Arc::new(zeros(width * steps));
             }
         }
         let mut effort = SolverStatistics { least_pivot_ratio: f64::INFINITY, ..SolverStatistics::default() };
@@ -252,7 +253,7 @@ impl Step for DesignStep<'_, '_> {
     fn predict(&mut self) -> f64 {
         let DesignBatch { course, tapes, by, weights, known, times, count, .. } = &mut *self.batch;
         let ahead = [course[self.k].h; LANES];
-        weights.set((times.map(|t| t - times[0]), *count), &ahead);
+        weights.set((each(times, |t| t - times[0]), *count), &ahead);
         let (tape, _) = at_work(tapes, *by);
         tape.look_ahead(&weights.of, true, &ahead);
         for (channel, known) in known.iter().enumerate() {

@@ -227,11 +227,15 @@ impl ProgramMemory {
         let Self { scratch, interpreters, outputs: found, pieces: room } = self;
         match &runnable.form {
             Form::Whole(executable) => {
-                interpreters.resize(1, None);
+                if interpreters.len() != 1 {
+                    interpreters.resize(1, None);
+                }
                 executable.run((scratch, &mut interpreters[0]), found, inputs, uniforms, outputs);
             }
             Form::Pieces(pieces, shapes) => {
-                interpreters.resize(shapes.len(), None);
+                if interpreters.len() != shapes.len() {
+                    interpreters.resize(shapes.len(), None);
+                }
                 pieces.run(room, inputs, uniforms, outputs, |shape, inputs, uniforms, outputs| {
                     let with = (&mut *scratch, &mut interpreters[shape]);
                     shapes[shape].run(with, found, inputs, uniforms, outputs);

@@ -124,8 +124,8 @@ impl<const N: usize> StepGuard<N> {
     /// Starts at a position with these determinants. No step before it is known.
     #[inline(always)]
     pub fn start_at(&mut self, determinants: impl Iterator<Item = f64>) {
-        for (block, determinant) in self.blocks.iter_mut().zip(determinants) {
-            block.determinant = [determinant; N];
+        for (b, determinant) in determinants.enumerate() {
+            self.blocks[b].determinant = [determinant; N];
         }
         self.step = None;
     }
@@ -203,8 +203,8 @@ impl<const N: usize> StepGuard<N> {
         // h_k / h_k-1; the first step of all has none before it.
         let mut scales = [0.0; LANES];
         let mut before = self.step;
-        for (scale, h) in scales.iter_mut().zip(steps.lengths()) {
-            (*scale, before) = (before.map_or(0.0, |before| h / before), Some(h));
+        for (k, h) in steps.lengths().enumerate() {
+            (scales[k], before) = (before.map_or(0.0, |before| h / before), Some(h));
             self.step_ahead = h;
         }
         let first_compared = usize::from(self.step.is_none());

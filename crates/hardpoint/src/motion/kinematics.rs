@@ -19,6 +19,7 @@ use crate::constraint::{MarkerPair, MarkerPairRates};
 use crate::joint::Freedom;
 use crate::linalg::{Factors, LARGEST_DENSE, Watched};
 use crate::model::{Contact, DriverId, GROUND, Model};
+use crate::number::array;
 use crate::space::{Pose, Quat, Real, Twist, Vec3, Wrench};
 use crate::topology::{Block, BlockId, Closure, ClosureColumn, ClosureId, LinkId, RowId, RowTerm, Topology};
 
@@ -740,8 +741,9 @@ impl<T: Real> State<T> {
     pub fn coordinate_of_row(&self, topology: &Topology, r: RowId) -> [T; 3] {
         let [i, j] = topology.closure_of(r).bodies;
         // chi. = l . (V_j - V_i),    chi.. = l . (A_j - A_i) + l. . (V_j - V_i)
-        let [v, a] = [0, 1].map(|n| self.motion.twists[n][j.0] - self.motion.twists[n][i.0]);
-        let [l, l_rate, _] = self.l.each_ref().map(|l| l[r.0]);
+        let apart = |n: usize| self.motion.twists[n][j.0] - self.motion.twists[n][i.0];
+        let (v, a) = (apart(0), apart(1));
+        let (l, l_rate) = (self.l[0][r.0], self.l[1][r.0]);
         [self.value(topology, r), l.on(v), l.on(a) + l_rate.on(v)]
     }
 
@@ -765,10 +767,13 @@ impl<T: Real> State<T> {
     #[inline(always)]
     fn rates_of_twists<const N: usize>(&mut self, topology: &Topology, links: impl Iterator<Item = LinkId>) {
         let Flow { speeds, twists, .. } = &self.motion;
-        for link in links.map(|k| &topology[k]).filter(|link| !link.has_constant_twist()) {
-            // x(n) = sum_{m<n} C(n-1,m) ad(V(m)) x(n-1-m), V of the parent first
-            let v: [Twist<T>; N] = std::array::from_fn(|n| twists[n][link.parent.0]);
-            turn_twists(link, v, &mut self.x, speeds);
+        for k in links {
+            let link = &topology[k];
+            if !link.has_constant_twist() {
+                // x(n) = sum_{m<n} C(n-1,m) ad(V(m)) x(n-1-m), V of the parent first
+                let v: [Twist<T>; N] = array(|n| twists[n][link.parent.0]);
+                turn_twists(link, v, &mut self.x, speeds);
+            }
         }
     }
 

@@ -12,6 +12,7 @@
 //! propagates loads to ground (`sensitivity/adjoint.rs`).
 
 use crate::linalg::Factors;
+use crate::number::array;
 use crate::space::{Real, Twist, Wrench};
 use crate::topology::{BlockId, ClosureId, Link, LinkId, LinkStep, RowId, RowTerm, Topology};
 
@@ -89,7 +90,9 @@ impl<T: Real> Flow<T> {
     /// Sets the demand f of all rows of closure c.
     #[inline(always)]
     pub fn ask(&mut self, topology: &Topology, c: ClosureId, f: T) {
-        topology[c].row_ids().for_each(|r| self.demand[r.0] = f);
+        for r in topology[c].row_ids() {
+            self.demand[r.0] = f;
+        }
     }
 
     /// Adds the twist, at order n, of the parent's (0) or the child's (1) marker of link k in its body: `z_p - z_c`.
@@ -262,7 +265,7 @@ pub(crate) fn turn_twists<T: Real, const N: usize>(
         for c in step.coordinates() {
             // For a single freedom the frame behind it gives the same result, since ad(x u) x = 0; the axes of a ball
             // are those of the frame before it.
-            x[N][c.0] = carried(std::array::from_fn(|m| x[m][c.0]), v);
+            x[N][c.0] = carried(array(|m| x[m][c.0]), v);
         }
         if n + 1 == link.steps.len() {
             break;
@@ -281,13 +284,16 @@ pub(crate) fn turn_twists<T: Real, const N: usize>(
 /// `l_r . (U_j - U_i)`, summed over a coupler's terms.
 #[inline(always)]
 fn along<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twist<T>], r: RowId) -> T {
-    let of_row = |r: RowId| {
-        let [i, j] = topology.closure_of(r).bodies;
-        l[r.0].on(motion[j.0] - motion[i.0])
-    };
-    let mut sum = of_row(r);
+    let mut sum = along_term(topology, l, motion, r);
     for &RowTerm { row, factor } in &topology[r].terms {
-        sum += of_row(row) * T::constant(factor);
+        sum += along_term(topology, l, motion, row) * T::constant(factor);
     }
     sum
+}
+
+/// The same of one term.
+#[inline(always)]
+fn along_term<T: Real>(topology: &Topology, l: &[Wrench<T>], motion: &[Twist<T>], r: RowId) -> T {
+    let [i, j] = topology.closure_of(r).bodies;
+    l[r.0].on(motion[j.0] - motion[i.0])
 }

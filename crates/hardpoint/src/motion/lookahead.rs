@@ -126,8 +126,8 @@ impl Lookahead {
         match path {
             Path::Assembly | Path::Line { .. } => self.travel[0] * mechanism.unit_of(path),
             Path::Laws => {
-                let of_driver = self.travel.iter().zip(&mechanism.driver_units);
-                of_driver.map(|(x, unit)| x / unit).fold(0.0, f64::max)
+                let of_driver = |d: usize| self.travel[d] / mechanism.driver_units[d];
+                (0..mechanism.drivers.len()).map(of_driver).fold(0.0, f64::max)
             }
         }
     }
@@ -179,8 +179,8 @@ impl Lookahead {
         mechanism.restore();
         let Mechanism { topology, parts, state, drivers, saved, .. } = mechanism;
         self.moves.fill(0.0);
-        for (predicted, contact) in self.contacts.iter_mut().zip(&state.contacts) {
-            predicted[0] = contact.u;
+        for k in 0..state.contacts.len() {
+            self.contacts[k][0] = state.contacts[k].u;
         }
         for k in 0..path.directions(drivers.len()) {
             let du = path.travel_of(k, h, [&saved.drivers, drivers]);
@@ -196,8 +196,9 @@ impl Lookahead {
                 state.near[r.0] += slope * du + bend * half;
             }
             // u + u' Du + u'' Du^2 / 2
-            for ([u, _], [slope, bend]) in self.contacts.iter_mut().zip(&self.around.sliding[k]) {
-                *u += slope * du + bend * half;
+            for c in 0..self.contacts.len() {
+                let [slope, bend] = self.around.sliding[k][c];
+                self.contacts[c][0] += slope * du + bend * half;
             }
         }
         for (k, contact) in state.contacts.iter_mut().enumerate() {

@@ -96,19 +96,22 @@ impl<T: Real> Margins<T> {
         for (k, &r) in block.selected.iter().enumerate() {
             relative_row(topology, state, r, row);
             // R: each row of J divided by its unit and its maximum resistance (29)
-            factors.row_mut(k).copy_from_slice(row);
+            let to = &mut factors.row_mut(k)[..n];
+            for c in 0..n {
+                to[c] = row[c];
+            }
         }
         if !(judged(factors, limit) > 0.0) {
             return zero;
         }
-        sums.fill(zero);
+        clear(sums);
         for k in 0..n {
-            row.fill(zero);
+            clear(row);
             // |R^-1| = the largest sum over a row of the sizes of its entries; column k of R^-1 is R^-1 e_k
             row[k] = one;
             factors.solve(row);
-            for (sum, x) in sums.iter_mut().zip(row.iter()) {
-                *sum += x.abs();
+            for c in 0..n {
+                sums[c] += row[c].abs();
             }
         }
         one / sums.iter().fold(zero, |most, x| most.larger(*x))
@@ -128,29 +131,38 @@ impl<T: Real> Margins<T> {
         let (zero, one) = (T::zero(), T::one());
         let factors = &mut self.blocks[b.0];
         let (row, sums) = (&mut self.row[..n], &mut self.row_sums[..n]);
-        (0..n).for_each(|k| factors.row_mut(k).fill(zero));
+        (0..n).for_each(|k| clear(factors.row_mut(k)));
         for &r in &self.rows[b.0] {
             relative_row(topology, state, r, row);
             for k in 0..n {
-                for (to, x) in factors.row_mut(k).iter_mut().zip(row.iter()) {
+                let to = &mut factors.row_mut(k)[..n];
+                for c in 0..n {
                     // N = R^T R, summed over all rows of the block: N_kc += R_rk R_rc
-                    *to = row[k].times_plus(*x, *to);
+                    to[c] = row[k].times_plus(row[c], to[c]);
                 }
             }
         }
         if !(judged(factors, limit) > SQUARED * SQUARED) {
             return zero;
         }
-        sums.fill(zero);
+        clear(sums);
         for &r in &self.rows[b.0] {
             relative_row(topology, state, r, row);
             // Column r of R^+ = N^-1 R^T is N^-1 (row r of R)
             factors.solve(row);
-            for (sum, x) in sums.iter_mut().zip(row.iter()) {
-                *sum += x.abs();
+            for c in 0..n {
+                sums[c] += row[c].abs();
             }
         }
         one / sums.iter().fold(zero, |most, x| most.larger(*x))
+    }
+}
+
+/// Sets all numbers to zero.
+#[inline(always)]
+fn clear<T: Real>(row: &mut [T]) {
+    for x in row {
+        *x = T::zero();
     }
 }
 
@@ -182,8 +194,7 @@ const SQUARED: f64 = 1e-6;
 #[inline(always)]
 fn relative_row<T: Real>(topology: &Topology, state: &State<T>, r: RowId, row: &mut [T]) {
     let scale = 1.0 / topology[r].unit;
-    let zero = T::zero();
-    row.fill(zero);
+    clear(row);
     for RowTerm { row: part, factor } in topology.parts_of_row(r) {
         let l = wrench(topology, state, part);
         for &ClosureColumn { column, coordinate: c, side } in &topology.closure_of(part).entries {

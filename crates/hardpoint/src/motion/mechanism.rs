@@ -201,7 +201,8 @@ impl<'m> Mechanism<'m> {
 
     /// Sets the branch from the first position.
     pub fn settle_branch(&mut self) {
-        for (branch, &(ratio, positive)) in self.branch.iter_mut().zip(&self.state.pivots) {
+        for (b, &(ratio, positive)) in self.state.pivots.iter().enumerate() {
+            let branch = &mut self.branch[b];
             *branch = Branch { positive, try_others: RESELECT * ratio };
         }
     }
@@ -249,6 +250,9 @@ impl<'m> Mechanism<'m> {
     /// Predicts the coordinates of couplers, a step h beyond the saved position.
     #[inline(always)]
     pub fn expect_turns(&mut self, h: f64) {
+        if self.topology.coupled_rows.is_empty() {
+            return;
+        }
         let half = 0.5 * h;
         for r in self.topology.coupler_terms() {
             let [x, v, a] = self.saved.coupled[r.0];
@@ -282,8 +286,10 @@ impl<'m> Mechanism<'m> {
         saved.drivers.copy_from_slice(&self.drivers);
         saved.contacts.copy_from_slice(&s.contacts);
         saved.residual = self.residuals.scaled;
-        for r in self.topology.coupler_terms() {
-            saved.coupled[r.0] = s.coordinate_of_row(&self.topology, r);
+        if !self.topology.coupled_rows.is_empty() {
+            for r in self.topology.coupler_terms() {
+                saved.coupled[r.0] = s.coordinate_of_row(&self.topology, r);
+            }
         }
     }
 
@@ -293,8 +299,10 @@ impl<'m> Mechanism<'m> {
         s.q.copy_from_slice(&saved.q);
         s.balls.copy_from_slice(&saved.balls);
         s.contacts.copy_from_slice(&saved.contacts);
-        for r in self.topology.coupler_terms() {
-            s.near[r.0] = saved.coupled[r.0][0];
+        if !self.topology.coupled_rows.is_empty() {
+            for r in self.topology.coupler_terms() {
+                s.near[r.0] = saved.coupled[r.0][0];
+            }
         }
     }
 

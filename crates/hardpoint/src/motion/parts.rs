@@ -104,12 +104,14 @@ impl PlanGeometry<f64> {
     }
 
     /// Maximum speed of driver d between two times.
+    #[inline]
     pub fn fastest(&self, d: usize, from: f64, to: f64) -> f64 {
         // A law times zero rests, even if the law is NaN.
         f64::max(self.laws[d].fastest(from, to), 0.0)
     }
 
     /// Value, speed and acceleration that driver d prescribes at time t.
+    #[inline]
     pub fn law(&self, d: usize, t: f64) -> [f64; 3] {
         let [f, fd, fdd, _] = self.laws[d].at(t).derivatives();
         [f, fd, fdd]

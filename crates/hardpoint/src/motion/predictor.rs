@@ -14,6 +14,7 @@
 use hardpoint_tape::{LANES, Lanes};
 
 use crate::joint::Freedom;
+use crate::number::{array, each};
 use crate::space::{Quat, Real, Vec3};
 use crate::topology::{CoordinateId, Topology};
 
@@ -141,8 +142,8 @@ impl Predictor {
     #[inline(always)]
     pub fn learn(&mut self, t: f64, state: &State<f64>) {
         self.remember(t);
-        for (channel, to) in self.channels.iter().zip(&mut self.values[0]) {
-            *to = channel.of(state);
+        for (n, channel) in self.channels.iter().enumerate() {
+            self.values[0][n] = channel.of(state);
         }
     }
 
@@ -150,8 +151,8 @@ impl Predictor {
     #[inline(always)]
     pub fn learn_values(&mut self, t: f64, values: impl Iterator<Item = [f64; ORDERS]>) {
         self.remember(t);
-        for (to, value) in self.values[0].iter_mut().zip(values) {
-            *to = value;
+        for (n, value) in values.enumerate() {
+            self.values[0][n] = value;
         }
     }
 
@@ -168,13 +169,13 @@ impl Predictor {
     /// Times of the nodes before the newest position, for a prediction `h` beyond it.
     #[inline(always)]
     pub fn nodes(&self, h: f64) -> ([f64; NODES], usize) {
-        (self.times.map(|t| t - self.times[0]), self.counting(h))
+        (each(&self.times, |t| t - self.times[0]), self.counting(h))
     }
 
     /// Values of a channel at the nodes, the newest first.
     #[inline(always)]
     pub fn known_of(&self, channel: usize) -> [[f64; ORDERS]; NODES] {
-        std::array::from_fn(|n| self.values[n][channel])
+        array(|n| self.values[n][channel])
     }
 
     /// Number of positions to use; older ones are dropped beyond the maximum prediction distance.
@@ -225,7 +226,7 @@ impl Predictor {
     #[inline(always)]
     pub fn set(&mut self, state: &mut State<f64>, t: f64, h: f64) {
         let n = self.divide(h);
-        let ahead: [f64; NODES] = std::array::from_fn(|k| t - self.times[k]);
+        let ahead: [f64; NODES] = array(|k| t - self.times[k]);
         for (channel, d) in self.channels.iter().zip(&self.differences) {
             // Horner's rule, from the innermost factor
             let mut x = d[n - 1];
@@ -259,8 +260,11 @@ impl Weights {
         // steps are equal.
         let near = AS_FAR * ahead.iter().fold(0.0, |most: f64, h| most.max(h.abs()));
         let mut same = self.count == count;
-        for (a, b) in nodes[..count].iter().chain(ahead).zip(self.nodes[..count].iter().chain(&self.ahead)) {
-            same &= (a - b).abs() <= near;
+        for n in 0..count {
+            same &= (nodes[n] - self.nodes[n]).abs() <= near;
+        }
+        for lane in 0..LANES {
+            same &= (ahead[lane] - self.ahead[lane]).abs() <= near;
         }
         if !same {
             (self.nodes, self.count, self.ahead) = (nodes, count, *ahead);
@@ -297,9 +301,10 @@ impl Weights {
             }
             // In s = t / unit a rate is known as unit q., an acceleration as unit^2 q..
             let scale = [1.0, unit, unit * unit][j % ORDERS];
-            for (weight, h) in self.of[j].iter_mut().zip(self.ahead) {
-                let x = (0..n - 1).rev().fold(d[n - 1], |x, i| x * (h / unit - node(i)) + d[i]);
-                *weight = x * scale;
+            for lane in 0..LANES {
+                let s = self.ahead[lane] / unit;
+                let x = (0..n - 1).rev().fold(d[n - 1], |x, i| x * (s - node(i)) + d[i]);
+                self.of[j][lane] = x * scale;
             }
         }
     }

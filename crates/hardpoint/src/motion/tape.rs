@@ -203,9 +203,11 @@ impl Tape {
         }
         self.refused -= 1;
         self.repeated += usize::from(self.runs > 1);
-        let residuals =
-            [StepCheck::Residual, StepCheck::ScaledResidual].map(|which| largest(self.judged(which)));
-        Ok(SolveQuality { residuals: Residuals { largest: residuals[0], scaled: residuals[1] }, pivot_ratio })
+        let residuals = Residuals {
+            largest: largest(self.judged(StepCheck::Residual)),
+            scaled: largest(self.judged(StepCheck::ScaledResidual)),
+        };
+        Ok(SolveQuality { residuals, pivot_ratio })
     }
 
     /// Predicts the positions that were just found.

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use hardpoint_tape::{LANES, Lanes};
 
 use crate::blocks::{AlignedLanes, ResultBlock, lanes_of};
+use crate::number::{array, each};
 
 use super::execution::{ProgramMemory, Runnable};
 use super::guard::Steps;
@@ -84,8 +85,11 @@ impl<'p> TimeBatch<'p> {
 
     /// Results that have no memory elsewhere.
     pub fn own_results(&self) -> Option<ResultBlock<'_>> {
-        let [states, derivatives] = self.own.each_ref().map(|own| bytemuck::cast_slice(own));
-        self.is_own.then_some(ResultBlock { states, derivatives })
+        let [states, derivatives] = &self.own;
+        self.is_own.then(|| ResultBlock {
+            states: bytemuck::cast_slice(states),
+            derivatives: bytemuck::cast_slice(derivatives),
+        })
     }
 
     /// Advances from the stepper's position by the largest number of output times, from output time k on, that a
@@ -110,7 +114,7 @@ impl<'p> TimeBatch<'p> {
             self.wait -= 1;
             return 0;
         }
-        let times: Lanes = std::array::from_fn(|lane| times[group + usize::min(lane, last)]);
+        let times: Lanes = array(|lane| times[group + usize::min(lane, last)]);
         if !self.choose_tape(&one.mechanism, [times[last], count as f64]) {
             return 0;
         }
@@ -157,13 +161,13 @@ impl<'p> TimeBatch<'p> {
         let Self { tape, laws, weights, own, is_own, .. } = self;
         let tape = tape.as_mut()?;
         // Earlier results are not overwritten, even if these steps are rejected.
-        let room = room.filter(|room| first == 0 && room.each_ref().map(|part| part.len()) == tape.sizes());
+        let room = room.filter(|room| first == 0 && [room[0].len(), room[1].len()] == tape.sizes());
         *is_own = room.is_none();
         let results = room.unwrap_or_else(|| {
-            for (own, size) in own.iter_mut().zip(tape.sizes()) {
-                own.resize(size, AlignedLanes::default());
-            }
-            own.each_mut().map(|own| lanes_of(own))
+            let ([states, derivatives], sizes) = (own, tape.sizes());
+            states.resize(sizes[0], AlignedLanes::default());
+            derivatives.resize(sizes[1], AlignedLanes::default());
+            [lanes_of(states), lanes_of(derivatives)]
         });
         Some(TimeStep {
             one,
@@ -203,7 +207,7 @@ impl Step for TimeStep<'_, '_> {
         let Stepper { mechanism, guard, lookahead, .. } = &mut *self.one;
         let tape = &*self.tape;
         let values = |d: usize| &tape.driver(d, 0)[first..=last];
-        let speed = |d: usize| largest(&tape.driver(d, 1).map(f64::abs));
+        let speed = |d: usize| largest(&each(tape.driver(d, 1), f64::abs));
         RoughStep::unless(guard.laws_are_resolved((mechanism, lookahead), steps, values, speed))
     }
 
@@ -211,7 +215,7 @@ impl Step for TimeStep<'_, '_> {
     fn predict(&mut self) -> f64 {
         let Stepper { mechanism, predictor, .. } = &*self.one;
         // t - z_0 of (27) in every lane, z_0 the stepper's own time
-        let ahead = self.times.map(|t| t - mechanism.saved.time);
+        let ahead = each(self.times, |t| t - mechanism.saved.time);
         let are_new = self.weights.set(predictor.nodes(ahead[self.lanes[1]]), &ahead);
         self.tape.look_ahead(&self.weights.of, are_new, &ahead);
         for (channel, known) in self.tape.known_of_times_mut().iter_mut().enumerate() {
@@ -224,7 +228,8 @@ impl Step for TimeStep<'_, '_> {
 
     #[inline(always)]
     fn correct(&mut self, trust: f64) -> Result<(), RoughStep> {
-        self.solved = self.tape.solve(trust, self.results.each_mut().map(|part| &mut **part))?;
+        let [states, derivatives] = &mut self.results;
+        self.solved = self.tape.solve(trust, [&mut **states, &mut **derivatives])?;
         Ok(())
     }
 
@@ -286,19 +291,24 @@ impl Laws {
         }
         if !by_program {
             let (drivers, forces) = laws.split_at_mut(ORDERS * one.drivers.len());
-            for (force, law) in forces.iter_mut().zip(one.model.laws_of_forces()) {
-                *force = times.map(|t| law.at(t).value());
+            for (k, law) in one.model.laws_of_forces().enumerate() {
+                forces[k] = each(times, |t| law.at(t).value());
             }
-            for (d, driver) in drivers.chunks_exact_mut(ORDERS).enumerate() {
+            for d in 0..one.drivers.len() {
                 for lane in 0..LANES {
-                    for (to, x) in driver.iter_mut().zip(one.parts.law_of(d).at(times[lane]).derivatives()) {
-                        to[lane] = x;
+                    let derivatives = one.parts.law_of(d).at(times[lane]).derivatives();
+                    for order in 0..ORDERS {
+                        drivers[ORDERS * d + order][lane] = derivatives[order];
                     }
                 }
             }
         }
-        let finite = laws.iter().all(|x| all_within(&x.map(f64::abs), f64::MAX));
-        finite.then_some(())
+        for x in laws {
+            if !all_within(&each(x, f64::abs), f64::MAX) {
+                return None;
+            }
+        }
+        Some(())
     }
 }
 
@@ -333,13 +343,13 @@ fn save_lane(mechanism: &mut Mechanism<'_>, tape: &Tape, lane: usize) {
         (qd[c.0], qdd[c.0]) = (speeds[lane], accelerations[lane]);
     }
     for (d, driver) in drivers.iter_mut().enumerate() {
-        *driver = std::array::from_fn(|order| tape.driver(d, order)[lane]);
+        *driver = array(|order| tape.driver(d, order)[lane]);
     }
     for (c, d) in topology.driven_coordinates() {
         [q[c.0], qd[c.0], qdd[c.0]] = drivers[d.0];
     }
-    for (b, (pivots, branch)) in pivots.iter_mut().zip(branch).enumerate() {
-        *pivots = (tape.pivot_ratio(b, lane), branch.positive);
+    for b in 0..pivots.len() {
+        pivots[b] = (tape.pivot_ratio(b, lane), branch[b].positive);
     }
 }
 

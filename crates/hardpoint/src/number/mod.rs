@@ -27,3 +27,22 @@ pub use interval::Interval;
 pub use jet::{Jet, Rates};
 pub use real::Real;
 pub use taylor::{Exponents, Taylor};
+
+/// An array of at least one number, by index: `std::array::from_fn`, inlined everywhere.
+#[inline(always)]
+pub(crate) fn array<T: Copy, const N: usize>(number: impl Fn(usize) -> T) -> [T; N] {
+    let mut out = [number(0); N];
+    for k in 1..N {
+        out[k] = number(k);
+    }
+    out
+}
+
+/// A function of every number of an array: `map`, inlined everywhere.
+#[inline(always)]
+pub(crate) fn each<T: Copy, U: Copy, const N: usize>(of: &[T; N], function: impl Fn(T) -> U) -> [U; N] {
+    array(
+        #[inline(always)]
+        |k| function(of[k]),
+    )
+}

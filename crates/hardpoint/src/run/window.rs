@@ -130,7 +130,7 @@ impl Analysis<'_> {
             done: 0,
             motion: std::mem::take(&mut solution.motion),
             sensitivities,
-            slopes: StepValues::new(model, variables),
+            slopes: StepValues::new(model, variables, rows),
         };
         self.make_room(&mut window.motion, rows);
         let mut margins = Margins::new(topology);

@@ -393,15 +393,23 @@ impl<T: Real> DirectDifferentiation<T> {
         // W = W. = W.. = 0 of all bodies that this variable does not reach.
         if *moved != field.reach.bodies {
             for twists in &mut flow.twists {
-                moved.iter().for_each(|&b| twists[b] = none);
+                for &b in &*moved {
+                    twists[b] = none;
+                }
             }
             moved.clear();
             moved.extend_from_slice(&field.reach.bodies);
         }
         flow.drives |= !field.law_rates.is_empty();
-        let in_blocks = field.reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
-        for k in field.reach.driven_links.iter().copied().chain(in_blocks) {
-            flow.moves.iter_mut().for_each(|moves| moves[k.0] = none);
+        let [m0, m1, m2] = &mut flow.moves;
+        let mut rest = |k: LinkId| (m0[k.0], m1[k.0], m2[k.0]) = (none, none, none);
+        for &k in &field.reach.driven_links {
+            rest(k);
+        }
+        for &b in &field.reach.blocks {
+            for k in topology[b].link_ids() {
+                rest(k);
+            }
         }
         // moves(n) = z_p(n) - z_c(n): the first term of (11), (12), (13) on the right
         for m in &field.links {
@@ -428,7 +436,9 @@ impl<T: Real> DirectDifferentiation<T> {
         // demand = L' + df(n)/dp - l . (z_j(n) - z_i(n)); L' is constant over time, so it is part of order 0 alone.
         // The other terms of (12) and (13), -sum_{m=1..n} C(n,m) l(m) . (D_j(n-m) - D_i(n-m)), are added by
         // `Flow::solve`.
-        reach.closures.iter().for_each(|&c| flow.ask(topology, c, T::zero()));
+        for &c in &reach.closures {
+            flow.ask(topology, c, T::zero());
+        }
         for (k, m) in field.closures.iter().enumerate() {
             flow.move_end(topology, (m.at, m.end), z[k][N], &state.l[0]);
         }
@@ -538,7 +548,9 @@ impl<T: Real> DirectDifferentiation<T> {
 /// Adds the work of each of these loads to its sum.
 #[inline(always)]
 fn add_each<T: Real, L>(sums: &mut [T], loads: &(impl Iterator<Item = L> + Clone), work: impl Fn(L) -> T) {
-    sums.iter_mut().zip(loads.clone()).for_each(|(sum, load)| *sum += work(load));
+    for (k, load) in loads.clone().enumerate() {
+        sums[k] += work(load);
+    }
 }
 
 /// Driven coordinates, in the tree and across cuts, follow the change of their laws.

@@ -49,7 +49,8 @@ impl<'s, T: Real> Transposed<'s, T> {
     /// Transposed equations of a state, with its time derivatives.
     pub fn of(state: &'s mut State<T>) -> Self {
         let State { x, l, factors, rhs, .. } = state;
-        Self { x: x.each_ref().map(Vec::as_slice), l: l.each_ref().map(Vec::as_slice), factors, rhs }
+        let ([x0, x1, x2], [l0, l1, l2]) = (x, l);
+        Self { x: [x0, x1, x2], l: [l0, l1, l2], factors, rhs }
     }
 }
 
@@ -113,11 +114,13 @@ impl<T: Real> Transmission<T> {
                 load[closure.bodies[0].0] -= known;
             }
             // First without closures: the generalised forces on the unknowns are the right-hand side for the closures.
-            for link in block.link_ids().map(|k| &topology[k]) {
-                below[link.child.0] = load[link.child.0];
+            for k in block.link_ids() {
+                let child = topology[k].child.0;
+                below[child] = load[child];
             }
             // Parents outside of the block also accumulate loads, which are not used.
-            for link in block.link_ids().rev().map(|k| &topology[k]) {
+            for k in block.link_ids().rev() {
+                let link = &topology[k];
                 // below(p) = F_p + sum of below(c) over its children: T_k as far as it is known
                 let carried = below[link.child.0];
                 below[link.parent.0] += carried;

@@ -47,7 +47,11 @@ impl<T: Real> Mat3<T> {
     /// This rotation with its derivative along the angular velocity `w` of the rotated frame: `A' = w x A`.
     #[inline(always)]
     pub fn along(self, w: Vec3<T>) -> Mat3<Dual<T>> {
-        T::operation(|| Mat3 { cols: self.cols.map(|c| c.with_derivative(w.cross(c))) })
+        T::operation(|| {
+            let of = |c: Vec3<T>| c.with_derivative(w.cross(c));
+            let [f, g, h] = self.cols;
+            Mat3 { cols: [of(f), of(g), of(h)] }
+        })
     }
 
     /// Rotation by `angle`, rad, about a unit vector.
@@ -59,7 +63,8 @@ impl<T: Real> Mat3<T> {
             // Rodrigues: e cos + (n x e) sin + n (n . e) (1 - cos)
             e.spread() * c + axis.cross(e).spread() * s + along * (one - c)
         };
-        Self { cols: Vec3::AXES.map(turn) }
+        let [x, y, z] = Vec3::AXES;
+        Self { cols: [turn(x), turn(y), turn(z)] }
     }
 
     /// Smallest rotation that maps unit vector `a` to unit vector `b`, which must not be opposite.
@@ -72,7 +77,8 @@ impl<T: Real> Mat3<T> {
             let turned = v.cross(e.spread());
             e.spread() + turned + v.cross(turned) * k
         };
-        Self { cols: Vec3::AXES.map(turn) }
+        let [x, y, z] = Vec3::AXES;
+        Self { cols: [turn(x), turn(y), turn(z)] }
     }
 
     /// Transpose, which is the inverse rotation.

@@ -28,20 +28,26 @@ impl<T: Real> Pose<T> {
     /// Pose in the outer frame of `inner`, which is given in this frame.
     #[inline(always)]
     pub fn compose(self, inner: Self) -> Self {
-        T::operation(|| {
-            // (A, r) (A', r') = (A A', r + A r')
-            Self { rot: self.rot * inner.rot, r: self.point(inner.r) }
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                // (A, r) (A', r') = (A A', r + A r')
+                Self { rot: self.rot * inner.rot, r: self.point(inner.r) }
+            },
+        )
     }
 
     /// Inverse: the pose of the outer frame in the inner one.
     #[inline(always)]
     pub fn inverse(self) -> Self {
-        T::operation(|| {
-            let rot = self.rot.transpose();
-            // (A, r)^-1 = (A^T, -A^T r)
-            Self { rot, r: -(rot * self.r) }
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                let rot = self.rot.transpose();
+                // (A, r)^-1 = (A^T, -A^T r)
+                Self { rot, r: -(rot * self.r) }
+            },
+        )
     }
 
     /// Maps a point from the inner to the outer frame.
@@ -53,20 +59,26 @@ impl<T: Real> Pose<T> {
     /// Maps a twist from the inner to the outer frame: `Ad(X) e` (`docs/theory.md` (2)).
     #[inline(always)]
     pub fn carry(self, e: Twist<T>) -> Twist<T> {
-        T::operation(|| {
-            // Ad(X) [w; v] = [A w;  A v + r x A w]                                                                (2)
-            let w = self.rot * e.w;
-            Twist { w, v: self.r.cross_plus(w, self.rot * e.v) }
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                // Ad(X) [w; v] = [A w;  A v + r x A w]                                                                (2)
+                let w = self.rot * e.w;
+                Twist { w, v: self.r.cross_plus(w, self.rot * e.v) }
+            },
+        )
     }
 
     /// Maps a wrench from the outer to the inner frame: `l . Ad(X) e = carry_back(l) . e`.
     #[inline(always)]
     pub fn carry_back(self, l: Wrench<T>) -> Wrench<T> {
-        T::operation(|| {
-            // Ad(X)^T [m; f] = [A^T (m - r x f);  A^T f]
-            Wrench { m: self.rot.transpose_mul(l.m - self.r.cross(l.f)), f: self.rot.transpose_mul(l.f) }
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                // Ad(X)^T [m; f] = [A^T (m - r x f);  A^T f]
+                Wrench { m: self.rot.transpose_mul(l.m - self.r.cross(l.f)), f: self.rot.transpose_mul(l.f) }
+            },
+        )
     }
 
     /// This pose with its derivative along a twist in the outer frame: `A' = w x A`, `r' = v + w x r`.
@@ -87,14 +99,20 @@ impl<T: Real> Pose<Dual<Dual<T>>> {
     pub fn exchanged(self) -> Self {
         let exchange =
             |x: Dual<Dual<T>>| Dual { v: Dual { v: x.v.v, d: x.d.v }, d: Dual { v: x.v.d, d: x.d.d } };
-        Self { rot: Mat3 { cols: self.rot.cols.map(|c| c.map(exchange)) }, r: self.r.map(exchange) }
+        let [f, g, h] = self.rot.cols;
+        Self {
+            rot: Mat3 { cols: [f.map(exchange), g.map(exchange), h.map(exchange)] },
+            r: self.r.map(exchange),
+        }
     }
 }
 
 impl<T: Real> Pose<Dual<T>> {
     /// This pose without derivative.
     pub fn nominal(self) -> Pose<T> {
-        Pose { rot: Mat3 { cols: self.rot.cols.map(|c| c.map(|x| x.v)) }, r: self.r.map(|x| x.v) }
+        let of = |c: Vec3<Dual<T>>| c.map(|x| x.v);
+        let [f, g, h] = self.rot.cols;
+        Pose { rot: Mat3 { cols: [of(f), of(g), of(h)] }, r: of(self.r) }
     }
 
     /// Splits a dual pose into the pose and its twist `[w; v]`, in components of the outer frame, with v at the outer

@@ -88,19 +88,25 @@ impl<T: Real> Twist<T> {
     /// Rate of a twist `o` fixed in a body that moves with twist `self`: `ad(self) o` (`docs/theory.md` (3)).
     #[inline(always)]
     pub fn ad(self, o: Self) -> Self {
-        T::operation(|| {
-            // ad(V) x = [V_w x x_w;  V_w x x_v + V_v x x_w]                                                      (3)
-            Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                // ad(V) x = [V_w x x_w;  V_w x x_v + V_v x x_w]                                                      (3)
+                Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
+            },
+        )
     }
 
     /// Transpose of [`ad`](Self::ad): `l . ad(self) o = ad_transposed(l) . o`.
     #[inline(always)]
     pub fn ad_transposed(self, l: Wrench<T>) -> Wrench<T> {
-        T::operation(|| {
-            // ad(V)^T l = [m x V_w + f x V_v;  f x V_w], from  m . (V_w x x_w) + f . (V_w x x_v + V_v x x_w)
-            Wrench { m: l.m.cross_plus(self.w, l.f.cross(self.v)), f: l.f.cross(self.w) }
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                // ad(V)^T l = [m x V_w + f x V_v;  f x V_w], from  m . (V_w x x_w) + f . (V_w x x_v + V_v x x_w)
+                Wrench { m: l.m.cross_plus(self.w, l.f.cross(self.v)), f: l.f.cross(self.w) }
+            },
+        )
     }
 
     /// Velocity of the body point at `p`.
@@ -113,7 +119,10 @@ impl<T: Real> Twist<T> {
     /// `self * k + addend`.
     #[inline(always)]
     pub fn times_plus(self, k: T, addend: Self) -> Self {
-        T::operation(|| Self { w: self.w.times_plus(k, addend.w), v: self.v.times_plus(k, addend.v) })
+        T::operation(
+            #[inline(always)]
+            || Self { w: self.w.times_plus(k, addend.w), v: self.v.times_plus(k, addend.v) },
+        )
     }
 
     /// This twist as plain numbers.
@@ -159,7 +168,10 @@ impl<T: Real> Wrench<T> {
     /// `self * k + addend`.
     #[inline(always)]
     pub fn times_plus(self, k: T, addend: Self) -> Self {
-        T::operation(|| Self { m: self.m.times_plus(k, addend.m), f: self.f.times_plus(k, addend.f) })
+        T::operation(
+            #[inline(always)]
+            || Self { m: self.m.times_plus(k, addend.m), f: self.f.times_plus(k, addend.f) },
+        )
     }
 
     /// Wrench of the force `f` acting at `point`.
@@ -178,12 +190,15 @@ impl<T: Real> Wrench<T> {
     /// Power of this wrench on a twist: `m . w + f . v`.
     #[inline(always)]
     pub fn on(self, t: Twist<T>) -> T {
-        T::operation(|| {
-            // l . W = m . w + f . v                                                                               (1)
-            let (m, f, w, v) = (self.m, self.f, t.w, t.v);
-            let moment = m.dot(w);
-            f.z.times_plus(v.z, f.y.times_plus(v.y, f.x.times_plus(v.x, moment)))
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                // l . W = m . w + f . v                                                                               (1)
+                let (m, f, w, v) = (self.m, self.f, t.w, t.v);
+                let moment = m.dot(w);
+                f.z.times_plus(v.z, f.y.times_plus(v.y, f.x.times_plus(v.x, moment)))
+            },
+        )
     }
 }
 
@@ -199,27 +214,36 @@ impl<T: Real> Sub for Wrench<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        T::operation(|| Self { m: self.m - o.m, f: self.f - o.f })
+        T::operation(
+            #[inline(always)]
+            || Self { m: self.m - o.m, f: self.f - o.f },
+        )
     }
 }
 
 impl<T: Real> AddAssign for Wrench<T> {
     #[inline(always)]
     fn add_assign(&mut self, o: Self) {
-        T::operation(|| {
-            self.m += o.m;
-            self.f += o.f;
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                self.m += o.m;
+                self.f += o.f;
+            },
+        )
     }
 }
 
 impl<T: Real> SubAssign for Wrench<T> {
     #[inline(always)]
     fn sub_assign(&mut self, o: Self) {
-        T::operation(|| {
-            self.m = self.m - o.m;
-            self.f = self.f - o.f;
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                self.m = self.m - o.m;
+                self.f = self.f - o.f;
+            },
+        )
     }
 }
 
@@ -227,7 +251,10 @@ impl<T: Real> Add for Twist<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        T::operation(|| Self { w: self.w + o.w, v: self.v + o.v })
+        T::operation(
+            #[inline(always)]
+            || Self { w: self.w + o.w, v: self.v + o.v },
+        )
     }
 }
 
@@ -235,7 +262,10 @@ impl<T: Real> Sub for Twist<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        T::operation(|| Self { w: self.w - o.w, v: self.v - o.v })
+        T::operation(
+            #[inline(always)]
+            || Self { w: self.w - o.w, v: self.v - o.v },
+        )
     }
 }
 
@@ -243,7 +273,10 @@ impl<T: Real> Neg for Twist<T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        T::operation(|| Self { w: -self.w, v: -self.v })
+        T::operation(
+            #[inline(always)]
+            || Self { w: -self.w, v: -self.v },
+        )
     }
 }
 
@@ -251,17 +284,23 @@ impl<T: Real> Mul<T> for Twist<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, k: T) -> Self {
-        T::operation(|| Self { w: self.w * k, v: self.v * k })
+        T::operation(
+            #[inline(always)]
+            || Self { w: self.w * k, v: self.v * k },
+        )
     }
 }
 
 impl<T: Real> AddAssign for Twist<T> {
     #[inline(always)]
     fn add_assign(&mut self, o: Self) {
-        T::operation(|| {
-            self.w += o.w;
-            self.v += o.v;
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                self.w += o.w;
+                self.v += o.v;
+            },
+        )
     }
 }
 

@@ -86,8 +86,7 @@ impl<T: Real> Vec3<T> {
     /// This vector with the derivative `d`.
     #[inline(always)]
     pub fn with_derivative(self, d: Self) -> Vec3<Dual<T>> {
-        let [x, y, z] = [(self.x, d.x), (self.y, d.y), (self.z, d.z)].map(|(v, d)| Dual { v, d });
-        Vec3 { x, y, z }
+        Vec3 { x: Dual { v: self.x, d: d.x }, y: Dual { v: self.y, d: d.y }, z: Dual { v: self.z, d: d.z } }
     }
 
     /// Zero vector.
@@ -100,43 +99,55 @@ impl<T: Real> Vec3<T> {
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, o: Self) -> T {
-        T::operation(|| self.z.times_plus(o.z, self.y.times_plus(o.y, self.x * o.x)))
+        T::operation(
+            #[inline(always)]
+            || self.z.times_plus(o.z, self.y.times_plus(o.y, self.x * o.x)),
+        )
     }
 
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
-        T::operation(|| {
-            Self::new(
-                self.y.times_plus(o.z, -(self.z * o.y)),
-                self.z.times_plus(o.x, -(self.x * o.z)),
-                self.x.times_plus(o.y, -(self.y * o.x)),
-            )
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                Self::new(
+                    self.y.times_plus(o.z, -(self.z * o.y)),
+                    self.z.times_plus(o.x, -(self.x * o.z)),
+                    self.x.times_plus(o.y, -(self.y * o.x)),
+                )
+            },
+        )
     }
 
     /// `self x o + addend`.
     #[inline(always)]
     pub fn cross_plus(self, o: Self, addend: Self) -> Self {
-        T::operation(|| {
-            Self::new(
-                self.y.times_plus(o.z, (-self.z).times_plus(o.y, addend.x)),
-                self.z.times_plus(o.x, (-self.x).times_plus(o.z, addend.y)),
-                self.x.times_plus(o.y, (-self.y).times_plus(o.x, addend.z)),
-            )
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                Self::new(
+                    self.y.times_plus(o.z, (-self.z).times_plus(o.y, addend.x)),
+                    self.z.times_plus(o.x, (-self.x).times_plus(o.z, addend.y)),
+                    self.x.times_plus(o.y, (-self.y).times_plus(o.x, addend.z)),
+                )
+            },
+        )
     }
 
     /// `self * k + addend`.
     #[inline(always)]
     pub fn times_plus(self, k: T, addend: Self) -> Self {
-        T::operation(|| {
-            Self::new(
-                self.x.times_plus(k, addend.x),
-                self.y.times_plus(k, addend.y),
-                self.z.times_plus(k, addend.z),
-            )
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                Self::new(
+                    self.x.times_plus(k, addend.x),
+                    self.y.times_plus(k, addend.y),
+                    self.z.times_plus(k, addend.z),
+                )
+            },
+        )
     }
 
     /// Mirror image in the plane through the origin with this unit normal: `v - 2 (v . n) n`.
@@ -147,7 +158,10 @@ impl<T: Real> Vec3<T> {
     /// Length.
     #[inline(always)]
     pub fn norm(self) -> T {
-        T::operation(|| self.dot(self).sqrt())
+        T::operation(
+            #[inline(always)]
+            || self.dot(self).sqrt(),
+        )
     }
 
     /// This vector as plain numbers.
@@ -174,7 +188,10 @@ impl<T: Real> Add for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        T::operation(|| Self::new(self.x + o.x, self.y + o.y, self.z + o.z))
+        T::operation(
+            #[inline(always)]
+            || Self::new(self.x + o.x, self.y + o.y, self.z + o.z),
+        )
     }
 }
 
@@ -182,7 +199,10 @@ impl<T: Real> Sub for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        T::operation(|| Self::new(self.x - o.x, self.y - o.y, self.z - o.z))
+        T::operation(
+            #[inline(always)]
+            || Self::new(self.x - o.x, self.y - o.y, self.z - o.z),
+        )
     }
 }
 
@@ -190,7 +210,10 @@ impl<T: Real> Neg for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        T::operation(|| Self::new(-self.x, -self.y, -self.z))
+        T::operation(
+            #[inline(always)]
+            || Self::new(-self.x, -self.y, -self.z),
+        )
     }
 }
 
@@ -198,29 +221,38 @@ impl<T: Real> Mul<T> for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, k: T) -> Self {
-        T::operation(|| Self::new(self.x * k, self.y * k, self.z * k))
+        T::operation(
+            #[inline(always)]
+            || Self::new(self.x * k, self.y * k, self.z * k),
+        )
     }
 }
 
 impl<T: Real> AddAssign for Vec3<T> {
     #[inline(always)]
     fn add_assign(&mut self, o: Self) {
-        T::operation(|| {
-            self.x += o.x;
-            self.y += o.y;
-            self.z += o.z;
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                self.x += o.x;
+                self.y += o.y;
+                self.z += o.z;
+            },
+        )
     }
 }
 
 impl<T: Real> SubAssign for Vec3<T> {
     #[inline(always)]
     fn sub_assign(&mut self, o: Self) {
-        T::operation(|| {
-            self.x -= o.x;
-            self.y -= o.y;
-            self.z -= o.z;
-        })
+        T::operation(
+            #[inline(always)]
+            || {
+                self.x -= o.x;
+                self.y -= o.y;
+                self.z -= o.z;
+            },
+        )
     }
 }
 

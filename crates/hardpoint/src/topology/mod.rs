@@ -218,7 +218,8 @@ impl Closure {
     /// Rows, with the constraint of each.
     #[inline(always)]
     pub fn numbered_rows(&self) -> impl Iterator<Item = (RowId, Row)> + Clone {
-        self.row_ids().zip(self.rows.iter().copied())
+        let first = self.first_row.0;
+        (0..self.rows.len()).map(move |k| (RowId(first + k), self.rows[k]))
     }
 }
 
@@ -370,6 +371,7 @@ impl Topology {
     }
 
     /// Returns the terms of constraint row r: the row itself, and the further terms of a coupler.
+    #[inline]
     pub fn parts_of_row(&self, r: RowId) -> impl Iterator<Item = RowTerm> + '_ {
         std::iter::once(RowTerm { row: r, factor: 1.0 }).chain(self[r].terms.iter().copied())
     }
