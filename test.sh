@@ -23,19 +23,23 @@ need clang clang
 need python3 python3
 python3 -c 'import ensurepip' 2>/dev/null || install python3-venv
 
-echo "== format and lints"
+phase() { # name
+    echo "== $1 (after $((SECONDS / 60)) min $((SECONDS % 60)) s)"
+}
+
+phase "format and lints"
 cargo fmt --all --check
 cargo clippy --release --workspace --all-targets --quiet -- -D warnings
 cargo fmt --manifest-path web/engine/Cargo.toml -p hardpoint-wasm -p web-time --check
 cargo clippy --manifest-path web/engine/Cargo.toml --workspace --locked --target-dir target/engine --quiet -- -D warnings
 
-echo "== Rust tests"
+phase "Rust tests"
 .ci/rust-tests --release --workspace
 
-echo "== instruction counts"
+phase "instruction counts"
 bench/instructions
 
-echo "== Python"
+phase "Python"
 work=target/python
 rm -rf "$work"
 python3 -m venv "$work"
@@ -48,7 +52,7 @@ wheel=$(echo "$work"/wheel/*.whl)
 PATH="$PWD/$work/bin:/usr/bin:/bin" pip "$PWD/$wheel[test]"
 PATH="$PWD/$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/release/hardpoint" "$python" -m pytest -q -p no:cacheprovider python/tests
 
-echo "== the page"
+phase "the page"
 cd web
 npm ci --silent --no-audit --no-fund
 npm test

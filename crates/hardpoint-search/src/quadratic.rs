@@ -22,13 +22,16 @@ const ROUNDS: usize = 4;
 /// A linear constraint `a p <= b`.
 #[derive(Clone, Debug)]
 pub struct Linear {
+    /// Coefficients.
     pub a: Vec<f64>,
+    /// Right-hand side.
     pub b: f64,
 }
 
 /// Solution of a quadratic program.
 #[derive(Clone, Debug)]
 pub struct Minimum {
+    /// Unknowns.
     pub p: Vec<f64>,
     /// Multiplier of each constraint, at least 0: `H p + g + A^T m = 0`.
     pub multipliers: Vec<f64>,

@@ -10,6 +10,7 @@ const MOST_SWEEPS: usize = 60;
 /// Singular values, largest first, and the right singular vector of each.
 #[derive(Clone, Debug, Default)]
 pub struct Singular {
+    /// Singular values.
     pub values: Vec<f64>,
     /// Unit vectors, in the same order.
     pub directions: Vec<Vec<f64>>,

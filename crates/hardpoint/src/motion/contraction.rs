@@ -29,7 +29,8 @@ pub(super) const CONTRACTION: f64 = 0.9;
 /// Number of passes of a linear system over its bounds.
 const PASSES: usize = 2;
 
-/// The formulas of a mechanism over one kind of number.
+/// The formulas of a mechanism over one kind of number. What is given to them is a `dyn Fn`, so that there is one copy
+/// of them for each.
 pub(super) struct Formulas<T> {
     pub state: State<T>,
     parts: PlanGeometry<T>,
@@ -46,7 +47,7 @@ impl<T: Real> Formulas<T> {
     }
 
     /// Sets the motion of the drivers, and places what they move.
-    fn drive(&mut self, topology: &Topology, law: impl Fn(usize) -> T, at: &AcceptedPosition) {
+    fn drive(&mut self, topology: &Topology, law: &dyn Fn(usize) -> T, at: &AcceptedPosition) {
         for (d, driver) in self.drivers.iter_mut().enumerate() {
             *driver = [law(d), T::zero(), T::zero()];
         }
@@ -56,11 +57,11 @@ impl<T: Real> Formulas<T> {
         for (c, d) in topology.driven_coordinates() {
             self.state.q[c.0] = law(d.0);
         }
-        self.place_bodies(topology, topology.driven_links());
+        self.place_bodies(topology, &topology.driven_links().collect::<Vec<_>>());
     }
 
     /// Sets the unknowns of a block.
-    fn set(&mut self, topology: &Topology, b: BlockId, q: impl Fn(usize) -> T, centres: &[Quat]) {
+    fn set(&mut self, topology: &Topology, b: BlockId, q: &dyn Fn(usize) -> T, centres: &[Quat]) {
         let state = &mut self.state;
         for (k, c) in topology[b].unknowns.iter().enumerate() {
             state.q[c.0] = q(k);
@@ -79,7 +80,7 @@ impl<T: Real> Formulas<T> {
         &mut self,
         topology: &Topology,
         b: BlockId,
-        q: impl Fn(usize) -> T,
+        q: &dyn Fn(usize) -> T,
         centres: &[Quat],
     ) -> Vec<T> {
         self.set(topology, b, q, centres);
@@ -91,9 +92,9 @@ impl<T: Real> Formulas<T> {
         topology[b].selected.iter().map(|&r| state.residual_of(topology, parts, drivers, r)).collect()
     }
 
-    fn place_bodies(&mut self, topology: &Topology, links: impl Iterator<Item = LinkId> + Clone) {
-        self.state.place(topology, &self.parts, links.clone());
-        self.state.place_bodies(topology, &self.parts, links);
+    fn place_bodies(&mut self, topology: &Topology, links: &[LinkId]) {
+        self.state.place(topology, &self.parts, links.iter().copied());
+        self.state.place_bodies(topology, &self.parts, links.iter().copied());
     }
 }
 
@@ -132,21 +133,21 @@ impl<S: Real> BlockSolver<S> {
     /// Sets the motion of the drivers near a position, and places what they move.
     pub fn drive(&mut self, topology: &Topology, laws: &[S], at: &AcceptedPosition) {
         let value = |d: usize| (self.value)(laws[d]);
-        self.values.drive(topology, value, at);
-        self.columns.drive(topology, |d| Dual::constant(value(d)), at);
-        self.series.drive(topology, |d| laws[d], at);
+        self.values.drive(topology, &value, at);
+        self.columns.drive(topology, &|d| Dual::constant(value(d)), at);
+        self.series.drive(topology, &|d| laws[d], at);
     }
 
     /// Sets the unknowns of a block, and places its bodies, for blocks that depend on it and as results.
     pub fn place(&mut self, topology: &Topology, b: BlockId, q: &[S], centres: &[Quat]) {
         let value = |k: usize| (self.value)(q[k]);
-        let links = topology[b].link_ids();
-        self.values.set(topology, b, value, centres);
-        self.values.place_bodies(topology, links.clone());
-        self.columns.set(topology, b, |k| Dual::constant(value(k)), centres);
-        self.columns.place_bodies(topology, links.clone());
-        self.series.set(topology, b, |k| q[k], centres);
-        self.series.place_bodies(topology, links);
+        let links: Vec<LinkId> = topology[b].link_ids().collect();
+        self.values.set(topology, b, &value, centres);
+        self.values.place_bodies(topology, &links);
+        self.columns.set(topology, b, &|k| Dual::constant(value(k)), centres);
+        self.columns.place_bodies(topology, &links);
+        self.series.set(topology, b, &|k| q[k], centres);
+        self.series.place_bodies(topology, &links);
     }
 
     /// Jacobian of the selected rows by the unknowns of a block, row by row.
@@ -161,7 +162,7 @@ impl<S: Real> BlockSolver<S> {
         let mut jacobian = vec![Interval::zero(); n * n];
         for column in 0..n {
             let of = |k: usize| if k == column { Dual::variable(q[k]) } else { Dual::constant(q[k]) };
-            for (row, x) in self.columns.rows(topology, b, of, centres).into_iter().enumerate() {
+            for (row, x) in self.columns.rows(topology, b, &of, centres).into_iter().enumerate() {
                 jacobian[row * n + column] = x.d;
             }
         }
@@ -176,7 +177,7 @@ impl<S: Real> BlockSolver<S> {
         b: BlockId,
         (middle, mut radius): (&[Interval], Vec<f64>),
         centres: &[Quat],
-        newton: impl Fn(&Contraction) -> Vec<Interval>,
+        newton: &dyn Fn(&Contraction) -> Vec<Interval>,
     ) -> Option<Contracted> {
         let n = middle.len();
         let unit = |k: usize| topology[topology[b].unknowns[k]].unit;

@@ -176,12 +176,12 @@ impl<const N: usize> BoxSolver<N> {
         let (start, terms) = match wanted.narrow {
             Some(narrow) => {
                 let fixed = |k: usize| Taylor::constant(points[k]);
-                let moved = self.0.series.rows(topology, b, fixed, &found.centres);
+                let moved = self.0.series.rows(topology, b, &fixed, &found.centres);
                 let term = |v: usize| moved.iter().map(|row| row.coefficients()[1 + v]).collect::<Vec<_>>();
                 (narrow.residuals[b.0].clone(), (0..wanted.since.len()).map(term).collect())
             }
             None => {
-                let residual = self.0.values.rows(topology, b, |k| points[k], &found.centres);
+                let residual = self.0.values.rows(topology, b, &|k| points[k], &found.centres);
                 found.residuals.push(residual.clone());
                 (residual, Vec::new())
             }
@@ -197,7 +197,7 @@ impl<const N: usize> BoxSolver<N> {
         };
         let radius = unknowns.iter().map(|c| LEAST_BOX * topology[*c].unit).collect();
         let Contracted { unique, bounds } =
-            self.0.contract(topology, b, (&points, radius), &found.centres, newton).ok_or_else(failed)?;
+            self.0.contract(topology, b, (&points, radius), &found.centres, &newton).ok_or_else(failed)?;
         for (k, c) in unknowns.iter().enumerate() {
             found.unique[c.0] = unique[k];
             // The derivatives are not known yet.
@@ -247,7 +247,7 @@ impl<const N: usize> BoxSolver<N> {
                 x.coefficients_mut()[begin..].fill(Interval::zero());
                 x
             };
-            let demand = self.0.series.rows(topology, b, lower, &found.centres);
+            let demand = self.0.series.rows(topology, b, &lower, &found.centres);
             for e in begin..end {
                 let demand: Vec<Interval> = demand.iter().map(|row| -row.coefficients()[e]).collect();
                 let mut x: Vec<Interval> =

@@ -199,7 +199,7 @@ impl TubeSolver {
         };
         let radius: Vec<f64> = unknowns.iter().map(predicted).collect();
         let points: Vec<Interval> = middle.iter().map(|m| Interval::constant(*m)).collect();
-        let residual = self.0.values.rows(topology, b, |k| points[k], &found.centres);
+        let residual = self.0.values.rows(topology, b, &|k| points[k], &found.centres);
         let since = found.over - Interval::constant(found.middle);
         // phi(m, T) in phi(m, t) + phi_t(m, T) (T - t)
         let moved = narrow.map(|narrow| {
@@ -221,7 +221,7 @@ impl TubeSolver {
             newton
         };
         let Contracted { unique, bounds } =
-            self.0.contract(topology, b, (&points, radius), &found.centres, newton).ok_or(failed)?;
+            self.0.contract(topology, b, (&points, radius), &found.centres, &newton).ok_or(failed)?;
         for (k, c) in unknowns.iter().enumerate() {
             found.unique[c.0] = unique[k];
             found.coordinates[c.0] = Jet([bounds[k], Interval::ENTIRE, Interval::ENTIRE, Interval::ENTIRE]);
@@ -279,7 +279,7 @@ impl TubeSolver {
             x.0[order..].fill(Interval::zero());
             x
         };
-        let found = self.0.series.rows(topology, b, lower, &found.centres);
+        let found = self.0.series.rows(topology, b, &lower, &found.centres);
         found.into_iter().map(|x| -x.0[order]).collect()
     }
 }
