@@ -1,4 +1,4 @@
-import { type ChildProcess, spawn } from 'node:child_process'
+import { type ChildProcess, execFileSync, spawn } from 'node:child_process'
 import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
@@ -126,4 +126,31 @@ test('a server that was killed is missed, and found again when it is back', asyn
   await note.waitFor({ state: 'detached' })
   writeFileSync(file, `${text}# theirs\n`)
   await page.getByTestId('note-changed').waitFor()
+})
+
+test('a kept design is written to the file, with comments and layout, and the nominal design stays', async () => {
+  text = `# Measured on the bench.\n${text}`
+  writeFileSync(file, text)
+  const page = await open(await start())
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+  await page.getByTestId('tab-variables').click()
+  const row = page.locator('[data-testid^=variable-]:has([data-testid=change-value])').first()
+  const name = (await row.getAttribute('data-testid'))!.slice('variable-'.length)
+  await row.getByTestId('change-value').fill('3.5')
+  await row.getByTestId('change-value').press('Enter')
+  await page.getByTestId('designs').click()
+  await page.getByTestId('snapshot-name').fill('stiff')
+  await page.getByTestId('snapshot-keep').click()
+  await page.getByTestId('snapshot-write').click()
+  await page.getByText('is in the text of the model').waitFor()
+  await page.getByText('Saved').waitFor()
+  const block = `[designs.stiff]\n${name} = 3.5\n`
+  expect(readFileSync(file, 'utf8')).toBe(`${text.trimEnd()}\n\n${block}`)
+  // The present design is not saved, and the design of the file is listed in place of the kept one.
+  expect(await page.getByTestId('save').isDisabled()).toBe(false)
+  expect(await page.getByTestId('snapshot-rename').count()).toBe(1)
+  expect(await page.getByTestId('snapshot-write').count()).toBe(0)
+  // The command reads it back.
+  const compared = execFileSync(hardpoint, ['whatif', file, '--design', 'stiff'], { encoding: 'utf8' })
+  expect(compared).toContain(name)
 })

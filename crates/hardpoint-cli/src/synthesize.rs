@@ -104,7 +104,7 @@ fn write(
             return Err(Outcome::Interrupted);
         }
         let path = folder.path_of(&(k + 1).to_string());
-        let parts = [(MODEL, content), (PAGE, &page)];
+        let parts = [(MODEL, content), (PAGE, &page.html)];
         write_answer(&path, &parts).map_err(|e| session.not_written(&e))?;
         let fact = &mut facts.answers[k];
         fact.model = Some(path.join(MODEL).display().to_string());

@@ -928,13 +928,15 @@ pub fn shared_script() -> String {
     part("engine", ENGINE) + &part("code", CODE)
 }
 
-/// Page of this crate that loads its engine and its code from the file [`SHARED`] next to it.
-pub fn sharing(page: &str) -> String {
+/// Page of this crate that loads its engine and its code from the file [`SHARED`] next to it, with a link to the page of
+/// all models.
+pub fn sharing(page: &str, models: &str) -> String {
     const END: &str = "<script type=\"text/plain\" id=\"code\"></script>";
     let missing =
         format!("document.getElementById('page').textContent = 'This page needs {SHARED} in its folder.'");
     let load = format!("{END}\n<script src=\"{SHARED}\" onerror=\"{missing}\"></script>");
-    page.replacen(ENGINE, "", 1).replacen(CODE, "", 1).replacen(END, &load, 1)
+    let head = format!("<link rel=\"up\" href=\"{}\">\n</head>", escape_text(models));
+    page.replacen("</head>", &head, 1).replacen(ENGINE, "", 1).replacen(CODE, "", 1).replacen(END, &load, 1)
 }
 
 /// HTML file of a packed payload.

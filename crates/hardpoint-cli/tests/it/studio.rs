@@ -636,6 +636,10 @@ fn a_site_has_a_page_for_each_model_that_can_be_shown() {
             && index.contains("href=\"strut%2520%2526%2520co-steer.html\"")
     );
     assert!(!index.contains("broken"));
+    // Each card has a drawing, and each page a link to the gallery.
+    assert_eq!(index.matches("<svg").count(), 2);
+    assert!(index.contains("<polygon") && index.contains("<circle") && !index.contains("NaN"));
+    assert!(bench.text("public/slider.html").contains("<link rel=\"up\" href=\"index.html\">"));
     assert!(bench.page("public/slider.html")["quantities"].is_array());
     // The engine is there once, for all pages.
     let [engine, one] =
