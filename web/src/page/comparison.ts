@@ -30,6 +30,9 @@ export function comparison(state: State): HTMLElement {
   const section = el('section', { class: 'checks', 'data-testid': 'comparison', 'aria-label': 'Compare' }, lead, table)
   const points = el('section', { class: 'checks', 'data-testid': 'hardpoints', 'aria-label': 'Hardpoints' })
   const element = el('div', {}, section, points)
+  const offer = () => (points.hidden = !state.hardpoints)
+  state.onChoice(offer)
+  offer()
   const render = () => {
     showHardpoints(points, state)
     const columns = columnsOf(state)
@@ -71,7 +74,6 @@ export function comparison(state: State): HTMLElement {
 /** Table of the hardpoints: the original coordinates, and the present ones with their changes. */
 function showHardpoints(element: HTMLElement, { hardpoints, report }: State): void {
   const all = hardpoints?.() ?? []
-  element.hidden = all.length === 0
   const axes = ['x', 'y', 'z']
   const cells = (before: readonly number[], now: readonly number[]) => {
     const changes = axes.map((_, k) => changeText(now[k] - before[k], now[k]))
