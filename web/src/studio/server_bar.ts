@@ -2,7 +2,15 @@ import './server.css'
 import { el, prose } from '../dom'
 import { messageOf } from '../format'
 import { menu, type Item } from '../page/menu'
-import { NoAnswerError, type Entry, type SaveOutcome, type Server, type Study, type StudyKind } from './server'
+import {
+  NoAnswerError,
+  type Entry,
+  type SaveOutcome,
+  type Server,
+  type Study,
+  type StudyKind,
+  type StudyRequest,
+} from './server'
 
 /** The present text of the model. */
 export interface Text {
@@ -12,13 +20,20 @@ export interface Text {
 }
 
 /** Studies of the server, by their button labels. */
-const STUDIES: Record<StudyKind, string> = { optimize: 'Optimise', tolerance: 'Run tolerance analysis', sweep: 'Sweep' }
+const STUDIES: Record<StudyKind, string> = {
+  optimize: 'Optimise',
+  tolerance: 'Run tolerance analysis',
+  sweep: 'Sweep',
+  synthesize: 'Synthesise',
+}
 
 /** The part of the page's bar that belongs to a server. */
 export interface ServerBar {
   element: HTMLElement
   /** Saves a text in place, which may differ from the present one. */
   save(text: string): Promise<void>
+  /** Looks for linkages for the text of a task file, and lists the answers. */
+  synthesize(task: string): Promise<void>
 }
 
 /** Controls that a server adds to the page's bar: save, other models, studies; and notices. */
@@ -43,7 +58,7 @@ export function serverBar(server: Server, text: Text): ServerBar {
     notices,
   )
   const desk = new Desk(server, text, save, notices)
-  return { element, save: (text) => desk.put(text) }
+  return { element, save: (text) => desk.put(text), synthesize: (task) => desk.study('synthesize', { task }) }
 }
 
 /** Actions on the model's file. */
@@ -237,10 +252,10 @@ class Desk {
     name.select()
   }
 
-  private async study(what: StudyKind): Promise<void> {
+  async study(what: StudyKind, options?: StudyRequest['options']): Promise<void> {
     const { server, notes } = this
     const shown = server.cases.length > 0 && what === 'tolerance' ? (server.case ?? undefined) : undefined
-    let study = await server.begin({ what, text: await this.text.text(), case: shown })
+    let study = await server.begin({ what, text: await this.text.text(), case: shown, options })
     const key = `study-${study.id}`
     const show = () => {
       const { state, progress, lines, message } = study

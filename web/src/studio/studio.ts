@@ -26,6 +26,8 @@ import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
 import { Mover } from './mover'
 import { changesOf, settingsOf } from './moves'
+import { PathPoints } from './path_points'
+import type { PathTask } from './path_task'
 import { PointsPane } from './points'
 import { connect } from './server'
 import { separateMotions } from './motions'
@@ -65,6 +67,8 @@ export class Studio {
   /** In a page of a server, its part of the bar. */
   readonly #server?: ServerBar
   readonly #points = new PointsPane(() => this.#scheduleUpdate())
+  /** Path for which linkages are sought, in every text and case of the model. */
+  readonly #path: PathTask = { points: [], isClosed: false, isFullTurn: false }
   readonly #listeners: (() => void)[] = []
   #editor?: Editor
   #grips?: Grips
@@ -451,7 +455,14 @@ export class Studio {
     this.#grips = grips
     view.element.append(grips.element)
     view.element.after(grips.pane)
-    view.element.querySelector('.looks')?.append(grips.button)
+    const looks = view.element.querySelector('.looks')
+    looks?.append(grips.button)
+    const { plane } = view.original
+    if (!plane) return
+    const path = new PathPoints(view, this.state, this.#path, plane, this.#server?.synthesize)
+    view.element.append(path.element)
+    view.element.after(path.pane)
+    looks?.append(path.button)
   }
 
   #offerCases(cases: string[]): void {

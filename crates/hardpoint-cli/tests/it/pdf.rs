@@ -101,7 +101,8 @@ fn the_pages_describe_the_run_and_draw_every_measure() {
 #[test]
 fn the_parts_that_are_chosen_are_written_with_the_named_designs() {
     let bench = Bench::with(&["slider.toml"]);
-    let more = "[metrics]\nway = { of = \"stroke\", take = \"range\" }\n\n[designs.longer]\ncrank_pin_x = 2\n";
+    let more =
+        "[metrics]\nway = { of = \"stroke\", take = \"range\" }\n\n[designs.longer]\ncrank_pin_x = 2\n";
     bench.put("slider.toml", &format!("{}\n{more}", bench.text("slider.toml")));
     let parts = "metrics,hardpoints";
     assert!(bench.run(&["run", "slider.toml", "-o", "some", "--pdf-parts", parts]).status.success());
@@ -113,8 +114,12 @@ fn the_parts_that_are_chosen_are_written_with_the_named_designs() {
     assert!(curves(&document).is_empty());
     // old, new and change of the moved coordinate
     let at = texts.iter().position(|s| s == "Hardpoints of longer").unwrap();
-    let numbers: Vec<f64> = texts[at + 6..at + 9].iter().map(|s| s.replace('-', "-").parse().unwrap()).collect();
-    assert!((numbers[1] - numbers[0] - 2.0).abs() < ON_PAPER && (numbers[2] - 2.0).abs() < ON_PAPER, "{numbers:?}");
+    let numbers: Vec<f64> =
+        texts[at + 6..at + 9].iter().map(|s| s.replace('-', "-").parse().unwrap()).collect();
+    assert!(
+        (numbers[1] - numbers[0] - 2.0).abs() < ON_PAPER && (numbers[2] - 2.0).abs() < ON_PAPER,
+        "{numbers:?}"
+    );
     // The metrics of the design are those that the command compares.
     let whatif = ["whatif", "slider.toml", "--design", "longer", "--json"];
     let changed: Value = serde_json::from_slice(&bench.run(&whatif).stdout).unwrap();

@@ -199,7 +199,8 @@ fn changes_without_a_number_in_the_file_are_reported_before_writing() {
 
 #[test]
 fn named_designs_stay_at_the_same_values() {
-    let designs = "[designs.high]\r\nB_y = 2.5 # mm\r\nreach = 310\r\n[designs.other]\r\nC_x = 4\r\nB_y = 1\r\n";
+    let designs =
+        "[designs.high]\r\nB_y = 2.5 # mm\r\nreach = 310\r\n[designs.other]\r\nC_x = 4\r\nB_y = 1\r\n";
     let file = parse(&format!("{ROD}{designs}"), "rod.toml").unwrap();
     let change = of(&file, &[("B_y", 0.001), ("reach", 0.005)]);
     let text = file.edit(&change).unwrap();
