@@ -217,6 +217,9 @@ describe('the model in the page', () => {
     await page.getByTestId('snapshot-keep').click()
     await page.getByTestId('snapshot-write').click()
     await expect.poll(() => page.getByTestId('snapshot-done').innerText()).toContain('new design variables')
+    // Where the present design becomes the nominal one, the kept one is the same: it differs from it by nothing.
+    await settled(page)
+    expect(await toml()).toMatch(/\[designs\.longer\]\nstrut_lower_z = 0\n$/)
     await page.getByTestId('tab-variables').click()
     await page.getByTestId('reset-all').click()
     await settled(page)

@@ -161,7 +161,7 @@ impl<'a> Sketch<'a> {
     /// Steps of a path, the last one included.
     fn path_steps(&self) -> impl Iterator<Item = usize> + use<> {
         let (last, parts) = (self.steps - 1, (self.steps - 1).min(POINTS));
-        (0..=parts).map(move |k| if parts == 0 { 0 } else { (k * last) / parts })
+        (0..=parts).map(move |k| (k * last).checked_div(parts).unwrap_or(0))
     }
 
     /// All points of the bodies over the motion.

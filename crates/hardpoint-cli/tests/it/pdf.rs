@@ -114,8 +114,7 @@ fn the_parts_that_are_chosen_are_written_with_the_named_designs() {
     assert!(curves(&document).is_empty());
     // old, new and change of the moved coordinate
     let at = texts.iter().position(|s| s == "Hardpoints of longer").unwrap();
-    let numbers: Vec<f64> =
-        texts[at + 6..at + 9].iter().map(|s| s.replace('-', "-").parse().unwrap()).collect();
+    let numbers: Vec<f64> = texts[at + 6..at + 9].iter().map(|s| s.parse().unwrap()).collect();
     assert!(
         (numbers[1] - numbers[0] - 2.0).abs() < ON_PAPER && (numbers[2] - 2.0).abs() < ON_PAPER,
         "{numbers:?}"
