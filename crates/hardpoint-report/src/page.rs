@@ -1044,7 +1044,7 @@ pub(crate) mod tests {
     #[test]
     fn pages_of_a_folder_share_the_engine_and_the_code() {
         let page = html(&payload("sample")).unwrap();
-        let (sharing, script) = (sharing(&page), shared_script());
+        let (sharing, script) = (sharing(&page, "index.html"), shared_script());
         assert!(sharing.len() + ENGINE.len() + CODE.len() < page.len() + 400);
         assert!(sharing.contains("<script type=\"text/plain\" id=\"engine\"></script>"));
         assert!(sharing.contains("<script src=\"hardpoint.js\""));

@@ -479,3 +479,25 @@ fn hull(mut points: Vec<Point>) -> Vec<Point> {
     lower.append(&mut chain(&mut points.iter().rev().copied()));
     lower
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hull_has_the_corners_alone() {
+        let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+        let inside = [[1.0, 1.0], [1.0, 0.0], [0.0, 2.0]];
+        assert_eq!(hull([&square[..], &inside].concat()), square);
+        assert_eq!(hull(vec![[1.0, 0.0], [0.0, 1.0], [1.0, 0.0]]), [[0.0, 1.0], [1.0, 0.0]]);
+    }
+
+    #[test]
+    fn a_circle_is_about_its_axis() {
+        let (centre, axis) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.0, 3.0, 4.0));
+        for point in circle(centre, axis, 2.0) {
+            let arm = point - centre;
+            assert!((arm.norm() - 2.0).abs() < 1e-12 && arm.dot(axis).abs() < 1e-12, "{point:?}");
+        }
+    }
+}
