@@ -47,6 +47,13 @@ export interface ChoiceMemory {
   time: number
 }
 
+/** Positions of a hardpoint in the design configuration, of the original and the present design. */
+export interface HardpointPlaces {
+  name: string
+  before: readonly number[]
+  now: readonly number[]
+}
+
 /**
  * State of the page: the reader's choices and the moment shown; the views listen, and change it only through its
  * methods.
@@ -62,6 +69,8 @@ export class State {
    * order.
    */
   solver?: () => void
+  /** Hardpoints of the original and the present design, where designs are solved. */
+  hardpoints?: () => HardpointPlaces[]
   /** The bound that keeps the design from going as far as was requested. */
   bound = ''
   /** Reason why the design is not the requested one. */

@@ -132,3 +132,20 @@ test('designs of the file are listed first, keep their names, and follow its tex
   expect(history.compared).toEqual([mine])
   expect(history.changed).toBe(false)
 })
+
+test('a design that was written to the text is listed as that of the text, and as before where the text has none', () => {
+  const history = new History(first())
+  const mine = history.save('stiff', step(1))
+  history.compareWith([mine])
+  history.markWritten(mine)
+  const listed = () => history.snapshots.map(({ name, isOfFile }) => [name, isOfFile])
+  const written = [{ name: 'stiff', changes: [{ name: 'rack_z', by: 1 }] }]
+  history.setFileDesigns(written, 'edited')
+  expect(listed()).toEqual([['stiff', true]])
+  expect(history.compared).toEqual(history.snapshots)
+  history.setFileDesigns([], 'model')
+  expect(listed()).toEqual([['stiff', false]])
+  expect(history.compared).toEqual([mine])
+  history.setFileDesigns(written, 'edited')
+  expect(listed()).toEqual([['stiff', true]])
+})

@@ -1,9 +1,10 @@
+import { execFileSync } from 'node:child_process'
 import type { Browser, Page } from 'playwright-core'
 import { afterAll, beforeAll, describe, expect, inject, test } from 'vitest'
 import { launch, NO_3D, visit } from './browser'
 import { curve, drawn, picture, scrub, text } from './person'
 
-const { whole, partial, models } = inject('samples')
+const { whole, partial, models, hardpoint } = inject('samples')
 
 let browser: Browser
 beforeAll(async () => {
@@ -188,6 +189,43 @@ describe('printed', () => {
     expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor)).toMatch(
       /^rgb\(255, 255, 255\)$|^rgba\(0, 0, 0, 0\)$/,
     )
+    expect(complaints).toEqual([])
+    await page.context().close()
+  })
+})
+
+describe('printed in parts', () => {
+  test('the parts are chosen by the names of the command, and remembered; the next print has all again', async () => {
+    const { page, complaints } = await visit(browser, models.macpherson)
+    await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+    await page.evaluate(() => (window.print = () => undefined))
+    const open = async () => {
+      await page.getByTestId('export').click()
+      await page.getByTestId('export-print').click()
+    }
+    await open()
+    const offered = await page
+      .locator('[data-testid=composer] input')
+      .evaluateAll((all) => all.map((one) => one.getAttribute('name')))
+    const help = execFileSync(hardpoint, ['run', '--help'], { encoding: 'utf8' })
+    const parts = /report\.pdf, which this writes[^:]*: ([\w\s,]*)/
+      .exec(help)![1]
+      .trim()
+      .split(/[\s,]+/)
+    expect(offered).toEqual([...parts, 'checks'])
+    for (const name of ['curves', 'variables', 'checks']) await page.getByTestId(`print-${name}`).uncheck()
+    await page.getByTestId('print-run').click()
+    await page.emulateMedia({ media: 'print' })
+    for (const name of ['values', 'comparison', 'hardpoints', 'time'])
+      expect(await page.getByTestId(name).first().isVisible(), name).toBe(true)
+    for (const name of ['plot-0', 'variables', 'summary'])
+      expect(await page.getByTestId(name).isVisible(), name).toBe(false)
+    await page.evaluate(() => dispatchEvent(new Event('afterprint')))
+    expect(await page.getByTestId('plot-0').isVisible()).toBe(true)
+    await page.emulateMedia({ media: 'screen' })
+    await open()
+    expect(await page.getByTestId('print-curves').isChecked()).toBe(false)
+    expect(await page.getByTestId('print-hardpoints').isChecked()).toBe(true)
     expect(complaints).toEqual([])
     await page.context().close()
   })

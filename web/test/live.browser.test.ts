@@ -205,9 +205,69 @@ describe('the model in the page', () => {
     expect(await page.getByTestId('plot-0').innerText()).toContain('higher')
   })
 
+  test('gets a kept design as a table, with a variable for a point that had none, and undone it is only kept', async () => {
+    await page.getByTestId('grips').click()
+    await frames(page, 3)
+    await grip('strut_lower').click()
+    await page.getByTestId('grip-z').fill('+=2')
+    await page.getByTestId('grip-z').press('Enter')
+    await settled(page)
+    await page.getByTestId('designs').click()
+    await page.getByTestId('snapshot-name').fill('longer')
+    await page.getByTestId('snapshot-keep').click()
+    await page.getByTestId('snapshot-write').click()
+    await expect.poll(() => page.getByTestId('snapshot-done').innerText()).toContain('new design variables')
+    // Where the present design becomes the nominal one, the kept one is the same: it differs from it by nothing.
+    await settled(page)
+    expect(await toml()).toMatch(/\[designs\.longer\]\nstrut_lower_z = 0\n$/)
+    await page.getByTestId('tab-variables').click()
+    await page.getByTestId('reset-all').click()
+    await settled(page)
+    const original = readFileSync(join(MODELS, 'macpherson.toml'), 'utf8')
+    const found = await toml()
+    const block = '\n\n[design]\nstrut_lower_z = { move = "strut_lower", along = "z" }'
+    expect(found).toContain(block)
+    expect(found.replace(block, '')).toBe(`${original.trimEnd()}\n\n[designs.longer]\nstrut_lower_z = 2\n`)
+    const listed = page.getByTestId('snapshot-rename')
+    expect(await listed.evaluate((name: HTMLInputElement) => name.readOnly)).toBe(true)
+    await page.getByTestId('undo').click()
+    await settled(page)
+    await page.getByTestId('undo').click()
+    await expect.poll(() => listed.evaluate((name: HTMLInputElement) => name.readOnly)).toBe(false)
+  })
+
   test('asks for nothing outside the page', () => {
     expect(visited.complaints).toEqual([])
   })
+})
+
+test('one side of a mirrored axle cannot be a design of its text: it is refused, and both sides are written', async () => {
+  await open('front_axle')
+  const name = 'left_uca_front'
+  const keep = async () => {
+    await page.getByTestId('designs').click()
+    await page.getByTestId('snapshot-keep').click()
+    await page.getByTestId('snapshot-write').last().click()
+  }
+  await page.getByTestId('grips').click()
+  await frames(page, 3)
+  await grip(name).focus()
+  await page.keyboard.press('Enter')
+  await page.getByTestId('mirror').uncheck()
+  await page.getByTestId('grip-z').fill('+=2')
+  await page.getByTestId('grip-z').press('Enter')
+  // The text cannot follow this design.
+  await page.getByText('cannot be saved').waitFor()
+  await keep()
+  await expect.poll(() => page.getByTestId('snapshot-done').innerText()).toContain('mirror image')
+  await page.keyboard.press('Escape')
+  await page.getByTestId('reset-design').click()
+  await page.getByTestId('mirror').check()
+  await page.getByTestId('grip-z').fill('+=2')
+  await page.getByTestId('grip-z').press('Enter')
+  await settled(page)
+  await keep()
+  await expect.poll(() => page.getByTestId('snapshot-done').innerText()).toContain(`variables ${name}_z`)
 })
 
 /** The text that the page exports. */

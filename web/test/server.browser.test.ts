@@ -1,4 +1,4 @@
-import { type ChildProcess, spawn } from 'node:child_process'
+import { type ChildProcess, execFileSync, spawn } from 'node:child_process'
 import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
@@ -6,10 +6,11 @@ import type { Browser, Page } from 'playwright-core'
 import { afterAll, afterEach, beforeAll, beforeEach, expect, inject, test } from 'vitest'
 import { launch, visit } from './browser'
 import { WAIT } from './limits'
-import { drawn } from './person'
+import { drawn, frames } from './person'
 
 const { hardpoint, models } = inject('samples')
-const STUDIES = join(import.meta.dirname, '../../models/studies')
+const MODELS = join(import.meta.dirname, '../../models')
+const STUDIES = join(MODELS, 'studies')
 const TOKEN = 'a-token-of-this-test'
 
 let browser: Browser
@@ -19,9 +20,9 @@ let text: string
 let server: ChildProcess | undefined
 
 /** Starts the studio; the address that it prints. */
-function start(port = 0): Promise<string> {
+function start(port = 0, name = 'strut.toml'): Promise<string> {
   const options = ['--no-browser', '--token', TOKEN, '--port', String(port)]
-  const child = spawn(hardpoint, ['studio', 'strut.toml', ...options], {
+  const child = spawn(hardpoint, ['studio', name, ...options], {
     cwd: folder,
     stdio: ['ignore', 'pipe', 'inherit'],
   })
@@ -126,4 +127,71 @@ test('a server that was killed is missed, and found again when it is back', asyn
   await note.waitFor({ state: 'detached' })
   writeFileSync(file, `${text}# theirs\n`)
   await page.getByTestId('note-changed').waitFor()
+})
+
+test('a kept design is written to the file, with comments and layout, and the nominal design stays', async () => {
+  text = `# Measured on the bench.\n${text}`
+  writeFileSync(file, text)
+  const page = await open(await start())
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+  await page.getByTestId('tab-variables').click()
+  const row = page.locator('[data-testid^=variable-]:has([data-testid=change-value])').first()
+  const name = (await row.getAttribute('data-testid'))!.slice('variable-'.length)
+  await row.getByTestId('change-value').fill('3.5')
+  await row.getByTestId('change-value').press('Enter')
+  await page.getByTestId('designs').click()
+  await page.getByTestId('snapshot-name').fill('stiff')
+  await page.getByTestId('snapshot-keep').click()
+  await page.getByTestId('snapshot-write').click()
+  await page.getByText('is in the text of the model').waitFor()
+  await page.getByText('Saved').waitFor()
+  const block = `[designs.stiff]\n${name} = 3.5\n`
+  expect(readFileSync(file, 'utf8')).toBe(`${text.trimEnd()}\n\n${block}`)
+  // The present design is not saved, and the design of the file is listed in place of the kept one.
+  expect(await page.getByTestId('save').isDisabled()).toBe(false)
+  expect(await page.getByTestId('snapshot-rename').count()).toBe(1)
+  expect(await page.getByTestId('snapshot-write').count()).toBe(0)
+  // The command reads it back.
+  const compared = execFileSync(hardpoint, ['whatif', file, '--design', 'stiff'], { encoding: 'utf8' })
+  expect(compared).toContain(name)
+})
+
+test('points that are clicked on the picture become a task, whose answers are listed with their pages', async () => {
+  copyFileSync(join(MODELS, 'jansen.toml'), join(folder, 'jansen.toml'))
+  const page = await open(await start(0, 'jansen.toml'))
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+  await page.getByTestId('path-points').click()
+  expect(await page.getByTestId('path-run').isDisabled()).toBe(true)
+  // The pane takes room of the view, which has its new size in the next frame.
+  await frames(page, 3)
+  const box = (await page.getByTestId('path-overlay').boundingBox())!
+  const places = [
+    [0.3, 0.5],
+    [0.4, 0.35],
+    [0.55, 0.35],
+    [0.6, 0.6],
+  ].map(([x, y]) => [box.x + x * box.width, box.y + y * box.height])
+  for (const [x, y] of places) await page.mouse.click(x, y)
+  expect(await page.locator('.path-handle').count()).toBe(4)
+  // A handle follows the hand.
+  const handle = async () => (await page.getByTestId('path-3').boundingBox())!
+  const before = await handle()
+  await page.mouse.move(before.x + 9, before.y + 9)
+  await page.mouse.down()
+  await page.mouse.move(before.x + 9, before.y - 21, { steps: 4 })
+  await page.mouse.up()
+  expect(Math.abs((await handle()).y - (before.y - 30))).toBeLessThan(2)
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('path-file').click()])
+  const task = join(folder, 'path.toml')
+  await download.saveAs(task)
+  await page.getByTestId('path-run').click()
+  const links = page.locator('[data-testid^=note-study] a')
+  await links.first().waitFor()
+  // The command finds the same linkages for the file.
+  const facts = JSON.parse(execFileSync(hardpoint, ['synthesize', task, '--json'], { encoding: 'utf8' }))
+  expect(await links.allInnerTexts()).toEqual(
+    facts.answers.map(({ rank, kind }: { rank: number; kind: string }) => `Report: ${rank}: ${kind}`),
+  )
+  const [answer] = await Promise.all([page.waitForEvent('popup'), links.first().click()])
+  await answer.waitForFunction(() => document.querySelector('[data-testid=title]')?.textContent?.includes('path 1'))
 })

@@ -8,6 +8,7 @@ use clap_complete::Shell;
 use hardpoint::model::{AllocationRule, SweepSettings, ToleranceSettings};
 use hardpoint::space::Angles;
 use hardpoint::topology::Formulation;
+use hardpoint_export::PdfPart;
 use hardpoint_study::difference::DifferenceScheme;
 use serde::Deserialize;
 
@@ -276,7 +277,7 @@ Files in the folder (each appears whole or not at all):
   summary.json     the model, the outcome of the run, the largest sensitivities
 On request:
   motion.xlsx      an Excel workbook with charts (--workbook)
-  report.pdf       facts, key figures, curves and rankings on paper (--pdf)
+  report.pdf       picture, key figures, hardpoints, curves and rankings on paper (--pdf)
   motion.glb       the motion as animated glTF (--gltf)
   jerk.csv         third time derivatives (--jerk)
 For a model with cases, each case gets a folder of its own, and summary.json has their outcomes.
@@ -358,9 +359,13 @@ pub struct Run {
     /// Also write an Excel workbook, motion.xlsx: variables, measures over time with charts, sensitivities
     #[arg(long)]
     pub workbook: bool,
-    /// Also write a printable report, report.pdf: facts, key figures, curves, influences
+    /// Also write a printable report, report.pdf: facts, picture, metrics, hardpoints, curves, influences
     #[arg(long)]
     pub pdf: bool,
+    /// Parts of report.pdf, which this writes, separated by commas: picture, metrics, hardpoints, variables,
+    /// curves, influence [default: all]
+    #[arg(long, value_name = "PARTS", value_delimiter = ',', value_parser = pdf_part)]
+    pub pdf_parts: Vec<PdfPart>,
     /// Also write an animated glTF file, motion.glb, for Blender and other viewers
     #[arg(long)]
     pub gltf: bool,
@@ -378,6 +383,12 @@ pub struct Run {
     /// Apache Parquet with units in its metadata (parquet)
     #[arg(long, value_enum, default_value_t = Format::Csv, hide_possible_values = true)]
     pub format: Format,
+}
+
+/// Part of a printed report.
+fn pdf_part(text: &str) -> Result<PdfPart, String> {
+    let names = PdfPart::ALL.map(|part| format!("`{}`", part.name())).join(", ");
+    PdfPart::of(text).ok_or_else(|| format!("`{text}` is not a part of the report; give some of {names}"))
 }
 
 const AFTER_CHECK: &str = "\

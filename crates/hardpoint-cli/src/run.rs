@@ -1,14 +1,15 @@
 //! `hardpoint run`.
 
+use std::cell::OnceCell;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use hardpoint::model::{Model, VariableId};
-use hardpoint::run::Clearances;
+use hardpoint::model::{Model, NamedDesign, VariableId};
+use hardpoint::run::{Clearances, metrics_beside};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Solution};
-use hardpoint_export::RunDocument;
+use hardpoint_export::{DesignResult, PdfContent, PdfPart, RunDocument};
 use hardpoint_file::ModelFile;
 use hardpoint_report::GENERATOR;
 use hardpoint_report::clearance::{self, ClearanceFact};
@@ -21,8 +22,9 @@ use hardpoint_report::joint_limits::JointLimitFact;
 use hardpoint_report::maps::MapFact;
 use hardpoint_report::metric::{CaseMetrics, MetricFact};
 use hardpoint_report::page::Table;
-use hardpoint_report::payload::{Request, report, stride_of_marks};
+use hardpoint_report::payload::{Request, payload, report, stride_of_marks};
 use hardpoint_report::results::JerkCsv;
+use hardpoint_report::sketch::{Stroke, sketch};
 use hardpoint_report::summary::{RunStatus, Summary};
 use hardpoint_report::validity::ValidityFact;
 use hardpoint_study::difference::{Difference, DifferenceScheme, finite_differences_each};
@@ -49,6 +51,9 @@ const NOT_THE_SAME: &str = "the motion changes if only the stored output times a
 /// Message if sensitivities of bodies are not stored.
 const TOO_MANY: &str = "the sensitivities were not compared with re-solved designs, because they are too many to be stored; \
     `hardpoint verify` compares them at fewer output times";
+/// Message if the named designs of a long run are not solved for the printed report.
+const DESIGNS_UNSOLVED: &str =
+    "not in `report.pdf`: metrics of the named designs, because not all output times of the run are stored";
 /// Number of output times per window of jerks.
 const JERK_ROWS: usize = 256;
 
@@ -242,7 +247,7 @@ pub fn page(
     file: &ModelFile,
     maps: &[MapFact],
     formulation: Formulation,
-) -> Result<String, Outcome> {
+) -> Result<Page, Outcome> {
     let analysis = session.plan(file, formulation)?;
     let (read, started) = (session.seconds(), Instant::now());
     let course = session.solve_in_windows(&analysis, true, |_| true)?;
@@ -367,10 +372,14 @@ fn run_in(
             summary.left_out.extend(left_out.map_err(|e| session.not_written(&e))?);
             summary.files.push(folder.path_of("motion.xlsx").display().to_string());
         }
-        if options.pdf {
+        if options.pdf || !options.pdf_parts.is_empty() {
             let contents =
                 RunDocument { file, course: &course, summary: &summary, suffix: options.format.suffix() };
-            let left_out = folder.write("report.pdf", |out| contents.write_pdf(out));
+            let content = results.pdf_content(session, &options.pdf_parts, &summary);
+            let left_out = folder.write("report.pdf", |out| contents.write_pdf(&content, out));
+            if course.stride > 1 && !content.designs.is_empty() && content.has(PdfPart::Metrics) {
+                summary.left_out.push(DESIGNS_UNSOLVED.into());
+            }
             summary.left_out.extend(left_out.map_err(|e| session.not_written(&e))?);
             summary.files.push(folder.path_of("report.pdf").display().to_string());
         }
@@ -527,6 +536,13 @@ fn write_jerk(
     })
 }
 
+/// Page of a motion.
+pub struct Page {
+    pub html: String,
+    /// Line drawing of the mechanism.
+    pub picture: Vec<Stroke>,
+}
+
 struct Results<'a> {
     file: &'a ModelFile,
     analysis: &'a Analysis<'a>,
@@ -561,17 +577,50 @@ impl Results<'_> {
         }
     }
 
-    fn page(&self, summary: &Summary) -> String {
+    /// Chosen parts of the printed report, all if none is chosen, with the named designs solved for them.
+    fn pdf_content(&self, session: &Session, parts: &[PdfPart], summary: &Summary) -> PdfContent {
+        let parts = if parts.is_empty() { PdfPart::ALL.to_vec() } else { parts.to_vec() };
+        let (model, today) = (&self.file.model, &self.course.kept);
+        let has = |part| parts.contains(&part);
+        let picture = if has(PdfPart::Picture) && !today.motion.is_empty() {
+            let run = Request::of(self.file, self.analysis, self.course, summary);
+            sketch(&payload(&run))
+        } else {
+            Vec::new()
+        };
+        let is_compared = has(PdfPart::Metrics) || has(PdfPart::Hardpoints);
+        let result = |design: &NamedDesign| {
+            let change = design.changes_of(model.variables.len());
+            let run = || hardpoint::Run::new().at(&change).without_sensitivities();
+            // Of a long run, whose output times are not all stored, metrics are those of the nominal design only.
+            let is_solved = has(PdfPart::Metrics) && !model.metrics.is_empty() && self.course.stride == 1;
+            let metrics = if is_solved && !session.interrupted() {
+                metrics_beside(model, today, &self.analysis.solve(run()))
+            } else {
+                vec![None; model.metrics.len()]
+            };
+            DesignResult { name: design.name.clone(), places: model.hardpoint_places(&change), metrics }
+        };
+        let designs = model.designs.iter().filter(|_| is_compared).map(result).collect();
+        PdfContent { parts, picture, designs }
+    }
+
+    fn page(&self, summary: &Summary) -> Page {
         let run = Request::of(self.file, self.analysis, self.course, summary);
-        let finish = |page| MapFact::page(self.maps, page);
+        let picture = OnceCell::new();
+        let finish = |page| {
+            picture.get_or_init(|| sketch(&page));
+            MapFact::page(self.maps, page)
+        };
         let request = Request { differences: &self.differences, clearances: self.clearances.as_ref(), ..run };
-        report(&request, &finish).expect("a payload is plain data")
+        let html = report(&request, &finish).expect("a payload is plain data");
+        Page { html, picture: picture.into_inner().unwrap_or_default() }
     }
 
     fn write(&self, folder: &mut Folder, summary: &mut Summary, session: &Session) -> Result<(), WriteError> {
         let started = Instant::now();
         let _working = session.working("writing");
-        let html = self.page(summary);
+        let Page { html, .. } = self.page(summary);
         folder.write("report.html", |out| out.write_all(html.as_bytes()))?;
         let names = ["report.html", "summary.json"];
         summary.files.extend(names.map(|name| folder.path_of(name).display().to_string()));

@@ -8,6 +8,7 @@ use hardpoint::topology::Formulation;
 use hardpoint_file::ModelFile;
 use hardpoint_report::gallery::{Card, gallery};
 use hardpoint_report::page::{SHARED, shared_script, sharing};
+use hardpoint_report::sketch::svg;
 
 use crate::args::Site;
 use crate::folder::{Folder, file_name};
@@ -17,6 +18,8 @@ use crate::{maps, run, text};
 
 /// Default folder of models.
 const MODELS: &str = "models";
+/// Page of all models.
+const INDEX: &str = "index.html";
 
 /// Writes the site; models that cannot be shown are left out and reported.
 pub fn run(options: &Site) -> Outcome {
@@ -59,9 +62,9 @@ fn site_in(session: &Session, options: &Site) -> Result<Outcome, Outcome> {
     let lead = "Mechanisms with their motion and exact design sensitivities. Each page is the report of one model: open one and play.";
     let index = gallery("Hardpoint", lead, &cards);
     let shared = folder.write(SHARED, |out| out.write_all(shared_script().as_bytes()));
-    let written = shared.and_then(|()| folder.write("index.html", |out| out.write_all(index.as_bytes())));
+    let written = shared.and_then(|()| folder.write(INDEX, |out| out.write_all(index.as_bytes())));
     written.and_then(|()| folder.commit(&[])).map_err(|e| session.not_written(&e))?;
-    text::print(&format!("{} models: {}\n", cards.len(), options.folder.join("index.html").display()));
+    text::print(&format!("{} models: {}\n", cards.len(), options.folder.join(INDEX).display()));
     Ok(outcome)
 }
 
@@ -81,8 +84,11 @@ fn stem(model: &Path) -> String {
 fn card(session: &Session, model: &Path, folder: &mut Folder) -> Result<Card, Outcome> {
     let file = session.read(model)?;
     let maps = maps::solved(session, &file, Formulation::Relative);
+    let mut picture = None;
     let mut write = |name: &str, one: &ModelFile| {
-        let html = sharing(&run::page(session, one, &maps, Formulation::Relative)?);
+        let page = run::page(session, one, &maps, Formulation::Relative)?;
+        let html = sharing(&page.html, INDEX);
+        picture.get_or_insert(svg(&page.picture));
         folder.write(name, |out| out.write_all(html.as_bytes())).map_err(|e| session.not_written(&e))
     };
     let stem = file_name(&stem(model));
@@ -104,7 +110,7 @@ fn card(session: &Session, model: &Path, folder: &mut Folder) -> Result<Card, Ou
         wrong: None,
         link: link(&name),
         more: pages,
-        picture: None,
+        picture,
     })
 }
 

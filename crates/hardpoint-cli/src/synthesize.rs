@@ -1,6 +1,7 @@
 //! `hardpoint synthesize`.
 
 use std::io::Write;
+use std::num::NonZero;
 use std::path::Path;
 
 use hardpoint::topology::Formulation;
@@ -14,6 +15,7 @@ use hardpoint_study::synthesis::{Answer, TaskError, synthesize};
 use crate::args::Synthesize;
 use crate::folder::{Folder, WriteError};
 use crate::outcome::Outcome;
+use crate::pages::Page;
 use crate::session::{Session, json_text};
 use crate::{run, text};
 
@@ -34,45 +36,13 @@ pub fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome,
         session.not_read(error.diagnostics());
         Outcome::BadModel
     })?;
-    let mut task = task_of(&file);
-    if let Some(answers) = options.answers {
-        task.answers = answers.get().min(MOST);
-    }
     let folder = session.folder(options.output.as_deref())?;
-    let found = {
-        let _working = session.working("looking for linkages");
-        synthesize(&task, &|| !session.interrupted())
-    };
-    let found = found.map_err(|error| match error {
-        TaskError::Interrupted => Outcome::Interrupted,
-        error => {
-            session.not_read(&refusal(&file, &error));
-            Outcome::BadModel
-        }
-    })?;
+    let mut found = found(session, &file, options.answers)?;
     session.line(&text::bold(&file.name));
-    let mut facts = SynthesisFacts::of(&file, &task, &found);
-    let (mut answers, mut models) = (Vec::<Answer>::new(), Vec::<(String, ModelFile)>::new());
-    for answer in &found.answers {
-        let rank = models.len() + 1;
-        let content = model_text(&file, answer, rank);
-        let read = followed_model(answer, &content, &format!("{rank}/{MODEL}"), found.size);
-        let (model, by_engine) = read.map_err(|diagnostics| {
-            session.not_read(&diagnostics);
-            Outcome::BadModel
-        })?;
-        match by_engine {
-            Some(by_engine) => {
-                facts.answers.push(AnswerFact::of(file.units, rank, answer, &by_engine));
-                models.push((content, model));
-                answers.push(answer.clone());
-            }
-            None => facts.not_reproduced += 1,
-        }
-    }
     if let Some(folder) = folder {
-        write(session, &file, &mut facts, (&answers, &models), folder)?;
+        write(session, &file, &mut found, folder)?;
     }
+    let mut facts = found.facts;
     facts.seconds = session.seconds();
     if session.is_json() {
         session.print_json(&facts);
@@ -87,14 +57,67 @@ pub fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome,
     Ok(if facts.answers.is_empty() { Outcome::FellShort } else { Outcome::Done })
 }
 
+/// Linkages of a task that the engine has followed.
+pub struct Found {
+    pub facts: SynthesisFacts,
+    answers: Vec<Answer>,
+    /// Text and model of each answer.
+    models: Vec<(String, ModelFile)>,
+}
+
+/// Finds the linkages of a task, and follows each with the engine.
+pub fn found(session: &Session, file: &TaskFile, most: Option<NonZero<usize>>) -> Result<Found, Outcome> {
+    let mut task = task_of(file);
+    if let Some(answers) = most {
+        task.answers = answers.get().min(MOST);
+    }
+    let found = {
+        let _working = session.working("looking for linkages");
+        synthesize(&task, &|| !session.interrupted())
+    };
+    let found = found.map_err(|error| match error {
+        TaskError::Interrupted => Outcome::Interrupted,
+        error => {
+            session.not_read(&refusal(file, &error));
+            Outcome::BadModel
+        }
+    })?;
+    let mut facts = SynthesisFacts::of(file, &task, &found);
+    let (mut answers, mut models) = (Vec::<Answer>::new(), Vec::<(String, ModelFile)>::new());
+    for answer in &found.answers {
+        let rank = models.len() + 1;
+        let content = model_text(file, answer, rank);
+        let read = followed_model(answer, &content, &format!("{rank}/{MODEL}"), found.size);
+        let (model, by_engine) = read.map_err(|diagnostics| {
+            session.not_read(&diagnostics);
+            Outcome::BadModel
+        })?;
+        match by_engine {
+            Some(by_engine) => {
+                facts.answers.push(AnswerFact::of(file.units, rank, answer, &by_engine));
+                models.push((content, model));
+                answers.push(answer.clone());
+            }
+            None => facts.not_reproduced += 1,
+        }
+    }
+    Ok(Found { facts, answers, models })
+}
+
+impl Found {
+    /// Pages of the answers, each with its rank and the kind of its linkage.
+    pub fn pages(&self, session: &Session) -> Result<Vec<Page>, Outcome> {
+        let page = |(fact, (_, model)): (&AnswerFact, &(String, ModelFile))| {
+            let page = run::page(session, model, &[], Formulation::Relative)?;
+            Ok((Some(format!("{}: {}", fact.rank, fact.kind)), page.html))
+        };
+        self.facts.answers.iter().zip(&self.models).map(page).collect()
+    }
+}
+
 /// Writes models, pages, the table, and the summary last.
-fn write(
-    session: &Session,
-    file: &TaskFile,
-    facts: &mut SynthesisFacts,
-    (answers, models): (&[Answer], &[(String, ModelFile)]),
-    mut folder: Folder,
-) -> Result<(), Outcome> {
+fn write(session: &Session, file: &TaskFile, found: &mut Found, mut folder: Folder) -> Result<(), Outcome> {
+    let Found { facts, answers, models } = found;
     session.patient(true);
     let mut meter = session.meter("making pages", "answers");
     let mut cards = Vec::new();
@@ -104,7 +127,7 @@ fn write(
             return Err(Outcome::Interrupted);
         }
         let path = folder.path_of(&(k + 1).to_string());
-        let parts = [(MODEL, content), (PAGE, &page)];
+        let parts = [(MODEL, content), (PAGE, &page.html)];
         write_answer(&path, &parts).map_err(|e| session.not_written(&e))?;
         let fact = &mut facts.answers[k];
         fact.model = Some(path.join(MODEL).display().to_string());

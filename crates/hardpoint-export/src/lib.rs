@@ -41,6 +41,7 @@ use serde::Serialize;
 
 pub use animation::animation;
 pub use archive::{Archive, Library};
+pub use pdf::{DesignResult, PdfContent, PdfPart};
 pub use stl::write_stl;
 pub use tables::hardpoints;
 pub use workbook::RunDocument;

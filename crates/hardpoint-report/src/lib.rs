@@ -20,6 +20,7 @@
 //! | [`synthesis`] | answers of a synthesis: their models, `answers.csv`, `summary.json` |
 //! | [`maps`] | `maps.csv`, `map_sensitivity.csv`, `maps.json`: measures over grids of two drivers |
 //! | [`payload`], [`page`], [`encoding`] | `report.html` |
+//! | [`sketch`] | line drawing of a mechanism, as SVG or for other papers |
 //! | [`gallery`] | pages of all models, and of a model that cannot be shown |
 //! | [`diagnose`] | diagnostics of runs that cannot start or ended early |
 //! | [`entry`] | an entry of a model in a few lines, for editors |
@@ -52,6 +53,7 @@ pub mod ranges;
 mod record;
 mod rigid;
 mod shifts;
+pub mod sketch;
 pub mod study;
 pub mod summary;
 pub mod sweep;

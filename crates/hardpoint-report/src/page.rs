@@ -928,13 +928,15 @@ pub fn shared_script() -> String {
     part("engine", ENGINE) + &part("code", CODE)
 }
 
-/// Page of this crate that loads its engine and its code from the file [`SHARED`] next to it.
-pub fn sharing(page: &str) -> String {
+/// Page of this crate that loads its engine and its code from the file [`SHARED`] next to it, with a link to the page of
+/// all models.
+pub fn sharing(page: &str, models: &str) -> String {
     const END: &str = "<script type=\"text/plain\" id=\"code\"></script>";
     let missing =
         format!("document.getElementById('page').textContent = 'This page needs {SHARED} in its folder.'");
     let load = format!("{END}\n<script src=\"{SHARED}\" onerror=\"{missing}\"></script>");
-    page.replacen(ENGINE, "", 1).replacen(CODE, "", 1).replacen(END, &load, 1)
+    let head = format!("<link rel=\"up\" href=\"{}\">\n</head>", escape_text(models));
+    page.replacen("</head>", &head, 1).replacen(ENGINE, "", 1).replacen(CODE, "", 1).replacen(END, &load, 1)
 }
 
 /// HTML file of a packed payload.
@@ -1042,7 +1044,7 @@ pub(crate) mod tests {
     #[test]
     fn pages_of_a_folder_share_the_engine_and_the_code() {
         let page = html(&payload("sample")).unwrap();
-        let (sharing, script) = (sharing(&page), shared_script());
+        let (sharing, script) = (sharing(&page, "index.html"), shared_script());
         assert!(sharing.len() + ENGINE.len() + CODE.len() < page.len() + 400);
         assert!(sharing.contains("<script type=\"text/plain\" id=\"engine\"></script>"));
         assert!(sharing.contains("<script src=\"hardpoint.js\""));

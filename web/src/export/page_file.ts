@@ -24,8 +24,9 @@ export function pageFile(document: Document, design: StoredDesign): Blob {
   const page = document.createElement('main')
   page.id = 'page'
   root.querySelector('#page')!.replaceWith(page)
-  // The copy belongs to no server.
+  // The copy belongs to no server and no site.
   root.querySelector('#server')?.replaceChildren()
+  root.querySelector('link[rel=up]')?.remove()
   const stored = document.createElement('script')
   stored.type = 'application/json'
   stored.id = ID

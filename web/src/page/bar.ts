@@ -16,6 +16,7 @@ export function bar(state: State, { find, exports, help }: Offers): HTMLElement 
   return el(
     'header',
     { class: 'topbar' },
+    models(),
     el('h1', { 'data-testid': 'title', title }, title),
     el('span', { class: 'file muted' }, file),
     el('span', { class: 'space' }),
@@ -35,6 +36,12 @@ export function bar(state: State, { find, exports, help }: Offers): HTMLElement 
       '?',
     ),
   )
+}
+
+/** Link to the page of all models, of which this page is one. */
+function models(): HTMLElement | undefined {
+  const href = document.querySelector('link[rel=up]')?.getAttribute('href')
+  return href ? el('a', { class: 'up', href, title: 'All models', 'data-testid': 'up' }, '‹ Models') : undefined
 }
 
 /** True for edges of bands of curves, which are drawn with them and compared with nothing. */

@@ -1,12 +1,15 @@
 import type { Curve } from '../curve'
 import { el } from '../dom'
 import { extent } from '../export/axis'
-import { pretty, signed } from '../format'
+import { number, pretty, signed, titled } from '../format'
 import { noise } from '../rounding'
 import { curveOf, type Design } from '../report'
 import type { State } from '../state'
 import { isStatic, valueText } from './cards'
 import { whileSeen } from './tabs'
+
+/** Significant digits of coordinates. */
+const PLACE = 8
 
 /** A design of the comparison. */
 interface Column {
@@ -24,8 +27,14 @@ export function comparison(state: State): HTMLElement {
   const [head, body] = [el('thead'), el('tbody')]
   const table = el('div', { class: 'scroll', tabindex: 0 }, el('table', { class: 'numbers' }, head, body))
   const lead = el('p', { class: 'lead' })
-  const element = el('section', { class: 'checks', 'data-testid': 'comparison', 'aria-label': 'Compare' }, lead, table)
+  const section = el('section', { class: 'checks', 'data-testid': 'comparison', 'aria-label': 'Compare' }, lead, table)
+  const points = el('section', { class: 'checks', 'data-testid': 'hardpoints', 'aria-label': 'Hardpoints' })
+  const element = el('div', {}, section, points)
+  const offer = () => (points.hidden = !state.hardpoints)
+  state.onChoice(offer)
+  offer()
   const render = () => {
+    showHardpoints(points, state)
     const columns = columnsOf(state)
     const [reference] = columns
     const present = columns[1]
@@ -60,6 +69,37 @@ export function comparison(state: State): HTMLElement {
   whileSeen(element, (listener) => state.onChoice(listener), render, state.ended)
   render()
   return element
+}
+
+/** Table of the hardpoints: the original coordinates, and the present ones with their changes. */
+function showHardpoints(element: HTMLElement, { hardpoints, report }: State): void {
+  const all = hardpoints?.() ?? []
+  const axes = ['x', 'y', 'z']
+  const cells = (before: readonly number[], now: readonly number[]) => {
+    const changes = axes.map((_, k) => changeText(now[k] - before[k], now[k]))
+    const text = (list: string[]) => list.map((cell) => el('td', { class: 'figure' }, cell))
+    return changes.every((change) => change === '0')
+      ? [...text(axes.map((_, k) => number(before[k], PLACE))), ...text(Array(6).fill(''))]
+      : [before, now].flatMap((place) => text(axes.map((_, k) => number(place[k], PLACE)))).concat(text(changes))
+  }
+  const header = ['original', 'current', 'change'].flatMap((what) => axes.map((axis) => `${axis} ${what}`))
+  element.replaceChildren(
+    el('h3', {}, titled('Hardpoints', report.units.length)),
+    el(
+      'div',
+      { class: 'scroll', tabindex: 0 },
+      el(
+        'table',
+        { class: 'numbers' },
+        el('thead', {}, el('tr', {}, ...['hardpoint', ...header].map((text) => el('th', { scope: 'col' }, text)))),
+        el(
+          'tbody',
+          {},
+          ...all.map(({ name, before, now }) => el('tr', {}, el('th', { scope: 'row' }, name), ...cells(before, now))),
+        ),
+      ),
+    ),
+  )
 }
 
 /** The reference first, then the present design if it differs, then the others. */

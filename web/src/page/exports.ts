@@ -7,6 +7,7 @@ import { hasVideo, motionVideo } from '../export/video'
 import type { View } from '../scene/view'
 import type { State } from '../state'
 import { stepsWithin } from '../zoom'
+import { composePrint } from './composer'
 import type { Figure } from './figure'
 import type { Item } from './menu'
 
@@ -67,7 +68,7 @@ export function exports(state: State, figures: Figure[], view: View | undefined)
           },
         ]
       : []),
-    { name: 'Print or PDF', testId: 'export-print', run: () => print() },
+    { name: 'Print or PDF…', testId: 'export-print', run: () => composePrint(document.getElementById('page')!) },
   ]
 }
 

@@ -127,6 +127,11 @@ export function toleranceToml(text: string, variable: string, tolerance: number)
   return setKey(text, ['tolerance', 'variables'], variable, String(tolerance))
 }
 
+/** Nominal value of a design variable in a model's text: that of a parameter; 0 for all others, which are changes. */
+export function nominalOf(text: string, variable: string): number {
+  return entryOf(text, variable)?.nominal ?? 0
+}
+
 /** Entry of a text that makes a variable. */
 interface VariableEntry {
   table: [group: string, name: string]

@@ -17,6 +17,8 @@ export interface Snapshot {
   readonly step: Step
   /** True for a design of the model's text, which keeps its name and stays in the list. */
   readonly isOfFile: boolean
+  /** True if a text of the model has or had it: while the present one has its name, the text's design is listed. */
+  isWritten: boolean
 }
 
 /** Steps that are kept; earlier ones are forgotten, but for the first. */
@@ -25,7 +27,8 @@ const MAX_STEPS = 200
 /** The designs that a reader has been through, to go back and forth, and those that were given a name. */
 export class History {
   readonly #steps: Step[]
-  readonly #snapshots: Snapshot[] = []
+  readonly #own: Snapshot[] = []
+  #ofFile: readonly Snapshot[] = []
   #compared: readonly Snapshot[] = []
   readonly #listeners: (() => void)[] = []
   #at = 0
@@ -60,7 +63,8 @@ export class History {
   }
 
   get snapshots(): readonly Snapshot[] {
-    return this.#snapshots
+    const isListed = ({ isWritten, name }: Snapshot) => !isWritten || this.#ofFile.every((one) => one.name !== name)
+    return [...this.#ofFile, ...this.#own.filter(isListed)]
   }
 
   /** Named designs that are compared with the present one; the last is the reference. */
@@ -130,23 +134,24 @@ export class History {
   /** Gives the present design a name; `design 1` and so on where none is given. */
   save(name = '', step = this.present): Snapshot {
     this.#named++
-    const snapshot = { id: this.#named, name: this.#free(name.trim()), step, isOfFile: false }
-    this.#snapshots.push(snapshot)
+    const snapshot = { id: this.#named, name: this.#free(name.trim()), step, isOfFile: false, isWritten: false }
+    this.#own.push(snapshot)
     this.#notify()
     return snapshot
   }
 
   /** Lists the named designs of a text in place of those of the text before; compared ones stay so by their names. */
   setFileDesigns(designs: readonly { name: string; changes: readonly VariableSetting[] }[], text: string): void {
-    const own = this.#snapshots.filter(({ isOfFile }) => !isOfFile)
-    this.#snapshots.splice(0, Infinity, ...own)
-    const found = designs.map(({ name, changes }) => {
+    const written = this.#own.filter(({ isWritten }) => isWritten).map(({ name }) => name)
+    this.#ofFile = []
+    this.#ofFile = designs.map(({ name, changes }) => {
       const step = { text, settings: changes, label: name }
-      return { id: ++this.#named, name: this.#free(name), step, isOfFile: true }
+      const shown = written.includes(name) ? name : this.#free(name)
+      return { id: ++this.#named, name: shown, step, isOfFile: true, isWritten: true }
     })
-    this.#snapshots.unshift(...found)
+    const listed = this.snapshots
     this.#compared = this.#compared.flatMap((one) =>
-      one.isOfFile ? (found.find(({ name }) => name === one.name) ?? []) : one,
+      one.isWritten ? (listed.find(({ name }) => name === one.name) ?? []) : one,
     )
     this.#notify()
   }
@@ -163,16 +168,21 @@ export class History {
     this.#notify()
   }
 
+  /** Notes that the next text has this design. */
+  markWritten(snapshot: Snapshot): void {
+    snapshot.isWritten = true
+  }
+
   remove(snapshot: Snapshot): void {
-    const at = this.#snapshots.indexOf(snapshot)
-    if (at >= 0) this.#snapshots.splice(at, 1)
+    const at = this.#own.indexOf(snapshot)
+    if (at >= 0) this.#own.splice(at, 1)
     this.#compared = this.#compared.filter((one) => one !== snapshot)
     this.#notify()
   }
 
   /** The name, with a number if it is taken; `design 1` and so on without one. */
   #free(name: string): string {
-    const taken = new Set(this.#snapshots.map(({ name }) => name))
+    const taken = new Set(this.snapshots.map(({ name }) => name))
     if (name !== '' && !taken.has(name)) return name
     const stem = name || 'design'
     for (let k = name === '' ? 1 : 2; ; k++) if (!taken.has(`${stem} ${k}`)) return `${stem} ${k}`

@@ -1,4 +1,4 @@
-import { el, svg } from '../dom'
+import { el, prose, svg } from '../dom'
 import type { History, Snapshot, Step } from './history'
 import './studio.css'
 
@@ -8,6 +8,8 @@ export interface HistoryActions {
   show: (step: Step) => void
   /** Compares with designs that were given a name, the last of them as the reference; with none of them if empty. */
   compare: (snapshots: readonly Snapshot[]) => void
+  /** Writes a design to the model's text, and returns what was done. */
+  write: (snapshot: Snapshot) => Promise<string>
 }
 
 /** An arrow that turns back, and the same that turns forth. */
@@ -18,7 +20,7 @@ const FORTH = 'M12.5 6.5h-6a3.5 3.5 0 0 0 0 7h3M9.5 3.5l3 3l-3 3'
  * Buttons for undo, redo, reset and the designs that were given a name; and their keys, wherever the focus is but in a
  * text.
  */
-export function historyBar(history: History, { show, compare }: HistoryActions): HTMLElement {
+export function historyBar(history: History, { show, compare, write }: HistoryActions): HTMLElement {
   const icon = (path: string) => svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true' }, svg('path', { d: path }))
   const undo = () => history.undo()
   const redo = () => history.redo()
@@ -76,7 +78,7 @@ export function historyBar(history: History, { show, compare }: HistoryActions):
     back,
     forth,
     reset,
-    snapshots(history, { show, compare }),
+    snapshots(history, { show, compare, write }),
   )
 }
 
@@ -89,7 +91,7 @@ function stepOf({ key, ctrlKey, metaKey, altKey, shiftKey }: KeyboardEvent): 'un
 }
 
 /** A button that opens the named designs: save the current one; open, compare, rename and delete others. */
-function snapshots(history: History, { show, compare }: HistoryActions): HTMLElement {
+function snapshots(history: History, { show, compare, write }: HistoryActions): HTMLElement {
   const name = el('input', {
     type: 'text',
     placeholder: 'name of this design',
@@ -98,7 +100,8 @@ function snapshots(history: History, { show, compare }: HistoryActions): HTMLEle
   })
   const form = el('form', { class: 'keep' }, name, el('button', { 'data-testid': 'snapshot-keep' }, 'Keep'))
   const list = el('ul', { 'aria-label': 'Named designs', 'data-testid': 'snapshots' })
-  const panel = el('div', { class: 'menu designs', hidden: true }, form, list)
+  const done = el('p', { class: 'done', role: 'status', 'data-testid': 'snapshot-done' })
+  const panel = el('div', { class: 'menu designs', hidden: true }, form, list, done)
   const button = el('button', {
     type: 'button',
     'aria-expanded': 'false',
@@ -108,6 +111,7 @@ function snapshots(history: History, { show, compare }: HistoryActions): HTMLEle
   const element = el('div', { class: 'dropdown' }, button, panel)
   const open = (wanted: boolean) => {
     panel.hidden = !wanted
+    done.replaceChildren()
     button.setAttribute('aria-expanded', String(wanted))
     if (wanted) name.focus()
   }
@@ -122,6 +126,7 @@ function snapshots(history: History, { show, compare }: HistoryActions): HTMLEle
       rename: (text) => history.rename(snapshot, text),
       open: () => (show(history.restore(snapshot)), open(false), button.focus()),
       compare: () => toggle(snapshot),
+      write: async () => done.replaceChildren(...prose(await write(snapshot))),
       remove: () => {
         if (history.compared.includes(snapshot)) toggle(snapshot)
         history.remove(snapshot)
@@ -168,6 +173,7 @@ interface RowActions {
   rename: (text: string) => void
   open: () => void
   compare: () => void
+  write: () => void
   remove: () => void
 }
 
@@ -175,7 +181,7 @@ interface RowActions {
 function snapshotRow(
   snapshot: Snapshot,
   isCompared: boolean,
-  { rename, open, compare, remove }: RowActions,
+  { rename, open, compare, write, remove }: RowActions,
 ): HTMLElement {
   const field = el('input', {
     type: 'text',
@@ -198,7 +204,12 @@ function snapshotRow(
   const actions = [
     action('Open this design', 'Open', open),
     action('Draw this design together with the current one', 'Compare', compare),
-    ...(snapshot.isOfFile ? [] : [action('Delete this design', 'Delete', remove)]),
+    ...(snapshot.isOfFile
+      ? []
+      : [
+          action('Write this design to the model file, as an entry of [designs]', 'Write', write),
+          action('Delete this design', 'Delete', remove),
+        ]),
   ]
   if (snapshot.isOfFile) {
     field.readOnly = true

@@ -38,13 +38,20 @@ export type SaveOutcome =
   | { outcome: 'invalid'; diagnostics: Diagnostic[]; text: string }
   | { outcome: 'refused'; why: string }
 
-export type StudyKind = 'optimize' | 'tolerance' | 'sweep'
+export type StudyKind = 'optimize' | 'tolerance' | 'sweep' | 'synthesize'
 
 export interface StudyRequest {
   what: StudyKind
   text: string
   case?: string
-  options?: { starts?: number; iterations?: number; samples?: number; seed?: number; allocate?: 'rss' | 'worst_case' }
+  options?: {
+    starts?: number
+    iterations?: number
+    samples?: number
+    seed?: number
+    allocate?: 'rss' | 'worst_case'
+    task?: string
+  }
 }
 
 /** State of a study. */

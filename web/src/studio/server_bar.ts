@@ -2,7 +2,15 @@ import './server.css'
 import { el, prose } from '../dom'
 import { messageOf } from '../format'
 import { menu, type Item } from '../page/menu'
-import { NoAnswerError, type Entry, type SaveOutcome, type Server, type Study, type StudyKind } from './server'
+import {
+  NoAnswerError,
+  type Entry,
+  type SaveOutcome,
+  type Server,
+  type Study,
+  type StudyKind,
+  type StudyRequest,
+} from './server'
 
 /** The present text of the model. */
 export interface Text {
@@ -12,10 +20,24 @@ export interface Text {
 }
 
 /** Studies of the server, by their button labels. */
-const STUDIES: Record<StudyKind, string> = { optimize: 'Optimise', tolerance: 'Run tolerance analysis', sweep: 'Sweep' }
+const STUDIES: Record<StudyKind, string> = {
+  optimize: 'Optimise',
+  tolerance: 'Run tolerance analysis',
+  sweep: 'Sweep',
+  synthesize: 'Synthesise',
+}
+
+/** The part of the page's bar that belongs to a server. */
+export interface ServerBar {
+  element: HTMLElement
+  /** Saves a text in place, which may differ from the present one. */
+  save(text: string): Promise<void>
+  /** Looks for linkages for the text of a task file, and lists the answers. */
+  synthesize(task: string): Promise<void>
+}
 
 /** Controls that a server adds to the page's bar: save, other models, studies; and notices. */
-export function serverBar(server: Server, text: Text): HTMLElement {
+export function serverBar(server: Server, text: Text): ServerBar {
   const notices = el('div', { class: 'notices', 'data-testid': 'notices' })
   const save = el(
     'button',
@@ -36,7 +58,7 @@ export function serverBar(server: Server, text: Text): HTMLElement {
     notices,
   )
   const desk = new Desk(server, text, save, notices)
-  return element
+  return { element, save: (text) => desk.put(text), synthesize: (task) => desk.study('synthesize', { task }) }
 }
 
 /** Actions on the model's file. */
@@ -98,15 +120,19 @@ class Desk {
     this.button.classList.toggle('unsaved', this.isUnsaved())
   }
 
-  async save(anyway = false): Promise<void> {
-    const present = await this.text.text()
-    await this.asking(async () => this.after(await this.server.save(present, anyway), present, () => this.save(true)))
+  async save(): Promise<void> {
+    await this.put(await this.text.text())
   }
 
-  private after(saved: SaveOutcome, present: string, anyway: () => Promise<void>): void {
+  /** Saves a text; with `anyway` also what is no valid model. */
+  async put(text: string, anyway = false): Promise<void> {
+    await this.asking(async () => this.after(await this.server.save(text, anyway), text, () => this.put(text, true)))
+  }
+
+  private after(saved: SaveOutcome, text: string, anyway: () => Promise<void>): void {
     this.notes.drop('saving')
     if (saved.outcome === 'saved') {
-      this.saved = present
+      this.saved = text
       this.notes.drop('changed')
       void this.compare()
       this.notes.show('saving', `Saved \`${this.server.file}\`.`, { passing: true })
@@ -226,10 +252,10 @@ class Desk {
     name.select()
   }
 
-  private async study(what: StudyKind): Promise<void> {
+  async study(what: StudyKind, options?: StudyRequest['options']): Promise<void> {
     const { server, notes } = this
     const shown = server.cases.length > 0 && what === 'tolerance' ? (server.case ?? undefined) : undefined
-    let study = await server.begin({ what, text: await this.text.text(), case: shown })
+    let study = await server.begin({ what, text: await this.text.text(), case: shown, options })
     const key = `study-${study.id}`
     const show = () => {
       const { state, progress, lines, message } = study

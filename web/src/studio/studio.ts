@@ -17,6 +17,7 @@ import { design, read, type Design, type Report } from '../report'
 import { type ChoiceMemory, State } from '../state'
 import type { Figure } from '../page/figure'
 import { targetButton } from './draw_target'
+import { designToml, isSameDesign } from './designs'
 import { Drawer } from './drawer'
 import { type Aim, boundsToml, type Chosen, goalToml, type Judged, toleranceToml } from './goal'
 import type { Proposal } from './goal_form'
@@ -25,10 +26,12 @@ import { History, type Snapshot, type Step } from './history'
 import { historyBar } from './history_bar'
 import { Mover } from './mover'
 import { changesOf, settingsOf } from './moves'
+import { PathPoints } from './path_points'
+import type { PathTask } from './path_task'
 import { PointsPane } from './points'
 import { connect } from './server'
 import { separateMotions } from './motions'
-import { serverBar } from './server_bar'
+import { type ServerBar, serverBar } from './server_bar'
 import { linkedSession, linkOf, type SavedDesign, type Session, Storage } from './session'
 import { type OptimizePane, optimizePane, type StudyPane, tolerancePane } from './studies'
 import { targetToml } from './target'
@@ -61,7 +64,11 @@ export class Studio {
   readonly #status = el('span', { class: 'studio-status', role: 'status', 'data-testid': 'studio-status' })
   readonly #cases = el('span')
   readonly #drawer: Drawer
+  /** In a page of a server, its part of the bar. */
+  readonly #server?: ServerBar
   readonly #points = new PointsPane(() => this.#scheduleUpdate())
+  /** Path for which linkages are sought, in every text and case of the model. */
+  readonly #path: PathTask = { points: [], isClosed: false, isFullTurn: false }
   readonly #listeners: (() => void)[] = []
   #editor?: Editor
   #grips?: Grips
@@ -113,6 +120,7 @@ export class Studio {
     const bar = historyBar(this.history, {
       show: (step) => void this.#showStep(step),
       compare: () => void this.#compare(),
+      write: (snapshot) => this.#writeDesign(snapshot),
     })
     this.#storage = new Storage(model.file, model.text)
     this.#stored = this.#storage.load()
@@ -173,11 +181,12 @@ export class Studio {
       replace: (text: string) => void this.replace(text, 'from disk'),
       onChange: (listener: () => void) => this.onText(listener),
     }
+    this.#server = server?.file ? serverBar(server, own) : undefined
     this.#tools.append(
       bar,
       this.#cases,
       ...this.#drawer.buttons,
-      ...(server?.file ? [serverBar(server, own)] : []),
+      ...(this.#server ? [this.#server.element] : []),
       this.#status,
     )
     document.body.append(this.#drawer.element)
@@ -438,13 +447,22 @@ export class Studio {
     if (!this.#opened) return
     const mover = new Mover(this.state, this.#opened)
     this.#mover = mover
+    this.state.hardpoints = () =>
+      mover.grips.map((grip) => ({ name: grip.name, before: grip.place, now: mover.place(grip).toArray() }))
     this.#showPoints()
     if (!view) return
     const grips = new Grips(view, this.state, this.#opened, mover, () => this.#scheduleUpdate())
     this.#grips = grips
     view.element.append(grips.element)
     view.element.after(grips.pane)
-    view.element.querySelector('.looks')?.append(grips.button)
+    const looks = view.element.querySelector('.looks')
+    looks?.append(grips.button)
+    const { plane } = view.original
+    if (!plane) return
+    const path = new PathPoints(view, this.state, this.#path, plane, this.#server?.synthesize)
+    view.element.append(path.element)
+    view.element.after(path.pane)
+    looks?.append(path.button)
   }
 
   #offerCases(cases: string[]): void {
@@ -674,6 +692,56 @@ export class Studio {
     const { json } = await this.#sensing.ask<Text>({ ask: 'text', change: [...settings] })
     const answer = await this.#drags.ask<DesignReply>({ ask: 'beside', model: { ...this.model, text: json.text } })
     return this.#read(answer.json.design, answer, [...settings])
+  }
+
+  /**
+   * Writes a design to the text of the original as an entry of `[designs]`, and saves that on a server; returns what
+   * was done. Changes of the present design are not written.
+   */
+  async #writeDesign(snapshot: Snapshot): Promise<string> {
+    const { name, step } = snapshot
+    const { text } = this.model
+    const variables = this.state.report.variables.map(({ name }) => name)
+    const written = designToml(text, name, step.settings, variables)
+    const refusal = (why: string) => `\`${name}\` is not written: ${why}`
+    if (written.settings.length === 0) return refusal('it is the original design.')
+    try {
+      const check = await this.#checks.ask<CheckReply>({ ask: 'check', model: { ...this.model, text: written.text } })
+      const wrong = check.json.messages.find(({ severity }) => severity === 'error')
+      if (wrong) return refusal(`${wrong.message}.`)
+      // Of another text, or through new variables, the same numbers may be another design.
+      if (step.text !== text || written.added.length > 0) {
+        const kept = await this.#solveIn(step.text, step.settings)
+        const found = await this.#solveIn(written.text, written.settings)
+        if (!kept || !found || !isSameDesign(kept, found))
+          return refusal(
+            step.text === text
+              ? 'a point with a mirror image moves alone. Move both alike, or give it a design variable in the text.'
+              : 'its changes count from another text of the model. Open it, then write it.',
+          )
+      }
+    } catch (error) {
+      return refusal(`${messageOf(error)}.`)
+    }
+    if (text !== this.model.text) return refusal('the model was changed meanwhile. Write it again.')
+    this.history.markWritten(snapshot)
+    await this.edit(() => written.text, `[designs] ${name}`)
+    if (this.model.text !== written.text) return refusal('the model could not be solved.')
+    await this.#server?.save(written.text)
+    const added = written.added.map((name) => `\`${name}\``).join(', ')
+    return [
+      `\`${name}\` is in the text of the model`,
+      added && `, with new design variables ${added}`,
+      this.#server ? '.' : '. Export, Model as TOML, downloads it.',
+    ].join('')
+  }
+
+  /** A design of a text, solved without a path to it. */
+  async #solveIn(text: string, settings: readonly VariableSetting[]): Promise<Design | undefined> {
+    await this.#checks.ask<OpenReply>({ ask: 'open', model: { ...this.model, text } })
+    const change = [...settings]
+    const answer = await this.#checks.ask<DesignReply>({ ask: 'design', change, from: null, solid: false })
+    return answer.json.design ? design(answer.json.design, answer.decode) : undefined
   }
 
   /** Draws a design of a study under way next to the present one; of several at once the last. */

@@ -100,6 +100,7 @@ window.designs = new History(first)
 const bar = historyBar(window.designs, {
   show: (step) => window.shown.push(step),
   compare: (snapshots) => window.compared.push(snapshots.at(-1)?.name),
+  write: async ({ name }) => `\`${name}\` is written`,
 })
 
 const host = {

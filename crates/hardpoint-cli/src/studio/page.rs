@@ -96,13 +96,13 @@ fn made(studio: &Studio, name: &str, case: Option<&str>) -> Result<String, Answe
     about.case = case;
     let heard = Arc::new(Heard::default());
     let session = Session::for_page(Arc::clone(&heard) as Arc<dyn Listener>, Arc::clone(&studio.ending));
-    let html = case.map(|name| session.case(&file, name)).transpose().and_then(|id| {
+    let page = case.map(|name| session.case(&file, name)).transpose().and_then(|id| {
         let maps = maps::solved(&session, &file, Formulation::Relative);
         let one = id.map(|id| file.in_case(id));
         run::page(&session, one.as_ref().unwrap_or(&file), &maps, Formulation::Relative)
     });
-    Ok(match html {
-        Ok(html) => with_facts(&html, &about),
+    Ok(match page {
+        Ok(page) => with_facts(&page.html, &about),
         Err(_) => {
             let (diagnostics, text) = heard.refusal();
             let lines = diagnostics

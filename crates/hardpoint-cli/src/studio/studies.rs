@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use hardpoint::model::Model;
 use hardpoint::topology::Formulation;
-use hardpoint_file::ModelFile;
+use hardpoint_file::{ModelFile, TaskFile};
 use hardpoint_report::page::Table;
 use hardpoint_report::tolerance::ToleranceInputs;
 use hardpoint_study::Motions;
@@ -24,7 +24,7 @@ use crate::meter::Listener;
 use crate::outcome::Outcome;
 use crate::pages::{Page, Study as _};
 use crate::session::Session;
-use crate::{args, optimize, sweep, tolerance};
+use crate::{args, optimize, sweep, synthesize, tolerance};
 
 /// Maximum number of running studies. Each uses all cores; further requests are rejected, not queued.
 const AT_ONCE: usize = 2;
@@ -63,6 +63,8 @@ pub enum StudyKind {
     Tolerance,
     /// `hardpoint sweep`.
     Sweep,
+    /// `hardpoint synthesize`, of the task of the options.
+    Synthesize,
 }
 
 /// Options, as those of the command line with the same names.
@@ -74,6 +76,8 @@ pub struct Options {
     samples: Option<u32>,
     seed: Option<u32>,
     allocate: Option<Allocate>,
+    /// Text of a task file.
+    task: Option<String>,
 }
 
 /// A running or finished study.
@@ -258,6 +262,7 @@ impl Study {
             StudyKind::Optimize => optimized(&session, file, asked),
             StudyKind::Tolerance => examined(&session, file, asked),
             StudyKind::Sweep => swept(&session, file, asked),
+            StudyKind::Synthesize => synthesized(&session, asked),
         }));
         self.end(match done {
             Ok(Ok(end)) => end,
@@ -365,6 +370,28 @@ fn swept(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Result<En
         diagnostics: json!([]),
         text: None,
         tables: facts.tables(),
+        pages,
+    })
+}
+
+fn synthesized(session: &Session, asked: &StudyRequest) -> Result<End, Outcome> {
+    let text = asked.options.task.as_deref().unwrap_or_default();
+    let task = TaskFile::parse(text, "task.toml").map_err(|diagnostics| {
+        session.not_read(&diagnostics);
+        Outcome::BadModel
+    })?;
+    let found = synthesize::found(session, &task, None)?;
+    let pages = found.pages(session)?;
+    let message = match found.facts.advice() {
+        Some((why, help)) => format!("{why}; {help}"),
+        None => found.facts.rows().into_iter().map(|(_, line)| line).collect::<Vec<_>>().join(". "),
+    };
+    Ok(End {
+        state: if session.interrupted() { "cancelled" } else { "done" },
+        message,
+        diagnostics: json!([]),
+        text: None,
+        tables: found.facts.tables(),
         pages,
     })
 }

@@ -99,6 +99,41 @@ fn the_pages_describe_the_run_and_draw_every_measure() {
 }
 
 #[test]
+fn the_parts_that_are_chosen_are_written_with_the_named_designs() {
+    let bench = Bench::with(&["slider.toml"]);
+    let more =
+        "[metrics]\nway = { of = \"stroke\", take = \"range\" }\n\n[designs.longer]\ncrank_pin_x = 2\n";
+    bench.put("slider.toml", &format!("{}\n{more}", bench.text("slider.toml")));
+    let parts = "metrics,hardpoints";
+    assert!(bench.run(&["run", "slider.toml", "-o", "some", "--pdf-parts", parts]).status.success());
+    let document = document(&bench, "some/report.pdf");
+    let texts = texts(&document);
+    let has = |text: &str| texts.iter().any(|s| s == text);
+    assert!(has("Key figures by design") && has("Hardpoints of longer") && has("longer"), "{texts:?}");
+    assert!(!has("Curves") && !has("Most influential variables") && !has("Design variables"));
+    assert!(curves(&document).is_empty());
+    // old, new and change of the moved coordinate
+    let at = texts.iter().position(|s| s == "Hardpoints of longer").unwrap();
+    let numbers: Vec<f64> = texts[at + 6..at + 9].iter().map(|s| s.parse().unwrap()).collect();
+    assert!(
+        (numbers[1] - numbers[0] - 2.0).abs() < ON_PAPER && (numbers[2] - 2.0).abs() < ON_PAPER,
+        "{numbers:?}"
+    );
+    // The metrics of the design are those that the command compares.
+    let whatif = ["whatif", "slider.toml", "--design", "longer", "--json"];
+    let changed: Value = serde_json::from_slice(&bench.run(&whatif).stdout).unwrap();
+    for metric in changed["metrics"].as_array().unwrap() {
+        let (value, unit) = (metric["exact"].as_f64().unwrap(), metric["unit"].as_str().unwrap());
+        let shown = hardpoint_report::figures::with_unit(value, unit);
+        assert!(has(&shown), "{shown} is not among {texts:?}");
+    }
+
+    let wrong = bench.run(&["run", "slider.toml", "-o", "some", "--pdf-parts", "pictures"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("`picture`"));
+}
+
+#[test]
 fn letters_that_the_font_lacks_are_reported() {
     let bench = Bench::with(&["slider.toml"]);
     let text = bench.text("slider.toml");

@@ -636,6 +636,10 @@ fn a_site_has_a_page_for_each_model_that_can_be_shown() {
             && index.contains("href=\"strut%2520%2526%2520co-steer.html\"")
     );
     assert!(!index.contains("broken"));
+    // Each card has a drawing, and each page a link to the gallery.
+    assert_eq!(index.matches("<svg").count(), 2);
+    assert!(index.contains("<polygon") && index.contains("<circle") && !index.contains("NaN"));
+    assert!(bench.text("public/slider.html").contains("<link rel=\"up\" href=\"index.html\">"));
     assert!(bench.page("public/slider.html")["quantities"].is_array());
     // The engine is there once, for all pages.
     let [engine, one] =
@@ -647,4 +651,38 @@ fn a_site_has_a_page_for_each_model_that_can_be_shown() {
     let twice = bench.run(&["site", "twice", "slider.toml", "./slider.toml"]);
     assert_eq!(twice.status.code(), Some(2));
     assert_eq!(bench.run(&["site", "none"]).status.code(), Some(2));
+}
+
+#[test]
+fn a_task_is_solved_and_every_answer_has_its_page() {
+    let bench = slider();
+    let server = Server::start(&bench, &["slider.toml"]);
+    let text = bench.text("slider.toml");
+    let solve = |task: &str| {
+        let asked = serde_json::json!({ "what": "synthesize", "file": "slider.toml", "text": text, "options": { "task": task } });
+        let begun = server.ask("POST", "/api/study", "", &asked.to_string());
+        assert_eq!(begun.status, 202, "{}", begun.body);
+        let link = format!("/api/study/{}", begun.json()["id"]);
+        loop {
+            let study = server.get(&link).json();
+            if study["state"] != "running" {
+                return study;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(50));
+        }
+    };
+    let units = "name = \"lid\"\nunits = { length = \"mm\", angle = \"deg\" }\n";
+    let found = solve(&format!("{units}poses = [[0, 0, 0], [230, 280, 40], [250, 620, 95]]\nanswers = 2\n"));
+    assert_eq!(found["state"], "done", "{found}");
+    let reports = found["reports"].as_array().unwrap();
+    assert_eq!(reports.len(), 2, "{found}");
+    for (k, report) in reports.iter().enumerate() {
+        assert!(report["case"].as_str().unwrap().starts_with(&format!("{}: ", k + 1)), "{report}");
+        let page = server.get(report["link"].as_str().unwrap());
+        assert!(page.status == 200 && page.body.contains(&format!("<title>lid {}", k + 1)), "{report}");
+    }
+    // A task that cannot be read is reported at its place.
+    let refused = solve(&format!("{units}points = [[0, 0]]\nclose = true\n"));
+    assert_eq!(refused["state"], "failed", "{refused}");
+    assert!(refused["message"].as_str().unwrap().contains("close"), "{refused}");
 }

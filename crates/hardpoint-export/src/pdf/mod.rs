@@ -1,16 +1,20 @@
-//! `report.pdf`: a run on paper with facts, curves and influences.
+//! `report.pdf`: a run on paper with facts, picture, metrics, hardpoints, curves and influences.
 
 mod paper;
+mod parts;
 mod plot;
 
 use std::io::{self, Write};
 
+use hardpoint::joint::Quantity;
 use hardpoint_report::GENERATOR;
-use hardpoint_report::figures::{count, number, order_unit, with_unit};
+use hardpoint_report::figures::{count, number, order_unit, rounded, unit, with_unit};
+use hardpoint_report::sketch::{SIZE as PICTURE, Stroke};
 use hardpoint_report::summary::Ranking;
 
 use crate::workbook::RunDocument;
-use paper::{BLACK, BLUE, GREY, MARGIN, PAGE, Paper, RED, SMALL, STRONG, TEXT, TITLE};
+use paper::{BLACK, BLUE, GREY, MARGIN, PAGE, PALE, Paper, RED, SMALL, STRONG, TEXT, TITLE, WHITE};
+pub use parts::{DesignResult, PdfContent, PdfPart};
 use plot::Plot;
 
 /// Maximum number of curves.
@@ -22,6 +26,18 @@ const FACTS: [f32; 2] = [0.0, 90.0];
 const FIGURES: [f32; 3] = [0.0, 130.0, 220.0];
 const VARIABLES: [f32; 4] = [0.0, 130.0, 220.0, 400.0];
 const RANKED: [f32; 4] = [0.0, 170.0, 290.0, 410.0];
+const POINTS: [f32; 4] = [0.0, 190.0, 280.0, 370.0];
+/// Metrics of designs side by side, in a table of this width of columns.
+const DESIGNS: usize = 4;
+const METRIC: f32 = 130.0;
+/// Size of the picture of the mechanism, relative to its own.
+const PICTURE_SCALE: f32 = 1.15;
+/// Radius of a joint in it, and its number of corners.
+const PIN: (f32, f32) = (3.4, 24.0);
+/// Changes of coordinates below this are round-off, m.
+const SAME_PLACE: f64 = 1e-12;
+/// Significant digits of coordinates.
+const PLACE_DIGITS: usize = 8;
 /// Length of the longest bar of a ranking.
 const BAR: f32 = 110.0;
 
@@ -30,10 +46,26 @@ impl RunDocument<'_> {
     ///
     /// # Errors
     /// Fails if `out` cannot be written.
-    pub fn write_pdf(&self, out: &mut impl Write) -> io::Result<Vec<String>> {
+    pub fn write_pdf(&self, content: &PdfContent, out: &mut impl Write) -> io::Result<Vec<String>> {
         let mut paper = Paper::new();
         self.head(&mut paper);
-        let mut left_out: Vec<String> = self.drawn(&mut paper).into_iter().collect();
+        let mut left_out = Vec::new();
+        for part in PdfPart::ALL.into_iter().filter(|part| content.has(*part)) {
+            match part {
+                PdfPart::Picture => picture(&mut paper, &content.picture),
+                PdfPart::Metrics => self.metrics(&mut paper, &content.designs),
+                PdfPart::Hardpoints => self.places(&mut paper, &content.designs),
+                PdfPart::Variables => self.variables(&mut paper),
+                PdfPart::Curves => left_out.extend(self.drawn(&mut paper)),
+                PdfPart::Influence => left_out.extend(self.influence(&mut paper)),
+            }
+        }
+        paper.end(&self.summary.model.name, GENERATOR, out)?;
+        Ok(left_out.into_iter().map(|left_out| format!("not in `report.pdf`: {left_out}")).collect())
+    }
+
+    /// Writes the most influential variables of each measure; returns a note on omitted ones.
+    fn influence(&self, paper: &mut Paper) -> Option<String> {
         let rankings =
             self.summary.sensitivities.iter().filter(|r| r.order == "value" && !r.largest.is_empty());
         let rankings: Vec<&Ranking> = rankings.collect();
@@ -42,14 +74,12 @@ impl RunDocument<'_> {
             let most = "The largest sensitivity to each variable over the motion, with its sign and time; bars compare variables of one unit.";
             paper.paragraph(TEXT, GREY, most);
         }
-        rankings.iter().for_each(|ranking| ranked(&mut paper, ranking));
-        if rankings.iter().any(|ranking| ranking.largest.len() > MOST_RANKED) {
-            left_out.push(format!(
+        rankings.iter().for_each(|ranking| ranked(paper, ranking));
+        rankings.iter().any(|ranking| ranking.largest.len() > MOST_RANKED).then(|| {
+            format!(
                 "only the {MOST_RANKED} most influential variables of each measure are shown; `summary.json` has all"
-            ));
-        }
-        paper.end(&self.summary.model.name, GENERATOR, out)?;
-        Ok(left_out.into_iter().map(|left_out| format!("not in `report.pdf`: {left_out}")).collect())
+            )
+        })
     }
 
     /// Writes the name of the model and the facts of the run.
@@ -78,6 +108,11 @@ impl RunDocument<'_> {
         for d in summary.diagnostics.iter().filter(worth) {
             paper.row(TEXT, &FACTS, &[d.code, &d.message]);
         }
+    }
+
+    /// Writes the metrics, and those of the named designs next to them.
+    fn metrics(&self, paper: &mut Paper, designs: &[DesignResult]) {
+        let (summary, model) = (self.summary, &self.file.model);
         if !summary.metrics.is_empty() {
             paper.heading("Key figures", 2.0 * TEXT.line());
             paper.row(STRONG, &FIGURES, &["metric", "value", "what"]);
@@ -86,6 +121,69 @@ impl RunDocument<'_> {
                 paper.row(TEXT, &FIGURES, &[&metric.name, &value, &metric.what]);
             }
         }
+        for designs in designs.chunks(DESIGNS).filter(|_| !model.metrics.is_empty()) {
+            paper.heading("Key figures by design", 2.0 * TEXT.line());
+            let width = (PAGE.0 - 2.0 * MARGIN - METRIC) / (designs.len() + 1) as f32;
+            let columns: Vec<f32> =
+                [0.0].into_iter().chain((0..=designs.len()).map(|k| METRIC + k as f32 * width)).collect();
+            let names = ["metric", "nominal"].into_iter().chain(designs.iter().map(|d| d.name.as_str()));
+            paper.row(STRONG, &columns, &names.collect::<Vec<_>>());
+            for (k, (metric, nominal)) in model.metrics.iter().zip(&summary.metrics).enumerate() {
+                let of = model.metric_dimension(metric);
+                let shown =
+                    |value: Option<f64>| value.map_or("-".into(), |value| with_unit(value, &nominal.unit));
+                let others = designs.iter().map(|d| d.metrics[k].map(|x| self.file.units.from_si(of, x)));
+                let values: Vec<String> = [nominal.value].into_iter().chain(others).map(shown).collect();
+                let cells = [metric.name.as_str()].into_iter().chain(values.iter().map(String::as_str));
+                paper.row(TEXT, &columns, &cells.collect::<Vec<_>>());
+            }
+        }
+    }
+
+    /// Writes the hardpoints, and the coordinates that each named design changes.
+    fn places(&self, paper: &mut Paper, designs: &[DesignResult]) {
+        let (model, units) = (&self.file.model, self.file.units);
+        let length = unit(units, Quantity::Length);
+        let shown = |x: f64| rounded(units.from_si(Quantity::Length, x), PLACE_DIGITS);
+        let named: Vec<usize> =
+            (0..model.hardpoints.len()).filter(|h| !model.hardpoints[*h].unnamed).collect();
+        if named.is_empty() {
+            return;
+        }
+        paper.heading("Hardpoints", 2.0 * TEXT.line());
+        let [x, y, z] = ["x", "y", "z"].map(|axis| format!("{axis} [{length}]"));
+        paper.row(STRONG, &POINTS, &["hardpoint", &x, &y, &z]);
+        for h in &named {
+            let [x, y, z] = model.hardpoints[*h].position.to_array().map(shown);
+            paper.row(TEXT, &POINTS, &[&model.hardpoints[*h].name, &x, &y, &z]);
+        }
+        for design in designs {
+            let coordinates = named.iter().flat_map(|h| {
+                let [old, new] = [model.hardpoints[*h].position, design.places[*h]].map(|p| p.to_array());
+                ["x", "y", "z"]
+                    .into_iter()
+                    .zip(old.into_iter().zip(new))
+                    .map(|(axis, values)| (*h, axis, values))
+            });
+            let moved: Vec<_> =
+                coordinates.filter(|(_, _, (old, new))| (new - old).abs() > SAME_PLACE).collect();
+            if moved.is_empty() {
+                continue;
+            }
+            paper.heading(&format!("Hardpoints of {}", design.name), 2.0 * TEXT.line());
+            let [old, new, change] = ["old", "new", "change"].map(|what| format!("{what} [{length}]"));
+            paper.row(STRONG, &POINTS, &["coordinate", &old, &new, &change]);
+            for (h, axis, (old, new)) in moved {
+                let name = format!("{}.{axis}", model.hardpoints[h].name);
+                let [old, new, change] = [old, new, new - old].map(shown);
+                paper.row(TEXT, &POINTS, &[&name, &old, &new, &change]);
+            }
+        }
+    }
+
+    /// Writes the design variables.
+    fn variables(&self, paper: &mut Paper) {
+        let summary = self.summary;
         if !summary.model.variables.is_empty() {
             paper.heading("Design variables", 2.0 * TEXT.line());
             paper.row(STRONG, &VARIABLES, &["variable", "unit", "change", "over the motion"]);
@@ -122,6 +220,37 @@ impl RunDocument<'_> {
         }
         let more = outputs.len().saturating_sub(MOST_CURVES);
         (more > 0).then(|| format!("{}; `motion.{}` has all", count(more, "more curve"), self.suffix))
+    }
+}
+
+/// Draws the mechanism.
+fn picture(paper: &mut Paper, strokes: &[Stroke]) {
+    if strokes.is_empty() {
+        return;
+    }
+    let [width, height] = PICTURE.map(|size| size as f32 * PICTURE_SCALE);
+    paper.need(height);
+    paper.y -= height;
+    let (left, bottom) = ((PAGE.0 - width) / 2.0, paper.y);
+    let place =
+        |[x, y]: [f64; 2]| [left + x as f32 * PICTURE_SCALE, bottom + height - y as f32 * PICTURE_SCALE];
+    let all = |points: &[[f64; 2]]| points.iter().map(|p| place(*p)).collect::<Vec<_>>();
+    for stroke in strokes {
+        match stroke {
+            Stroke::Body(points) => paper.shape(PALE, BLACK, 2.4, &all(points)),
+            Stroke::Guide(points) => paper.lines(GREY, 0.9, all(points)),
+            Stroke::Path(points) => paper.lines(RED, 1.6, all(points)),
+            Stroke::Block(points) => paper.shape(WHITE, BLACK, 1.4, &all(points)),
+            Stroke::Pin(at, is_grounded) => {
+                let [x, y] = place(*at);
+                let corner = |k: u8| {
+                    let (sin, cos) = (std::f32::consts::TAU * f32::from(k) / PIN.1).sin_cos();
+                    [x + PIN.0 * cos, y + PIN.0 * sin]
+                };
+                let fill = if *is_grounded { BLACK } else { WHITE };
+                paper.shape(fill, BLACK, 1.3, &(0..PIN.1 as u8).map(corner).collect::<Vec<_>>());
+            }
+        }
     }
 }
 

@@ -43,6 +43,7 @@ pub type Colour = [f32; 3];
 pub const BLACK: Colour = [0.1, 0.1, 0.12];
 pub const GREY: Colour = [0.45, 0.47, 0.5];
 pub const PALE: Colour = [0.85, 0.86, 0.88];
+pub const WHITE: Colour = [1.0, 1.0, 1.0];
 pub const BLUE: Colour = [0.02, 0.37, 0.73];
 pub const RED: Colour = [0.7, 0.33, 0.6];
 
@@ -206,6 +207,19 @@ impl Paper {
             }
         }
         content.stroke();
+    }
+
+    /// Draws a filled outline.
+    pub fn shape(&mut self, fill: Colour, colour: Colour, width: f32, points: &[[f32; 2]]) {
+        let Some(([x, y], rest)) = points.split_first() else { return };
+        let content = self.content();
+        content.set_stroke_rgb(colour[0], colour[1], colour[2]).set_line_width(width);
+        content.set_line_cap(pdf_writer::types::LineCapStyle::RoundCap);
+        content.set_line_join(pdf_writer::types::LineJoinStyle::RoundJoin);
+        content.set_fill_rgb(fill[0], fill[1], fill[2]);
+        content.move_to(*x, *y);
+        rest.iter().for_each(|[x, y]| _ = content.line_to(*x, *y));
+        content.close_path().fill_nonzero_and_stroke();
     }
 
     /// Draws a filled rectangle.

@@ -23,7 +23,7 @@ const TRIAL: f64 = 1e-4;
 impl ModelFile {
     /// Text of this file with the design changed: variable k of [`model`](Self::model) at `design[k]` (missing
     /// entries are 0) becomes 0, the new nominal design. Comments, order, layout and untouched numbers stay as they
-    /// are; expressions keep their dependence on them; bounds stay at the same values.
+    /// are; expressions keep their dependence on them; bounds and named designs stay at the same values.
     ///
     /// The new text is read back and verified to describe the changed design to round-off.
     ///
@@ -62,6 +62,7 @@ impl ModelFile {
         edit.laws();
         edit.joints();
         edit.bounds();
+        edit.designs();
         if !edit.faults.is_empty() {
             return Err(Diagnostics::new(self.source.clone(), edit.faults));
         }
@@ -536,6 +537,24 @@ impl Edit<'_> {
                     );
                     break;
                 }
+            }
+        }
+    }
+
+    /// Values of named designs stay the same: x of a variable whose value v becomes 0 is written as x - v. Those of
+    /// parameters are absolute, and variables that a design does not name are those of the new nominal design.
+    fn designs(&mut self) {
+        let model = &self.file.model;
+        for design in &model.designs {
+            for (variable, by) in &design.changes {
+                let of = &model.variables[variable.0];
+                let value = self.values[variable.0];
+                if value == 0.0 || self.document.get("parameters").and_then(|p| p.get(&of.name)).is_some() {
+                    continue;
+                }
+                let near = (by - value).abs() <= ROUND_OFF * by.abs().max(value.abs());
+                let new = if near { 0.0 } else { by - value };
+                self.write(&[Key("designs"), Key(&design.name), Key(&of.name)], of.quantity, *by, new);
             }
         }
     }

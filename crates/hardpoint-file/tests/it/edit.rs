@@ -196,3 +196,23 @@ fn changes_without_a_number_in_the_file_are_reported_before_writing() {
     let beyond = refused(&file, &of(&file, &[("B_y", 0.006)])).unwrap();
     assert_eq!(beyond, "the change of `B_y` cannot be saved: the changed design is beyond its bounds");
 }
+
+#[test]
+fn named_designs_stay_at_the_same_values() {
+    let designs =
+        "[designs.high]\r\nB_y = 2.5 # mm\r\nreach = 310\r\n[designs.other]\r\nC_x = 4\r\nB_y = 1\r\n";
+    let file = parse(&format!("{ROD}{designs}"), "rod.toml").unwrap();
+    let change = of(&file, &[("B_y", 0.001), ("reach", 0.005)]);
+    let text = file.edit(&change).unwrap();
+    let expected = designs.replace("2.5 # mm", "1.5 # mm").replace("B_y = 1\r", "B_y = 0\r");
+    assert!(text.ends_with(&expected), "{text}");
+    // The point is where it was in the design, and the design is nominal in what it does not name.
+    let again = parse(&text, "rod.toml").unwrap();
+    let places = |file: &ModelFile| {
+        let named = file.model.designs.iter().find(|design| design.name == "high").unwrap();
+        file.model.hardpoint_places(&named.changes_of(file.model.variables.len()))
+    };
+    for (before, after) in places(&file).into_iter().zip(places(&again)) {
+        assert!((before - after).norm() < 1e-12, "{before:?} {after:?}");
+    }
+}
