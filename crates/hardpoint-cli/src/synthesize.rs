@@ -37,7 +37,7 @@ pub fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome,
         Outcome::BadModel
     })?;
     let folder = session.folder(options.output.as_deref())?;
-    let mut found = found(session, &file, options.answers)?;
+    let mut found = linkages_of(session, &file, options.answers)?;
     session.line(&text::bold(&file.name));
     if let Some(folder) = folder {
         write(session, &file, &mut found, folder)?;
@@ -58,7 +58,7 @@ pub fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome,
 }
 
 /// Linkages of a task that the engine has followed.
-pub struct Found {
+pub struct SynthesizedLinkages {
     pub facts: SynthesisFacts,
     answers: Vec<Answer>,
     /// Text and model of each answer.
@@ -66,7 +66,11 @@ pub struct Found {
 }
 
 /// Finds the linkages of a task, and follows each with the engine.
-pub fn found(session: &Session, file: &TaskFile, most: Option<NonZero<usize>>) -> Result<Found, Outcome> {
+pub fn linkages_of(
+    session: &Session,
+    file: &TaskFile,
+    most: Option<NonZero<usize>>,
+) -> Result<SynthesizedLinkages, Outcome> {
     let mut task = task_of(file);
     if let Some(answers) = most {
         task.answers = answers.get().min(MOST);
@@ -101,10 +105,10 @@ pub fn found(session: &Session, file: &TaskFile, most: Option<NonZero<usize>>) -
             None => facts.not_reproduced += 1,
         }
     }
-    Ok(Found { facts, answers, models })
+    Ok(SynthesizedLinkages { facts, answers, models })
 }
 
-impl Found {
+impl SynthesizedLinkages {
     /// Pages of the answers, each with its rank and the kind of its linkage.
     pub fn pages(&self, session: &Session) -> Result<Vec<Page>, Outcome> {
         let page = |(fact, (_, model)): (&AnswerFact, &(String, ModelFile))| {
@@ -116,8 +120,13 @@ impl Found {
 }
 
 /// Writes models, pages, the table, and the summary last.
-fn write(session: &Session, file: &TaskFile, found: &mut Found, mut folder: Folder) -> Result<(), Outcome> {
-    let Found { facts, answers, models } = found;
+fn write(
+    session: &Session,
+    file: &TaskFile,
+    found: &mut SynthesizedLinkages,
+    mut folder: Folder,
+) -> Result<(), Outcome> {
+    let SynthesizedLinkages { facts, answers, models } = found;
     session.patient(true);
     let mut meter = session.meter("making pages", "answers");
     let mut cards = Vec::new();

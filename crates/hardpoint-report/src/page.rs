@@ -928,8 +928,8 @@ pub fn shared_script() -> String {
     part("engine", ENGINE) + &part("code", CODE)
 }
 
-/// Page of this crate that loads its engine and its code from the file [`SHARED`] next to it, with a link to the page of
-/// all models.
+/// Page of this crate that loads its engine and its code from the file [`SHARED`] next to it, with a link to the page
+/// of all models.
 pub fn sharing(page: &str, models: &str) -> String {
     const END: &str = "<script type=\"text/plain\" id=\"code\"></script>";
     let missing =

@@ -16,7 +16,7 @@ pub(crate) fn lanes_of(lines: &mut [AlignedLanes]) -> &mut [Lanes] {
     bytemuck::cast_slice_mut(lines)
 }
 
-/// So many lines of zeros.
+/// Lines of zeros.
 pub(crate) fn zeros(length: usize) -> Vec<AlignedLanes> {
     let mut lines = Vec::with_capacity(length);
     lengthen(&mut lines, length);

@@ -7,7 +7,7 @@ import { free } from './target'
 
 /** Significant digits of a written number: the rest is rounding of the sums that make it. */
 const DIGITS = 12
-/** Bodies of the same design have the same poses to this part of the largest coordinate: curves are of single precision. */
+/** Poses of the same design agree to this part of the largest coordinate: curves are of single precision. */
 const SAME = 1e-5
 
 /** A model's text with a design in `[designs]`. */

@@ -380,7 +380,7 @@ fn synthesized(session: &Session, asked: &StudyRequest) -> Result<End, Outcome> 
         session.not_read(&diagnostics);
         Outcome::BadModel
     })?;
-    let found = synthesize::found(session, &task, None)?;
+    let found = synthesize::linkages_of(session, &task, None)?;
     let pages = found.pages(session)?;
     let message = match found.facts.advice() {
         Some((why, help)) => format!("{why}; {help}"),

@@ -29,8 +29,8 @@ pub(super) const CONTRACTION: f64 = 0.9;
 /// Number of passes of a linear system over its bounds.
 const PASSES: usize = 2;
 
-/// The formulas of a mechanism over one kind of number. What is given to them is a `dyn Fn`, so that there is one copy
-/// of them for each.
+/// The formulas of a mechanism over one kind of number. What is given to them is a `dyn Fn`, which makes
+/// one copy of them for each.
 pub(super) struct Formulas<T> {
     pub state: State<T>,
     parts: PlanGeometry<T>,

@@ -62,7 +62,7 @@ impl<T: Real> Pose<T> {
         T::operation(
             #[inline(always)]
             || {
-                // Ad(X) [w; v] = [A w;  A v + r x A w]                                                                (2)
+                // Ad(X) [w; v] = [A w;  A v + r x A w]                                                              (2)
                 let w = self.rot * e.w;
                 Twist { w, v: self.r.cross_plus(w, self.rot * e.v) }
             },

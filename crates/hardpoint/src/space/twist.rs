@@ -91,7 +91,7 @@ impl<T: Real> Twist<T> {
         T::operation(
             #[inline(always)]
             || {
-                // ad(V) x = [V_w x x_w;  V_w x x_v + V_v x x_w]                                                      (3)
+                // ad(V) x = [V_w x x_w;  V_w x x_v + V_v x x_w]                                                     (3)
                 Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
             },
         )
@@ -193,7 +193,7 @@ impl<T: Real> Wrench<T> {
         T::operation(
             #[inline(always)]
             || {
-                // l . W = m . w + f . v                                                                               (1)
+                // l . W = m . w + f . v                                                                             (1)
                 let (m, f, w, v) = (self.m, self.f, t.w, t.v);
                 let moment = m.dot(w);
                 f.z.times_plus(v.z, f.y.times_plus(v.y, f.x.times_plus(v.x, moment)))
