@@ -16,7 +16,7 @@
 use std::mem::take;
 
 use crate::design::Geometry;
-use crate::model::{DriverId, ElementId, MeasureKind, Model};
+use crate::model::{DriverId, ElementId, MeasureKind, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Differentiated, Turning};
@@ -60,6 +60,8 @@ pub(super) struct LoadAdjoint<'a, T> {
     weights: Weights<T>,
     /// Per body: Y, less that of ground.
     virtual_twists: Vec<Twist<T>>,
+    /// Per coordinate: its speed in the virtual motion.
+    virtual_speeds: Vec<T>,
     /// Per body: coefficients of W, W., W... Those of ground are not used.
     pub by_twists: Vec<[Wrench<T>; 3]>,
     pub turning: Turning<T>,
@@ -73,6 +75,7 @@ impl<'a, T: Real> LoadAdjoint<'a, T> {
             function,
             weights,
             virtual_twists: vec![Twist::zero(); bodies],
+            virtual_speeds: vec![T::zero(); topology.coordinates.len()],
             by_twists: vec![[Wrench::zero(); 3]; bodies],
             turning: Turning::new(topology),
             multipliers: Vec::new(),
@@ -222,7 +225,15 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         state: &mut State<T>,
     ) {
         let Self { model, constant, position, transmitted, virtual_motion, .. } = self;
-        let LoadAdjoint { function, weights, virtual_twists, by_twists, turning, multipliers } = load;
+        let LoadAdjoint {
+            function,
+            weights,
+            virtual_twists,
+            virtual_speeds,
+            by_twists,
+            turning,
+            multipliers,
+        } = load;
         multipliers.clear();
         let applied = position.loads(model, constant);
         weights.set(transmitted, |transmitted| function.derivative(&at.friction, &applied, transmitted));
@@ -230,6 +241,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         // The wrench on ground is -sum F.
         let ground = weights.of_ground();
         virtual_twists.iter_mut().zip(virtual_motion.twists()).for_each(|(to, y)| *to = *y - ground);
+        virtual_speeds.copy_from_slice(virtual_motion.speeds());
         for (b, to) in by_twists.iter_mut().enumerate() {
             *to = self.inertia[b].weights(model, &self.inertial[b], virtual_twists[b]);
         }
@@ -296,6 +308,25 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         self.forced.iter().fold(T::zero(), |sum, b| sum + work(b))
     }
 
+    /// Twists of the bodies in the virtual motion of each load; of the load of a driver those while it moves alone.
+    pub fn virtual_twists(&self) -> impl Iterator<Item = &[Twist<T>]> + Clone {
+        self.loads.iter().map(|load| &load.virtual_twists[..])
+    }
+
+    /// Derivatives of the loads of drivers at rest by these drivers, with the coefficients of the forces; calls `each`
+    /// with the numbers of load and driver, and the derivative. The motion of a driver alone is the virtual motion of its
+    /// load.
+    pub fn differentiate_by_drivers(&self, mut each: impl FnMut(usize, usize, T)) {
+        for (b, driver) in self.loads.iter().enumerate() {
+            for (a, load) in self.loads.iter().enumerate() {
+                let on_bodies = load.by_twists.iter().zip(&driver.virtual_twists);
+                let on_coordinates = load.turning.pulls.iter().zip(&driver.virtual_speeds);
+                let work = on_bodies.fold(T::zero(), |sum, (by, y)| sum + by[0].on(*y));
+                each(a, b, on_coordinates.fold(work, |sum, (pull, speed)| pull.times_plus(*speed, sum)));
+            }
+        }
+    }
+
     /// Derivatives of the loads of drivers at rest by a variable whose sensitivities have been solved, with the
     /// coefficients of the forces; calls `each` with the number of the load and its derivative.
     pub fn differentiate_at_rest(&mut self, by: &Differentiated<'_, T>, mut each: impl FnMut(usize, T)) {
@@ -310,7 +341,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         }
         self.sums.fill(T::zero());
         let loads = self.loads.iter().map(|load| (&load.by_twists[..], &load.turning));
-        field.add_work((topology, state), flow, loads, &mut self.sums);
+        field.add_work_at_rest((topology, state), flow, loads, &mut self.sums);
         for (n, load) in self.loads.iter().enumerate() {
             let explicit = if is_explicit { self.work_of_forces(load) } else { T::zero() };
             each(n, self.sums[n] + explicit);
@@ -359,6 +390,24 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             let geometry = &self.changed[variable.0].geometry;
             each(n, self.sums[n] + self.partial(load, geometry, &at.friction));
         }
+    }
+
+    /// Derivatives of deflections by the variable that was differentiated last, in the order of these directions.
+    pub fn deflections<'s>(
+        &'s self,
+        variable: VariableId,
+        directions: &'s [(ElementId, usize)],
+    ) -> impl Iterator<Item = T> + 's {
+        let applied = self.position.loads(self.model, &self.changed[variable.0].geometry);
+        // The directions of an element follow each other.
+        directions.chunk_by(|a, b| a.0 == b.0).flat_map(move |of_element| {
+            let opening = applied.opening_at(of_element[0].0);
+            let of = move |(_, k): &(_, usize)| match &opening {
+                Some(opening) => opening.coordinates[*k].d,
+                None => T::constant(f64::NAN),
+            };
+            of_element.iter().map(of)
+        })
     }
 }
 

@@ -29,6 +29,9 @@ pub(crate) struct LoadSolver<'a> {
     pub(super) values: Vec<f64>,
     /// Derivatives per variable and requested measure.
     slopes: Vec<f64>,
+    /// Elements and directions whose deflections are differentiated, and the derivatives per variable and direction.
+    elastic: Vec<(ElementId, usize)>,
+    deflection_slopes: Vec<f64>,
 }
 
 impl<'a> LoadSolver<'a> {
@@ -57,7 +60,15 @@ impl<'a> LoadSolver<'a> {
             values: vec![f64::NAN; measures.len()],
             slopes: vec![f64::NAN; measures.len() * variables],
             measures,
+            elastic: Vec::new(),
+            deflection_slopes: Vec::new(),
         }
+    }
+
+    /// Differentiates the deflections in these directions too.
+    pub fn with_deflections(self, elastic: Vec<(ElementId, usize)>) -> Self {
+        let variables = self.derivatives.as_ref().map_or(0, |derivatives| derivatives.changed.len());
+        Self { deflection_slopes: vec![f64::NAN; elastic.len() * variables], elastic, ..self }
     }
 
     /// Checks all reactions against self-stress, requested or not.
@@ -171,6 +182,11 @@ impl<'a> LoadSolver<'a> {
         }
     }
 
+    /// Derivatives by every variable of the deflection in direction i of those that are differentiated.
+    pub fn deflection_derivatives(&self, i: usize) -> impl Iterator<Item = f64> {
+        self.deflection_slopes.iter().skip(i).step_by(self.elastic.len().max(1)).copied()
+    }
+
     /// Value of a given force or moment, positive along its own direction.
     pub fn given(&self, element: ElementId) -> f64 {
         self.equilibrium.applied().size(element)
@@ -204,6 +220,9 @@ impl<'a> LoadSolver<'a> {
         derivatives.differentiate(equilibrium, by, |n, slope| {
             slopes[n] = if values[n].is_nan() { f64::NAN } else { slope };
         });
+        let elastic = &self.elastic[..];
+        let slopes = self.deflection_slopes.iter_mut().skip(by.variable.0 * elastic.len());
+        slopes.zip(derivatives.deflections(by.variable, elastic)).for_each(|(to, slope)| *to = slope);
     }
 }
 

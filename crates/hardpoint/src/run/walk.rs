@@ -105,12 +105,15 @@ impl<'a> Walk<'a> {
         let mut one = Stepper::new(model, topology, PlanGeometry::same(model, topology, geometry, laws));
         let angles = PathAngles::of(analysis.design_map(), topology, &design.values, design.scope.measures);
         one.turns = angles.map(|angles| TurnCounter::new(Box::new(angles)));
+        let solver = || {
+            let solver = SensitivitySolver::new(model, topology, fields, wanted.clone());
+            if openings.is_some() { solver.at_rest() } else { solver }
+        };
         Self {
             analysis,
             one,
             batch: TimeBatch::new(None, &[], None),
-            solver: (!fields.is_empty())
-                .then(|| SensitivitySolver::new(model, topology, fields, wanted.clone())),
+            solver: (!fields.is_empty()).then(solver),
             loads: None,
             equilibrium,
             wanted,
