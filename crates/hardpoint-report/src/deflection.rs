@@ -78,8 +78,8 @@ impl DeflectionFact {
         Table::of("Deflections", note, &columns, facts).if_any()
     }
 
-    /// Writes `deflections.csv`: a row for each element and direction, with the derivative by every variable per unit of
-    /// it.
+    /// Writes `deflections.csv`: a row for each element and direction, with the derivative by every variable per unit
+    /// of it.
     ///
     /// # Errors
     /// If `out` cannot be written.

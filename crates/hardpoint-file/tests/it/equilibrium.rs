@@ -1,9 +1,12 @@
 //! Equilibria of mechanisms with elastic joints: published data of a double wishbone on four bushings and of a lever in
 //! closed form, limits, identities, and what must not matter.
 
+use std::path::Path;
+
 use hardpoint::load::LargestDeflection;
-use hardpoint::model::{Model, VariableId};
+use hardpoint::model::{Model, Reduction, VariableId};
 use hardpoint::motion::StopKind;
+use hardpoint::run::{metrics, misfits, peaks};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse};
@@ -885,6 +888,51 @@ fn faults_are_reported() {
         .map(|text| parse(text, "lever.toml").err().map_or("none".into(), |e| e.to_string()))
         .collect();
     snapshot("equilibrium_faults", &found.join("\n\n"));
+}
+
+/// The template of a K&C rig with further metrics.
+fn rig(metrics: &str) -> Model {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-cli/templates/k-and-c.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    file(&text.replace("[metrics]", &format!("[metrics]\n{metrics}"))).model
+}
+
+#[test]
+fn a_run_for_metrics_has_the_same_metrics_to_the_last_bit() {
+    let model = rig(
+        "soft = { case = \"lateral_in_phase\", of = \"left_toe_per_side\", take = \"change\" }\n\
+         softest = { case = \"braking\", of = \"left_toe_per_brake\", take = \"max\" }\n\
+         halfway = { case = \"driving\", of = \"left.toe\", take = \"value\", at = 0.45 }\n\
+         load = { case = \"steer\", of = \"left_wheel_load\", take = \"rms\", target = [[0, 1000], [1, 2000]] }\n\
+         middle = { case = \"opposite_travel\", of = \"left.toe\", over = \"left.wheel_travel\", take = \"mean\" }\n",
+    );
+    // NaN is the same as NaN.
+    let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    let mut left_out = 0;
+    for motion in model.motions() {
+        let analysis = Analysis::new(&motion).unwrap();
+        let all = analysis.run();
+        let few = analysis.solve(Run::new().for_metrics());
+        assert!(all.stop.is_none() && few.stop.is_none());
+        let pairs = metrics(&motion, &all).into_iter().zip(metrics(&motion, &few));
+        for (metric, (a, b)) in motion.metrics.iter().zip(pairs) {
+            assert!(a.d.iter().any(|d| *d != 0.0), "{}", metric.name);
+            assert_eq!(bits(&b.d), bits(&a.d), "{}", metric.name);
+            assert_eq!([b.value, b.time, b.error], [a.value, a.time, a.error], "{}", metric.name);
+            if let Reduction::Rms(_) = metric.take {
+                assert_eq!(misfits(&motion, &few, metric), misfits(&motion, &all, metric), "{}", metric.name);
+            }
+            if let Reduction::Greatest | Reduction::Range = metric.take {
+                let [a, b] = [&all, &few].map(|found| peaks(&motion, found, metric, 1.0));
+                assert_eq!(b, a, "{}", metric.name);
+            }
+        }
+        let toe = few.measured.index("left.toe").unwrap();
+        let unknown =
+            |k: &usize| few.measured.variables == 0 || few.measured.d(*k, VariableId(0), toe)[0].is_nan();
+        left_out += (0..few.measured.len()).filter(unknown).count();
+    }
+    assert!(left_out > 50, "{left_out}");
 }
 
 #[test]

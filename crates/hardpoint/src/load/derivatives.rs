@@ -123,6 +123,8 @@ pub(super) struct LoadDerivatives<'a, T> {
     equations: Vec<LoadAdjoint<'a, T>>,
     /// Derivatives of the loads by the last variable.
     sums: Vec<T>,
+    /// Components of all virtual motions, one load after the other for each.
+    moves: Vec<T>,
 }
 
 impl<'a, T: Real> LoadDerivatives<'a, T> {
@@ -161,6 +163,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             closures: TurningClosures::new(topology),
             virtual_motion: VirtualMotion::new(topology, bodies),
             sums: vec![T::zero(); loads.len()],
+            moves: Vec::new(),
             loads,
             equations,
         }
@@ -314,16 +317,33 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
     }
 
     /// Derivatives of the loads of drivers at rest by these drivers, with the coefficients of the forces; calls `each`
-    /// with the numbers of load and driver, and the derivative. The motion of a driver alone is the virtual motion of its
-    /// load.
-    pub fn differentiate_by_drivers(&self, mut each: impl FnMut(usize, usize, T)) {
-        for (b, driver) in self.loads.iter().enumerate() {
-            for (a, load) in self.loads.iter().enumerate() {
-                let on_bodies = load.by_twists.iter().zip(&driver.virtual_twists);
-                let on_coordinates = load.turning.pulls.iter().zip(&driver.virtual_speeds);
-                let work = on_bodies.fold(T::zero(), |sum, (by, y)| sum + by[0].on(*y));
-                each(a, b, on_coordinates.fold(work, |sum, (pull, speed)| pull.times_plus(*speed, sum)));
+    /// with the numbers of load and driver, and the derivative. The motion of a driver alone is the virtual motion of
+    /// its load.
+    pub fn differentiate_by_drivers(&mut self, mut each: impl FnMut(usize, usize, T)) {
+        // K = P Y^T, with a row of P and of Y per load, over twists of bodies and speeds of coordinates. Y is stored by
+        // columns: many coefficients are zero, since a load does not depend on all bodies.
+        let Self { loads, moves, sums, .. } = self;
+        let n = loads.len();
+        moves.clear();
+        if let Some(LoadAdjoint { virtual_twists, virtual_speeds, .. }) = loads.first() {
+            moves.resize(n * (6 * virtual_twists.len() + virtual_speeds.len()), T::zero());
+        }
+        for (b, load) in loads.iter().enumerate() {
+            let components =
+                load.virtual_twists.iter().flat_map(|y| [y.w.x, y.w.y, y.w.z, y.v.x, y.v.y, y.v.z]);
+            let speeds = load.virtual_speeds.iter().copied();
+            components.chain(speeds).enumerate().for_each(|(k, y)| moves[k * n + b] = y);
+        }
+        for (a, load) in loads.iter().enumerate() {
+            sums.fill(T::zero());
+            let on_bodies = load.by_twists.iter().flat_map(|by| by[0].work());
+            let on_coordinates = load.turning.pulls.iter().copied();
+            for (p, row) in on_bodies.chain(on_coordinates).zip(moves.chunks_exact(n)) {
+                if !p.vanishes() {
+                    sums.iter_mut().zip(row).for_each(|(sum, y)| *sum = y.times_plus(p, *sum));
+                }
             }
+            sums.iter().enumerate().for_each(|(b, sum)| each(a, b, *sum));
         }
     }
 

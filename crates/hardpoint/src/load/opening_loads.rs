@@ -143,9 +143,9 @@ impl<'a, T: Real> OpeningLoads<'a, T> {
         self.derivatives.add_force_coefficients(&self.statics);
     }
 
-    /// Derivatives of the forces by the openings, at the position that was prepared last; `each` receives the numbers of
-    /// the force and of the opening.
-    pub fn stiffness(&self, each: impl FnMut(usize, usize, T)) {
+    /// Derivatives of the forces by the openings, at the position that was prepared last; `each` receives the numbers
+    /// of force and opening.
+    pub fn stiffness(&mut self, each: impl FnMut(usize, usize, T)) {
         self.derivatives.differentiate_by_drivers(each);
     }
 
@@ -154,7 +154,8 @@ impl<'a, T: Real> OpeningLoads<'a, T> {
         self.derivatives.virtual_twists()
     }
 
-    /// Derivatives of the forces along direction k while all openings stand. `set_time` sets the contributions of the drivers' laws; `moved` receives the twists of the bodies.
+    /// Derivatives of the forces along direction k while all openings stand. `set_time` sets the contributions of the
+    /// drivers' laws; `moved` receives the twists of the bodies.
     pub fn derivatives(
         &mut self,
         (topology, state): (&Topology, &mut State<T>),

@@ -86,9 +86,15 @@ impl<'a> LoadSolver<'a> {
         &self.equilibrium.position.near
     }
 
-    /// Evaluates the loads at the position of a stepper at time t, from velocity and acceleration.
-    pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) {
+    /// Evaluates the loads at the position of a stepper at time t, from velocity and acceleration. Their derivatives
+    /// follow if `differentiates`, and are unknown otherwise.
+    pub fn step(&mut self, one: &mut Stepper<'_>, t: f64, differentiates: bool) {
         let Self { measures, turns, equilibrium, derivatives, checks_reactions, values, .. } = self;
+        let derivatives = derivatives.as_mut().filter(|_| differentiates);
+        if !differentiates {
+            self.slopes.fill(f64::NAN);
+            self.deflection_slopes.fill(f64::NAN);
+        }
         let Stepper { mechanism, turns: counted, .. } = one;
         let (topology, state, model) = (&mechanism.topology, &mut mechanism.state, equilibrium.model);
         equilibrium.set_motion(state, |d| mechanism.parts.law_of(d).at(t).d());

@@ -328,6 +328,11 @@ fn derivatives_at_rest(
             for k in first..usize::min(first + LANES, motion.len()) {
                 let Some(d) = sensitivities.at(k, b) else { break };
                 let states = motion.at(k);
+                if bodies.iter().any(|&b| d.body(b).dpi.x.is_nan()) {
+                    // This output time was left out.
+                    listed.iter().for_each(|&(_, m)| out(k, b, m, [f64::NAN; 3]));
+                    continue;
+                }
                 bodies.iter().for_each(|&b| poses[b] = at_rest(&states.body(b), &d.body(b)));
                 given.clear();
                 given.extend(more.slopes.at(k).zip(more.slopes.d(k, b)).map(|(v, d)| Dual { v, d }));
