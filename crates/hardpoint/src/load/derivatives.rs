@@ -16,7 +16,7 @@
 use std::mem::take;
 
 use crate::design::Geometry;
-use crate::model::{DriverId, ElementId, MeasureKind, Model, VariableId};
+use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Differentiated, Turning};
@@ -106,8 +106,11 @@ pub(super) struct LoadDerivatives<'a, T> {
     /// Required wrenches along the direction, and the bodies on which they may change.
     required: Vec<Wrench<Dual<T>>>,
     forced: Vec<usize>,
-    /// Per body: the forces that act on it.
+    /// Per body: the forces that act on it, and the bodies on which these forces act, itself included.
     forces_on: Vec<Vec<ElementId>>,
+    beside: Vec<Vec<usize>>,
+    /// Per body: true if it has masses.
+    has_mass: Vec<bool>,
     /// Per load: its derivatives by the unit twists W of a body.
     slopes: Vec<[T; 6]>,
     /// Derivatives of the friction equations along the direction, at constant reactions.
@@ -149,6 +152,8 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         Self {
             model,
             forced: forced_bodies(model, &changed),
+            beside: bodies_beside(model),
+            has_mass: bodies_with_masses(model),
             forces_on: forces_on_bodies(model),
             slopes: vec![[T::zero(); 6]; loads.len()],
             changed,
@@ -246,7 +251,10 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         virtual_twists.iter_mut().zip(virtual_motion.twists()).for_each(|(to, y)| *to = *y - ground);
         virtual_speeds.copy_from_slice(virtual_motion.speeds());
         for (b, to) in by_twists.iter_mut().enumerate() {
-            *to = self.inertia[b].weights(model, &self.inertial[b], virtual_twists[b]);
+            *to = match self.has_mass[b] {
+                true => self.inertia[b].weights(model, &self.inertial[b], virtual_twists[b]),
+                false => [Wrench::zero(); 3],
+            };
         }
         let of = (&at.sites, &at.transmission);
         virtual_motion.turn(of, (topology, state, &self.closures), weights, turning, |body, load| {
@@ -294,8 +302,9 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
                 let applied = self.position.loads(self.model, &self.constant);
                 self.forces_on[b].iter().for_each(|e| applied.add(*e, &mut self.required));
                 applied.add_further(&mut self.required);
-                for (n, load) in self.loads.iter().enumerate() {
-                    self.slopes[n][unit] = self.work_of_forces(load);
+                for (slopes, load) in self.slopes.iter_mut().zip(&self.loads) {
+                    let work = |b: &usize| self.required[*b].derivative().on(load.virtual_twists[*b]);
+                    slopes[unit] = self.beside[b].iter().fold(T::zero(), |sum, b| sum + work(b));
                 }
             }
             self.position.bodies[b] = self.nominal[b];
@@ -453,6 +462,28 @@ pub(super) fn forces_on_bodies(model: &Model) -> Vec<Vec<ElementId>> {
         }
     }
     forces_on
+}
+
+/// Per body: the bodies on which the forces on it act, itself included, without ground.
+fn bodies_beside(model: &Model) -> Vec<Vec<usize>> {
+    let mut beside: Vec<Vec<usize>> = (0..model.bodies.len()).map(|b| vec![b]).collect();
+    for force in model.elements.iter().filter_map(|e| e.kind.force(model)) {
+        let [i, j] = force.acts_on.bodies(model).map(|b| b.0);
+        for (of, other) in [(i, j), (j, i)] {
+            if other != GROUND.0 && !beside[of].contains(&other) {
+                beside[of].push(other);
+            }
+        }
+    }
+    beside
+}
+
+/// Per body: true if it has masses.
+fn bodies_with_masses(model: &Model) -> Vec<bool> {
+    let mut has_mass = vec![false; model.bodies.len()];
+    let masses = model.elements.iter().filter_map(|e| e.kind.mass_on(model));
+    masses.for_each(|body| has_mass[body.0] = true);
+    has_mass
 }
 
 /// Bodies with forces, or with masses that a variable changes.
