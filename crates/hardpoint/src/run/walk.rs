@@ -56,6 +56,13 @@ pub(crate) struct PreparedDesign {
     pub needs: Option<Arc<NeededDerivatives>>,
 }
 
+impl PreparedDesign {
+    /// True if the derivatives of a measure are requested.
+    pub fn needs_derivatives_of(&self, measure: usize) -> bool {
+        self.needs.as_ref().is_none_or(|needs| needs.measure(measure))
+    }
+}
+
 /// Solver of one design at all output times.
 pub(crate) struct Walk<'a> {
     analysis: &'a Analysis<'a>,

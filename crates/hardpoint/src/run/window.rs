@@ -116,7 +116,9 @@ impl Analysis<'_> {
         });
         if loads {
             let measures = load_measures(model);
-            let solver = LoadSolver::new(self.design_map(), topology, &design.values, measures, sensitive);
+            let differentiates = sensitive && measures.iter().any(|m| design.needs_derivatives_of(*m));
+            let solver =
+                LoadSolver::new(self.design_map(), topology, &design.values, measures, differentiates);
             walk.loads = Some(solver);
         }
         let rows = usize::min(rows, model.times.len());
@@ -215,7 +217,7 @@ impl Analysis<'_> {
 /// Directions along which compliances and slopes at an equilibrium are derivatives: their derivatives by the variables
 /// are curvatures.
 fn derived_along(model: &Model, slopes: &Option<Slopes<'_>>, design: &PreparedDesign) -> Vec<Along> {
-    let is_needed = |m: usize| design.needs.as_ref().is_none_or(|needs| needs.measure(m));
+    let is_needed = |m: usize| design.needs_derivatives_of(m);
     let mut directions: Vec<Along> = Vec::new();
     for (_, measure) in model.measures.iter().enumerate().filter(|(m, _)| is_needed(*m)) {
         if let Some((_, force)) = measure.kind.compliance()
