@@ -335,7 +335,7 @@ fn run_in(
         }
         if file.model.has_loads() && !stopped_before {
             let _working = session.working("reactions of the joints");
-            let loads = analysis.loads(&[]);
+            let loads = analysis.loads_with_sensitivities(&[]);
             let (model, units) = (&file.model, file.units);
             let joints = folder
                 .write("loads.csv", |out| Ok(hardpoint_report::loads::write(model, units, &loads, out)?));
@@ -347,7 +347,9 @@ fn run_in(
             let deflections = DeflectionFact::all(model, units, &loads);
             let elastic = drivers.and_then(|()| match deflections.is_empty() {
                 true => Ok(()),
-                false => folder.write("deflections.csv", |out| Ok(DeflectionFact::write(&deflections, out)?)),
+                false => folder.write("deflections.csv", |out| {
+                    Ok(DeflectionFact::write(&deflections, model, units, out)?)
+                }),
             });
             elastic.map_err(|e| session.not_written(&e))?;
             let deflections = (!deflections.is_empty()).then_some("deflections.csv");

@@ -5,10 +5,12 @@ use std::io::Write;
 use hardpoint::load::Loads;
 use hardpoint::model::{Dimension, ElementId, Model};
 use hardpoint_file::Units;
+use hardpoint_table::csv::CsvWriter;
 
 use crate::figures::{number, unit, with_unit};
+use crate::metric::{MetricSensitivity, derivative_cells, derivative_headings};
 use crate::page::Table;
-use crate::record::{Column, record, write_rows};
+use crate::record::{Column, record};
 
 /// Names of the six directions.
 const DIRECTIONS: [&str; 6] = ["along x", "along y", "along z", "about x", "about y", "about z"];
@@ -18,27 +20,28 @@ record! {
     DeflectionFact::of(model: &Model, units: Units, loads: &Loads, i: usize, at: (ElementId, usize)) {
         let (element, direction) = at;
         let [dimension, force_dimension] = dimensions(direction);
-        let all = (0..loads.times.len()).map(|k| (k, loads.deflections_at(k)[i]));
-        let known = all.filter(|(_, d)| d.displacement.is_finite());
-        // The first of equal ones.
-        let largest = known.reduce(|most, next| {
-            if next.1.displacement.abs() > most.1.displacement.abs() { next } else { most }
-        });
+        let largest = loads.largest_deflections.get(i).and_then(Option::as_ref);
+        let derivatives = largest.into_iter().flat_map(|largest| model.variables.iter().zip(&largest.d));
+        let derivatives = derivatives.filter(|(_, d)| d.is_finite());
     }
     /// Name of the elastic joint or bushing.
     element: String = model.elements[element.0].name.clone();
     /// Direction: along or about an axis of the joint, or of the bushing.
     direction: &'static str = DIRECTIONS[direction];
     /// Largest deflection with its sign: of the second body relative to the first.
-    deflection: Option<f64> = largest.map(|(_, d)| units.from_si(dimension, d.displacement));
+    deflection: Option<f64> = largest.map(|largest| units.from_si(dimension, largest.deflection.displacement));
     /// Unit of the deflection.
     unit: String = unit(units, dimension);
     /// Elastic force or moment on the second body at that time.
-    force: Option<f64> = largest.map(|(_, d)| units.from_si(force_dimension, d.force));
+    force: Option<f64> = largest.map(|largest| units.from_si(force_dimension, largest.deflection.force));
     /// Unit of the force.
     force_unit: String = unit(units, force_dimension);
     /// Time of the largest deflection, s.
-    time: Option<f64> = largest.map(|(k, _)| loads.times[k]);
+    time: Option<f64> = largest.map(|largest| loads.times[largest.step]);
+    /// Sensitivities of the deflection at that time to every design variable that the mechanism can follow, if they
+    /// were solved.
+    sensitivities: Vec<MetricSensitivity> =
+        derivatives.map(|(by, d)| MetricSensitivity::of(model, units, dimension, by, *d)).collect();
 }
 
 /// Dimensions of the deflection in a direction, and of the force against it.
@@ -75,21 +78,22 @@ impl DeflectionFact {
         Table::of("Deflections", note, &columns, facts).if_any()
     }
 
-    /// Writes `deflections.csv`: a row for each element and direction.
+    /// Writes `deflections.csv`: a row for each element and direction, with the derivative by every variable per unit
+    /// of it.
     ///
     /// # Errors
     /// If `out` cannot be written.
-    pub fn write(facts: &[Self], out: impl Write) -> csv::Result<()> {
+    pub fn write(facts: &[Self], model: &Model, units: Units, out: impl Write) -> csv::Result<()> {
+        let mut csv = CsvWriter::new(out);
+        let names = ["element", "direction", "deflection", "deflection unit", "force", "force unit", "t [s]"];
+        csv.row(names.map(String::from).into_iter().chain(derivative_headings(model, units)))?;
         let shown = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
-        let columns: [Column<'_, &Self>; 7] = [
-            ("element", &|d| d.element.clone()),
-            ("direction", &|d| d.direction.to_owned()),
-            ("deflection", &|d| shown(d.deflection)),
-            ("deflection unit", &|d| d.unit.clone()),
-            ("force", &|d| shown(d.force)),
-            ("force unit", &|d| d.force_unit.clone()),
-            ("t [s]", &|d| shown(d.time)),
-        ];
-        write_rows(out, &columns, facts)
+        for d in facts {
+            let (deflection, force, time) = (shown(d.deflection), shown(d.force), shown(d.time));
+            let facts = [d.element.as_str(), d.direction, &deflection, &d.unit, &force, &d.force_unit, &time];
+            csv.row(facts.map(String::from).into_iter().chain(derivative_cells(model, &d.sensitivities)))?;
+        }
+        csv.end()?;
+        Ok(())
     }
 }

@@ -55,7 +55,7 @@ record! {
 
 record! {
     /// Sensitivity of a metric to a design variable.
-    MetricSensitivity::of(model: &Model, units: Units, of: Dimension, variable: &DesignVariable, d: f64) {
+    pub(crate) MetricSensitivity::of(model: &Model, units: Units, of: Dimension, variable: &DesignVariable, d: f64) {
         let by = variable_unit(model, units, variable);
     }
     /// Name of the variable.
@@ -198,23 +198,34 @@ impl CaseMetrics {
     pub fn write(cases: &[Self], model: &Model, units: Units, out: impl Write) -> csv::Result<()> {
         let mut csv = CsvWriter::new(out);
         let names = ["metric", "case", "value", "unit", "positive", "rigid", "t [s]", "definition"];
-        let by = |variable: &DesignVariable| match variable_unit(model, units, variable) {
-            unit if unit == "1" => format!("d {}", variable.name),
-            unit => format!("d {} [per {unit}]", variable.name),
-        };
-        csv.row(names.map(String::from).into_iter().chain(model.variables.iter().map(by)))?;
+        csv.row(names.map(String::from).into_iter().chain(derivative_headings(model, units)))?;
         let shown = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
         for (case, metric) in Self::all(cases, model) {
             let MetricFact { name, what, value, unit, positive, rigid, time, .. } = metric;
             let facts = [name, case, &shown(*value), unit, positive, &shown(*rigid), &shown(*time), what];
-            let derivative = |variable: &DesignVariable| {
-                shown(metric.sensitivities.iter().find(|s| s.variable == variable.name).map(|s| s.value))
-            };
-            csv.row(facts.map(String::from).into_iter().chain(model.variables.iter().map(derivative)))?;
+            csv.row(
+                facts.map(String::from).into_iter().chain(derivative_cells(model, &metric.sensitivities)),
+            )?;
         }
         csv.end()?;
         Ok(())
     }
+}
+
+/// Headings of the columns of derivatives by all variables, in the unit of their row per unit of the variable.
+pub(crate) fn derivative_headings(model: &Model, units: Units) -> impl Iterator<Item = String> {
+    model.variables.iter().map(move |variable| match variable_unit(model, units, variable) {
+        unit if unit == "1" => format!("d {}", variable.name),
+        unit => format!("d {} [per {unit}]", variable.name),
+    })
+}
+
+/// Cells of these columns: empty where a derivative is not known.
+pub(crate) fn derivative_cells(model: &Model, known: &[MetricSensitivity]) -> impl Iterator<Item = String> {
+    model.variables.iter().map(|variable| {
+        let found = known.iter().find(|sensitivity| sensitivity.variable == variable.name);
+        found.map_or(String::new(), |sensitivity| sensitivity.value.to_string())
+    })
 }
 
 impl MetricChange {

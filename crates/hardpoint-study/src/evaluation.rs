@@ -107,11 +107,34 @@ impl<'m> Motions<'m> {
         cost: &mut StudyCost,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<DesignEvaluation, EvaluationError> {
+        self.evaluate_by(&Run::new, design, cost, more)
+    }
+
+    /// The same, where of the sensitivities of the solutions those that metrics depend on are enough.
+    ///
+    /// # Errors
+    /// See [`Motions::evaluate`].
+    pub fn evaluate_metrics(
+        &self,
+        design: &[f64],
+        cost: &mut StudyCost,
+        more: &(dyn Fn() -> bool + Sync),
+    ) -> Result<DesignEvaluation, EvaluationError> {
+        self.evaluate_by(&|| Run::new().for_metrics(), design, cost, more)
+    }
+
+    fn evaluate_by<'r>(
+        &self,
+        run: &dyn Fn() -> Run<'r>,
+        design: &'r [f64],
+        cost: &mut StudyCost,
+        more: &'r (dyn Fn() -> bool + Sync),
+    ) -> Result<DesignEvaluation, EvaluationError> {
         cost.designs += 1;
         let mut found = DesignEvaluation::default();
         for (motion, analysis) in self.analyses.iter().enumerate() {
             let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
-            let solution = analysis.solve(Run::new().at(design).progress(go_on));
+            let solution = analysis.solve(run().at(design).progress(go_on));
             cost.motions += 1;
             cost.steps += solution.motion.len();
             if let Some(stop) = &solution.stop {

@@ -53,13 +53,24 @@ fn largest_deflections_of_bushings_are_written() {
     assert_eq!(output.status.code(), Some(0));
     let text = bench.text("out/deflections.csv");
     let mut lines = text.lines();
-    assert_eq!(lines.next().unwrap(), "element,direction,deflection,deflection unit,force,force unit,t [s]");
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(
+        header[..7],
+        ["element", "direction", "deflection", "deflection unit", "force", "force unit", "t [s]"]
+    );
+    assert_eq!(header[7..11], ["d lca_rear_radial", "d lca_rear_axial", "d bar", "d lca_rear_x [per mm]"]);
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     assert_eq!(rows.len(), 48);
     let row = rows.iter().find(|row| row[..2] == ["left_lca_front", "along x"]).unwrap();
     let [deflection, force]: [f64; 2] = [row[2], row[4]].map(|x| x.parse().unwrap());
     // 9000 N/mm
     assert!((force + 9000.0 * deflection).abs() <= 1e-9 * force.abs(), "{row:?}");
+    // Under its force a soft bushing deflects in inverse proportion to its stiffness; others take little of it.
+    let row = rows.iter().find(|row| row[..2] == ["left_lca_rear", "along x"]).unwrap();
+    let radial = header.iter().position(|h| h.starts_with("d lca_rear_radial")).unwrap();
+    let [deflection, by_stiffness]: [f64; 2] = [row[2], row[radial]].map(|x| x.parse().unwrap());
+    let part = by_stiffness * 3000.0 / deflection;
+    assert!(-1.0 < part && part < -0.1, "{part} {row:?}");
     let summary = bench.json("out/summary.json");
     assert!(summary["files"].as_array().unwrap().iter().any(|f| f.as_str() == Some("out/deflections.csv")));
 }

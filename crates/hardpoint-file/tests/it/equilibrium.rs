@@ -1,8 +1,12 @@
 //! Equilibria of mechanisms with elastic joints: published data of a double wishbone on four bushings and of a lever in
 //! closed form, limits, identities, and what must not matter.
 
-use hardpoint::model::{Model, VariableId};
+use std::path::Path;
+
+use hardpoint::load::LargestDeflection;
+use hardpoint::model::{Model, Reduction, VariableId};
 use hardpoint::motion::StopKind;
+use hardpoint::run::{metrics, misfits, peaks};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse};
@@ -444,6 +448,73 @@ fn sensitivities_are_those_of_solved_designs() {
     }
 }
 
+/// Loads of a model of one output time, with sensitivities, whose deflections are all known.
+fn deflections(model: &Model, formulation: Formulation) -> Vec<LargestDeflection> {
+    let loads = Analysis::with(model, formulation).unwrap().loads_with_sensitivities(&[]);
+    assert!(loads.stop.is_none(), "{:?}", loads.stop);
+    loads.largest_deflections.into_iter().map(Option::unwrap).collect()
+}
+
+#[test]
+fn sensitivities_of_deflections_are_those_of_solved_designs_in_both_formulations() {
+    let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
+    // With joints alone, and with bushings in the place of some.
+    for text in [wishbone(at, &AS_PUBLISHED), wishbone_on_axes_through_hardpoints(true)] {
+        let model = file(&text).model;
+        let analysis = Analysis::new(&model).unwrap();
+        let here = deflections(&model, Formulation::Relative);
+        let other = deflections(&model, Formulation::Absolute);
+        assert_eq!(here.len(), model.elastic_directions().len());
+        for v in 0..model.variables.len() {
+            let step = 5e-4 * model.natural_step(VariableId(v));
+            let beside = |h: f64| {
+                let mut design = vec![0.0; v + 1];
+                design[v] = h;
+                analysis.loads(&design).deflections
+            };
+            let [a, b, c, d] = [step, -step, 2.0 * step, -2.0 * step].map(beside);
+            let mut largest = 0.0_f64;
+            for (i, (here, other)) in here.iter().zip(&other).enumerate() {
+                let [a, b, c, d] = [&a, &b, &c, &d].map(|found| found[i].displacement);
+                let difference = (8.0 * (a - b) - (c - d)) / (12.0 * step);
+                let what = format!("d deflection {i} / d {}", model.variables[v].name);
+                // Round-off of the displacements, in proportion to the mechanism's size, over the step.
+                let size = 1e-14 / step;
+                near(here.d[v], difference, 1e-7 * difference.abs() + size, &what);
+                near(other.d[v], here.d[v], 1e-8 * here.d[v].abs() + size, &what);
+                largest = largest.max(here.d[v].abs());
+            }
+            assert!(largest > 0.0, "{}", model.variables[v].name);
+        }
+    }
+}
+
+#[test]
+fn sensitivities_of_deflections_hold_at_the_time_of_the_largest() {
+    let at = State { bump: 0.0, road: [1500.0, -900.0], align: 30.0, rack: 0.0 };
+    let how = Written {
+        times: "[time]\nend = 1.0\nsteps = 20",
+        bump_law: Some("0.06*sin(2*pi*t)"),
+        ..AS_PUBLISHED
+    };
+    let model = file(&wishbone(at, &how)).model;
+    let loads = Analysis::new(&model).unwrap().loads_with_sensitivities(&[]);
+    let steps: Vec<usize> = loads.largest_deflections.iter().flatten().map(|largest| largest.step).collect();
+    assert!(steps.iter().any(|step| *step != steps[0]), "{steps:?}");
+    for (i, largest) in loads.largest_deflections.iter().enumerate() {
+        let LargestDeflection { step, deflection, d } = largest.as_ref().unwrap();
+        assert_eq!(loads.deflections_at(*step)[i], *deflection);
+        let sizes = (0..loads.times.len()).map(|k| loads.deflections_at(k)[i].displacement.abs());
+        assert_eq!(sizes.fold(0.0, f64::max), deflection.displacement.abs());
+        let bump = 0.06 * (std::f64::consts::TAU * loads.times[*step]).sin();
+        let alone = file(&wishbone(State { bump, ..at }, &AS_PUBLISHED)).model;
+        let alone = &deflections(&alone, Formulation::Relative)[i];
+        for (a, b) in d.iter().zip(&alone.d) {
+            near(*a, *b, 1e-9 * (b.abs() + 1e-6), &format!("deflection {i}"));
+        }
+    }
+}
+
 /// Asserts that all sensitivities of a model agree with differences of re-solved designs.
 pub(crate) fn verify_all(model: &Model) {
     let analysis = Analysis::new(model).unwrap();
@@ -817,6 +888,51 @@ fn faults_are_reported() {
         .map(|text| parse(text, "lever.toml").err().map_or("none".into(), |e| e.to_string()))
         .collect();
     snapshot("equilibrium_faults", &found.join("\n\n"));
+}
+
+/// The template of a K&C rig with further metrics.
+fn rig(metrics: &str) -> Model {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-cli/templates/k-and-c.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    file(&text.replace("[metrics]", &format!("[metrics]\n{metrics}"))).model
+}
+
+#[test]
+fn a_run_for_metrics_has_the_same_metrics_to_the_last_bit() {
+    let model = rig(
+        "soft = { case = \"lateral_in_phase\", of = \"left_toe_per_side\", take = \"change\" }\n\
+         softest = { case = \"braking\", of = \"left_toe_per_brake\", take = \"max\" }\n\
+         halfway = { case = \"driving\", of = \"left.toe\", take = \"value\", at = 0.45 }\n\
+         load = { case = \"steer\", of = \"left_wheel_load\", take = \"rms\", target = [[0, 1000], [1, 2000]] }\n\
+         middle = { case = \"opposite_travel\", of = \"left.toe\", over = \"left.wheel_travel\", take = \"mean\" }\n",
+    );
+    // NaN is the same as NaN.
+    let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    let mut left_out = 0;
+    for motion in model.motions() {
+        let analysis = Analysis::new(&motion).unwrap();
+        let all = analysis.run();
+        let few = analysis.solve(Run::new().for_metrics());
+        assert!(all.stop.is_none() && few.stop.is_none());
+        let pairs = metrics(&motion, &all).into_iter().zip(metrics(&motion, &few));
+        for (metric, (a, b)) in motion.metrics.iter().zip(pairs) {
+            assert!(a.d.iter().any(|d| *d != 0.0), "{}", metric.name);
+            assert_eq!(bits(&b.d), bits(&a.d), "{}", metric.name);
+            assert_eq!([b.value, b.time, b.error], [a.value, a.time, a.error], "{}", metric.name);
+            if let Reduction::Rms(_) = metric.take {
+                assert_eq!(misfits(&motion, &few, metric), misfits(&motion, &all, metric), "{}", metric.name);
+            }
+            if let Reduction::Greatest | Reduction::Range = metric.take {
+                let [a, b] = [&all, &few].map(|found| peaks(&motion, found, metric, 1.0));
+                assert_eq!(b, a, "{}", metric.name);
+            }
+        }
+        let toe = few.measured.index("left.toe").unwrap();
+        let unknown =
+            |k: &usize| few.measured.variables == 0 || few.measured.d(*k, VariableId(0), toe)[0].is_nan();
+        left_out += (0..few.measured.len()).filter(unknown).count();
+    }
+    assert!(left_out > 50, "{left_out}");
 }
 
 #[test]

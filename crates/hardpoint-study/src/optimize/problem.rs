@@ -238,7 +238,7 @@ impl<'m> Problem<'m> {
         cost: &mut StudyCost,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<Point, Refusal> {
-        let found = self.motions.evaluate(&design, cost, more).map_err(|rejected| Refusal {
+        let found = self.motions.evaluate_metrics(&design, cost, more).map_err(|rejected| Refusal {
             motion: Some(rejected.motion),
             interrupted: rejected.interrupted(),
             why: rejected.why,

@@ -59,8 +59,6 @@ pub(crate) struct Curvatures<'a> {
     laws: Option<[Vec<Law>; 2]>,
     /// Per variable: body-fixed data of measures.
     pub fixed: Vec<BodyFixed<Dual<Dual>>>,
-    /// Per opening: twists of the bodies while it moves alone.
-    unit_twists: Vec<Vec<Twist<Dual>>>,
     stiffness: Elimination<Dual>,
     /// Per variable: twists of the bodies, with the derivative along the direction.
     twists: Vec<Vec<Twist<Dual>>>,
@@ -120,7 +118,6 @@ impl<'a> Curvatures<'a> {
             ),
             laws: (!design.is_empty() && design_map.laws_change()).then(|| laws_beside(design_map, &values)),
             fixed: (0..variables).map(fixed).collect(),
-            unit_twists: vec![vec![Twist::zero(); model.bodies.len()]; openings.len()],
             stiffness: Elimination::new(openings.len()),
             twists: vec![vec![Twist::zero(); model.bodies.len()]; variables],
             positions: directions.into_iter().map(velocity).collect(),
@@ -179,29 +176,24 @@ impl<'a> Curvatures<'a> {
     /// Sets the twists of the bodies by every variable: `K p_b = -r_b`, `W = W_b + sum W_a p_b,a` (55).
     fn set_twists(&mut self, topology: &Topology, parts: &PlanGeometry<f64>, at: &SolvedEquilibrium<'_>) {
         let n = self.openings.len();
-        let Self { state, loads, laws, unit_twists, stiffness, twists, .. } = self;
+        let Self { state, loads, laws, stiffness, twists, .. } = self;
+        loads.stiffness(|a, b, slope| {
+            stiffness.row_mut(a)[b] = slope * Dual::constant(at.units[a] * at.units[b]);
+        });
+        stiffness.factor();
         let mut column = vec![Dual::constant(0.0); n];
-        let mut differentiate = |k: usize, column: &mut [Dual], twists: &mut [Twist<Dual>]| {
+        for (v, twists) in twists.iter_mut().enumerate() {
             let set_time = |field: &mut PlanVelocity<Dual>| {
                 field.set_time(|d| parts.law_of(d.0), at.time);
-                if let Some([ahead, behind]) = laws {
+                if let Some([ahead, behind]) = &*laws {
                     field.add_law_curvature([ahead, behind], at.time);
                 }
             };
-            loads.derivatives((topology, state), k, set_time, column, |moved| twists.copy_from_slice(moved));
-        };
-        for b in 0..n {
-            differentiate(b, &mut column, &mut unit_twists[b]);
-            for a in 0..n {
-                stiffness.row_mut(a)[b] = column[a] * Dual::constant(at.units[a] * at.units[b]);
-            }
-        }
-        stiffness.factor();
-        for (v, twists) in twists.iter_mut().enumerate() {
-            differentiate(n + v, &mut column, twists);
+            let moved = |moved: &[Twist<Dual>]| twists.copy_from_slice(moved);
+            loads.derivatives((topology, state), v, set_time, &mut column, moved);
             column.iter_mut().zip(at.units).for_each(|(r, unit)| *r = -*r * Dual::constant(*unit));
             stiffness.solve(&mut column);
-            for ((p, unit), moved) in column.iter().zip(at.units).zip(&*unit_twists) {
+            for ((p, unit), moved) in column.iter().zip(at.units).zip(loads.unit_twists()) {
                 let p = *p * Dual::constant(*unit);
                 twists.iter_mut().zip(moved).for_each(|(to, w)| *to = w.times_plus(p, *to));
             }

@@ -75,6 +75,13 @@ struct Accepted {
     loads: GivenLoads,
 }
 
+/// Equilibrium at an output time.
+struct Passed {
+    time: f64,
+    openings: Vec<f64>,
+    stiffness: Vec<f64>,
+}
+
 /// Solver of the equilibria of one design.
 pub(crate) struct EquilibriumSolver<'a> {
     model: &'a Model,
@@ -85,13 +92,11 @@ pub(crate) struct EquilibriumSolver<'a> {
     /// Number of the user's drivers, which come first, and those of them that are held.
     own_drivers: usize,
     held: Vec<DriverId>,
-    /// Per opening: twists of the bodies while it moves alone.
-    unit_twists: Vec<Vec<Twist>>,
     /// Body-fixed data of measures.
     fixed: BodyFixed<Dual>,
     last: Accepted,
-    /// Times and openings of the last equilibria at output times, for predictions.
-    path: Vec<(f64, Vec<f64>)>,
+    /// The last equilibria at output times, for predictions.
+    path: Vec<Passed>,
     /// Per opening: the force that it needs as a driver.
     forces: Vec<f64>,
     /// Derivatives of the forces by the openings, and its factors.
@@ -130,7 +135,6 @@ impl<'a> EquilibriumSolver<'a> {
             variables: fields.len(),
             own_drivers,
             held,
-            unit_twists: vec![vec![Twist::ZERO; model.bodies.len()]; n],
             fixed: design_map.fixed(&constant),
             last: Accepted {
                 time: None,
@@ -153,11 +157,12 @@ impl<'a> EquilibriumSolver<'a> {
     pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
         let drivers = self.last.drivers.len();
         let mut to: Vec<Option<f64>> = (0..drivers).map(|d| Some(one.mechanism.parts.law(d, t)[0])).collect();
-        let predicted = self.predicted(t);
+        let predicted = self.predicted(t, |passed| &passed.openings);
         for (k, d) in self.openings.iter().enumerate() {
             // Without a prediction the openings stay.
             to[d.0] = predicted.as_ref().map(|p| p[k]);
         }
+        let mut stiffness = self.predicted(t, |passed| &passed.stiffness);
         let (start, end) = (self.last.loads.clone(), GivenLoads::at(self.model, t));
         let (mut done, mut part, mut certain) = (0.0, 1.0, true);
         while done < 1.0 {
@@ -171,7 +176,7 @@ impl<'a> EquilibriumSolver<'a> {
             };
             let target: Vec<f64> = self.last.drivers.iter().zip(&to).map(between).collect();
             let loads = start.towards(&end, next);
-            match self.attempt(one, t, target, &loads) {
+            match self.attempt(one, target, &loads, stiffness.take()) {
                 Ok((drivers, is_stable)) => {
                     advance::accept_at_rest(one, t);
                     certain = is_stable;
@@ -198,51 +203,62 @@ impl<'a> EquilibriumSolver<'a> {
             one.effort.uncertain_stability = Some(t);
         }
         advance::count(one);
-        self.path.push((t, self.openings.iter().map(|d| self.last.drivers[d.0]).collect()));
+        self.path.push(Passed {
+            time: t,
+            openings: self.openings.iter().map(|d| self.last.drivers[d.0]).collect(),
+            stiffness: self.stiffness.clone(),
+        });
         Ok(())
     }
 
-    /// Openings at time t by the polynomial through the last equilibria.
-    fn predicted(&self, t: f64) -> Option<Vec<f64>> {
-        let (_, last) = self.path.last()?;
-        let mut sum = vec![0.0; last.len()];
-        for (i, (t_i, openings)) in self.path.iter().enumerate() {
+    /// Openings or stiffness at time t by the polynomial through the last equilibria.
+    fn predicted(&self, t: f64, of: impl Fn(&Passed) -> &Vec<f64>) -> Option<Vec<f64>> {
+        let mut sum = vec![0.0; of(self.path.last()?).len()];
+        for (i, passed) in self.path.iter().enumerate() {
             let others = self.path.iter().enumerate().filter(|(j, _)| *j != i);
-            let weight: f64 = others.map(|(_, (t_j, _))| (t - t_j) / (t_i - t_j)).product();
-            sum.iter_mut().zip(openings).for_each(|(sum, p)| *sum += weight * p);
+            let weight: f64 =
+                others.map(|(_, other)| (t - other.time) / (passed.time - other.time)).product();
+            sum.iter_mut().zip(of(passed)).for_each(|(sum, p)| *sum += weight * p);
         }
         Some(sum)
     }
 
-    /// Solves the equilibrium with the held drivers at these values, under these loads; the openings are predicted.
-    /// Returns the values of the drivers, and true if it is certainly stable.
+    /// Solves the equilibrium with the held drivers at these values, under these loads; the openings are predicted, and
+    /// maybe the stiffness. Returns the values of the drivers, and true if it is certainly stable.
     fn attempt(
         &mut self,
         one: &mut Stepper<'_>,
-        t: f64,
         mut drivers: Vec<f64>,
         given: &GivenLoads,
+        stiffness: Option<Vec<f64>>,
     ) -> Result<(Vec<f64>, bool), Rejection> {
         self.is_prepared = false;
         advance::move_at_rest(one, &drivers).map_err(Rejection::of)?;
-        let mut before = f64::INFINITY;
+        let is_predicted = stiffness.is_some_and(|stiffness| {
+            self.stiffness = stiffness;
+            self.factor().is_ok()
+        });
+        // A predicted stiffness is good for the first correction if it is not too long.
+        let mut before = LONGEST / SAME_STIFFNESS;
         for pass in 0..MOST_ITERATIONS {
             self.iterations += 1;
             self.set_forces(one, given);
-            // The stiffness of the first position serves as long as the corrections shrink fast.
+            // A stiffness serves as long as the corrections shrink fast.
             let mut correction = Vec::new();
             let mut size = f64::NAN;
-            if pass > 0 {
+            if pass > 0 || is_predicted {
                 (correction, size) = self.correction(one);
             }
             let is_new = !(size <= SAME_STIFFNESS * before);
             if is_new {
-                self.set_tangent(one, t);
+                self.set_tangent(one);
                 self.factor()?;
                 (correction, size) = self.correction(one);
             }
             let limit = match pass {
                 0 => LONGEST,
+                // The first correction by the stiffness of a position.
+                1 if is_predicted && is_new => LONGEST,
                 1 => before,
                 _ => CONTRACTION * before,
             };
@@ -254,9 +270,10 @@ impl<'a> EquilibriumSolver<'a> {
             }
             advance::shift_at_rest(one, &drivers).map_err(Rejection::of)?;
             // The error that remains is the square of the correction, or what an unchanged stiffness leaves of it.
-            let is_solved = if is_new { size <= QUADRATIC } else { size * (size / before) <= ROUND_OFF };
+            let shrinks = if pass == 0 { SAME_STIFFNESS } else { size / before };
+            let is_solved = if is_new { size <= QUADRATIC } else { size * shrinks <= ROUND_OFF };
             if is_solved {
-                let positive = self.prepare_with(one, t, given)?;
+                let positive = self.prepare_with(one, given)?;
                 let is_stable = self.is_certainly_stable(positive)?;
                 self.is_prepared = true;
                 return Ok((drivers, is_stable));
@@ -281,9 +298,9 @@ impl<'a> EquilibriumSolver<'a> {
 
     /// Sets the derivatives at the position of the stepper under these loads. Returns the sign of the determinant of
     /// the stiffness.
-    fn prepare_with(&mut self, one: &mut Stepper<'_>, t: f64, given: &GivenLoads) -> Result<bool, Rejection> {
+    fn prepare_with(&mut self, one: &mut Stepper<'_>, given: &GivenLoads) -> Result<bool, Rejection> {
         self.set_forces(one, given);
-        self.set_tangent(one, t);
+        self.set_tangent(one);
         self.factor()
     }
 
@@ -295,30 +312,10 @@ impl<'a> EquilibriumSolver<'a> {
     }
 
     /// Sets the stiffness at the position of the stepper.
-    fn set_tangent(&mut self, one: &mut Stepper<'_>, t: f64) {
-        let n = self.openings.len();
-        self.loads.prepare(&one.mechanism.topology, &mut one.mechanism.state);
-        let mut column = vec![0.0; n];
-        for b in 0..n {
-            let mut twists = std::mem::take(&mut self.unit_twists[b]);
-            self.derivatives(one, b, t, &mut column, |moved| twists.copy_from_slice(moved));
-            self.unit_twists[b] = twists;
-            (0..n).for_each(|a| self.stiffness[a * n + b] = column[a]);
-        }
-    }
-
-    /// Derivatives of the forces by opening k, or along another direction while all openings stand.
-    fn derivatives(
-        &mut self,
-        one: &mut Stepper<'_>,
-        k: usize,
-        t: f64,
-        out: &mut [f64],
-        moved: impl FnOnce(&[Twist]),
-    ) {
-        let Mechanism { topology, state, parts, .. } = &mut one.mechanism;
-        let set_time = |field: &mut PlanVelocity<f64>| field.set_time(|d| parts.law_of(d.0), t);
-        self.loads.derivatives((topology, state), k, set_time, out, moved);
+    fn set_tangent(&mut self, one: &mut Stepper<'_>) {
+        let Self { openings, loads, stiffness, .. } = self;
+        loads.prepare(&one.mechanism.topology, &mut one.mechanism.state);
+        loads.stiffness(|a, b, slope| stiffness[a * openings.len() + b] = slope);
     }
 
     /// Factors the stiffness in units of the openings. Returns the sign of its determinant.
@@ -377,36 +374,38 @@ impl<'a> EquilibriumSolver<'a> {
     }
 
     /// Sets the derivatives at the equilibrium that was found last, unless they are set.
-    fn prepare(&mut self, one: &mut Stepper<'_>, t: f64) {
+    fn prepare(&mut self, one: &mut Stepper<'_>) {
         if !std::mem::replace(&mut self.is_prepared, true) {
             let given = self.last.loads.clone();
             // A singular stiffness gives derivatives that are not known.
-            let _ = self.prepare_with(one, t, &given);
+            let _ = self.prepare_with(one, &given);
         }
     }
 
     /// Derivatives of the openings by the variables, `p_b = -K^-1 r_b` with r_b those of their forces while all
     /// openings are fixed (53); `each` receives the variable and the derivatives.
     pub fn differentiate(&mut self, one: &mut Stepper<'_>, t: f64, mut each: impl FnMut(usize, &[f64])) {
-        self.prepare(one, t);
+        self.prepare(one);
         for v in 0..self.variables {
-            let rates = self.openings_along(one, self.openings.len() + v, t);
+            let rates = self.openings_along(one, v, t);
             each(v, &rates);
         }
     }
 
     /// Derivatives of the openings by each driver that is held.
     pub fn driver_rates(&mut self, one: &mut Stepper<'_>, t: f64) -> Vec<(DriverId, Vec<f64>)> {
-        self.prepare(one, t);
-        let first = self.openings.len() + self.variables;
+        self.prepare(one);
+        let first = self.variables;
         let held = self.held.clone();
         held.into_iter().enumerate().map(|(k, d)| (d, self.openings_along(one, first + k, t))).collect()
     }
 
-    /// Derivatives of the openings along a direction of the loads.
+    /// Derivatives of the openings along a direction of the loads: variables, then held drivers.
     fn openings_along(&mut self, one: &mut Stepper<'_>, direction: usize, t: f64) -> Vec<f64> {
         let mut rates = vec![0.0; self.openings.len()];
-        self.derivatives(one, direction, t, &mut rates, |_| ());
+        let Mechanism { topology, state, parts, .. } = &mut one.mechanism;
+        let set_time = |field: &mut PlanVelocity<f64>| field.set_time(|d| parts.law_of(d.0), t);
+        self.loads.derivatives((topology, state), direction, set_time, &mut rates, |_| ());
         rates.iter_mut().for_each(|r| *r = -*r);
         self.respond(&mut rates);
         rates
@@ -423,26 +422,26 @@ impl<'a> EquilibriumSolver<'a> {
     /// Derivatives of the openings by a unit force: `K v = W_a . f`.                                            (54)
     fn openings_by_force(&mut self, force: UnitForce) -> Vec<f64> {
         let force = self.loads.unit_force(force);
-        let work = |w: &Vec<Twist>| force.iter().map(|(body, f)| f.on(w[*body])).sum();
-        let mut response: Vec<f64> = self.unit_twists.iter().map(work).collect();
+        let work = |w: &[Twist]| force.iter().map(|(body, f)| f.on(w[*body])).sum();
+        let mut response: Vec<f64> = self.loads.unit_twists().map(work).collect();
         self.respond(&mut response);
         response
     }
 
     /// Derivatives of the openings along a direction; `None` along a driver that is released.
     fn rates(&mut self, one: &mut Stepper<'_>, t: f64, direction: &Along) -> Option<Vec<f64>> {
-        self.prepare(one, t);
+        self.prepare(one);
         let n = self.openings.len();
         match direction {
             Along::Force(force) => Some(self.openings_by_force(*force)),
             Along::Driver(driver) => {
                 let held = self.held.iter().position(|d| d == driver)?;
-                Some(self.openings_along(one, n + self.variables + held, t))
+                Some(self.openings_along(one, self.variables + held, t))
             }
             Along::Design(speeds) => {
                 let mut sum = vec![0.0; n];
                 for (v, speed) in speeds.iter().enumerate().filter(|(_, speed)| **speed != 0.0) {
-                    let rates = self.openings_along(one, n + v, t);
+                    let rates = self.openings_along(one, v, t);
                     sum.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += speed * rate);
                 }
                 Some(sum)
@@ -482,11 +481,11 @@ impl<'a> EquilibriumSolver<'a> {
             kinds.filter_map(|(m, measure)| measure.kind.compliance().map(|(of, force)| (m, of, force)))
         };
         for (m, of, force) in asked() {
-            self.prepare(one, t);
+            self.prepare(one);
             let response = self.openings_by_force(force);
             let poses: Vec<Pose<Dual>> = (0..model.bodies.len())
                 .map(|b| {
-                    let openings = self.unit_twists.iter().zip(&response);
+                    let openings = self.loads.unit_twists().zip(&response);
                     let w = openings.fold(Twist::ZERO, |sum, (w, v)| w[b].times_plus(*v, sum));
                     let pose = if b == 0 { Pose::IDENTITY } else { one.mechanism.state.pose[b] };
                     pose.along(w)
@@ -538,7 +537,7 @@ impl<'a> EquilibriumSolver<'a> {
             (Rejection::Unstable, _) => {
                 // The direction in which the stiffness vanishes.
                 if advance::move_at_rest(one, &self.last.drivers).is_ok() {
-                    self.prepare(one, t);
+                    self.prepare(one);
                 }
                 let k = self.least_held();
                 StopKind::Unstable { direction: self.direction(self.openings[k]) }

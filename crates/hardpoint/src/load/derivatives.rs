@@ -16,7 +16,7 @@
 use std::mem::take;
 
 use crate::design::Geometry;
-use crate::model::{DriverId, ElementId, MeasureKind, Model};
+use crate::model::{DriverId, ElementId, GROUND, MeasureKind, Model, VariableId};
 use crate::motion::kinematics::State;
 use crate::motion::level::of_body;
 use crate::number::{Dual, Real};
@@ -61,6 +61,8 @@ pub(super) struct LoadAdjoint<'a, T> {
     weights: Weights<T>,
     /// Per body: Y, less that of ground.
     virtual_twists: Vec<Twist<T>>,
+    /// Per coordinate: its speed in the virtual motion.
+    virtual_speeds: Vec<T>,
     /// Per body: coefficients of W, W., W... Those of ground are not used.
     pub by_twists: Vec<[Wrench<T>; 3]>,
     pub turning: Turning<T>,
@@ -74,6 +76,7 @@ impl<'a, T: Real> LoadAdjoint<'a, T> {
             function,
             weights,
             virtual_twists: vec![Twist::zero(); bodies],
+            virtual_speeds: vec![T::zero(); topology.coordinates.len()],
             by_twists: vec![[Wrench::zero(); 3]; bodies],
             turning: Turning::new(topology),
             multipliers: Vec::new(),
@@ -106,8 +109,11 @@ pub(super) struct LoadDerivatives<'a, T> {
     /// Required wrenches along the direction, and the bodies on which they may change.
     required: Vec<Wrench<Dual<T>>>,
     forced: Vec<usize>,
-    /// Per body: the forces that act on it.
+    /// Per body: the forces that act on it, and the bodies on which these forces act, itself included.
     forces_on: Vec<Vec<ElementId>>,
+    beside: Vec<Vec<usize>>,
+    /// Per body: true if it has masses.
+    has_mass: Vec<bool>,
     /// Per load: its derivatives by the unit twists W of a body.
     slopes: Vec<[T; 6]>,
     /// Derivatives of the friction equations along the direction, at constant reactions.
@@ -123,6 +129,8 @@ pub(super) struct LoadDerivatives<'a, T> {
     equations: Vec<LoadAdjoint<'a, T>>,
     /// Derivatives of the loads by the last variable.
     sums: Vec<T>,
+    /// Components of all virtual motions, one load after the other for each.
+    moves: Vec<T>,
 }
 
 impl<'a, T: Real> LoadDerivatives<'a, T> {
@@ -147,6 +155,8 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         Self {
             model,
             forced: forced_bodies(model, &changed),
+            beside: bodies_beside(model),
+            has_mass: bodies_with_masses(model),
             forces_on: forces_on_bodies(model),
             slopes: vec![[T::zero(); 6]; loads.len()],
             changed,
@@ -161,6 +171,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             closures: TurningClosures::new(topology),
             virtual_motion: VirtualMotion::new(topology, bodies),
             sums: vec![T::zero(); loads.len()],
+            moves: Vec::new(),
             loads,
             equations,
         }
@@ -225,7 +236,15 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         state: &mut State<T>,
     ) {
         let Self { model, constant, position, transmitted, virtual_motion, .. } = self;
-        let LoadAdjoint { function, weights, virtual_twists, by_twists, turning, multipliers } = load;
+        let LoadAdjoint {
+            function,
+            weights,
+            virtual_twists,
+            virtual_speeds,
+            by_twists,
+            turning,
+            multipliers,
+        } = load;
         multipliers.clear();
         let applied = position.loads(model, constant);
         weights.set(transmitted, |transmitted| function.derivative(&at.friction, &applied, transmitted));
@@ -235,8 +254,12 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         for (b, y) in virtual_motion.twists().iter().enumerate() {
             virtual_twists[b] = *y - ground;
         }
+        virtual_speeds.copy_from_slice(virtual_motion.speeds());
         for (b, to) in by_twists.iter_mut().enumerate() {
-            *to = self.inertia[b].weights(model, &self.inertial[b], virtual_twists[b]);
+            *to = match self.has_mass[b] {
+                true => self.inertia[b].weights(model, &self.inertial[b], virtual_twists[b]),
+                false => [Wrench::zero(); 3],
+            };
         }
         let of = (&at.sites, &at.transmission);
         virtual_motion.turn(of, (topology, state, &self.closures), weights, turning, |body, load| {
@@ -284,8 +307,9 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
                 let applied = self.position.loads(self.model, &self.constant);
                 self.forces_on[b].iter().for_each(|e| applied.add(*e, &mut self.required));
                 applied.add_further(&mut self.required);
-                for (n, load) in self.loads.iter().enumerate() {
-                    self.slopes[n][unit] = self.work_of_forces(load);
+                for (slopes, load) in self.slopes.iter_mut().zip(&self.loads) {
+                    let work = |b: &usize| self.required[*b].derivative().on(load.virtual_twists[*b]);
+                    slopes[unit] = self.beside[b].iter().fold(T::zero(), |sum, b| sum + work(b));
                 }
             }
             self.position.bodies[b] = self.nominal[b];
@@ -299,6 +323,42 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
     fn work_of_forces(&self, load: &LoadAdjoint<'_, T>) -> T {
         let work = |b: &usize| self.required[*b].derivative().on(load.virtual_twists[*b]);
         self.forced.iter().fold(T::zero(), |sum, b| sum + work(b))
+    }
+
+    /// Twists of the bodies in the virtual motion of each load; of the load of a driver those while it moves alone.
+    pub fn virtual_twists(&self) -> impl Iterator<Item = &[Twist<T>]> + Clone {
+        self.loads.iter().map(|load| &load.virtual_twists[..])
+    }
+
+    /// Derivatives of the loads of drivers at rest by these drivers, with the coefficients of the forces; calls `each`
+    /// with the numbers of load and driver, and the derivative. The motion of a driver alone is the virtual motion of
+    /// its load.
+    pub fn differentiate_by_drivers(&mut self, mut each: impl FnMut(usize, usize, T)) {
+        // K = P Y^T, with a row of P and of Y per load, over twists of bodies and speeds of coordinates. Y is stored by
+        // columns: many coefficients are zero, since a load does not depend on all bodies.
+        let Self { loads, moves, sums, .. } = self;
+        let n = loads.len();
+        moves.clear();
+        if let Some(LoadAdjoint { virtual_twists, virtual_speeds, .. }) = loads.first() {
+            moves.resize(n * (6 * virtual_twists.len() + virtual_speeds.len()), T::zero());
+        }
+        for (b, load) in loads.iter().enumerate() {
+            let components =
+                load.virtual_twists.iter().flat_map(|y| [y.w.x, y.w.y, y.w.z, y.v.x, y.v.y, y.v.z]);
+            let speeds = load.virtual_speeds.iter().copied();
+            components.chain(speeds).enumerate().for_each(|(k, y)| moves[k * n + b] = y);
+        }
+        for (a, load) in loads.iter().enumerate() {
+            sums.fill(T::zero());
+            let on_bodies = load.by_twists.iter().flat_map(|by| by[0].work());
+            let on_coordinates = load.turning.pulls.iter().copied();
+            for (p, row) in on_bodies.chain(on_coordinates).zip(moves.chunks_exact(n)) {
+                if !p.vanishes() {
+                    sums.iter_mut().zip(row).for_each(|(sum, y)| *sum = y.times_plus(p, *sum));
+                }
+            }
+            sums.iter().enumerate().for_each(|(b, sum)| each(a, b, *sum));
+        }
     }
 
     /// Derivatives of the loads of drivers at rest by a variable whose sensitivities have been solved, with the
@@ -315,7 +375,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
         }
         self.sums.fill(T::zero());
         let loads = self.loads.iter().map(|load| (&load.by_twists[..], &load.turning));
-        field.add_work((topology, state), flow, loads, &mut self.sums);
+        field.add_work_at_rest((topology, state), flow, loads, &mut self.sums);
         for (n, load) in self.loads.iter().enumerate() {
             let explicit = if is_explicit { self.work_of_forces(load) } else { T::zero() };
             each(n, self.sums[n] + explicit);
@@ -368,6 +428,24 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             each(n, self.sums[n] + self.partial(load, geometry, &at.friction));
         }
     }
+
+    /// Derivatives of deflections by the variable that was differentiated last, in the order of these directions.
+    pub fn deflections<'s>(
+        &'s self,
+        variable: VariableId,
+        directions: &'s [(ElementId, usize)],
+    ) -> impl Iterator<Item = T> + 's {
+        let applied = self.position.loads(self.model, &self.changed[variable.0].geometry);
+        // The directions of an element follow each other.
+        directions.chunk_by(|a, b| a.0 == b.0).flat_map(move |of_element| {
+            let opening = applied.opening_at(of_element[0].0);
+            let of = move |(_, k): &(_, usize)| match &opening {
+                Some(opening) => opening.coordinates[*k].d,
+                None => T::constant(f64::NAN),
+            };
+            of_element.iter().map(of)
+        })
+    }
 }
 
 /// Derivatives of the friction equations along the direction of these loads.
@@ -392,6 +470,28 @@ pub(super) fn forces_on_bodies(model: &Model) -> Vec<Vec<ElementId>> {
         }
     }
     forces_on
+}
+
+/// Per body: the bodies on which the forces on it act, itself included, without ground.
+fn bodies_beside(model: &Model) -> Vec<Vec<usize>> {
+    let mut beside: Vec<Vec<usize>> = (0..model.bodies.len()).map(|b| vec![b]).collect();
+    for force in model.elements.iter().filter_map(|e| e.kind.force(model)) {
+        let [i, j] = force.acts_on.bodies(model).map(|b| b.0);
+        for (of, other) in [(i, j), (j, i)] {
+            if other != GROUND.0 && !beside[of].contains(&other) {
+                beside[of].push(other);
+            }
+        }
+    }
+    beside
+}
+
+/// Per body: true if it has masses.
+fn bodies_with_masses(model: &Model) -> Vec<bool> {
+    let mut has_mass = vec![false; model.bodies.len()];
+    let masses = model.elements.iter().filter_map(|e| e.kind.mass_on(model));
+    masses.for_each(|body| has_mass[body.0] = true);
+    has_mass
 }
 
 /// Bodies with forces, or with masses that a variable changes.

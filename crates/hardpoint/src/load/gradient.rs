@@ -54,7 +54,7 @@ impl<'a> LoadGradients<'a> {
     /// Evaluates the loads at the position of a stepper at time t, which was set in the adjoint, and prepares their
     /// gradients.
     pub fn step(&mut self, one: &mut Stepper<'_>, adjoint: &Adjoint, t: f64) {
-        self.solver.step(one, t);
+        self.solver.step(one, t, true);
         let Self { solver, forces_on, is_explicit, slopes, loads, explicit, .. } = self;
         let LoadSolver { derivatives: Some(derivatives), equilibrium, .. } = solver else { return };
         let friction = &equilibrium.friction;

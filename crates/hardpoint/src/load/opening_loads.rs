@@ -68,7 +68,7 @@ pub(crate) struct OpeningLoads<'a, T> {
     statics: Equilibrium<'a, T>,
     derivatives: LoadDerivatives<'a, T>,
     openings: Vec<DriverId>,
-    /// Unit motion of each opening, then other directions while the openings stand.
+    /// Directions in which the openings stand: the variables, then the other drivers.
     columns: Vec<PlanVelocity<T>>,
     direct: DirectDifferentiation<T>,
 }
@@ -87,13 +87,11 @@ impl<'a, T: Real> OpeningLoads<'a, T> {
         let model = design_map.model();
         let statics = Equilibrium::new(model, topology, design_map.geometry(values));
         let constant = || geometry_along(design_map, values, None);
-        let by_openings = openings.iter().map(|_| constant());
         let by_variables = (0..fields.len()).map(|v| geometry_along(design_map, values, Some(v)));
         let by_drivers = held.iter().map(|_| constant());
-        let geometries = by_openings.chain(by_variables).chain(by_drivers);
+        let geometries = by_variables.chain(by_drivers);
         let derivatives = LoadDerivatives::new(&statics, topology, kinds, geometries, constant());
-        let unit = |d: &DriverId| DesignVelocity::of_driver(*d);
-        let fields = openings.iter().map(unit).chain(fields.iter().cloned()).chain(held.iter().map(unit));
+        let fields = fields.iter().cloned().chain(held.iter().map(|d| DesignVelocity::of_driver(*d)));
         Self {
             statics,
             derivatives,
@@ -145,8 +143,19 @@ impl<'a, T: Real> OpeningLoads<'a, T> {
         self.derivatives.add_force_coefficients(&self.statics);
     }
 
-    /// Derivatives of the forces by opening k, or along another direction while all openings stand. `set_time` sets the
-    /// contributions of the drivers' laws; `moved` receives the twists of the bodies.
+    /// Derivatives of the forces by the openings, at the position that was prepared last; `each` receives the numbers
+    /// of force and opening.
+    pub fn stiffness(&mut self, each: impl FnMut(usize, usize, T)) {
+        self.derivatives.differentiate_by_drivers(each);
+    }
+
+    /// Per opening: twists of the bodies while it moves alone.
+    pub fn unit_twists(&self) -> impl Iterator<Item = &[Twist<T>]> + Clone {
+        self.derivatives.virtual_twists()
+    }
+
+    /// Derivatives of the forces along direction k while all openings stand. `set_time` sets the contributions of the
+    /// drivers' laws; `moved` receives the twists of the bodies.
     pub fn derivatives(
         &mut self,
         (topology, state): (&Topology, &mut State<T>),

@@ -45,6 +45,18 @@ pub struct Deflection {
     pub force: f64,
 }
 
+/// Largest deflection over a motion, of an elastic joint or a bushing along or about one of its axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LargestDeflection {
+    /// Number of the output time; the first of equal deflections counts.
+    pub step: usize,
+    /// Deflection at that time.
+    pub deflection: Deflection,
+    /// Derivatives of the displacement by every design variable at that time, m or rad per unit of the variable: NaN
+    /// for those that the mechanism cannot follow; empty if no sensitivities are requested.
+    pub d: Vec<f64>,
+}
+
 /// Loads of all joints and drivers over a motion.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
@@ -63,6 +75,10 @@ pub struct Loads {
     ///
     /// [`Model::elastic_directions`]: crate::model::Model::elastic_directions
     pub deflections: Vec<Deflection>,
+    /// Largest deflection in each direction of [`Model::elastic_directions`]; `None` if none is known.
+    ///
+    /// [`Model::elastic_directions`]: crate::model::Model::elastic_directions
+    pub largest_deflections: Vec<Option<LargestDeflection>>,
     /// `given[k * n + i]`: value of force i of n of [`Model::given_forces`] at time k, N or N m, with the sign of its
     /// law.
     ///

@@ -29,6 +29,9 @@ pub(crate) struct LoadSolver<'a> {
     pub(super) values: Vec<f64>,
     /// Derivatives per variable and requested measure.
     slopes: Vec<f64>,
+    /// Elements and directions whose deflections are differentiated, and the derivatives per variable and direction.
+    elastic: Vec<(ElementId, usize)>,
+    deflection_slopes: Vec<f64>,
 }
 
 impl<'a> LoadSolver<'a> {
@@ -57,7 +60,15 @@ impl<'a> LoadSolver<'a> {
             values: vec![f64::NAN; measures.len()],
             slopes: vec![f64::NAN; measures.len() * variables],
             measures,
+            elastic: Vec::new(),
+            deflection_slopes: Vec::new(),
         }
+    }
+
+    /// Differentiates the deflections in these directions too.
+    pub fn with_deflections(self, elastic: Vec<(ElementId, usize)>) -> Self {
+        let variables = self.derivatives.as_ref().map_or(0, |derivatives| derivatives.changed.len());
+        Self { deflection_slopes: vec![f64::NAN; elastic.len() * variables], elastic, ..self }
     }
 
     /// Checks all reactions against self-stress, requested or not.
@@ -75,9 +86,15 @@ impl<'a> LoadSolver<'a> {
         &self.equilibrium.position.near
     }
 
-    /// Evaluates the loads at the position of a stepper at time t, from velocity and acceleration.
-    pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) {
+    /// Evaluates the loads at the position of a stepper at time t, from velocity and acceleration. Their derivatives
+    /// follow if `differentiates`, and are unknown otherwise.
+    pub fn step(&mut self, one: &mut Stepper<'_>, t: f64, differentiates: bool) {
         let Self { measures, turns, equilibrium, derivatives, checks_reactions, values, .. } = self;
+        let derivatives = derivatives.as_mut().filter(|_| differentiates);
+        if !differentiates {
+            self.slopes.fill(f64::NAN);
+            self.deflection_slopes.fill(f64::NAN);
+        }
         let Stepper { mechanism, turns: counted, .. } = one;
         let (topology, state, model) = (&mechanism.topology, &mut mechanism.state, equilibrium.model);
         equilibrium.set_motion(state, |d| mechanism.parts.law_of(d).at(t).d());
@@ -171,6 +188,11 @@ impl<'a> LoadSolver<'a> {
         }
     }
 
+    /// Derivatives by every variable of the deflection in direction i of those that are differentiated.
+    pub fn deflection_derivatives(&self, i: usize) -> impl Iterator<Item = f64> {
+        self.deflection_slopes.iter().skip(i).step_by(self.elastic.len().max(1)).copied()
+    }
+
     /// Value of a given force or moment, positive along its own direction.
     pub fn given(&self, element: ElementId) -> f64 {
         self.equilibrium.applied().size(element)
@@ -205,6 +227,9 @@ impl<'a> LoadSolver<'a> {
         derivatives.differentiate(equilibrium, by, |n, slope| {
             slopes[n] = if values[n].is_nan() { f64::NAN } else { slope };
         });
+        let elastic = &self.elastic[..];
+        let slopes = self.deflection_slopes.iter_mut().skip(by.variable.0 * elastic.len());
+        slopes.zip(derivatives.deflections(by.variable, elastic)).for_each(|(to, slope)| *to = slope);
     }
 }
 

@@ -141,6 +141,11 @@ impl<T: Real> VirtualMotion<T> {
         &self.flow.twists[0]
     }
 
+    /// Speed of every coordinate in that motion.
+    pub fn speeds(&self) -> &[T] {
+        &self.flow.speeds[0]
+    }
+
     /// Solves for Y by (11): the weights prescribe the motion of markers i of the joints, and the speeds of drivers.
     pub fn solve(
         &mut self,

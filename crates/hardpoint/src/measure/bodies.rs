@@ -23,6 +23,13 @@ pub(super) fn moving<T: Real>([r, x, y, z, v, omega, a, alpha]: [Vec3<T>; 8]) ->
     Pose { rot: Mat3 { cols: [column(x), column(y), column(z)] }, r: Vec3::of_rates([r, v, a]) }
 }
 
+/// A body's pose with its derivatives by one design variable, at rest.
+pub(super) fn at_rest(s: &BodyState, d: &BodySensitivity) -> Pose<Dual> {
+    // e_b = pi' x e
+    let column = |e: Vec3| e.with_derivative(d.dpi.cross(e));
+    Pose { rot: Mat3 { cols: s.rotation.cols.map(column) }, r: s.r.with_derivative(d.dr) }
+}
+
 /// The same, with the derivatives of all of it by one design variable.
 pub(crate) fn with_sensitivity(s: &BodyState, d: &BodySensitivity) -> Pose<Dual<Rates>> {
     let Pose { rot, r } = with_rates(s);

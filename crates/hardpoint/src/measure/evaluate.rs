@@ -15,7 +15,7 @@ use crate::space::Pose;
 use crate::topology::Topology;
 
 use super::StepValues;
-use super::bodies::{with_rates, with_sensitivity};
+use super::bodies::{at_rest, with_rates, with_sensitivity};
 use super::formulas::{Instant, bodies_asked_for, clearance_of, is_formula};
 use super::program::{MeasureProgram, MeasureRun};
 use super::storage::{MeasureResults, Output, dense, outputs};
@@ -246,6 +246,9 @@ pub(crate) fn derivatives(
     mut out: impl FnMut(usize, usize, usize, [f64; 3]),
 ) {
     let &MeasuredDesign { model, design_map, values, .. } = design;
+    if model.equilibrium.is_some() && model.clearances.is_empty() {
+        return derivatives_at_rest(design, outputs, listed, (motion, sensitivities), more, out);
+    }
     // Clearances need the points of shapes only, not all poses.
     let needs_poses = listed.iter().any(|(_, m)| clearance_of(model, outputs[*m].source).is_none());
     let bodies = if needs_poses { bodies_asked_for(model) } else { Vec::new() };
@@ -296,6 +299,54 @@ pub(crate) fn derivatives(
                         None => instant.output(outputs[m].source),
                     };
                     out(k, b, m, value.d.0);
+                }
+            }
+        }
+    }
+}
+
+/// The same in an equilibrium, which has no rates.
+fn derivatives_at_rest(
+    design: &MeasuredDesign<'_>,
+    outputs: &[Output],
+    listed: &[(usize, usize)],
+    (motion, sensitivities): (&Motion, &Sensitivities),
+    more: &Context<'_>,
+    mut out: impl FnMut(usize, usize, usize, [f64; 3]),
+) {
+    let &MeasuredDesign { model, design_map, values, .. } = design;
+    let bodies = bodies_asked_for(model);
+    let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
+    let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
+    let (mut given, mut whole_turns): (Vec<Dual>, Vec<Dual>) = (Vec::new(), Vec::new());
+    for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
+        values[b] = Dual::variable(values[b].v);
+        let fixed = design_map.fixed(&values);
+        values[b] = Dual::constant(values[b].v);
+        for listed in listed.chunk_by(|a, b| a.0 == b.0) {
+            let first = listed[0].0;
+            for k in first..usize::min(first + LANES, motion.len()) {
+                let Some(d) = sensitivities.at(k, b) else { break };
+                let states = motion.at(k);
+                if bodies.iter().any(|&b| d.body(b).dpi.x.is_nan()) {
+                    // This output time was left out.
+                    listed.iter().for_each(|&(_, m)| out(k, b, m, [f64::NAN; 3]));
+                    continue;
+                }
+                bodies.iter().for_each(|&b| poses[b] = at_rest(&states.body(b), &d.body(b)));
+                given.clear();
+                given.extend(more.slopes.at(k).zip(more.slopes.d(k, b)).map(|(v, d)| Dual { v, d }));
+                let turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
+                whole_turns.clear();
+                whole_turns.extend(turns.iter().take(model.measures.len()).map(|x| Dual::constant(*x)));
+                let instant = Instant {
+                    slopes: &given,
+                    whole_turns: &whole_turns,
+                    ..Instant::new(model, &fixed, &poses)
+                };
+                for &(_, m) in listed {
+                    let Dual { d, .. } = instant.output(outputs[m].source);
+                    out(k, b, m, [d, f64::NAN, f64::NAN]);
                 }
             }
         }

@@ -312,7 +312,7 @@ impl<'a, T: Real> Instant<'a, T> {
 }
 
 /// True if an output is a formula over others, or the rate of one: what depends on angles with all their turns.
-pub(super) fn is_formula(model: &Model, output: usize) -> bool {
+pub(crate) fn is_formula(model: &Model, output: usize) -> bool {
     let Some(measure) = model.measures.get(output) else { return false };
     if let MeasureKind::Rate { of: OutputSource::Measure(m) } = measure.kind {
         return is_formula(model, m);

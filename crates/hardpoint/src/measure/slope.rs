@@ -38,6 +38,8 @@ pub(crate) struct Slopes<'a, T = f64> {
     model: &'a Model,
     drivers: Vec<DriverId>,
     variables: usize,
+    /// True if an equilibrium solves the derivatives by the variables.
+    at_equilibrium: bool,
     seconds: Seconds<T>,
     /// Per variable, what measures depend on; the last is that of no change.
     fixed: Vec<BodyFixed<Dual<Dual<T>>>>,
@@ -85,7 +87,8 @@ impl<'a> Slopes<'a> {
             ways.pairs.clear();
         }
         let seconds = Seconds::new(design_map, topology, values, (&ways.directions, openings), &ways.pairs);
-        Some(Self::along(design_map, values, ways, seconds))
+        let slopes = Self::along(design_map, values, ways, seconds);
+        Some(Self { at_equilibrium: !openings.is_empty(), ..slopes })
     }
 
     /// The drivers that move alone.
@@ -113,18 +116,24 @@ impl<'a> Slopes<'a> {
         out: &mut StepValues,
     ) {
         self.seconds.solve(mechanism, t);
-        let variables = self.variables;
+        let (variables, at_equilibrium) = (self.variables, self.at_equilibrium);
         let enter = |k, by, x: Dual| if by < variables { out.set_d(by, k, x.d) } else { out.set(k, x.v) };
         let drivers = self.drivers.clone();
+        let unknown = Vec3::ZERO.map(|_: f64| Dual::constant(Dual::constant(f64::NAN)));
+        let unknown = Pose { rot: Mat3 { cols: [unknown; 3] }, r: unknown };
         let set = |by: usize, poses: &mut [Vec<Pose<Dual<Dual>>>]| {
             for (driver, poses) in drivers.iter().zip(poses) {
                 let found = curved.iter().find(|along| along.driver == *driver);
-                if let Some(of_variable) = found.and_then(|along| along.by_variable.get(by)) {
-                    poses.clone_from(of_variable);
+                match found.and_then(|along| along.by_variable.get(by)) {
+                    Some(of_variable) => poses.clone_from(of_variable),
+                    // Of a driver that was left out the value alone is known.
+                    None if at_equilibrium && by < variables => poses.fill(unknown),
+                    None => {}
                 }
             }
         };
-        self.measure(&mechanism.state, set, enter);
+        let first = if at_equilibrium && curved.is_empty() { variables } else { 0 };
+        self.measure(&mechanism.state, first, set, enter);
     }
 }
 
@@ -147,6 +156,7 @@ impl<'a> Slopes<'a, Number> {
         let mut found: Vec<RecordedValue> = Vec::new();
         slopes.measure(
             state,
+            0,
             |_, _| (),
             |measure, by, x| {
                 let holds = recording::limits();
@@ -195,20 +205,22 @@ impl<'a, T: Real> Slopes<'a, T> {
             asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
             poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; drivers.len()],
             variables,
+            at_equilibrium: false,
             drivers,
         }
     }
 
-    /// Evaluates all of them at a state that was solved: `found` gets each measure with a variable and the derivative
-    /// by that, and after the last variable with their number and the value. `set` may replace the poses, per driver,
-    /// for a variable.
+    /// Evaluates all of them at a state that was solved: `found` gets each measure with a variable, from the `first`
+    /// on, and the derivative by that, and after the last variable with their number and the value. `set` may replace
+    /// the poses, per driver, for a variable.
     fn measure(
         &mut self,
         state: &State<T>,
+        first: usize,
         mut set: impl FnMut(usize, &mut [Vec<Pose<Dual<Dual<T>>>>]),
         mut found: impl FnMut(usize, usize, Dual<T>),
     ) {
-        for by in 0..=self.variables {
+        for by in first..=self.variables {
             self.seconds.set_poses(state, by, &self.asked_for, &mut self.poses);
             set(by, &mut self.poses);
             let alone = DriverAlone {

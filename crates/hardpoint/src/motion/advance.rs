@@ -21,6 +21,9 @@ use super::walk::walk;
 /// Largest move of a coordinate per travel of the drivers that is taken at once, rad or sizes: arms are shorter than
 /// their loops. The branch is checked besides.
 const MOVE_PER_TRAVEL: f64 = 8.0;
+/// Largest number of parts of a move at rest: a part is as short as those into which an equilibrium would be divided
+/// otherwise, and takes a position instead of a stiffness.
+const MOST_PARTS: usize = 16;
 
 /// Solves the design configuration, in which all drivers are zero.
 ///
@@ -74,14 +77,28 @@ pub(crate) fn advance(one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
 }
 
 /// Moves all drivers straight to these values from the accepted position, to a position at rest that is not accepted
-/// yet. Fails if they are too far for one step.
+/// yet: at once, or else in parts. Fails if they are too far for the largest number of parts.
 pub(crate) fn move_at_rest(one: &mut Stepper<'_>, values: &[f64]) -> Result<(), StepRejection> {
     let Mechanism { saved, driver_units, .. } = &one.mechanism;
     let travel = |((from, to), unit): ((&[f64; 3], &f64), &f64)| (to - from[0]).abs() / unit;
     let moved = saved.drivers.iter().zip(values).zip(driver_units).map(travel).fold(0.0, f64::max);
-    one.mechanism.restore();
-    // Without a prediction the first correction is the move itself.
-    hold(one, values, trust(MOVE_PER_TRAVEL * moved))
+    let from: Vec<f64> = saved.drivers.iter().map(|[value, ..]| *value).collect();
+    let mut parts = 1;
+    loop {
+        let of_part = |part: usize| {
+            let way = part as f64 / parts as f64;
+            let between =
+                |(from, to): (&f64, &f64)| if part == parts { *to } else { from + (to - from) * way };
+            from.iter().zip(values).map(between).collect::<Vec<f64>>()
+        };
+        one.mechanism.restore();
+        // Without a prediction the first correction is the move itself.
+        let trusted = trust(MOVE_PER_TRAVEL * moved / parts as f64);
+        match (1..=parts).try_for_each(|part| hold(one, &of_part(part), trusted)) {
+            Err(_) if parts < MOST_PARTS => parts *= 2,
+            result => return result,
+        }
+    }
 }
 
 /// Moves all drivers to these values, which are near the position of the state, to a position at rest.

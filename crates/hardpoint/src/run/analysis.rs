@@ -159,6 +159,14 @@ impl<'m> Analysis<'m> {
     /// and the results up to there are complete.
     pub fn solve(&self, mut run: Run<'_>) -> Solution {
         let (design, mut solution) = (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
+        if self.equilibrium.is_some()
+            && run.scope.for_metrics
+            && run.scope.sensitivities
+            && run.scope.measures
+        {
+            self.solve_for_metrics(design, &mut *run.progress, &mut solution);
+            return solution;
+        }
         self.walk(&design, self.model().times.len(), &mut *run.progress, &mut solution, &mut |_, _| ());
         self.solve_between(&design, &mut *run.progress, &mut solution);
         solution
@@ -212,6 +220,7 @@ impl<'m> Analysis<'m> {
             opens: if sensitivities { self.opens().to_vec() } else { Vec::new() },
             scope,
             values,
+            needs: None,
         }
     }
 

@@ -16,9 +16,10 @@ use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
 use super::metric::{unresolved_times, window_times};
+use super::needed::NeededDerivatives;
 use super::request::Progress;
 use super::solution::Solution;
-use super::walk::PreparedDesign;
+use super::walk::{PreparedDesign, Scope};
 use super::window::Footprint;
 
 /// Maximum travel of a driver between two times, rad or sizes of its loop: the error of a polynomial of degree five for
@@ -143,6 +144,46 @@ impl Analysis<'_> {
             times.extend(add);
         }
         solution.between = found.map(Arc::new);
+    }
+
+    /// Solves a prepared design for its metrics: values at all output times, and the derivatives that the metrics
+    /// depend on.
+    pub(super) fn solve_for_metrics(
+        &self,
+        design: PreparedDesign,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+        solution: &mut Solution,
+    ) {
+        let model = self.model();
+        if let Some(needs) = NeededDerivatives::of_times(model) {
+            let design = PreparedDesign { needs: Some(Arc::new(needs)), ..design };
+            self.walk(&design, model.times.len(), progress, solution, &mut |_, _| ());
+            return;
+        }
+        let values = self.prepare(&design.values, Scope { sensitivities: false, ..design.scope });
+        self.walk(&values, model.times.len(), progress, solution, &mut |_, _| ());
+        self.solve_between(&values, progress, solution);
+        if solution.stop.is_some() {
+            return;
+        }
+        // All output times have been reported as solved before.
+        let end = Progress { done: model.times.len() - 1, total: model.times.len() };
+        let mut go_on = |_: Progress| progress(end);
+        let needs = Some(Arc::new(NeededDerivatives::of_solution(model, solution)));
+        match &solution.between {
+            None => {
+                let design = PreparedDesign { needs, ..design };
+                self.walk(&design, model.times.len(), &mut go_on, solution, &mut |_, _| ());
+            }
+            Some(between) => {
+                let finer = self.at_times(between.motion.times.clone());
+                let design = PreparedDesign { needs, ..finer.prepare(&design.values, design.scope) };
+                let mut found = Solution::default();
+                finer.walk(&design, between.motion.len(), &mut go_on, &mut found, &mut |_, _| ());
+                solution.stop = found.stop.clone();
+                solution.between = Some(Arc::new(found));
+            }
+        }
     }
 }
 

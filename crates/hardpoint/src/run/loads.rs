@@ -1,25 +1,41 @@
 //! Loads of joints and drivers over the motion of a design.
 
+use std::ops::ControlFlow;
+
+use super::sink::NullSink;
+use super::walk::{Scope, SolvedSteps};
 use super::{Analysis, Walk};
-use crate::load::{DriverLoad, JointLoad, LoadSolver, Loads, load_measures};
+use crate::load::{Deflection, DriverLoad, JointLoad, LargestDeflection, LoadSolver, Loads};
 use crate::model::{Axes, ElementId, JointId};
+use crate::sensitivity::Admissibility;
 
 impl Analysis<'_> {
     /// Loads of all joints and drivers over the motion of the design with variable k at `design[k]`; all zero for a
     /// model without masses and applied forces.
     pub fn loads(&self, design: &[f64]) -> Loads {
-        let (model, design) = (self.model(), self.design(design));
-        let measures = load_measures(model);
-        let solver = LoadSolver::new(self.design_map(), self.topology(), &design.values, measures, false);
-        let mut solver = solver.checking_reactions();
-        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
-        let (mut result, mut times) = (Loads::default(), model.times.iter());
-        let (pushed, given) = (model.points_of_application(), model.given_forces());
+        self.loads_in(design, false)
+    }
+
+    /// The same, with the derivatives of the largest deflections by the design variables.
+    pub fn loads_with_sensitivities(&self, design: &[f64]) -> Loads {
+        self.loads_in(design, true)
+    }
+
+    fn loads_in(&self, design: &[f64], sensitivities: bool) -> Loads {
+        let model = self.model();
         let elastic = model.elastic_directions();
-        result.stop = walk.each(|one| {
-            let Some(&t) = times.next() else { return };
-            solver.step(one, t);
-            result.times.push(t);
+        let sensitivities = sensitivities && !elastic.is_empty() && !model.variables.is_empty();
+        let design = self.prepare(design, Scope::of_one(sensitivities, true));
+        let solver =
+            LoadSolver::new(self.design_map(), self.topology(), &design.values, Vec::new(), sensitivities);
+        let mut walk = Walk::new(self, &design, vec![false; model.bodies.len()]);
+        walk.loads = Some(solver.checking_reactions().with_deflections(elastic.clone()));
+        let mut result = Loads { largest_deflections: vec![None; elastic.len()], ..Loads::default() };
+        let (pushed, given) = (model.points_of_application(), model.given_forces());
+        result.stop = walk.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
+            let SolvedSteps::One(_, Some(solver), _) = solved else { return };
+            let step = result.times.len();
+            result.times.push(model.times[step]);
             note(&mut result.shared_friction, solver.shared_friction());
             note(&mut result.ambiguous_friction, solver.ambiguous_friction());
             for joint in (0..model.joints.len()).map(JointId) {
@@ -38,15 +54,33 @@ impl Analysis<'_> {
                 });
             }
             result.given.extend(given.iter().map(|element| solver.given(*element)));
-            result.deflections.extend(elastic.iter().map(|at| solver.deflection(*at)));
+            for (i, (at, largest)) in elastic.iter().zip(&mut result.largest_deflections).enumerate() {
+                let deflection = solver.deflection(*at);
+                result.deflections.push(deflection);
+                if is_larger(deflection, largest.as_ref().map(|largest| largest.deflection)) {
+                    let d = solver.deflection_derivatives(i).collect();
+                    *largest = Some(LargestDeflection { step, deflection, d });
+                }
+            }
             result.pushes.extend(pushed.iter().map(|&(element, at)| solver.push(element, at)));
             let transmitted = solver.transmitted();
             let drivers = transmitted.drivers.iter().zip(&transmitted.speeds);
             let drivers = drivers.take(model.drivers.len());
             result.drivers.extend(drivers.map(|(&force, &speed)| DriverLoad { force, speed }));
         });
+        for (v, admissibility) in walk.admissibility(&design.opens).iter().enumerate() {
+            if matches!(admissibility, Admissibility::CannotFollow { .. }) {
+                result.largest_deflections.iter_mut().flatten().for_each(|largest| largest.d[v] = f64::NAN);
+            }
+        }
         result
     }
+}
+
+/// True if a deflection is known, and larger than the largest one before it.
+fn is_larger(deflection: Deflection, before: Option<Deflection>) -> bool {
+    let size = deflection.displacement.abs();
+    before.map_or(size.is_finite(), |before| size > before.displacement.abs())
 }
 
 /// Adds the elements that are not in the list yet.

@@ -211,8 +211,28 @@ fn far_out_times(
     times
 }
 
+/// Times of a solution, by number, whose derivatives those of a metric depend on; `None` if all of them may.
+pub(super) fn derivative_times(solution: &Solution, metric: &Metric) -> Option<Vec<usize>> {
+    match metric.take {
+        Reduction::Change => Some(vec![0, solution.motion.len().saturating_sub(1)]),
+        Reduction::Value(at) if solution.motion.len() > 1 => {
+            let crossing = curves_at(solution, metric).and_then(|(y, x)| crossings(&y, &x, at).next());
+            Some(crossing.map_or(Vec::new(), |(k, _)| vec![k, k + 1]))
+        }
+        Reduction::Value(_)
+        | Reduction::Slope(_)
+        | Reduction::Least
+        | Reduction::Greatest
+        | Reduction::Range
+        | Reduction::Mean
+        | Reduction::Integral
+        | Reduction::Rms(_)
+        | Reduction::RmsAtPoints(_) => None,
+    }
+}
+
 /// Solution that metrics are taken of: that between output times, if there is one.
-fn solution_of(solution: &Solution) -> &Solution {
+pub(super) fn solution_of(solution: &Solution) -> &Solution {
     solution.between.as_deref().unwrap_or(solution)
 }
 

@@ -15,6 +15,7 @@ mod joint_limits;
 mod loads;
 mod metric;
 mod nearest;
+mod needed;
 mod proof;
 mod quadrature;
 mod request;

@@ -16,6 +16,7 @@ use super::walk::Scope;
 /// |---|---|---|---|---|---|
 /// | [`at`](Run::at) | yes | yes | | yes | |
 /// | [`without_sensitivities`](Run::without_sensitivities) | yes | yes | yes | yes | yes |
+/// | [`for_metrics`](Run::for_metrics) | yes | | | | |
 /// | [`without_measures`](Run::without_measures) | yes | yes | yes | has none | has none |
 /// | [`progress`](Run::progress) | yes | yes | | yes | |
 /// | [`reusing`](Run::reusing) | yes | yes | by itself | stores nothing | stores nothing |
@@ -82,6 +83,13 @@ impl<'r> Run<'r> {
     /// Requests the motion without sensitivities.
     pub fn without_sensitivities(self) -> Self {
         Self { scope: Scope { sensitivities: false, ..self.scope }, ..self }
+    }
+
+    /// Requests of the sensitivities those that [metrics](super::metrics), [misfits](super::misfits) and
+    /// [peaks](super::peaks) of the model depend on. With equilibrium the run leaves out all others, which are NaN; the
+    /// results of these functions are the same.
+    pub fn for_metrics(self) -> Self {
+        Self { scope: Scope { for_metrics: true, ..self.scope }, ..self }
     }
 
     /// Requests the motion without measures and points: [`Solution::measured`] stays empty.

@@ -1,6 +1,7 @@
 //! Solution of one design at all output times.
 
 use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
 
 use hardpoint_tape::LANES;
 
@@ -17,9 +18,10 @@ use crate::motion::tape::Tape;
 use crate::motion::time_batch::TimeBatch;
 use crate::motion::turns::TurnCounter;
 use crate::motion::{BodyState, Stop, StopKind, advance, assembly};
-use crate::sensitivity::{Admissibility, JointDefect, SensitivitySolver};
+use crate::sensitivity::{Admissibility, BodySensitivity, JointDefect, SensitivitySolver};
 
 use super::analysis::Analysis;
+use super::needed::NeededDerivatives;
 use super::request::Progress;
 use super::sink::{NullSink, Sink, hand_over};
 
@@ -28,6 +30,8 @@ use super::sink::{NullSink, Sink, hand_over};
 pub(crate) struct Scope {
     pub sensitivities: bool,
     pub measures: bool,
+    /// True if of the sensitivities those that metrics depend on are enough.
+    pub for_metrics: bool,
     /// Total number of designs, this one included; it decides whether a program saves time.
     pub of_many: usize,
 }
@@ -35,7 +39,7 @@ pub(crate) struct Scope {
 impl Scope {
     /// Scope of a single design.
     pub fn of_one(sensitivities: bool, measures: bool) -> Self {
-        Self { sensitivities, measures, of_many: 1 }
+        Self { sensitivities, measures, for_metrics: false, of_many: 1 }
     }
 }
 
@@ -48,6 +52,15 @@ pub(crate) struct PreparedDesign {
     pub fields: Vec<DesignVelocity>,
     pub opens: Vec<Vec<JointDefect>>,
     pub scope: Scope,
+    /// Derivatives to solve at an equilibrium; all of them if `None`.
+    pub needs: Option<Arc<NeededDerivatives>>,
+}
+
+impl PreparedDesign {
+    /// True if the derivatives of a measure are requested.
+    pub fn needs_derivatives_of(&self, measure: usize) -> bool {
+        self.needs.as_ref().is_none_or(|needs| needs.measure(measure))
+    }
 }
 
 /// Solver of one design at all output times.
@@ -63,6 +76,8 @@ pub(crate) struct Walk<'a> {
     pub equilibrium: Option<EquilibriumSolver<'a>>,
     /// Per body: true if its results are requested.
     wanted: Vec<bool>,
+    /// Derivatives to solve; all of them if `None`.
+    needs: Option<Arc<NeededDerivatives>>,
     /// Stop at the limit of a joint, which ends the output times.
     at_limit: Option<Stop>,
     /// Output times solved.
@@ -105,15 +120,19 @@ impl<'a> Walk<'a> {
         let mut one = Stepper::new(model, topology, PlanGeometry::same(model, topology, geometry, laws));
         let angles = PathAngles::of(analysis.design_map(), topology, &design.values, design.scope.measures);
         one.turns = angles.map(|angles| TurnCounter::new(Box::new(angles)));
+        let solver = || {
+            let solver = SensitivitySolver::new(model, topology, fields, wanted.clone());
+            if openings.is_some() { solver.at_rest() } else { solver }
+        };
         Self {
             analysis,
             one,
             batch: TimeBatch::new(None, &[], None),
-            solver: (!fields.is_empty())
-                .then(|| SensitivitySolver::new(model, topology, fields, wanted.clone())),
+            solver: (!fields.is_empty()).then(solver),
             loads: None,
             equilibrium,
             wanted,
+            needs: design.needs.clone(),
             at_limit: analysis.stop_at_limit(design),
             done: 0,
         }
@@ -244,8 +263,17 @@ impl<'a> Walk<'a> {
             sink.state(k, BodyId(body), &BodyState::of(&self.one.mechanism.state, body));
         }
         let (t, loads) = (self.analysis.model().times[k], &mut self.loads);
+        let differentiates = self.needs.as_ref().is_none_or(|needs| needs.at(k));
         if let Some(loads) = loads {
-            loads.step(&mut self.one, t);
+            loads.step(&mut self.one, t, differentiates);
+        }
+        if !differentiates {
+            let unknown = BodySensitivity::from(|_| f64::NAN);
+            let moved = self.solver.iter().flat_map(SensitivitySolver::moved);
+            for (variable, body) in moved.filter(|(_, body)| self.wanted[body.0]) {
+                sink.sensitivity(k, variable, body, &unknown);
+            }
+            return;
         }
         if let (Some(equilibrium), Some(solver)) = (&mut self.equilibrium, &mut self.solver) {
             equilibrium.differentiate(&mut self.one, t, |v, rates| solver.set_openings(v, rates));

@@ -10,7 +10,7 @@ use hardpoint_tape::LANES;
 use crate::equilibrium::{Along, Curvatures};
 use crate::load::{Compliances, LoadSolver, load_measures};
 use crate::measure::{self, Slopes, StepValues};
-use crate::model::{BodyId, Model, OutputSource, VariableId};
+use crate::model::{BodyId, DriverId, Model, OutputSource, VariableId};
 use crate::motion::margin::Margins;
 use crate::motion::{BodyState, Motion};
 use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
@@ -107,7 +107,7 @@ impl Analysis<'_> {
             false => Walk::by_programs(self, design, wanted, (measures, slopes.is_some(), loads)),
         };
         let mut curvatures = self.openings().filter(|_| measures && sensitive).and_then(|openings| {
-            let directions = derived_along(model, &slopes);
+            let directions = derived_along(model, &slopes, design);
             if directions.is_empty() {
                 return None;
             }
@@ -116,7 +116,9 @@ impl Analysis<'_> {
         });
         if loads {
             let measures = load_measures(model);
-            let solver = LoadSolver::new(self.design_map(), topology, &design.values, measures, sensitive);
+            let differentiates = sensitive && measures.iter().any(|m| design.needs_derivatives_of(*m));
+            let solver =
+                LoadSolver::new(self.design_map(), topology, &design.values, measures, differentiates);
             walk.loads = Some(solver);
         }
         let rows = usize::min(rows, model.times.len());
@@ -147,9 +149,17 @@ impl Analysis<'_> {
                         found.set_openings(openings.len(), &equilibrium.driver_rates(one, times[0]));
                     }
                     let mut along_drivers = Vec::new();
+                    let is_curved =
+                        design.needs.as_ref().is_none_or(|needs| needs.curved_at(window.done - count));
+                    let mut curvatures = curvatures.as_mut().filter(|_| is_curved);
                     if let (Some(equilibrium), true) = (equilibrium, measures) {
-                        equilibrium.add_compliances(one, times[0], curvatures.as_mut(), &mut window.slopes);
-                        if let Some(curvatures) = &mut curvatures {
+                        equilibrium.add_compliances(
+                            one,
+                            times[0],
+                            curvatures.as_deref_mut(),
+                            &mut window.slopes,
+                        );
+                        if let Some(curvatures) = curvatures {
                             along_drivers = equilibrium.poses_along_drivers(one, times[0], curvatures);
                         }
                     }
@@ -206,14 +216,21 @@ impl Analysis<'_> {
 
 /// Directions along which compliances and slopes at an equilibrium are derivatives: their derivatives by the variables
 /// are curvatures.
-fn derived_along(model: &Model, slopes: &Option<Slopes<'_>>) -> Vec<Along> {
+fn derived_along(model: &Model, slopes: &Option<Slopes<'_>>, design: &PreparedDesign) -> Vec<Along> {
+    let is_needed = |m: usize| design.needs_derivatives_of(m);
     let mut directions: Vec<Along> = Vec::new();
-    for (_, force) in model.measures.iter().filter_map(|m| m.kind.compliance()) {
-        if !directions.contains(&Along::Force(force)) {
+    for (_, measure) in model.measures.iter().enumerate().filter(|(m, _)| is_needed(*m)) {
+        if let Some((_, force)) = measure.kind.compliance()
+            && !directions.contains(&Along::Force(force))
+        {
             directions.push(Along::Force(force));
         }
     }
-    directions.extend(slopes.iter().flat_map(|found| found.drivers()).map(|d| Along::Driver(*d)));
+    let drivers = slopes.iter().flat_map(|found| found.drivers());
+    let alone = |d: &DriverId| {
+        (0..model.measures.len()).any(|m| is_needed(m) && model.drivers_alone(m).any(|of| of == *d))
+    };
+    directions.extend(drivers.filter(|d| alone(d)).map(|d| Along::Driver(*d)));
     directions
 }
 

@@ -260,33 +260,60 @@ impl<T: Real> PlanVelocity<T> {
     /// W, W. and W.., and on frames and coordinates.
     pub fn add_work<'l>(
         &self,
-        (topology, state): (&Topology, &State<T>),
+        at: (&Topology, &State<T>),
         flow: &Flow<T>,
         loads: impl Iterator<Item = (&'l [[Wrench<T>; 3]], &'l Turning<T>)> + Clone,
         sums: &mut [T],
     ) {
-        for m in self.links.iter().filter(|m| m.end == 0) {
-            let z = state.pose[m.body].carry(m.e);
-            add_each(sums, &loads, |(_, turning)| turning.starts[m.at.0].on(z));
-        }
-        for m in &self.closures {
-            let z = state.pose[m.body].carry(m.e);
-            add_each(sums, &loads, |(_, turning)| turning.ends[m.at.0][m.end].on(z));
-        }
-        let in_blocks = self.reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
-        for k in self.reach.driven_links.iter().copied().chain(in_blocks) {
-            for step in topology[k].steps.iter().filter(|step| flow.drives || !step.is_driven) {
-                for c in step.coordinates() {
-                    add_each(sums, &loads, |(_, turning)| turning.pulls[c.0] * flow.speeds[0][c.0]);
-                }
-            }
-        }
+        self.add_work_on_frames(at, flow, loads.clone().map(|(_, turning)| turning), sums);
         for &body in &self.reach.bodies {
             let [w0, w1, w2] = of_body(&flow.twists, body);
             add_each(sums, &loads, |(by_twists, _)| {
                 let [p0, p1, p2] = &by_twists[body];
                 p0.on(w0) + p1.on(w1) + p2.on(w2)
             });
+        }
+    }
+
+    /// The same at rest, where W alone counts.
+    pub fn add_work_at_rest<'l>(
+        &self,
+        at: (&Topology, &State<T>),
+        flow: &Flow<T>,
+        loads: impl Iterator<Item = (&'l [[Wrench<T>; 3]], &'l Turning<T>)> + Clone,
+        sums: &mut [T],
+    ) {
+        self.add_work_on_frames(at, flow, loads.clone().map(|(_, turning)| turning), sums);
+        for &body in &self.reach.bodies {
+            let w = flow.twists[0][body];
+            add_each(sums, &loads, |(by_twists, _)| by_twists[body][0].on(w));
+        }
+    }
+
+    /// Adds the work of loads on frames and coordinates.
+    #[inline(always)]
+    fn add_work_on_frames<'l>(
+        &self,
+        (topology, state): (&Topology, &State<T>),
+        flow: &Flow<T>,
+        loads: impl Iterator<Item = &'l Turning<T>> + Clone,
+        sums: &mut [T],
+    ) {
+        for m in self.links.iter().filter(|m| m.end == 0) {
+            let z = state.pose[m.body].carry(m.e);
+            add_each(sums, &loads, |turning| turning.starts[m.at.0].on(z));
+        }
+        for m in &self.closures {
+            let z = state.pose[m.body].carry(m.e);
+            add_each(sums, &loads, |turning| turning.ends[m.at.0][m.end].on(z));
+        }
+        let in_blocks = self.reach.blocks.iter().flat_map(|&b| topology[b].link_ids());
+        for k in self.reach.driven_links.iter().copied().chain(in_blocks) {
+            for step in topology[k].steps.iter().filter(|step| flow.drives || !step.is_driven) {
+                for c in step.coordinates() {
+                    add_each(sums, &loads, |turning| turning.pulls[c.0] * flow.speeds[0][c.0]);
+                }
+            }
         }
     }
 

@@ -24,6 +24,8 @@ pub(crate) struct SensitivitySolver {
     /// Per body: true if its sensitivities are requested.
     wanted: Vec<bool>,
     resisting: Vec<Resistance>,
+    /// True if all positions are at rest: the rates W. and W.. are zero.
+    at_rest: bool,
 }
 
 /// Result of the solution for one variable.
@@ -48,7 +50,13 @@ impl SensitivitySolver {
             bodies: model.bodies.len(),
             wanted,
             resisting: vec![(Vec::new(), 0.0); fields.len()],
+            at_rest: false,
         }
+    }
+
+    /// Solver of positions at rest.
+    pub fn at_rest(self) -> Self {
+        Self { at_rest: true, ..self }
     }
 
     /// Reserves memory for all sensitivities over this number of steps, within the memory at hand.
@@ -76,7 +84,7 @@ impl SensitivitySolver {
         mut found: impl FnMut(VariableId, BodyId, &BodySensitivity),
         mut each: impl FnMut(Differentiated<'_>),
     ) {
-        let Self { fields, direct, wanted, resisting, .. } = self;
+        let Self { fields, direct, wanted, resisting, at_rest, .. } = self;
         // At a change point sensitivities are NaN, which does not mean that the variable is not admissible.
         let solved = !one.at_change_point;
         // x., x.., l., l.. of all coordinates and rows once; then three right-hand sides for each variable: (11), (12),
@@ -86,7 +94,10 @@ impl SensitivitySolver {
         state.finish_rates(topology);
         for (v, field) in fields.iter_mut().enumerate() {
             field.set_time(|d: DriverId| parts.law_of(d.0), t);
-            direct.solve(topology, state, field);
+            match *at_rest {
+                true => direct.solve_position(topology, state, field),
+                false => direct.solve(topology, state, field),
+            }
             for &body in field.reach.bodies.iter().filter(|b| wanted[**b]) {
                 let derivatives = {
                     let numbers = components(&direct.flow, state, body);

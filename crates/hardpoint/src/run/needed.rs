@@ -1,0 +1,80 @@
+//! The derivatives that metrics depend on.
+//!
+//! A metric is taken at few times, and depends on few measures. At an equilibrium the kernel solves the sensitivities
+//! of each output time by themselves, and those of measures along single forces and drivers one direction at a time, so
+//! that a run for its metrics leaves out the others.
+
+use crate::measure::is_formula;
+use crate::model::{Metric, Model, OutputSource, Reduction};
+
+use super::metric::{derivative_times, solution_of};
+use super::solution::Solution;
+
+/// Derivatives that the metrics of a model depend on, at the times of a solution.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct NeededDerivatives {
+    /// Per output time: true if sensitivities count.
+    at: Vec<bool>,
+    /// The same for measures along single forces and drivers.
+    curved_at: Vec<bool>,
+    /// Per measure: true if a metric is taken of it or over it.
+    measures: Vec<bool>,
+}
+
+impl NeededDerivatives {
+    /// Needs of metrics that depend on the output times alone; `None` if a metric depends on values.
+    pub fn of_times(model: &Model) -> Option<Self> {
+        let all_change = model.metrics.iter().all(|metric| matches!(metric.take, Reduction::Change));
+        let last = model.times.len().saturating_sub(1);
+        all_change.then(|| Self::of(model, model.times.len(), |_| Some(vec![0, last])))
+    }
+
+    /// Needs of all metrics at the times of a solution, whose values are known.
+    pub fn of_solution(model: &Model, solution: &Solution) -> Self {
+        let solution = solution_of(solution);
+        Self::of(model, solution.motion.len(), |metric| derivative_times(solution, metric))
+    }
+
+    /// Needs at this number of times; `times` returns those of a metric, or `None` if all count.
+    fn of(model: &Model, steps: usize, times: impl Fn(&Metric) -> Option<Vec<usize>>) -> Self {
+        let mut needs = Self {
+            at: vec![false; steps],
+            curved_at: vec![false; steps],
+            measures: vec![false; model.measures.len()],
+        };
+        for metric in &model.metrics {
+            let mut is_curved = false;
+            for output in [Some(metric.of), metric.over].into_iter().flatten() {
+                let OutputSource::Measure(m) = output else { continue };
+                is_curved |= model.depends_on_step(m);
+                needs.measures[m] = true;
+                if is_formula(model, m) {
+                    // A formula may use any measure.
+                    needs.measures.fill(true);
+                    is_curved = true;
+                }
+            }
+            let times = times(metric).unwrap_or_else(|| (0..steps).collect());
+            for k in times.into_iter().filter(|k| *k < steps) {
+                needs.at[k] = true;
+                needs.curved_at[k] |= is_curved;
+            }
+        }
+        needs
+    }
+
+    /// True if sensitivities count at output time k.
+    pub fn at(&self, k: usize) -> bool {
+        self.at[k]
+    }
+
+    /// True if those of measures along single forces and drivers count at output time k.
+    pub fn curved_at(&self, k: usize) -> bool {
+        self.curved_at[k]
+    }
+
+    /// True if a metric is taken of this measure or over it.
+    pub fn measure(&self, m: usize) -> bool {
+        self.measures[m]
+    }
+}
