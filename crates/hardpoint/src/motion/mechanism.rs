@@ -359,7 +359,7 @@ impl<'m> Mechanism<'m> {
         for step in self.topology.links.iter().flat_map(|l| &l.steps) {
             assert!(step.freedom != Freedom::Ball || self.state.q[step.first.0] == 0.0);
         }
-        self.state.q.iter().copied()
+        (0..self.state.q.len()).map(|c| self.state.q[c])
     }
 }
 

@@ -69,7 +69,8 @@ impl<'m> Stepper<'m> {
     pub(super) fn save(&mut self, t: f64) {
         self.predictor.learn(t, &self.mechanism.state);
         self.mechanism.save(t);
-        self.guard.start_at(self.mechanism.state.determinants.iter().copied());
+        let determinants = &self.mechanism.state.determinants;
+        self.guard.start_at((0..determinants.len()).map(|b| determinants[b]));
         self.lookahead.is_known = false;
     }
 

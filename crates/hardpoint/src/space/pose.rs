@@ -40,14 +40,11 @@ impl<T: Real> Pose<T> {
     /// Inverse: the pose of the outer frame in the inner one.
     #[inline(always)]
     pub fn inverse(self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || {
-                let rot = self.rot.transpose();
-                // (A, r)^-1 = (A^T, -A^T r)
-                Self { rot, r: -(rot * self.r) }
-            },
-        )
+        T::operation(|| {
+            let rot = self.rot.transpose();
+            // (A, r)^-1 = (A^T, -A^T r)
+            Self { rot, r: -(rot * self.r) }
+        })
     }
 
     /// Maps a point from the inner to the outer frame.
@@ -59,26 +56,20 @@ impl<T: Real> Pose<T> {
     /// Maps a twist from the inner to the outer frame: `Ad(X) e` (`docs/theory.md` (2)).
     #[inline(always)]
     pub fn carry(self, e: Twist<T>) -> Twist<T> {
-        T::operation(
-            #[inline(always)]
-            || {
-                // Ad(X) [w; v] = [A w;  A v + r x A w]                                                              (2)
-                let w = self.rot * e.w;
-                Twist { w, v: self.r.cross_plus(w, self.rot * e.v) }
-            },
-        )
+        T::operation(|| {
+            // Ad(X) [w; v] = [A w;  A v + r x A w]                                                              (2)
+            let w = self.rot * e.w;
+            Twist { w, v: self.r.cross_plus(w, self.rot * e.v) }
+        })
     }
 
     /// Maps a wrench from the outer to the inner frame: `l . Ad(X) e = carry_back(l) . e`.
     #[inline(always)]
     pub fn carry_back(self, l: Wrench<T>) -> Wrench<T> {
-        T::operation(
-            #[inline(always)]
-            || {
-                // Ad(X)^T [m; f] = [A^T (m - r x f);  A^T f]
-                Wrench { m: self.rot.transpose_mul(l.m - self.r.cross(l.f)), f: self.rot.transpose_mul(l.f) }
-            },
-        )
+        T::operation(|| {
+            // Ad(X)^T [m; f] = [A^T (m - r x f);  A^T f]
+            Wrench { m: self.rot.transpose_mul(l.m - self.r.cross(l.f)), f: self.rot.transpose_mul(l.f) }
+        })
     }
 
     /// This pose with its derivative along a twist in the outer frame: `A' = w x A`, `r' = v + w x r`.

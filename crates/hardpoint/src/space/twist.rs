@@ -88,25 +88,19 @@ impl<T: Real> Twist<T> {
     /// Rate of a twist `o` fixed in a body that moves with twist `self`: `ad(self) o` (`docs/theory.md` (3)).
     #[inline(always)]
     pub fn ad(self, o: Self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || {
-                // ad(V) x = [V_w x x_w;  V_w x x_v + V_v x x_w]                                                     (3)
-                Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
-            },
-        )
+        T::operation(|| {
+            // ad(V) x = [V_w x x_w;  V_w x x_v + V_v x x_w]                                                     (3)
+            Self { w: self.w.cross(o.w), v: self.w.cross_plus(o.v, self.v.cross(o.w)) }
+        })
     }
 
     /// Transpose of [`ad`](Self::ad): `l . ad(self) o = ad_transposed(l) . o`.
     #[inline(always)]
     pub fn ad_transposed(self, l: Wrench<T>) -> Wrench<T> {
-        T::operation(
-            #[inline(always)]
-            || {
-                // ad(V)^T l = [m x V_w + f x V_v;  f x V_w], from  m . (V_w x x_w) + f . (V_w x x_v + V_v x x_w)
-                Wrench { m: l.m.cross_plus(self.w, l.f.cross(self.v)), f: l.f.cross(self.w) }
-            },
-        )
+        T::operation(|| {
+            // ad(V)^T l = [m x V_w + f x V_v;  f x V_w], from  m . (V_w x x_w) + f . (V_w x x_v + V_v x x_w)
+            Wrench { m: l.m.cross_plus(self.w, l.f.cross(self.v)), f: l.f.cross(self.w) }
+        })
     }
 
     /// Velocity of the body point at `p`.
@@ -119,10 +113,7 @@ impl<T: Real> Twist<T> {
     /// `self * k + addend`.
     #[inline(always)]
     pub fn times_plus(self, k: T, addend: Self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self { w: self.w.times_plus(k, addend.w), v: self.v.times_plus(k, addend.v) },
-        )
+        T::operation(|| Self { w: self.w.times_plus(k, addend.w), v: self.v.times_plus(k, addend.v) })
     }
 
     /// This twist as plain numbers.
@@ -168,10 +159,7 @@ impl<T: Real> Wrench<T> {
     /// `self * k + addend`.
     #[inline(always)]
     pub fn times_plus(self, k: T, addend: Self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self { m: self.m.times_plus(k, addend.m), f: self.f.times_plus(k, addend.f) },
-        )
+        T::operation(|| Self { m: self.m.times_plus(k, addend.m), f: self.f.times_plus(k, addend.f) })
     }
 
     /// Wrench of the force `f` acting at `point`.
@@ -214,36 +202,27 @@ impl<T: Real> Sub for Wrench<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self { m: self.m - o.m, f: self.f - o.f },
-        )
+        T::operation(|| Self { m: self.m - o.m, f: self.f - o.f })
     }
 }
 
 impl<T: Real> AddAssign for Wrench<T> {
     #[inline(always)]
     fn add_assign(&mut self, o: Self) {
-        T::operation(
-            #[inline(always)]
-            || {
-                self.m += o.m;
-                self.f += o.f;
-            },
-        )
+        T::operation(|| {
+            self.m += o.m;
+            self.f += o.f;
+        })
     }
 }
 
 impl<T: Real> SubAssign for Wrench<T> {
     #[inline(always)]
     fn sub_assign(&mut self, o: Self) {
-        T::operation(
-            #[inline(always)]
-            || {
-                self.m = self.m - o.m;
-                self.f = self.f - o.f;
-            },
-        )
+        T::operation(|| {
+            self.m = self.m - o.m;
+            self.f = self.f - o.f;
+        })
     }
 }
 
@@ -251,10 +230,7 @@ impl<T: Real> Add for Twist<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self { w: self.w + o.w, v: self.v + o.v },
-        )
+        T::operation(|| Self { w: self.w + o.w, v: self.v + o.v })
     }
 }
 
@@ -273,10 +249,7 @@ impl<T: Real> Neg for Twist<T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self { w: -self.w, v: -self.v },
-        )
+        T::operation(|| Self { w: -self.w, v: -self.v })
     }
 }
 
@@ -284,10 +257,7 @@ impl<T: Real> Mul<T> for Twist<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, k: T) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self { w: self.w * k, v: self.v * k },
-        )
+        T::operation(|| Self { w: self.w * k, v: self.v * k })
     }
 }
 

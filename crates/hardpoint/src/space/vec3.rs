@@ -99,25 +99,19 @@ impl<T: Real> Vec3<T> {
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, o: Self) -> T {
-        T::operation(
-            #[inline(always)]
-            || self.z.times_plus(o.z, self.y.times_plus(o.y, self.x * o.x)),
-        )
+        T::operation(|| self.z.times_plus(o.z, self.y.times_plus(o.y, self.x * o.x)))
     }
 
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || {
-                Self::new(
-                    self.y.times_plus(o.z, -(self.z * o.y)),
-                    self.z.times_plus(o.x, -(self.x * o.z)),
-                    self.x.times_plus(o.y, -(self.y * o.x)),
-                )
-            },
-        )
+        T::operation(|| {
+            Self::new(
+                self.y.times_plus(o.z, -(self.z * o.y)),
+                self.z.times_plus(o.x, -(self.x * o.z)),
+                self.x.times_plus(o.y, -(self.y * o.x)),
+            )
+        })
     }
 
     /// `self x o + addend`.
@@ -138,16 +132,13 @@ impl<T: Real> Vec3<T> {
     /// `self * k + addend`.
     #[inline(always)]
     pub fn times_plus(self, k: T, addend: Self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || {
-                Self::new(
-                    self.x.times_plus(k, addend.x),
-                    self.y.times_plus(k, addend.y),
-                    self.z.times_plus(k, addend.z),
-                )
-            },
-        )
+        T::operation(|| {
+            Self::new(
+                self.x.times_plus(k, addend.x),
+                self.y.times_plus(k, addend.y),
+                self.z.times_plus(k, addend.z),
+            )
+        })
     }
 
     /// Mirror image in the plane through the origin with this unit normal: `v - 2 (v . n) n`.
@@ -158,10 +149,7 @@ impl<T: Real> Vec3<T> {
     /// Length.
     #[inline(always)]
     pub fn norm(self) -> T {
-        T::operation(
-            #[inline(always)]
-            || self.dot(self).sqrt(),
-        )
+        T::operation(|| self.dot(self).sqrt())
     }
 
     /// This vector as plain numbers.
@@ -188,10 +176,7 @@ impl<T: Real> Add for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self::new(self.x + o.x, self.y + o.y, self.z + o.z),
-        )
+        T::operation(|| Self::new(self.x + o.x, self.y + o.y, self.z + o.z))
     }
 }
 
@@ -199,10 +184,7 @@ impl<T: Real> Sub for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self::new(self.x - o.x, self.y - o.y, self.z - o.z),
-        )
+        T::operation(|| Self::new(self.x - o.x, self.y - o.y, self.z - o.z))
     }
 }
 
@@ -210,10 +192,7 @@ impl<T: Real> Neg for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self::new(-self.x, -self.y, -self.z),
-        )
+        T::operation(|| Self::new(-self.x, -self.y, -self.z))
     }
 }
 
@@ -221,38 +200,29 @@ impl<T: Real> Mul<T> for Vec3<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, k: T) -> Self {
-        T::operation(
-            #[inline(always)]
-            || Self::new(self.x * k, self.y * k, self.z * k),
-        )
+        T::operation(|| Self::new(self.x * k, self.y * k, self.z * k))
     }
 }
 
 impl<T: Real> AddAssign for Vec3<T> {
     #[inline(always)]
     fn add_assign(&mut self, o: Self) {
-        T::operation(
-            #[inline(always)]
-            || {
-                self.x += o.x;
-                self.y += o.y;
-                self.z += o.z;
-            },
-        )
+        T::operation(|| {
+            self.x += o.x;
+            self.y += o.y;
+            self.z += o.z;
+        })
     }
 }
 
 impl<T: Real> SubAssign for Vec3<T> {
     #[inline(always)]
     fn sub_assign(&mut self, o: Self) {
-        T::operation(
-            #[inline(always)]
-            || {
-                self.x -= o.x;
-                self.y -= o.y;
-                self.z -= o.z;
-            },
-        )
+        T::operation(|| {
+            self.x -= o.x;
+            self.y -= o.y;
+            self.z -= o.z;
+        })
     }
 }
 
