@@ -88,8 +88,8 @@ def slow():
 
 MINUTES = {
     "verify": lambda model: model.verify(),
-    "validity": lambda model: model.validity(),
-    "second_derivatives": lambda model: model.second_derivatives("toe"),
+    "validity": lambda model: [model.validity() for _ in range(1000)],
+    "second_derivatives": lambda model: [model.second_derivatives("toe") for _ in range(1000)],
     "designs": lambda model: model.designs(np.zeros((512, 1)), "toe", variables=["tie_rod_outer_z"], at=[0]),
     "designs_in_batch": lambda model: model.designs(
         np.zeros((5120, 1)), "toe", variables=["tie_rod_outer_z"], at=[0], sensitivities=False
