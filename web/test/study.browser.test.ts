@@ -23,7 +23,7 @@ describe('the page of a study', () => {
     await page.getByTestId('tab-variables').click()
     await page.getByLabel('change of ball_joint_z').first().press('ArrowRight')
     await page.getByTestId('tab-study').click()
-    expect(await other.isVisible()).toBe(true)
+    await expect.poll(() => other.isVisible()).toBe(true)
   })
 
   test('has a band at constant travel that is the deviation of the metric there', async () => {

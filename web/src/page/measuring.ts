@@ -34,7 +34,12 @@ export class Measuring {
   /** Over the view. */
   readonly overlay = el('div', { class: 'grips', hidden: true })
   /** Docked below the view. */
-  readonly pane: HTMLElement
+  readonly pane = el('section', {
+    class: 'measuring',
+    hidden: true,
+    'aria-label': 'Measuring',
+    'data-testid': 'measuring',
+  })
   #lines = svg('svg', { class: 'ruler', 'aria-hidden': 'true' })
   #result = el('output', { 'data-testid': 'measured' })
   #selects: HTMLSelectElement[]
@@ -62,15 +67,6 @@ export class Measuring {
         ...this.#spots.map(({ name }) => el('option', { value: name }, name)),
       ),
     )
-    this.overlay.append(this.#lines, ...this.#spots.map(({ button }) => button))
-    this.pane = el(
-      'section',
-      { class: 'measuring', hidden: true, 'aria-label': 'Measuring', 'data-testid': 'measuring' },
-      ...ORDER.flatMap((step, k) => [el('span', { class: 'muted' }, step), this.#selects[k]]),
-      el('button', { type: 'button', onclick: () => this.#clear() }, 'Clear'),
-      el('button', { type: 'button', title: 'Leave', onclick: () => this.toggle() }, 'Done'),
-      this.#result,
-    )
     view.onDrawn(() => this.#show())
   }
 
@@ -79,9 +75,21 @@ export class Measuring {
   }
 
   toggle(): void {
+    if (!this.pane.hasChildNodes()) this.#fill()
     this.pane.hidden = this.overlay.hidden = this.on
     this.button.setAttribute('aria-pressed', String(this.on))
     this.#show()
+  }
+
+  /** Adds a button and options for every point, which the page does without until it measures. */
+  #fill(): void {
+    this.overlay.append(this.#lines, ...this.#spots.map(({ button }) => button))
+    this.pane.append(
+      ...ORDER.flatMap((step, k) => [el('span', { class: 'muted' }, step), this.#selects[k]]),
+      el('button', { type: 'button', onclick: () => this.#clear() }, 'Clear'),
+      el('button', { type: 'button', title: 'Leave', onclick: () => this.toggle() }, 'Done'),
+      this.#result,
+    )
   }
 
   #dot(name: string): HTMLButtonElement {
