@@ -10,6 +10,7 @@ use crate::stepping::next;
 
 /// A point is stationary if its gradient is below this fraction of the gradient at the start.
 const STATIONARY: f64 = 1e-13;
+
 /// Residuals at a point, of order one at the start; NaN if the point cannot be evaluated, so that the solver steps
 /// back.
 pub type Residuals<'p> = Box<dyn Fn(&[f64]) -> Vec<f64> + 'p>;

@@ -8,8 +8,7 @@ use hardpoint::measure::outputs;
 use hardpoint::model::{Model, Offset, OffsetSource, PriorGroup, VariableId, VariablePrior};
 
 use super::FittedParameter;
-use hardpoint_search::dot;
-use hardpoint_search::singular;
+use hardpoint_search::{dot, singular};
 
 /// A singular value of the priors below this fraction of the largest is round-off.
 const ROUND_OFF: f64 = 1e-13;

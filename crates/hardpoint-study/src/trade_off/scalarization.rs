@@ -13,8 +13,7 @@ use super::functions::{Criticality, Matrix, Role, Scale, State};
 use crate::optimize::{LIMIT_KEPT, Memory, Point};
 use hardpoint::linalg::semidefinite;
 use hardpoint_search::quadratic::{Linear, Minimum, minimize};
-use hardpoint_search::{Singular, singular};
-use hardpoint_search::{dot, norm};
+use hardpoint_search::{Singular, dot, norm, singular};
 
 /// Residual at which a point of a front is found: a tenth of what is promised for each.
 const SHARP: f64 = 1e-7;

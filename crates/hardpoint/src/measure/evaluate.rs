@@ -8,9 +8,9 @@ use crate::clearance::{ChangingBodies, MovingBodies, NearestPair, PlacedShapes};
 use crate::design::{BodyFixed, DesignMap};
 use crate::law::Law;
 use crate::model::{ClearanceId, Model, VariableId};
-use crate::motion::Motion;
-use crate::number::{Dual, Jet, Rates};
-use crate::sensitivity::{Admissibility, Sensitivities};
+use crate::motion::{BodyState, Motion};
+use crate::number::{Dual, Jet, Rates, Real};
+use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
 use crate::space::Pose;
 use crate::topology::Topology;
 
@@ -245,43 +245,151 @@ pub(crate) fn derivatives(
     more: &Context<'_>,
     mut out: impl FnMut(usize, usize, usize, [f64; 3]),
 ) {
-    let &MeasuredDesign { model, design_map, values, .. } = design;
+    let model = design.model;
     if model.equilibrium.is_some() && model.clearances.is_empty() {
-        return derivatives_at_rest(design, outputs, listed, (motion, sensitivities), more, out);
+        let bodies = bodies_asked_for(model);
+        let run = (motion, sensitivities);
+        return each_step(
+            design,
+            listed,
+            run,
+            &bodies,
+            more,
+            |instant: Option<&Instant<'_, Dual>>, _, k, b, listed| {
+                let of = |m: usize| instant.map(|instant| instant.output(outputs[m].source).derivatives());
+                listed.iter().for_each(|&(_, m)| out(k, b, m, of(m).unwrap_or([f64::NAN; 3])));
+            },
+        );
     }
     // Clearances need the points of shapes only, not all poses.
     let needs_poses = listed.iter().any(|(_, m)| clearance_of(model, outputs[*m].source).is_none());
     let bodies = if needs_poses { bodies_asked_for(model) } else { Vec::new() };
     let has_clearances = !model.clearances.is_empty();
     let mut carriers = ChangingBodies::of(model);
+    let run = (motion, sensitivities);
+    each_step(
+        design,
+        listed,
+        run,
+        &bodies,
+        more,
+        |instant: Option<&Instant<'_, Dual<Rates>>>, fixed, k, b, listed| {
+            let Some(instant) = instant else { return };
+            if let Some(d) = sensitivities.at(k, b).filter(|_| has_clearances) {
+                carriers.set(motion.at(k), d);
+            }
+            let shapes = PlacedShapes { model, fixed, bodies: &carriers };
+            for &(_, m) in listed {
+                let value = match clearance_of(model, outputs[m].source) {
+                    Some(of) => shapes.clearance(of, instant.nearest),
+                    None => instant.output(outputs[m].source),
+                };
+                out(k, b, m, value.derivatives());
+            }
+        },
+    );
+}
+
+/// Number that has the derivatives of an output by a variable.
+trait OutputDerivatives: Real {
+    /// True if positions are at rest, so that their derivatives have no rates. Output times whose derivatives nobody
+    /// needs are left out then: their sensitivities are NaN.
+    const AT_REST: bool;
+
+    /// A number that is constant over time.
+    fn over_time(x: Dual) -> Self;
+
+    /// A measure by a driver, which has a value and its derivative, but no rates.
+    fn of_step(x: f64, d: f64) -> Self;
+
+    /// Pose of a body.
+    fn pose(s: &BodyState, d: &BodySensitivity) -> Pose<Self>;
+
+    /// Derivatives of the value, its rate and its acceleration; NaN where there are none.
+    fn derivatives(self) -> [f64; 3];
+}
+
+impl OutputDerivatives for Dual {
+    const AT_REST: bool = true;
+
+    fn over_time(x: Dual) -> Self {
+        x
+    }
+
+    fn of_step(v: f64, d: f64) -> Self {
+        Dual { v, d }
+    }
+
+    fn pose(s: &BodyState, d: &BodySensitivity) -> Pose<Self> {
+        at_rest(s, d)
+    }
+
+    fn derivatives(self) -> [f64; 3] {
+        only(self.d).0
+    }
+}
+
+impl OutputDerivatives for Dual<Rates> {
+    const AT_REST: bool = false;
+
+    #[inline(always)]
+    fn over_time(x: Dual) -> Self {
+        Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) }
+    }
+
+    #[inline(always)]
+    fn of_step(x: f64, d: f64) -> Self {
+        Dual { v: only(x), d: only(d) }
+    }
+
+    #[inline(always)]
+    fn pose(s: &BodyState, d: &BodySensitivity) -> Pose<Self> {
+        with_sensitivity(s, d)
+    }
+
+    #[inline(always)]
+    fn derivatives(self) -> [f64; 3] {
+        self.d.0
+    }
+}
+
+/// Calls `each` with the formulas at every output time that is listed, for every variable, and with the body-fixed
+/// data, output time, variable and listed outputs; without formulas at output times that were left out. These bodies
+/// are placed.
+#[inline(always)]
+fn each_step<T: OutputDerivatives>(
+    design: &MeasuredDesign<'_>,
+    listed: &[(usize, usize)],
+    (motion, sensitivities): (&Motion, &Sensitivities),
+    bodies: &[usize],
+    more: &Context<'_>,
+    mut each: impl FnMut(Option<&Instant<'_, T>>, &BodyFixed<T>, usize, usize, &[(usize, usize)]),
+) {
+    let &MeasuredDesign { model, design_map, values, .. } = design;
+    let (measures, clearances) = (model.measures.len(), model.clearances.len());
     let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
     let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
-    let (mut given, mut whole_turns): (Vec<Dual<Rates>>, Vec<Dual<Rates>>) = (Vec::new(), Vec::new());
+    let (mut given, mut whole_turns): (Vec<T>, Vec<T>) = (Vec::new(), Vec::new());
     for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
-        // d/db of body-fixed data; the derivative of the poses is W at this time, by `with_sensitivity`.
+        // d/db of body-fixed data; the derivative of the poses is W at this time.
         values[b] = Dual::variable(values[b].v);
-        let fixed = design_map.fixed(&values);
-        let fixed = fixed.map(|x| Dual { v: Jet::constant(x.v), d: Jet::constant(x.d) });
+        let fixed = design_map.fixed(&values).map(T::over_time);
         values[b] = Dual::constant(values[b].v);
         for listed in listed.chunk_by(|a, b| a.0 == b.0) {
             let first = listed[0].0;
             for k in first..usize::min(first + LANES, motion.len()) {
                 let Some(d) = sensitivities.at(k, b) else { break };
                 let states = motion.at(k);
-                bodies.iter().for_each(|&b| poses[b] = with_sensitivity(&states.body(b), &d.body(b)));
+                if T::AT_REST && bodies.iter().any(|&b| d.body(b).dpi.x.is_nan()) {
+                    each(None, &fixed, k, b, listed);
+                    continue;
+                }
+                bodies.iter().for_each(|&b| poses[b] = T::pose(&states.body(b), &d.body(b)));
                 given.clear();
-                let both = more.slopes.at(k).zip(more.slopes.d(k, b));
-                // A measure by a driver has a value and its derivative by b, but no rates.
-                given.extend(both.map(|(x, d)| Dual { v: only(x), d: only(d) }));
-                let turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
+                given.extend(more.slopes.at(k).zip(more.slopes.d(k, b)).map(|(x, d)| T::of_step(x, d)));
+                let turns = more.whole_turns.get(k * measures..).unwrap_or_default();
                 whole_turns.clear();
-                whole_turns.extend(
-                    turns
-                        .iter()
-                        .take(model.measures.len())
-                        .map(|turns| Dual::constant(Rates::constant(*turns))),
-                );
-                let clearances = model.clearances.len();
+                whole_turns.extend(turns.iter().take(measures).map(|turns| T::constant(*turns)));
                 let nearest = more.nearest.get(k * clearances..(k + 1) * clearances).unwrap_or_default();
                 let instant = Instant {
                     slopes: &given,
@@ -289,65 +397,7 @@ pub(crate) fn derivatives(
                     nearest,
                     ..Instant::new(model, &fixed, &poses)
                 };
-                if has_clearances {
-                    carriers.set(states, d);
-                }
-                let shapes = PlacedShapes { model, fixed: &fixed, bodies: &carriers };
-                for &(_, m) in listed {
-                    let value = match clearance_of(model, outputs[m].source) {
-                        Some(of) => shapes.clearance(of, nearest),
-                        None => instant.output(outputs[m].source),
-                    };
-                    out(k, b, m, value.d.0);
-                }
-            }
-        }
-    }
-}
-
-/// The same in an equilibrium, which has no rates.
-fn derivatives_at_rest(
-    design: &MeasuredDesign<'_>,
-    outputs: &[Output],
-    listed: &[(usize, usize)],
-    (motion, sensitivities): (&Motion, &Sensitivities),
-    more: &Context<'_>,
-    mut out: impl FnMut(usize, usize, usize, [f64; 3]),
-) {
-    let &MeasuredDesign { model, design_map, values, .. } = design;
-    let bodies = bodies_asked_for(model);
-    let mut poses = vec![Pose::IDENTITY.spread(); model.bodies.len()];
-    let mut values: Vec<Dual> = values.iter().map(|v| Dual::constant(*v)).collect();
-    let (mut given, mut whole_turns): (Vec<Dual>, Vec<Dual>) = (Vec::new(), Vec::new());
-    for b in (0..sensitivities.variables).filter(|_| !listed.is_empty()) {
-        values[b] = Dual::variable(values[b].v);
-        let fixed = design_map.fixed(&values);
-        values[b] = Dual::constant(values[b].v);
-        for listed in listed.chunk_by(|a, b| a.0 == b.0) {
-            let first = listed[0].0;
-            for k in first..usize::min(first + LANES, motion.len()) {
-                let Some(d) = sensitivities.at(k, b) else { break };
-                let states = motion.at(k);
-                if bodies.iter().any(|&b| d.body(b).dpi.x.is_nan()) {
-                    // This output time was left out.
-                    listed.iter().for_each(|&(_, m)| out(k, b, m, [f64::NAN; 3]));
-                    continue;
-                }
-                bodies.iter().for_each(|&b| poses[b] = at_rest(&states.body(b), &d.body(b)));
-                given.clear();
-                given.extend(more.slopes.at(k).zip(more.slopes.d(k, b)).map(|(v, d)| Dual { v, d }));
-                let turns = more.whole_turns.get(k * model.measures.len()..).unwrap_or_default();
-                whole_turns.clear();
-                whole_turns.extend(turns.iter().take(model.measures.len()).map(|x| Dual::constant(*x)));
-                let instant = Instant {
-                    slopes: &given,
-                    whole_turns: &whole_turns,
-                    ..Instant::new(model, &fixed, &poses)
-                };
-                for &(_, m) in listed {
-                    let Dual { d, .. } = instant.output(outputs[m].source);
-                    out(k, b, m, [d, f64::NAN, f64::NAN]);
-                }
+                each(Some(&instant), &fixed, k, b, listed);
             }
         }
     }
