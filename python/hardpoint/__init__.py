@@ -28,7 +28,7 @@ from .plots import plot
 from .positions import Positions
 from .run import Body, BodySensitivity, DriverLoad, Metric, Reaction, Run
 from .stored import load as load_run
-from .studies import Map, Study, SweepResult
+from .studies import DriverTable, Map, Study, SweepResult
 from .tools import (
     compare,
     export_formats,
@@ -45,8 +45,9 @@ __all__ = [
     "BodySensitivity",
     "CannotFollow",
     "Designs",
-    "DriverLoad",
     "Diagnostic",
+    "DriverLoad",
+    "DriverTable",
     "Function",
     "HardpointError",
     "HardpointWarning",

@@ -21,7 +21,7 @@ from .designs import Designs
 from .errors import Diagnostic, HardpointWarning, MotionStopped, UsageError, unknown
 from .positions import Positions, Solver, names
 from .run import Run
-from .studies import Map, Study, SweepResult, outcome
+from .studies import DriverTable, Map, Study, SweepResult, outcome
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -551,6 +551,20 @@ class Model:
     ) -> Study:
         """Writes the space that a shape sweeps as a closed surface (STL), in the frame of the body `relative_to` (ground)."""
         return tools.envelope(self, shape, path, case, relative_to, error, margin)
+
+    def table(
+        self,
+        over: Mapping[str, tuple[float, float]],
+        of: Iterable[str] = (),
+        *,
+        error: float | str | Mapping[str, float | str],
+        interpolation: str | None = None,
+        path: str | os.PathLike | None = None,
+    ) -> DriverTable:
+        """Outputs as functions of one to three drivers, with a proved error of the interpolation (docs/maps.md): `over` has both ends
+        of each driver, `error` the permitted one (`"0.001deg"`), of all outputs or by name. With `path` the table is a file as well:
+        `.csv`, `.json`, or `.txt` for Modelica, which is linear and in SI."""
+        return tools.table(self, over, of, error, interpolation, path)
 
     def compare(self, other: Model, *, case: str | None = None, measures: Iterable[str] = ()) -> Study:
         """Compares the motion with that of another model: hardpoints, measures, metrics."""

@@ -121,6 +121,85 @@ class Map(dict):
         return self.to_xarray().to_dataframe().reset_index()
 
 
+class DriverTable(dict):
+    """A table of outputs over one to three drivers with a proved error, as `hardpoint map` writes it (docs/maps.md).
+
+    `table("toe", bump=12.5)` is the interpolation whose error is proved; drivers may be arrays."""
+
+    @property
+    def drivers(self) -> dict[str, np.ndarray]:
+        """Knots of each driver."""
+        return {axis["name"]: np.array(axis["knots"], dtype=float) for axis in self["drivers"]}
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the outputs."""
+        return tuple(one["name"] for one in self["outputs"])
+
+    @property
+    def proved_error(self) -> dict[str, float]:
+        """Proved bound of the error of each output, in its unit."""
+        return {one["name"]: one["proved_error"] for one in self["outputs"]}
+
+    def __call__(self, output: str, /, **at: Any) -> np.ndarray:
+        """Values of an output at positions of all drivers; outside of the table's ranges, an error."""
+        numbers = self._of(output)["numbers"]
+        axes = self.drivers
+        for name in at:
+            if name not in axes:
+                raise unknown("driver of this table", name, tuple(axes))
+        if missing := [name for name in axes if name not in at]:
+            raise UsageError.saying(f"the table is over {', '.join(f'`{name}`' for name in axes)}: give `{missing[0]}` too")
+        places = np.broadcast_arrays(*(np.asarray(at[name], dtype=float) for name in axes))
+        cells, weights = [], []
+        for (name, knots), x in zip(axes.items(), places):
+            if not np.all((knots[0] <= x) & (x <= knots[-1])):
+                raise UsageError.saying(f"`{name}` is outside of the table's range {knots[0]:g} .. {knots[-1]:g}")
+            cell = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, len(knots) - 2)
+            width = knots[cell + 1] - knots[cell]
+            cells.append(cell)
+            weights.append(_weights((x - knots[cell]) / width, width, self["interpolation"] == "hermite"))
+        total = np.zeros(places[0].shape)
+        for one in numbers:
+            values = np.reshape(one["values"], [len(knots) for knots in axes.values()])
+            orders = [int(name in one["by"]) for name in axes]
+            for corner in np.ndindex(*(2,) * len(axes)):
+                weight = np.prod([of[end][order] for of, end, order in zip(weights, corner, orders)], axis=0)
+                total += weight * values[tuple(cell + end for cell, end in zip(cells, corner))]
+        return total
+
+    def to_xarray(self):
+        """Values and derivatives at the knots."""
+        import xarray
+
+        axes = tuple(self.drivers)
+        shape = [len(knots) for knots in self.drivers.values()]
+        data = {}
+        for one in self["outputs"]:
+            for numbers in one["numbers"]:
+                name = " by ".join([one["name"], *numbers["by"]])
+                data[name] = (axes, np.reshape(numbers["values"], shape), {"units": numbers["unit"]})
+        coordinates = {axis["name"]: (axis["name"], np.array(axis["knots"], dtype=float), {"units": axis["unit"]}) for axis in self["drivers"]}
+        return xarray.Dataset(data, coordinates, {"model": self["model"], "interpolation": self["interpolation"]})
+
+    def _of(self, output: str) -> dict[str, Any]:
+        if output not in self.outputs:
+            raise unknown("output of this table", output, self.outputs)
+        return next(one for one in self["outputs"] if one["name"] == output)
+
+    def __repr__(self) -> str:
+        return f"<hardpoint.DriverTable of {', '.join(self.outputs)} over {', '.join(self.drivers)}: {self['cells']} cells, {self['interpolation']}>"
+
+
+def _weights(u: np.ndarray, width: np.ndarray, is_cubic: bool) -> list[list[np.ndarray]]:
+    """Weights of the value and of the derivative at both ends of a cell, at `u` between 0 and 1."""
+    if not is_cubic:
+        return [[1 - u], [u]]
+    # Cubic Hermite polynomials.
+    rest = 1 - u
+    return [[(1 + 2 * u) * rest**2, u * rest**2 * width], [u**2 * (3 - 2 * u), -(u**2) * rest * width]]
+
+
 def outcome(model: Model, text: str, rounded: list[float] | None = None, exact: list[float] | None = None) -> Study:
     found = json.loads(text)
     return Study(model, found["facts"], found["tables"], rounded, exact)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from . import _native
 from .arguments import count, named
 from .errors import Diagnostic, HardpointError, ModelError, MotionStopped, StudyError, TopologyError, UsageError
-from .studies import Study
+from .studies import DriverTable, Study
 
 if TYPE_CHECKING:
     from .model import Model
@@ -118,6 +118,29 @@ def envelope(
         options += [] if value is None else [f"{name}={value}"]
     with saved(model) as file:
         return _study(model, facts("envelope", file, shape, *_case(model, case), *options, "-o", os.path.abspath(path)))
+
+
+def table(
+    model: Model,
+    over: Mapping[str, tuple[float, float]],
+    of: Iterable[str],
+    error: float | str | Mapping[str, float | str],
+    interpolation: str | None,
+    path: str | os.PathLike | None,
+) -> DriverTable:
+    errors = [f"{name}={value}" for name, value in error.items()] if isinstance(error, Mapping) else [error]
+    options = [f"--error={one}" for one in errors]
+    for name, ends in over.items():
+        try:
+            first, last = ends
+        except (TypeError, ValueError):
+            raise UsageError.saying(f"the range of `{name}` is both of its ends, not {ends!r}") from None
+        options.append(f"--over={name}={first}..{last}")
+    options += [f"--of={name}" for name in ([of] if isinstance(of, str) else of)]
+    options += [] if interpolation is None else [f"--interpolation={interpolation}"]
+    with saved(model) as file, tempfile.TemporaryDirectory() as folder:
+        to = Path(folder, "table.json") if path is None else os.path.abspath(path)
+        return DriverTable(facts("map", file, *options, "-o", to)["map"])
 
 
 @named

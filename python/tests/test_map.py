@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy
 import pytest
 
+import hardpoint
+
 interpolate = pytest.importorskip("scipy.interpolate")
 
 ERROR = 1e-3
@@ -73,6 +75,48 @@ def test_linear_interpolation_of_the_csv_file_is_within_the_permitted_error(comm
     drivers, exact = solved
     errors = numpy.abs(at(numpy.clip(drivers, [x[0], y[0]], [x[-1], y[-1]])) - exact)
     assert ERROR / 100 < errors.max() <= ERROR
+
+
+@pytest.mark.parametrize("interpolation", ["hermite", "linear"])
+def test_a_table_of_python_is_within_the_proved_error(model, solved, interpolation, tmp_path):
+    ranges = {"spring_drive": (-16, 24), "rack_drive": (-12, 12)}
+    found = hardpoint.read(model).table(ranges, of=["toe"], error=f"{ERROR}deg", interpolation=interpolation, path=tmp_path / "toe.json")
+    assert found == json.loads((tmp_path / "toe.json").read_text())
+    drivers, exact = solved
+    spring, rack = (numpy.clip(x, *ends) for x, ends in zip(drivers.T, ranges.values()))
+    errors = numpy.abs(found("toe", spring_drive=spring, rack_drive=rack) - exact)
+    assert 0 < errors.max() <= found.proved_error["toe"] <= ERROR
+    assert found("toe", rack_drive=0, spring_drive=spring).shape == spring.shape
+    knots = found.to_xarray()["toe"]
+    assert knots.dims == ("spring_drive", "rack_drive") and knots.attrs["units"] == "deg"
+    first = {name: float(knots[name][-1]) for name in knots.dims}
+    assert found("toe", **first) == float(knots[-1, -1])
+
+
+def test_a_table_over_one_driver_is_that_of_scipy(model):
+    found = hardpoint.read(model).table({"spring_drive": (-16, 24)}, of="wheel_centre.z", error={"wheel_centre.z": "0.01mm"})
+    (numbers,) = found["outputs"]
+    value, slope = (numpy.array(n["values"]) for n in numbers["numbers"])
+    x = numpy.linspace(-16, 24, 1001)
+    expected = interpolate.CubicHermiteSpline(found.drivers["spring_drive"], value, slope)(x)
+    assert found("wheel_centre.z", spring_drive=x) == pytest.approx(expected, abs=1e-11)
+
+
+def test_mistakes_with_tables_are_named(model):
+    of = hardpoint.read(model)
+    table = of.table({"spring_drive": (-16, 24)}, of="toe", error=0.1)
+    for wrong, message in (
+        (lambda: table("camber", spring_drive=0), "camber"),
+        (lambda: table("toe", spring_driv=0), "spring_drive"),
+        (lambda: table("toe"), "give `spring_drive`"),
+        (lambda: table("toe", spring_drive=25), "outside of the table's range -16 .. 24"),
+        (lambda: table("toe", spring_drive=math.nan), "outside"),
+        (lambda: of.table({"spring_drive": 3}, error=1), "both of its ends"),
+        (lambda: of.table({"spring": (0, 1)}, error=1), "spring"),
+        (lambda: of.table({"spring_drive": (0, 1)}, of="toe", error="1 furlong"), "furlong"),
+    ):
+        with pytest.raises(hardpoint.HardpointError, match=re.escape(message)):
+            wrong()
 
 
 def test_tables_of_modelica_are_in_si_with_both_grids(command, model, tmp_path):
