@@ -17,7 +17,7 @@ need() { # command, Debian package
 }
 need node nodejs
 need npm npm
-need chromium chromium
+command -v chromium-headless-shell >/dev/null || install chromium-headless-shell || need chromium chromium
 need valgrind valgrind
 need clang clang
 need python3 python3
