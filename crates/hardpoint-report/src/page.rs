@@ -340,12 +340,31 @@ pub struct JointCurve {
 pub struct CouplerMark {
     /// Name of the coupler.
     pub name: String,
-    /// Type in the model file: `gear`, `bevel`, `rack`, `belt`, `screw`, `linear`.
-    pub kind: String,
+    /// Type in the model file.
+    pub kind: CouplerKind,
     /// Terms; for a rack the rack first, then the pinion.
     pub terms: Vec<CouplerTerm>,
     /// Sizes in the model file: teeth of two gears, radii of two pulleys, radius of a rack's pinion, lead of a screw.
     pub sizes: Vec<f64>,
+}
+
+/// Type of a coupler in the model file.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[cfg_attr(test, derive(TS))]
+pub enum CouplerKind {
+    /// Two gears with parallel axes.
+    Gear,
+    /// Two bevel gears.
+    Bevel,
+    /// Rack and pinion.
+    Rack,
+    /// Belt of two pulleys.
+    Belt,
+    /// Thread.
+    Screw,
+    /// Relation with coefficients.
+    Linear,
 }
 
 /// Joint coordinate with its factor.
@@ -1099,7 +1118,7 @@ pub(crate) mod tests {
             )* };
         }
         declare!(
-            Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark SlideMark JointCurve CouplerMark CouplerTerm
+            Curve Payload ModelText Detail Units Status Fact BodyTrack PointRole Mesh JointMark SlideMark JointCurve CouplerMark CouplerKind CouplerTerm
             DriverMark BodyPlace WheelMark ClearanceMarks ShapeMark ClearanceMark PairTrack DesignShapes DistanceMark LoadMark VehicleAxes Quantity Plot NamedDesign NamedChange Value Gate Design DesignKind DesignCurves
             GridMap GridDriver GridQuantity GridSensitivity SweepPlot SweepAxis SweepIndex Margin StudyTables Variable Admissibility Arrow Sensitivity FiniteDifference Table
         );

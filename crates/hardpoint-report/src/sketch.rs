@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use hardpoint::space::{Mat3, Pose, Quat, Vec3};
 
-use crate::page::{CouplerMark, JointMark, Payload};
+use crate::page::{CouplerKind, CouplerMark, JointMark, Payload};
 
 /// Width and height of a drawing.
 pub const SIZE: [f64; 2] = [300.0, 200.0];
@@ -313,10 +313,11 @@ impl<'a> Sketch<'a> {
             Some((self.ends(joint)[0], self.axis(joint)?, term.coefficient))
         });
         let shafts: Vec<(Vec3, Vec3, f64)> = shafts.collect();
-        let radii = match (coupler.kind.as_str(), &shafts[..]) {
-            ("belt", [_, _]) => coupler.sizes.clone(),
-            ("rack", [_]) => coupler.sizes.clone(),
-            ("gear", [(a, axis, p), (b, other, q)]) if axis.dot(*other).abs() > PARALLEL => {
+        let radii = match (coupler.kind, &shafts[..]) {
+            (CouplerKind::Belt | CouplerKind::Rack, _) if shafts.len() == coupler.sizes.len() => {
+                coupler.sizes.clone()
+            }
+            (CouplerKind::Gear, [(a, axis, p), (b, other, q)]) if axis.dot(*other).abs() > PARALLEL => {
                 let apart = *b - *a;
                 let apart = (apart - *axis * apart.dot(*axis)).norm();
                 // In outer mesh the wheels turn against each other: both factors have one sign.
@@ -324,7 +325,9 @@ impl<'a> Sketch<'a> {
                 let sum = if p * q > 0.0 { p.abs() + q.abs() } else { (p.abs() - q.abs()).abs() };
                 if sum > 0.0 { vec![apart * p.abs() / sum, apart * q.abs() / sum] } else { Vec::new() }
             }
-            _ => Vec::new(),
+            // Without parallel shafts that are drawn there is no circle.
+            (CouplerKind::Belt | CouplerKind::Rack | CouplerKind::Gear, _) => Vec::new(),
+            (CouplerKind::Bevel | CouplerKind::Screw | CouplerKind::Linear, _) => Vec::new(),
         };
         shafts.iter().zip(radii).map(|((at, axis, _), radius)| circle(*at, *axis, radius)).collect()
     }

@@ -16,8 +16,8 @@ use hardpoint_file::MeshFrame;
 use crate::facts::{fixed_spins, written_kind};
 use crate::figures::symbol;
 use crate::page::{
-    Arrow, BodyPlace, BodyTrack, CouplerMark, CouplerTerm, Curve, DistanceMark, DriverMark, JointCurve,
-    JointMark, Mesh, PointRole, SlideMark, VehicleAxes, WheelMark,
+    Arrow, BodyPlace, BodyTrack, CouplerKind, CouplerMark, CouplerTerm, Curve, DistanceMark, DriverMark,
+    JointCurve, JointMark, Mesh, PointRole, SlideMark, VehicleAxes, WheelMark,
 };
 
 use super::Compose;
@@ -238,18 +238,16 @@ impl Compose<'_> {
                 let joint = self.drawn(term.joint)?;
                 Some(CouplerTerm { joint, turns, coefficient: term.coefficient * unit })
             });
-            CouplerMark {
-                name: coupler.name.clone(),
-                kind: coupler.transmission.map_or("linear", Transmission::name).into(),
-                terms: terms.collect(),
-                sizes: match coupler.transmission {
-                    None => Vec::new(),
-                    Some(Transmission::Gears { teeth, .. }) => teeth.into(),
-                    Some(Transmission::Rack { radius }) => vec![length(radius)],
-                    Some(Transmission::Belt { radii, .. }) => radii.map(length).into(),
-                    Some(Transmission::Screw { lead }) => vec![length(lead)],
-                },
-            }
+            let (kind, sizes) = match coupler.transmission {
+                None => (CouplerKind::Linear, Vec::new()),
+                Some(Transmission::Gears { teeth, bevel, .. }) => {
+                    (if bevel { CouplerKind::Bevel } else { CouplerKind::Gear }, teeth.into())
+                }
+                Some(Transmission::Rack { radius }) => (CouplerKind::Rack, vec![length(radius)]),
+                Some(Transmission::Belt { radii, .. }) => (CouplerKind::Belt, radii.map(length).into()),
+                Some(Transmission::Screw { lead }) => (CouplerKind::Screw, vec![length(lead)]),
+            };
+            CouplerMark { name: coupler.name.clone(), kind, terms: terms.collect(), sizes }
         };
         self.model.couplers.iter().map(mark).collect()
     }

@@ -214,7 +214,7 @@ fn stand_assembled(m: &mut Mechanism<'_>) -> bool {
         return false;
     }
     m.settle_branch();
-    for r in m.topology.coupler_terms() {
+    for &r in &m.topology.coupler_terms {
         m.state.near[r.0] = m.state.coordinate_of_row(&m.topology, r)[0];
     }
     // A pivot that is zero within round-off of the search means bars in line: no motion is defined there.

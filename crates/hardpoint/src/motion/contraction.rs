@@ -51,7 +51,7 @@ impl<T: Real> Formulas<T> {
         for (d, driver) in self.drivers.iter_mut().enumerate() {
             *driver = [law(d), T::zero(), T::zero()];
         }
-        for r in topology.coupler_terms() {
+        for &r in &topology.coupler_terms {
             self.state.near[r.0] = T::constant(at.coupled[r.0][0]);
         }
         for (c, d) in topology.driven_coordinates() {

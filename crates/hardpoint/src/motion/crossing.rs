@@ -63,7 +63,7 @@ impl Crossing {
         for (k, channel) in channels.iter().enumerate() {
             channel.put(moved(k)[0], state);
         }
-        for r in topology.coupler_terms() {
+        for &r in &topology.coupler_terms {
             state.near[r.0] = between([a.coupled[r.0], b.coupled[r.0]], h, s)[0];
         }
         if (t - self.at).abs() > AT_IT * h {

@@ -191,7 +191,7 @@ impl Lookahead {
             for (c, moved) in self.moves.iter_mut().enumerate() {
                 *moved = bends[c].times_plus(half, slopes[c].times_plus(du, *moved));
             }
-            for r in topology.coupler_terms() {
+            for &r in &topology.coupler_terms {
                 let [slope, bend] = self.around.turning[k][r.0];
                 state.near[r.0] += slope * du + bend * half;
             }

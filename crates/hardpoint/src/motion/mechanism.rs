@@ -250,11 +250,8 @@ impl<'m> Mechanism<'m> {
     /// Predicts the coordinates of couplers, a step h beyond the saved position.
     #[inline(always)]
     pub fn expect_turns(&mut self, h: f64) {
-        if self.topology.coupled_rows.is_empty() {
-            return;
-        }
         let half = 0.5 * h;
-        for r in self.topology.coupler_terms() {
+        for &r in &self.topology.coupler_terms {
             let [x, v, a] = self.saved.coupled[r.0];
             // chi + chi. h + chi.. h^2 / 2
             self.state.near[r.0] = x + (v + a * half) * h;
@@ -271,7 +268,7 @@ impl<'m> Mechanism<'m> {
             !topology.constraint(*r).is_length() && !((value - s.near[r.0]).abs() <= TURN_TRUST)
         };
         // All terms of a coupler are of its block.
-        topology.coupler_terms().find(uncertain).and_then(|r| topology.closure_of(r).block)
+        topology.coupler_terms.iter().find(|r| uncertain(r)).and_then(|r| topology.closure_of(*r).block)
     }
 
     /// Accepts the position of the state, at t on the path.
@@ -286,10 +283,8 @@ impl<'m> Mechanism<'m> {
         saved.drivers.copy_from_slice(&self.drivers);
         saved.contacts.copy_from_slice(&s.contacts);
         saved.residual = self.residuals.scaled;
-        if !self.topology.coupled_rows.is_empty() {
-            for r in self.topology.coupler_terms() {
-                saved.coupled[r.0] = s.coordinate_of_row(&self.topology, r);
-            }
+        for &r in &self.topology.coupler_terms {
+            saved.coupled[r.0] = s.coordinate_of_row(&self.topology, r);
         }
     }
 
@@ -299,10 +294,8 @@ impl<'m> Mechanism<'m> {
         s.q.copy_from_slice(&saved.q);
         s.balls.copy_from_slice(&saved.balls);
         s.contacts.copy_from_slice(&saved.contacts);
-        if !self.topology.coupled_rows.is_empty() {
-            for r in self.topology.coupler_terms() {
-                s.near[r.0] = saved.coupled[r.0][0];
-            }
+        for &r in &self.topology.coupler_terms {
+            s.near[r.0] = saved.coupled[r.0][0];
         }
     }
 

@@ -210,7 +210,7 @@ impl Workspace {
             // q' and q'' by (9) and (10), with f' of this direction in the place of f.
             found.slopes[direction].copy_from_slice(&state.motion.speeds[0]);
             found.bends[direction].copy_from_slice(&state.motion.speeds[1]);
-            for r in topology.coupler_terms() {
+            for &r in &topology.coupler_terms {
                 // chi' and chi'' of what a coupler counts
                 let [_, speed, rate] = state.coordinate_of_row(topology, r);
                 found.turning[direction][r.0] = [speed, rate];

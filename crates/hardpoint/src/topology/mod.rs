@@ -54,6 +54,8 @@ pub struct Topology {
     pub rows: Vec<RowPlace>,
     /// Rows that are couplers.
     pub coupled_rows: Vec<RowId>,
+    /// Rows that are terms of couplers, including the first ones.
+    pub coupler_terms: Vec<RowId>,
     /// Degrees of freedom without drivers, at the design configuration.
     pub mobility: usize,
     /// Role of each joint, tree or cut, with the reason.
@@ -379,11 +381,6 @@ impl Topology {
     /// Returns the closures with curves, with the number of the curve.
     pub fn contacts(&self) -> impl Iterator<Item = (ClosureId, usize)> + '_ {
         ClosureId::each(&self.closures).filter_map(|(c, closure)| Some((c, closure.contact?)))
-    }
-
-    /// Returns the rows that are terms of couplers, including the first ones.
-    pub fn coupler_terms(&self) -> impl Iterator<Item = RowId> + '_ {
-        self.coupled_rows.iter().flat_map(|&r| self.parts_of_row(r)).map(|term| term.row)
     }
 
     /// Returns the name of a row in messages: the joint with its constraint, the driver, or the coupler.

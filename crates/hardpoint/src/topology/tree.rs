@@ -41,6 +41,7 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation) -> Topology {
         blocks: Vec::new(),
         rows: Vec::new(),
         coupled_rows: Vec::new(),
+        coupler_terms: Vec::new(),
         mobility: 0,
         roles: Vec::new(),
     };
@@ -109,6 +110,7 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation) -> Topology {
         topology.rows[first].terms = factors.collect();
         topology.rows[first].constant = coupler.constant / coupler.terms[0].coefficient;
         topology.coupled_rows.push(RowId(first));
+        topology.coupler_terms.extend((first..first + coupler.terms.len()).map(RowId));
         for k in 1..coupler.terms.len() {
             topology.rows[first + k].is_term = true;
         }
