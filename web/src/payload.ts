@@ -414,9 +414,9 @@ export type CouplerMark = {
  */
 name: string,
 /**
- * Type in the model file: `gear`, `bevel`, `rack`, `belt`, `screw`, `linear`.
+ * Type in the model file.
  */
-kind: string,
+kind: CouplerKind,
 /**
  * Terms; for a rack the rack first, then the pinion.
  */
@@ -425,6 +425,11 @@ terms: Array<CouplerTerm>,
  * Sizes in the model file: teeth of two gears, radii of two pulleys, radius of a rack's pinion, lead of a screw.
  */
 sizes: Array<number>, };
+
+/**
+ * Type of a coupler in the model file.
+ */
+export type CouplerKind = "gear" | "bevel" | "rack" | "belt" | "screw" | "linear";
 
 /**
  * Joint coordinate with its factor.
