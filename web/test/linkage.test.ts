@@ -125,6 +125,12 @@ steps = 180
     expect(solve(six).summary).toEqual({ mobility: 1, solved: 181 })
   })
 
+  test('has no variable and no measure of a pivot without a bar', () => {
+    const text = linkageToml(changed(withPin(driven(fourBar(), 'A'), [9, 9]), 'F', { support: 'ground' }), 'mm')
+    expect(text).toContain('ground = ["A", "D", "F"]')
+    expect(text).not.toMatch(/^F(_angle)? = \{/m)
+  })
+
   test('that does not move, or is not driven, has the diagnostics of the command', () => {
     // Nothing drives it; two drivers for one freedom; a triangle on the ground.
     expect(solve(fourBar()).codes).toContain('HP0301')

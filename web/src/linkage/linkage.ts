@@ -133,8 +133,9 @@ export function linkageToml({ pins, bars }: Linkage, unit: string): string {
   const joint = ({ name, support }: Pin) => (support === 'slider' ? `${name}_slide` : name)
   const law = ({ motor, amplitude }: Pin) => (motor === 'turn' ? '360*t' : `${amplitude}*sin(2*pi*t)`)
   const measure = ({ name, support }: Pin) => `${name}_${support === 'slider' ? 'travel' : 'angle'}`
-  // A pivot without a bar is no joint.
-  const measured = [...grounded, ...sliders].filter(({ name }) => bars.some(({ pins }) => pins.includes(name)))
+  // A pivot without a bar is no joint, and moving it changes nothing.
+  const joined = pins.filter(({ name }) => bars.some(({ pins }) => pins.includes(name)))
+  const measured = [...grounded, ...sliders].filter((pin) => joined.includes(pin))
   const outputs = measured.filter(({ motor }) => !motor).map(measure)
   const section = (head: string, lines: string[]) => (lines.length > 0 ? ['', ...head.split('\n'), ...lines] : [])
   return [
@@ -166,7 +167,7 @@ export function linkageToml({ pins, bars }: Linkage, unit: string): string {
     ),
     ...section(
       '[design]',
-      pins.map(({ name }) => `${name} = { move = "${name}", along = "xy" }`),
+      joined.map(({ name }) => `${name} = { move = "${name}", along = "xy" }`),
     ),
     ...section(
       '[measures]',
