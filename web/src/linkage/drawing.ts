@@ -61,7 +61,7 @@ const PAUSE = 200
 /** Digits of a coordinate. */
 const DIGITS = 12
 
-/** What is selected: a joint or a bar. */
+/** The selected joint or bar. */
 type Chosen = { kind: 'pin' | 'bar'; name: string }
 
 /** A sheet over the view on which a planar linkage is drawn, and its pane; its result is the text of a model. */

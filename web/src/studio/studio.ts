@@ -45,7 +45,7 @@ const PREVIEW = 'optimisation, best so far'
 const REST = 200
 /** Milliseconds between a change and its being kept by the browser. */
 const SAVE = 400
-/** File of a linkage that was drawn, and its unit of length. */
+/** File of a drawn linkage, and its unit of length. */
 const DRAWN = { file: 'linkage.toml', unit: 'mm' }
 /** Screens on which the pane of the text would hide the view. */
 const NARROW = '(max-width: 1000px)'
@@ -78,7 +78,7 @@ export class Studio {
   /** Pictures behind planes, by the unit of length. */
   readonly #pictures = new Map<string, Picture>()
   #drawing?: Drawing
-  /** The last text that was drawn. */
+  /** Text of the last drawing that was shown. */
   #drawn?: string
   readonly #listeners: (() => void)[] = []
   #editor?: Editor
