@@ -1,27 +1,27 @@
-//! Deflates the contents of every report: the page's code, and the engine that solves in it.
+//! Deflates the contents of every report: the page's style and code, and the engine that solves in it.
 
 use std::{env, error::Error, fs, io::Write, path::Path};
 
 use flate2::{Compression, write::DeflateEncoder};
 
+/// Contents, each of some files of the folder `page` with a zero between them.
+const CONTENTS: [(&str, &[&str]); 2] =
+    [("code.txt", &["app.css", "app.js"]), ("engine.txt", &["engine.wasm"])];
+
 fn main() -> Result<(), Box<dyn Error>> {
-    for name in ["app.js", "engine.wasm"] {
-        let file = Path::new("page").join(name);
-        println!("cargo::rerun-if-changed={}", file.display());
+    for (name, parts) in CONTENTS {
         let mut deflated = DeflateEncoder::new(Vec::new(), Compression::best());
-        deflated.write_all(&fs::read(file)?)?;
-        let bytes = deflated.finish()?;
-        fs::write(
-            Path::new(&env::var("OUT_DIR")?).join(name).with_extension(extension(name)),
-            base85(&bytes),
-        )?;
+        for (k, part) in parts.iter().enumerate() {
+            let file = Path::new("page").join(part);
+            println!("cargo::rerun-if-changed={}", file.display());
+            if k > 0 {
+                deflated.write_all(&[0])?;
+            }
+            deflated.write_all(&fs::read(file)?)?;
+        }
+        fs::write(Path::new(&env::var("OUT_DIR")?).join(name), base85(&deflated.finish()?))?;
     }
     Ok(())
-}
-
-/// `app.js.txt` of `app.js`.
-fn extension(name: &str) -> String {
-    format!("{}.txt", name.rsplit('.').next().unwrap_or_default())
 }
 
 /// Digits that mean nothing to HTML, as `page/report.html` and `web/src/unpack.ts` know them.

@@ -183,6 +183,7 @@ const PLANAR = [
   'press',
   'quick_return',
   'scissor_lift',
+  'slider_crank',
   'three_rrr',
   'watt_six_bar',
 ]

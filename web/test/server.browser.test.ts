@@ -1,5 +1,5 @@
 import { type ChildProcess, execFileSync, spawn } from 'node:child_process'
-import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import type { Browser, Page } from 'playwright-core'
@@ -37,7 +37,7 @@ function stop(): Promise<void> {
 }
 
 /** The page at an address, and its errors other than unanswered requests. */
-async function open(address: string): Promise<Page> {
+async function open(address: string, isModel = true): Promise<Page> {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 } })
   page.setDefaultTimeout(WAIT)
   page.on('pageerror', (error) => faults.push(error.message))
@@ -49,7 +49,7 @@ async function open(address: string): Promise<Page> {
       faults.push(request.url()),
   )
   await page.goto(address)
-  await page.waitForFunction(() => performance.getEntriesByName('ready').length > 0)
+  if (isModel) await page.waitForFunction(() => performance.getEntriesByName('ready').length > 0)
   return page
 }
 const faults: string[] = []
@@ -194,4 +194,49 @@ test('points that are clicked on the picture become a task, whose answers are li
   )
   const [answer] = await Promise.all([page.waitForEvent('popup'), links.first().click()])
   await answer.waitForFunction(() => document.querySelector('[data-testid=title]')?.textContent?.includes('path 1'))
+})
+
+test('the gallery has drawings, and a new linkage is drawn, saved under a free name and opened again', async () => {
+  copyFileSync(join(MODELS, 'jansen.toml'), join(folder, 'jansen.toml'))
+  const page = await open(await start(0, '.'), false)
+  const jansen = page.locator('.model', { hasText: 'jansen.toml' })
+  await jansen.locator('svg').waitFor()
+  expect(await jansen.locator('polyline').count()).toBeGreaterThan(0)
+  await page.getByTestId('new-linkage').click()
+  const sheet = page.getByTestId('linkage-sheet')
+  await sheet.waitFor()
+  // Nothing is on disk yet.
+  expect(existsSync(join(folder, 'linkage.toml'))).toBe(false)
+  for (const [x, y] of [
+    [0.3, 0.8],
+    [0.36, 0.62],
+    [0.7, 0.75],
+  ]) {
+    const { width, height } = (await sheet.boundingBox())!
+    await sheet.click({ position: { x: x * width, y: y * height } })
+  }
+  await page.keyboard.press('Escape')
+  for (const [tool, pin] of [
+    ['ground', 'A'],
+    ['slider', 'C'],
+    ['motor', 'A'],
+  ]) {
+    await page.getByTestId(`linkage-${tool}`).click()
+    await page.getByTestId(`linkage-pin-${pin}`).click()
+  }
+  await page.locator('[data-testid=linkage-show]:enabled').click()
+  await sheet.waitFor({ state: 'hidden' })
+  await page.locator('[data-testid=save]:enabled').click()
+  await page.getByTestId('note-saving').waitFor()
+  expect(new URL(page.url()).search).toBe('?file=linkage.toml')
+  const saved = readFileSync(join(folder, 'linkage.toml'), 'utf8')
+  expect(saved).toContain('C_slider = ["C"]')
+  execFileSync(hardpoint, ['check', join(folder, 'linkage.toml')])
+  // Its page is that of the file; another linkage is drawn on a page of its own.
+  await page.reload()
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+  expect(await sheet.count()).toBe(0)
+  await page.getByTestId('draw-linkage').click()
+  await page.waitForURL(/\/new$/)
+  await sheet.waitFor()
 })

@@ -60,7 +60,7 @@ fn site_in(session: &Session, options: &Site) -> Result<Outcome, Outcome> {
         return Err(outcome);
     }
     let lead = "Mechanisms with their motion and exact design sensitivities. Each page is the report of one model: open one and play.";
-    let index = gallery("Hardpoint", lead, &cards);
+    let index = gallery("Hardpoint", lead, None, &cards);
     let shared = folder.write(SHARED, |out| out.write_all(shared_script().as_bytes()));
     let written = shared.and_then(|()| folder.write(INDEX, |out| out.write_all(index.as_bytes())));
     written.and_then(|()| folder.commit(&[])).map_err(|e| session.not_written(&e))?;

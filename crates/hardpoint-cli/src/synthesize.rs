@@ -161,7 +161,7 @@ fn write(
         }
     }
     let lead: Vec<String> = facts.rows().into_iter().map(|(_, line)| line).collect();
-    let index = gallery(&file.name, &lead.join(". "), &cards);
+    let index = gallery(&file.name, &lead.join(". "), None, &cards);
     folder.write("index.html", |out| out.write_all(index.as_bytes())).map_err(wrong)?;
     folder.write("answers.csv", |out| Ok(facts.write_answers(out, file.units)?)).map_err(wrong)?;
     let names = ["index.html", "answers.csv", "summary.json"];

@@ -18,8 +18,13 @@ pub struct Card {
     pub link: String,
     /// Further pages of the model, one per case: name and address.
     pub more: Vec<(String, String)>,
-    /// Picture as SVG, made by this program.
+    /// Picture as SVG, made by this program, or [`pending`].
     pub picture: Option<String>,
+}
+
+/// Empty frame for a picture that a server returns as `{"svg": ...}` at this address, once the frame is seen.
+pub fn pending(address: &str) -> String {
+    format!("<div class=\"drawing\" data-drawing=\"{}\"></div>\n", escape_text(address))
 }
 
 /// Number of models that are shown without a field for a search.
@@ -41,7 +46,32 @@ field.addEventListener('input', () => {
 })
 </script>"#;
 
-/// Page of all models, with an introduction `lead`.
+/// Fills the frames of [`pending`], one at a time.
+const DRAWINGS: &str = r#"<script type="module">
+const { token } = JSON.parse(document.getElementById('server').textContent)
+const waiting = []
+let busy = false
+async function draw() {
+  if (busy) return
+  busy = true
+  for (let frame; (frame = waiting.shift()); ) {
+    const reply = await fetch(frame.dataset.drawing, { headers: { 'x-hardpoint-token': token } }).catch(() => {})
+    if (reply?.ok) frame.innerHTML = (await reply.json()).svg
+  }
+  busy = false
+}
+const seen = new IntersectionObserver((entries) => {
+  for (const { target, isIntersecting } of entries) {
+    if (!isIntersecting) continue
+    seen.unobserve(target)
+    waiting.push(target)
+  }
+  draw()
+})
+for (const frame of document.querySelectorAll('[data-drawing]')) seen.observe(frame)
+</script>"#;
+
+/// Page of all models, with an introduction `lead`, and a link to the page of a `new` linkage.
 ///
 /// ```
 /// use hardpoint_report::gallery::{Card, gallery};
@@ -54,16 +84,27 @@ field.addEventListener('input', () => {
 ///     more: Vec::new(),
 ///     picture: None,
 /// };
-/// assert!(gallery("Models", "Two bodies.", &[card]).contains(r#"<a href="ab.html">a &lt; b</a>"#));
+/// assert!(gallery("Models", "Two bodies.", None, &[card]).contains(r#"<a href="ab.html">a &lt; b</a>"#));
 /// ```
-pub fn gallery(title: &str, lead: &str, cards: &[Card]) -> String {
+pub fn gallery(title: &str, lead: &str, new: Option<&str>, cards: &[Card]) -> String {
+    let new = new.map_or_else(String::new, |address| {
+        let address = escape_text(address);
+        format!("<p><a class=\"new\" data-testid=\"new-linkage\" href=\"{address}\">New linkage</a></p>\n")
+    });
     let mut body = format!(
-        "<h1>{}</h1>\n<p class=\"lead\">{}</p>\n<div class=\"gallery\">\n",
+        "<h1>{}</h1>\n<p class=\"lead\">{}</p>\n{new}<div class=\"gallery\">\n",
         escape_text(title),
         escape_text(lead)
     );
     cards.iter().for_each(|card| body += &card.html());
-    sheet(title, &(body + "</div>\n" + if cards.len() > MOST_UNSEARCHED { SEARCH } else { "" }))
+    body += "</div>\n";
+    if cards.len() > MOST_UNSEARCHED {
+        body += SEARCH;
+    }
+    if body.contains("data-drawing=") {
+        body += DRAWINGS;
+    }
+    sheet(title, &body)
 }
 
 impl Card {

@@ -934,9 +934,9 @@ pub fn html(payload: &Payload) -> Result<String, serde_json::Error> {
     Ok(file(&payload.title, &packed(payload)?))
 }
 
-/// Engine and code of a page, deflated and in letters.
-const ENGINE: &str = include_str!(concat!(env!("OUT_DIR"), "/engine.wasm.txt"));
-const CODE: &str = include_str!(concat!(env!("OUT_DIR"), "/app.js.txt"));
+/// Engine of a page, and its style and code, deflated and in letters.
+const ENGINE: &str = include_str!(concat!(env!("OUT_DIR"), "/engine.txt"));
+const CODE: &str = include_str!(concat!(env!("OUT_DIR"), "/code.txt"));
 
 /// Name of the file with the engine and the code that the pages of a folder share.
 pub const SHARED: &str = "hardpoint.js";
@@ -962,7 +962,6 @@ pub fn sharing(page: &str, models: &str) -> String {
 pub(crate) fn file(title: &str, packed: &[u8]) -> String {
     fill(include_str!("../page/report.html"), |slot| match slot {
         "title" => escape_text(title),
-        "style" => include_str!("../page/app.css").to_owned(),
         "payload" => base64(packed),
         "engine" => ENGINE.to_owned(),
         "code" => CODE.to_owned(),
@@ -1092,9 +1091,7 @@ pub(crate) mod tests {
                 None => part.to_owned(),
             })
             .collect();
-        let (head, rest) = markup.split_once("<style>").unwrap();
-        let (_, body) = rest.split_once("</style>").unwrap();
-        for markup in [head, body, include_str!("../page/report.html")] {
+        for markup in [&markup, include_str!("../page/report.html")] {
             assert!(!markup.contains("src=") && !markup.contains("href=") && !markup.contains("import("));
         }
         assert!(!include_str!("../page/app.css").contains("url("));

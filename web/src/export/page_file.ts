@@ -27,6 +27,8 @@ export function pageFile(document: Document, design: StoredDesign): Blob {
   // The copy belongs to no server and no site.
   root.querySelector('#server')?.replaceChildren()
   root.querySelector('link[rel=up]')?.remove()
+  // Its code adds the style again.
+  root.querySelector('head style')?.remove()
   const stored = document.createElement('script')
   stored.type = 'application/json'
   stored.id = ID

@@ -87,7 +87,7 @@ export class Mechanism {
     this.#places = joined.map((places) => this.distinct(places))
     this.#natural = base ? base.#natural : this.#unit()
     this.unit = base?.unit ?? this.#natural
-    this.plane = base ? base.plane : planeOf(report, this.sweep, this.size)
+    this.plane = base ? base.plane : planeOf(report, this.#visited(joined, ['wheel', 'measured']), this.size)
     const { vehicle } = report
     this.vehicle = vehicle ? { forward: new Vector3(...vehicle.forward), up: new Vector3(...vehicle.up) } : undefined
     this.up =
@@ -253,9 +253,10 @@ export class Mechanism {
     return points.filter((point, k) => points.findIndex((other) => this.same(other, point)) === k)
   }
 
-  #visited(joined: Vector3[][]): Vector3[] {
+  /** Places of joints, and of points but those of some roles. */
+  #visited(joined: Vector3[][], without: string[] = ['wheel']): Vector3[] {
     return this.report.bodies.flatMap(({ skeleton, roles }, body) => {
-      const marked = skeleton.filter((_, k) => roles[k] !== 'wheel').map((point: Place) => new Vector3(...point))
+      const marked = skeleton.filter((_, k) => !without.includes(roles[k])).map((point: Place) => new Vector3(...point))
       const points = [...marked, ...joined[body]]
       return (body === 0 ? [0] : this.moments).flatMap((step) => {
         const pose = this.poseAt(body, step)

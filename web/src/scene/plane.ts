@@ -2,12 +2,15 @@ import { Box3, Vector3 } from 'three'
 import type { Report } from '../report'
 import { poseAt, turned } from './poses'
 
-/** A mechanism whose points leave a plane by less than this part of its size is planar. */
+/** A mechanism whose joints and hardpoints leave a plane by less than this part of its size is planar. */
 const FLAT = 2e-3
 /** Least cosine between two hinges that count as parallel. */
 const PARALLEL = 0.999
 
-/** The normal of the plane that a mechanism moves in, towards the reader; none for a spatial one. */
+/**
+ * The normal of the plane that a mechanism moves in, towards the reader; none for a spatial one. `sweep`: the places of
+ * its joints and hardpoints. A measured point may be beside the plane, as that of a coupler in front of its rod.
+ */
 export function planeOf(report: Report, sweep: Vector3[], size: number): Vector3 | undefined {
   if (report.wheels.length > 0 || report.vehicle) return undefined
   const hinges = report.joints

@@ -3,6 +3,7 @@ import { Plane, Vector3 } from 'three'
 import { el, svg } from '../dom'
 import { save } from '../export/save'
 import { messageOf, number, roundBelow } from '../format'
+import { Backdrop, type Picture } from '../linkage/backdrop'
 import type { View } from '../scene/view'
 import type { State } from '../state'
 import { LEAST_POINTS, type PathTask, taskToml } from './path_task'
@@ -36,6 +37,7 @@ export class PathPoints {
     hidden: true,
     'data-testid': 'path-overlay',
     onclick: (event: MouseEvent) => event.target === this.element && this.#add(event),
+    onwheel: (event: WheelEvent) => this.view.canvas.dispatchEvent(new WheelEvent('wheel', event)),
   })
   readonly pane: HTMLElement
   #line = svg('svg', { class: 'ruler', 'aria-hidden': 'true' })
@@ -44,6 +46,7 @@ export class PathPoints {
   #failure = el('p', { class: 'wrong', role: 'alert' })
   #actions: HTMLButtonElement[]
   #held?: number
+  #backdrop?: Backdrop
   /** The plane of the hardpoints, with its directions to the right and upwards in the world. */
   #plane: Plane
   #axes: [right: Vector3, up: Vector3]
@@ -53,6 +56,8 @@ export class PathPoints {
     private readonly state: State,
     private readonly task: PathTask,
     normal: Vector3,
+    /** Picture behind the view. */
+    private readonly picture: Picture,
     synthesis: Synthesis | undefined,
   ) {
     const { report } = state
@@ -90,6 +95,7 @@ export class PathPoints {
       action('Remove last', 'path-remove', () => void this.#remove(task.points.length - 1)),
       action('Clear', 'path-clear', () => ((task.points.length = 0), this.#show())),
       ...this.#actions,
+      action('Picture…', 'path-picture', () => this.#openPicture()),
       action('Done', 'path-done', () => this.toggle()),
       this.#summary,
       this.#failure,
@@ -106,7 +112,24 @@ export class PathPoints {
   toggle(): void {
     this.pane.hidden = this.element.hidden = this.on
     this.button.setAttribute('aria-pressed', String(this.on))
+    if (this.on && this.picture.image) this.#openPicture()
     this.#show()
+  }
+
+  /** Adds the controls of the picture behind the view. */
+  #openPicture(): void {
+    const { original, element } = this.view
+    const surface = {
+      element: this.element,
+      unit: this.state.report.units.length,
+      project: ([x, y]: [number, number]) => this.view.project(this.#world([x, y])),
+      seen: () => ({
+        middle: this.#axes.map((axis) => original.centre.dot(axis)) as [number, number],
+        size: [original.size, (original.size * element.clientHeight) / element.clientWidth] as [number, number],
+      }),
+    }
+    this.#backdrop ??= new Backdrop(surface, this.picture)
+    this.pane.append(this.#backdrop.tools)
   }
 
   get #toml(): string {
@@ -123,12 +146,11 @@ export class PathPoints {
     }
   }
 
-  /** Place of a click in the plane, rounded; undefined where the view is along the plane. */
+  /** Place of a click in the plane; undefined where the view is along the plane. */
   #at({ clientX, clientY }: { clientX: number; clientY: number }): [number, number] | undefined {
     const { left, top } = this.view.element.getBoundingClientRect()
     const place = this.view.sight(clientX - left, clientY - top).intersectPlane(this.#plane, new Vector3())
-    if (!place) return undefined
-    return this.#rounded(this.#axes.map((axis) => place.dot(axis)) as [number, number])
+    return place ? (this.#axes.map((axis) => place.dot(axis)) as [number, number]) : undefined
   }
 
   #rounded(point: [number, number]): [number, number] {
@@ -144,8 +166,8 @@ export class PathPoints {
 
   #add(event: MouseEvent): void {
     const point = this.#at(event)
-    if (!point) return
-    this.task.points.push(point)
+    if (!point || this.#backdrop?.click(point)) return
+    this.task.points.push(this.#rounded(point))
     this.#show()
     this.#handles.at(-1)?.focus()
   }
@@ -190,7 +212,7 @@ export class PathPoints {
       onpointermove: (event: PointerEvent) => {
         const point = this.#held === k ? this.#at(event) : undefined
         if (!point) return
-        this.task.points[k] = point
+        this.task.points[k] = this.#rounded(point)
         this.#show()
       },
       onpointerup: () => (this.#held = undefined),
@@ -226,6 +248,7 @@ export class PathPoints {
   /** Puts the handles where their points are in the picture. */
   #follow(): void {
     if (!this.on) return
+    this.#backdrop?.follow()
     const places = this.task.points.map((point) => this.#world(point))
     this.#handles.forEach((handle, k) => this.view.put(handle, places[k]))
     const screen = places.map((place) => this.view.project(place))

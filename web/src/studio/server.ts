@@ -145,6 +145,9 @@ export class Server {
     return (await this.request('GET', '/api/models')).json()
   }
 
+  /** Address of a page for a new linkage. */
+  readonly newLink = '/new'
+
   /** Address of the page of a model. */
   link(file: string, shown?: string): string {
     return `/?${new URLSearchParams({ file, ...(shown === undefined ? {} : { case: shown }) })}`
@@ -166,8 +169,24 @@ export class Server {
     return revision === this.revision
   }
 
-  /** Saves in place, over the text that this one was made from; with `anyway` also what is no valid model. */
+  /** True if the model has no file yet. */
+  get isNew(): boolean {
+    return this.revision === null
+  }
+
+  /**
+   * Saves in place, over the text that this one was made from, or as a new file; with `anyway` also what is no valid
+   * model.
+   */
   async save(text: string, anyway = false): Promise<SaveOutcome> {
+    if (this.isNew) {
+      const saved = await this.saveAs(this.file!, text, anyway)
+      if (saved.outcome === 'saved') {
+        this.revision = saved.revision
+        history.replaceState(null, '', this.link(this.file!))
+      }
+      return saved
+    }
     const response = await this.request('PUT', this.target(this.file!, anyway), {
       body: text,
       headers: { 'if-match': `"${this.revision}"` },

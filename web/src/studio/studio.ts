@@ -9,6 +9,8 @@ import { Solver } from '../engine/solver'
 import { pageFile, storedDesign } from '../export/page_file'
 import { save } from '../export/save'
 import { messageOf } from '../format'
+import type { Picture } from '../linkage/backdrop'
+import { Drawing } from '../linkage/drawing'
 import { page, type PageMemory, type PageParts, slot } from '../page'
 import type { Item } from '../page/menu'
 import type { VariableLimits } from '../page/variables'
@@ -43,6 +45,10 @@ const PREVIEW = 'optimisation, best so far'
 const REST = 200
 /** Milliseconds between a change and its being kept by the browser. */
 const SAVE = 400
+/** File of a drawn linkage, and its unit of length. */
+const DRAWN = { file: 'linkage.toml', unit: 'mm' }
+/** Screens on which the pane of the text would hide the view. */
+const NARROW = '(max-width: 1000px)'
 
 /** Choices of a page. */
 interface Choices {
@@ -69,6 +75,11 @@ export class Studio {
   readonly #points = new PointsPane(() => this.#scheduleUpdate())
   /** Path for which linkages are sought, in every text and case of the model. */
   readonly #path: PathTask = { points: [], isClosed: false, isFullTurn: false }
+  /** Pictures behind planes, by the unit of length. */
+  readonly #pictures = new Map<string, Picture>()
+  #drawing?: Drawing
+  /** Text of the last drawing that was shown. */
+  #drawn?: string
   readonly #listeners: (() => void)[] = []
   #editor?: Editor
   #grips?: Grips
@@ -87,8 +98,9 @@ export class Studio {
   #hand = 0
   /** The text of the present design. */
   #text: string
-  /** A text that is being solved. */
+  /** A text that is being solved, and why the last one could not be shown. */
   #next?: string
+  #failure?: unknown
   /** Counts the requests, so that an outdated answer is ignored. */
   #version = 0
   /** The page's design of each snapshot that was compared with. */
@@ -182,17 +194,85 @@ export class Studio {
       onChange: (listener: () => void) => this.onText(listener),
     }
     this.#server = server?.file ? serverBar(server, own) : undefined
+    // A drawing would replace the model that the server's file is of.
+    const address = server && !server.isNew ? server.newLink : undefined
+    const draw = el(
+      'button',
+      {
+        type: 'button',
+        'data-testid': 'draw-linkage',
+        title: 'Draw a new planar linkage',
+        onclick: () => (address ? location.assign(address) : this.#draw()),
+      },
+      'Draw',
+    )
     this.#tools.append(
       bar,
       this.#cases,
       ...this.#drawer.buttons,
+      draw,
       ...(this.#server ? [this.#server.element] : []),
       this.#status,
     )
     document.body.append(this.#drawer.element)
     slot(made.bar, this.#tools)
     this.#attach()
-    void this.#begin()
+    void this.#begin().then(() => {
+      if (server?.isNew) this.#draw()
+    })
+  }
+
+  /** Opens or closes the sheet on which a linkage is drawn. */
+  #draw(): void {
+    if (!this.#drawing) {
+      this.#drawing = new Drawing({
+        unit: DRAWN.unit,
+        picture: this.#picture(DRAWN.unit),
+        check: async (text) =>
+          (await this.#checks.ask<CheckReply>({ ask: 'check', model: { ...this.model, text, case: null } })).json
+            .messages,
+        show: (text) => this.#showDrawn(text),
+      })
+      this.#placeDrawing()
+    }
+    this.#drawing.toggle()
+  }
+
+  /** Puts the sheet over the view, and its pane below. */
+  #placeDrawing(): void {
+    const view = this.root.querySelector('.view')
+    if (!this.#drawing || !view) return
+    view.append(this.#drawing.element)
+    view.after(this.#drawing.pane)
+  }
+
+  /** Solves and shows the text of a drawing, next to which the text is opened; throws where that fails. */
+  async #showDrawn(text: string): Promise<void> {
+    if (text !== this.#text) {
+      // Another mechanism has nothing to recall.
+      if (this.model.text !== this.#drawn) {
+        this.#fresh = true
+        this.#recalled = { choices: this.state.memory, page: { figures: [], tab: '' } }
+      }
+      this.#drawn = text
+      this.history.go({ text, settings: [], label: 'linkage' })
+      const solved = this.#openModel({ ...this.model, text, case: null }, [])
+      this.#setText(text)
+      await solved
+    }
+    if (this.#failure) throw this.#failure
+    if (!matchMedia(NARROW).matches) await this.#drawer.open('Model')
+  }
+
+  #picture(unit: string): Picture {
+    const picture = this.#pictures.get(unit) ?? {}
+    this.#pictures.set(unit, picture)
+    return picture
+  }
+
+  /** Name of the file of the present text. */
+  get #file(): string {
+    return this.model.text === this.#drawn && !this.#server ? DRAWN.file : this.model.file
   }
 
   /** Opens the model, then the design of the address, or the offer to restore stored work. */
@@ -259,15 +339,15 @@ export class Studio {
     {
       name: 'Model as TOML',
       testId: 'export-toml',
-      run: async () => save(new Blob([await this.#currentText()], { type: 'application/toml' }), this.model.file),
+      run: async () => save(new Blob([await this.#currentText()], { type: 'application/toml' }), this.#file),
     },
     {
       name: 'Page with this design',
       testId: 'export-html',
       run: () => {
-        const { text, file } = this.model
+        const { text } = this.model
         const design = { text, case: this.model.case, settings: this.state.settings }
-        save(pageFile(document, design), `${file.replace(/\.[^.]*$/, '')}.html`)
+        save(pageFile(document, design), `${this.#file.replace(/\.[^.]*$/, '')}.html`)
       },
     },
   ]
@@ -459,7 +539,14 @@ export class Studio {
     looks?.append(grips.button)
     const { plane } = view.original
     if (!plane) return
-    const path = new PathPoints(view, this.state, this.#path, plane, this.#server?.synthesize)
+    const path = new PathPoints(
+      view,
+      this.state,
+      this.#path,
+      plane,
+      this.#picture(this.state.report.units.length),
+      this.#server?.synthesize,
+    )
     view.element.append(path.element)
     view.element.after(path.pane)
     looks?.append(path.button)
@@ -607,6 +694,7 @@ export class Studio {
   /** Shows another model, solved anew. */
   async #openModel(model: ModelText, settings: VariableSetting[]): Promise<void> {
     this.#showStatus('solving')
+    this.#failure = undefined
     this.#next = model.text
     this.#version++
     this.#sensing.stop()
@@ -624,6 +712,7 @@ export class Studio {
       if (settings.length > 0) this.state.setDesign(settings)
       else this.root.dataset.settled = 'yes'
     } catch (error) {
+      this.#failure = error
       this.#showStatus(messageOf(error))
       if (error instanceof RequestError) this.#editor?.showMessages(error.messages)
     }
@@ -659,6 +748,7 @@ export class Studio {
       figure: (figure) => this.target(figure),
     })
     if (this.#offer) this.made.notices.append(this.#offer)
+    this.#placeDrawing()
     state.goToStep(state.step)
     this.#grips = undefined
     this.#attach()

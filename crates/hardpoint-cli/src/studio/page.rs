@@ -1,23 +1,55 @@
-//! Pages of models, as written by `run`, and the gallery.
+//! Pages of models, as written by `run`, the gallery with its drawings, and the page of a new linkage.
 
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use hardpoint::topology::Formulation;
+use hardpoint_file::ModelFile;
 use hardpoint_report::gallery::{self, Card};
+use hardpoint_report::maps::MapFact;
 use hardpoint_report::page::served;
+use hardpoint_report::sketch::svg;
 use hyper::StatusCode;
 use hyper::body::Bytes;
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::meter::Listener;
 use crate::session::Session;
 use crate::{maps, run};
 
 use super::Studio;
-use super::routes::{blocking, no_page};
+use super::folder::{FileError, Revision};
+use super::routes::{blocking, no_file, no_page};
 use super::server::Answer;
+
+/// Address of the page of a new linkage.
+pub const NEW: &str = "/new";
+/// Number of names of new files that are tried.
+const MOST_NEW: usize = 1000;
+/// Model behind the sheet of a new linkage: a crank that turns.
+const CRANK: &str = r#"# A crank that turns: the smallest linkage.
+
+name = "linkage"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+
+[hardpoints]
+A = [0, 0]
+B = [100, 0]
+
+[bodies]
+ground = ["A"]
+bar_1 = ["A", "B"]
+
+[drivers]
+A_motor = { joint = "A", law = "360*t" }
+
+[time]
+end = 1
+steps = 60
+"#;
 
 /// Facts about the server for a page.
 #[derive(Serialize)]
@@ -25,7 +57,7 @@ struct About<'a> {
     token: &'a str,
     /// Model file of the page; `None` for the gallery.
     file: Option<&'a str>,
-    /// Revision of the model text.
+    /// Revision of the model text; `None` if it has no file yet.
     revision: Option<&'a str>,
     /// Case of the page, if the model has cases.
     case: Option<&'a str>,
@@ -37,6 +69,8 @@ struct About<'a> {
 pub struct Pages {
     clock: AtomicU64,
     last: tokio::sync::Mutex<Option<Made>>,
+    /// Drawings of the gallery, with the revision of their model.
+    drawings: Mutex<HashMap<String, (Revision, String)>>,
 }
 
 struct Made {
@@ -74,45 +108,86 @@ pub async fn model(studio: Arc<Studio>, file: String, case: Option<String>) -> A
 
 fn made(studio: &Studio, name: &str, case: Option<&str>) -> Result<String, Answer> {
     let found = studio.models.read(name).map_err(|why| no_page(name, why))?;
-    let mut about = About {
-        token: studio.address.token(),
-        file: Some(name),
-        revision: Some(&found.revision),
-        case,
-        cases: Vec::new(),
-    };
-    let file = match studio.models.parse(name, &found.text) {
+    Ok(page_of(studio, name, &found.text, Some(&found.revision), case))
+}
+
+/// Page on which a linkage is drawn; its file is written when it is saved.
+pub async fn new(studio: Arc<Studio>) -> Answer {
+    let made = blocking(move || {
+        let names = (1..).map(|k| if k == 1 { "linkage.toml".into() } else { format!("linkage-{k}.toml") });
+        let is_free = |name: &String| matches!(studio.models.read(name), Err(FileError::Absent));
+        let name = names.take(MOST_NEW).find(is_free).unwrap_or_else(|| "linkage.toml".into());
+        Ok(page_of(&studio, &name, CRANK, None, None))
+    });
+    match made.await {
+        Ok(html) => Answer::page(StatusCode::OK, html),
+        Err(answer) => answer,
+    }
+}
+
+/// Drawing of a model in its current state on disk, empty if the model cannot be shown.
+pub async fn drawing(studio: Arc<Studio>, name: String) -> Answer {
+    let drawn = blocking(move || {
+        let found = studio.models.read(&name).map_err(|why| no_file(&name, why))?;
+        let drawings = || studio.pages.drawings.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = drawings().get(&name).filter(|(revision, _)| *revision == found.revision).cloned();
+        let svg = known.map_or_else(|| drawn(&studio, &name, &found.text), |(_, svg)| svg);
+        let answer = Answer::json(StatusCode::OK, &json!({ "file": name, "svg": svg }));
+        drawings().insert(name, (found.revision, svg));
+        Ok(answer)
+    });
+    drawn.await.unwrap_or_else(|answer| answer)
+}
+
+fn drawn(studio: &Studio, name: &str, text: &str) -> String {
+    let file = studio.models.parse(name, text).ok();
+    let page = file.and_then(|file| {
+        let case = file.model.cases.first().map(|c| c.name.clone());
+        solved(studio, &file, case.as_deref(), |_| Vec::new()).ok()
+    });
+    page.map_or_else(String::new, |page| svg(&page.picture))
+}
+
+fn page_of(studio: &Studio, name: &str, text: &str, revision: Option<&str>, case: Option<&str>) -> String {
+    let mut about =
+        About { token: studio.address.token(), file: Some(name), revision, case, cases: Vec::new() };
+    let file = match studio.models.parse(name, text) {
         Ok(file) => file,
         Err(wrong) => {
             let lines: Vec<usize> = wrong.list().iter().filter_map(|d| d.line).collect();
-            return Ok(with_facts(
-                &gallery::trouble(name, &wrong.render(false), &found.text, &lines),
-                &about,
-            ));
+            return with_facts(&gallery::trouble(name, &wrong.render(false), text, &lines), &about);
         }
     };
     about.cases = file.model.cases.iter().map(|c| c.name.as_str()).collect();
     let case = case.or(about.cases.first().copied());
     about.case = case;
-    let heard = Arc::new(Heard::default());
-    let session = Session::for_page(Arc::clone(&heard) as Arc<dyn Listener>, Arc::clone(&studio.ending));
-    let page = case.map(|name| session.case(&file, name)).transpose().and_then(|id| {
-        let maps = maps::solved(&session, &file, Formulation::Relative);
-        let one = id.map(|id| file.in_case(id));
-        run::page(&session, one.as_ref().unwrap_or(&file), &maps, Formulation::Relative)
-    });
-    Ok(match page {
+    match solved(studio, &file, case, |session| maps::solved(session, &file, Formulation::Relative)) {
         Ok(page) => with_facts(&page.html, &about),
-        Err(_) => {
-            let (diagnostics, text) = heard.refusal();
+        Err((diagnostics, why)) => {
             let lines = diagnostics
                 .as_array()
                 .into_iter()
                 .flatten()
                 .filter_map(|d| Some(d["line"].as_u64()? as usize));
-            with_facts(&gallery::trouble(name, &text, &found.text, &lines.collect::<Vec<_>>()), &about)
+            with_facts(&gallery::trouble(name, &why, text, &lines.collect::<Vec<_>>()), &about)
         }
-    })
+    }
+}
+
+/// Report of a case, or the diagnostics why there is none, also as text.
+fn solved(
+    studio: &Studio,
+    file: &ModelFile,
+    case: Option<&str>,
+    maps: impl FnOnce(&Session) -> Vec<MapFact>,
+) -> Result<run::Page, (Value, String)> {
+    let heard = Arc::new(Heard::default());
+    let session = Session::for_page(Arc::clone(&heard) as Arc<dyn Listener>, Arc::clone(&studio.ending));
+    let page = case.map(|name| session.case(file, name)).transpose().and_then(|id| {
+        let one = id.map(|id| file.in_case(id));
+        run::page(&session, one.as_ref().unwrap_or(file), &maps(&session), Formulation::Relative)
+    });
+    page.map_err(|_| heard.refusal())
 }
 
 /// Adds the facts about the server to a page.
@@ -133,7 +208,12 @@ pub async fn gallery(studio: Arc<Studio>) -> Answer {
         let link = |pairs: &[(&str, &str)]| {
             format!("/?{}", form_urlencoded::Serializer::new(String::new()).extend_pairs(pairs).finish())
         };
+        let drawing = |file: &str| {
+            let query = form_urlencoded::Serializer::new(String::new()).append_pair("file", file).finish();
+            gallery::pending(&format!("/api/drawing?{query}"))
+        };
         let card = |e: super::folder::Entry| Card {
+            picture: (e.problems == 0).then(|| drawing(&e.file)),
             link: link(&[("file", &e.file)]),
             more: e.cases.iter().map(|c| (c.clone(), link(&[("file", &e.file), ("case", c)]))).collect(),
             wrong: match e.problems {
@@ -144,7 +224,6 @@ pub async fn gallery(studio: Arc<Studio>) -> Answer {
             title: e.title,
             description: e.description,
             file: e.file,
-            picture: None,
         };
         let cards: Vec<Card> = entries.into_iter().map(card).collect();
         let about = About {
@@ -154,7 +233,7 @@ pub async fn gallery(studio: Arc<Studio>) -> Answer {
             case: None,
             cases: Vec::new(),
         };
-        Ok(with_facts(&gallery::gallery("Models", &lead, &cards), &about))
+        Ok(with_facts(&gallery::gallery("Models", &lead, Some(NEW), &cards), &about))
     });
     match made.await {
         Ok(html) => Answer::page(StatusCode::OK, html),

@@ -48,7 +48,9 @@ pub async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Answer {
     let answer = match (&parts[..], &method) {
         ([""], &Method::GET) => front(studio, &query).await,
         (["gallery"], &Method::GET) => Ok(page::gallery(studio).await),
+        (["new"], &Method::GET) => Ok(page::new(studio).await),
         (["api", "models"], &Method::GET) => blocking(move || Ok(list(&studio))).await,
+        (["api", "drawing"], &Method::GET) => drawing(studio, &query).await,
         (["api", "model"], &Method::GET) => text(studio, &query).await,
         (["api", "model"], &Method::PUT) => save(studio, &query, request).await,
         (["api", "model"], &Method::POST) => save_new(studio, &query, request).await,
@@ -82,7 +84,10 @@ pub async fn answer(studio: Arc<Studio>, request: Request<Incoming>) -> Answer {
 /// Methods of an existing address.
 fn allowed(parts: &[&str]) -> Option<&'static str> {
     match parts {
-        [""] | ["gallery"] | ["api", "models" | "events"] | ["api", "study", _, "report.html"] => Some("GET"),
+        [""]
+        | ["gallery" | "new"]
+        | ["api", "models" | "events" | "drawing"]
+        | ["api", "study", _, "report.html"] => Some("GET"),
         ["api", "model"] => Some("GET, POST, PUT"),
         ["api", "study"] => Some("POST"),
         ["api", "study", _] => Some("DELETE, GET"),
@@ -106,6 +111,10 @@ async fn front(studio: Arc<Studio>, query: &Query) -> Result<Answer, Answer> {
         Some(file) => Ok(page::model(studio, file, query.get("case").map(Into::into)).await),
         None => Ok(page::gallery(studio).await),
     }
+}
+
+async fn drawing(studio: Arc<Studio>, query: &Query) -> Result<Answer, Answer> {
+    Ok(page::drawing(studio, query.file()?).await)
 }
 
 fn list(studio: &Studio) -> Answer {

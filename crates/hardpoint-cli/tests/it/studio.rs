@@ -621,6 +621,48 @@ fn without_a_model_all_models_are_shown_and_no_other_files() {
 }
 
 #[test]
+fn drawings_of_the_gallery_follow_the_files() {
+    let bench = slider();
+    bench.put("broken.toml", "[hardpoints]\nA = [");
+    let server = Server::start(&bench, &["slider.toml"]);
+    let gallery = server.get("/gallery").body;
+    assert!(gallery.contains("data-drawing=\"/api/drawing?file=slider.toml\""));
+    // A model with errors has none.
+    assert_eq!(gallery.matches("data-drawing=\"").count(), 1);
+    let drawing = |file: &str| server.get(&format!("/api/drawing?file={file}"));
+    let svg = |file: &str| drawing(file).json()["svg"].as_str().unwrap().to_owned();
+    let first = svg("slider.toml");
+    assert!(first.starts_with("<svg") && first.contains("<polygon") && !first.contains("NaN"), "{first}");
+    assert_eq!(svg("slider.toml"), first);
+    assert_eq!(svg("broken.toml"), "");
+    bench.put("slider.toml", &study_file("strut_toe.toml"));
+    let second = svg("slider.toml");
+    assert!(second.starts_with("<svg") && second != first);
+    assert_eq!((drawing("none.toml").status, drawing("..%2Fx.toml").status), (404, 400));
+    assert_eq!(server.get("/api/drawing").status, 400);
+}
+
+#[test]
+fn a_new_linkage_has_a_page_and_gets_its_file_when_it_is_saved() {
+    let bench = slider();
+    bench.put("linkage.toml", "name = 1");
+    let server = Server::start(&bench, &["slider.toml"]);
+    assert!(server.get("/gallery").body.contains("data-testid=\"new-linkage\" href=\"/new\""));
+    let page = server.get("/new").body;
+    let facts = about(&page);
+    // The name of a file that is there is not taken.
+    assert_eq!((&facts["file"], facts["revision"].is_null()), (&"linkage-2.toml".into(), true));
+    let page = payload(&bench, &page);
+    assert_eq!((&page["title"], page["status"]["complete"].as_bool()), (&"linkage".into(), Some(true)));
+    let text = page["model"]["text"].as_str().unwrap();
+    assert_eq!(bench.list("").iter().filter(|name| name.starts_with("linkage")).count(), 1);
+    let saved = server.ask("POST", "/api/model?file=linkage-2.toml", "", text);
+    assert_eq!((saved.status, bench.text("linkage-2.toml")), (201, text.to_owned()));
+    assert_eq!(about(&server.get("/new").body)["file"], "linkage-3.toml");
+    assert_eq!(server.ask("POST", "/new", "", "").status, 405);
+}
+
+#[test]
 fn a_site_has_a_page_for_each_model_that_can_be_shown() {
     let bench = slider();
     bench.put("strut & co.toml", &study_file("strut_toe.toml"));
