@@ -80,7 +80,15 @@ impl Model {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Searched> {
         let (file, motions) = (&self.whole, self.motions()?);
-        let overrides = optimize::Overrides { starts, iterations, first, selection: None };
+        let overrides = optimize::Overrides {
+            starts,
+            iterations,
+            first,
+            // The designs are values of variables, of the model's own assembly.
+            other_assemblies: Some(false),
+            both_senses: Some(false),
+            ..optimize::Overrides::default()
+        };
         let request = optimize::Request::of(&file.model, overrides).map_err(Failure::from)?;
         let asked = &request.settings;
         let found = controlled(py, progress, threads(workers), |control| {

@@ -682,6 +682,7 @@ Examples:
   hardpoint optimize models/four_bar_inverse.toml
   hardpoint optimize models/four_bar_inverse.toml --starts 100 --json | jq '.starts[].status'
   hardpoint optimize models/four_bar_inverse.toml --starts 20 --optimum 2 --save second.toml
+  hardpoint optimize models/synthesis/arc_five_points.toml --other-assemblies --both-senses
   hardpoint optimize models/four_bar_inverse.toml -o results/found --save found.toml";
 
 /// `hardpoint optimize`.
@@ -702,6 +703,12 @@ pub struct Optimize {
     /// file, or 1]
     #[arg(long, value_name = "N")]
     pub starts: Option<NonZero<usize>>,
+    /// Start from the other assemblies of the mechanism too, with the same number of starts each
+    #[arg(long)]
+    pub other_assemblies: bool,
+    /// Start with all drivers in the opposite sense too
+    #[arg(long)]
+    pub both_senses: bool,
     /// Maximum number of iterations of a search [default: that of the file, or 100]
     #[arg(long, value_name = "N")]
     pub iterations: Option<NonZero<usize>>,

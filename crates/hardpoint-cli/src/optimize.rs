@@ -3,11 +3,12 @@
 use std::io::Write;
 use std::num::NonZero;
 use std::path::Path;
+use std::sync::Arc;
 
 use hardpoint::Solution;
 use hardpoint::model::{Model, OptimizationSettings};
 use hardpoint::topology::Formulation;
-use hardpoint_file::ModelFile;
+use hardpoint_file::{Diagnostic, Diagnostics, ModelFile};
 use hardpoint_report::optimize::{OptimizeFacts, progress_line, to_save};
 use hardpoint_study::optimize::{
     DesignAssessment, FailedDesign, Optimization, Overrides, Request, judge, optimize,
@@ -31,7 +32,9 @@ pub fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Out
     let mut file = session.read(&options.common.model)?;
     session.keep_case(&mut file, options.motions.case.as_deref())?;
     let [starts, iterations] = [options.starts, options.iterations].map(|n| n.map(NonZero::get));
-    let overrides = Overrides { starts, iterations, ..Overrides::default() };
+    let [other_assemblies, both_senses] =
+        [options.other_assemblies, options.both_senses].map(|asked| asked.then_some(true));
+    let overrides = Overrides { starts, iterations, other_assemblies, both_senses, ..Overrides::default() };
     let request = Request::of(&file.model, overrides).map_err(|e| session.refused(&file, &e))?;
     session.may_save(&options.common.model, options.save.as_deref())?;
     session.can_save(&file, &request.settings.variables, options.save.as_deref())?;
@@ -51,7 +54,7 @@ pub fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Out
 
     let mut saved = Ok(None);
     if let (Some(to), Some(design)) = (&options.save, search.to_save()) {
-        match session.save_result(&file, &design, to) {
+        match search.file_to_save(&design).and_then(|file| session.save_result(&file, &design, to)) {
             Ok(()) => {
                 search.facts.files.push(to.display().to_string());
                 let (case, formulation) = (options.motions.case.as_deref(), options.common.formulation());
@@ -122,6 +125,9 @@ pub struct Search<'a> {
     motions: &'a Motions<'a>,
     asked: &'a OptimizationSettings,
     found: Optimization,
+    /// The file and its motions in the assembly and sense of the result, if these are not those of the file; or why the
+    /// file cannot have them.
+    varied: Option<Result<(ModelFile, Motions<'static>), Diagnostics>>,
     /// Facts of the result.
     pub facts: OptimizeFacts,
 }
@@ -146,7 +152,39 @@ impl<'a> Search<'a> {
         let found = optimize(model, motions, request, control);
         let mut facts = OptimizeFacts::of(file, asked, &found);
         facts.seconds = session.seconds();
-        Self { file, motions, asked, found, facts }
+        let mut search = Self { file, motions, asked, found, varied: None, facts };
+        search.vary();
+        search
+    }
+
+    /// Prepares the file in the assembly and sense of the result.
+    fn vary(&mut self) {
+        let variant = self.found.best.map(|k| &self.found.variants[self.found.searches[k].variant]);
+        self.varied = variant.filter(|variant| !variant.is_own()).map(|variant| {
+            let file = self.file.in_assembly(&variant.start, variant.reversed)?;
+            let formulation = self.motions.analyses()[0].topology().formulation;
+            let motions = Motions::of(file.model.motions().into_iter().map(Arc::new), formulation);
+            // The search has solved these motions.
+            let motions = motions.unwrap_or_else(|_| Vec::new().into());
+            Ok((file, motions))
+        });
+    }
+
+    /// The file to save a design in: in another assembly with the placements of that design.
+    pub fn file_to_save(&self, design: &[f64]) -> Result<ModelFile, (Vec<Diagnostic>, String, Outcome)> {
+        let failed = |found: &Diagnostics| {
+            let why = found.list().first().map_or(String::new(), |d| d.message.clone());
+            (found.list().to_vec(), why, Outcome::Misunderstood)
+        };
+        match &self.varied {
+            None => Ok(self.file.clone()),
+            Some(Err(found)) => Err(failed(found)),
+            Some(Ok((file, motions))) => {
+                let start = motions.analyses().first().and_then(|analysis| analysis.start_placements(design));
+                let start = start.unwrap_or_else(|| file.model.start.clone());
+                file.in_assembly(&start, false).map_err(|found| failed(&found))
+            }
+        }
     }
 
     /// Makes another of the distinct optima the result, counted from 1.
@@ -161,6 +199,7 @@ impl<'a> Search<'a> {
             });
         };
         self.found.best = Some(searches[0]);
+        self.vary();
         let seconds = self.facts.seconds;
         self.facts = OptimizeFacts { seconds, ..OptimizeFacts::of(self.file, self.asked, &self.found) };
         Ok(())
@@ -173,7 +212,7 @@ impl<'a> Search<'a> {
 
     /// Best design with its variables rounded to few digits in the file's units, as long as the motion stays the same.
     pub fn to_save(&self) -> Option<Vec<f64>> {
-        Some(to_save(self.file, self.motions, self.asked, self.best()?))
+        Some(to_save(self.file(), self.motions(), self.asked, self.best()?))
     }
 
     /// Writes a page for each motion, and the summary last.
@@ -188,11 +227,17 @@ impl<'a> Search<'a> {
 
 impl Study for Search<'_> {
     fn file(&self) -> &ModelFile {
-        self.file
+        match &self.varied {
+            Some(Ok((file, _))) => file,
+            Some(Err(_)) | None => self.file,
+        }
     }
 
     fn motions(&self) -> &Motions<'_> {
-        self.motions
+        match &self.varied {
+            Some(Ok((_, motions))) => motions,
+            Some(Err(_)) | None => self.motions,
+        }
     }
 
     fn number(&self, motion: usize) -> usize {
@@ -201,9 +246,9 @@ impl Study for Search<'_> {
 
     fn page(&self, motion: usize) -> Option<String> {
         let found = FoundDesign { design: self.best()?, note: "The optimised design." };
-        let analysis = &self.motions.analyses()[motion];
+        let analysis = &self.motions().analyses()[motion];
         let finish =
             |page, today: &Solution| self.facts.page(page, analysis.model(), &today.measured.outputs);
-        page(self.file, analysis, Some(&found), finish)
+        page(self.file(), analysis, Some(&found), finish)
     }
 }

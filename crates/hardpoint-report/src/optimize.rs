@@ -1,13 +1,15 @@
 //! Result of an optimisation: nominal and optimised goals, limits and variables, in the model's units.
 
+use hardpoint::joint::Quantity;
 use hardpoint::measure::Output;
 use hardpoint::model::{
-    Change, DesignVariable, Dimension, LimitTarget, Model, OptimizationSettings, VariableId,
+    Change, DesignVariable, Dimension, LimitTarget, Model, OptimizationSettings, StartPlacement, VariableId,
 };
+use hardpoint::space::Vec3;
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::optimize::{
     ActiveConstraint, DesignAssessment, FailedDesign, Iteration, LIMIT_KEPT, Optimization, SearchResult,
-    Status, judge,
+    Status, Variant, judge,
 };
 use hardpoint_study::{Motions, Progress, Step};
 use serde::Serialize;
@@ -125,8 +127,12 @@ record! {
     /// Distinct optima, the best first; searches that ended elsewhere are in none of them.
     optima: Vec<OptimumFact> =
         found.optima(model, asked).iter().map(|starts| OptimumFact::of(search, starts)).collect();
+    /// Assemblies that were searched, if there are several; the first is that of the model.
+    assemblies: Vec<AssemblyFact> = AssemblyFact::all(search);
+    /// Unit of angles.
+    angle_unit: String = symbol(file.units, Quantity::Angle).to_owned();
     /// All searches.
-    starts: Vec<StartFact> = found.searches.iter().enumerate().map(|(k, s)| StartFact::of(k, s)).collect();
+    starts: Vec<StartFact> = found.searches.iter().enumerate().map(|(k, s)| StartFact::of(search, k, s)).collect();
     /// The first designs that could not be evaluated.
     refused: Vec<RefusedFact> = search.refused().take(REFUSED).map(|(k, r)| RefusedFact::of(search, k, r)).collect();
     /// Number of designs that could not be evaluated.
@@ -293,7 +299,12 @@ record! {
             units.from_si(model.metric_dimension(&model.metrics[search.asked.goals[*goal].metric]), *value)
         };
         let change = |v: &VariableId| units.from_si(model.variables[v.0].quantity, design.design[v.0]);
+        let variant = &search.found.variants[best.variant];
     }
+    /// Number of its assembly; 1 is that of the model.
+    assembly: usize = variant.assembly + 1;
+    /// True if all drivers move in the opposite sense of the model's.
+    reversed: bool = variant.reversed;
     /// Numbers of the searches that ended in it.
     starts: Vec<usize> = starts.to_vec();
     /// Objective.
@@ -308,9 +319,15 @@ record! {
 
 record! {
     /// Search from one start.
-    StartFact::of(k: usize, search: &SearchResult) {}
+    StartFact::of(all: Search<'_>, k: usize, search: &SearchResult) {
+        let variant = &all.found.variants[search.variant];
+    }
     /// Number of the start; 0 is the nominal design.
     start: usize = k;
+    /// Number of its assembly; 1 is that of the model.
+    assembly: usize = variant.assembly + 1;
+    /// True if all drivers move in the opposite sense of the model's.
+    reversed: bool = variant.reversed;
     /// Status at the end.
     status: &'static str = status_word(search.status);
     /// Objective of its best design.
@@ -323,6 +340,43 @@ record! {
     designs: usize = search.cost.designs;
     /// Number of these that could not be evaluated.
     refused: usize = search.refused.len();
+}
+
+record! {
+    /// Assembly of the mechanism that was searched.
+    AssemblyFact::of(search: Search<'_>, variant: &Variant) {
+        let placed = |placement: &StartPlacement| PlacedBody::of(search.model(), search.units(), placement);
+    }
+    /// Number; 1 is that of the model.
+    assembly: usize = variant.assembly + 1;
+    /// Bodies that are not in their places in the design configuration, of the nominal design.
+    bodies: Vec<PlacedBody> = variant.start.iter().map(placed).collect();
+}
+
+record! {
+    /// Displacement of a body from the design configuration, as in the table `start` of model files.
+    PlacedBody::of(model: &Model, units: Units, placement: &StartPlacement) {
+        let shown = |quantity: Quantity, v: Vec3| v.to_array().map(|x| units.from_si(quantity, x));
+    }
+    /// Name.
+    body: String = model.bodies[placement.body.0].name.clone();
+    /// Rotation vector about the global origin, in the angle unit.
+    turn: [f64; 3] = shown(Quantity::Angle, placement.turn());
+    /// Translation after the rotation, in the length unit.
+    shift: [f64; 3] = shown(Quantity::Length, placement.shift());
+}
+
+impl AssemblyFact {
+    /// All assemblies, if there are several.
+    fn all(search: Search<'_>) -> Vec<Self> {
+        let variants = &search.found.variants;
+        let first = variants
+            .iter()
+            .enumerate()
+            .filter(|(k, v)| variants[..*k].iter().all(|before| before.assembly != v.assembly));
+        let all: Vec<Self> = first.map(|(_, variant)| Self::of(search, variant)).collect();
+        if all.len() > 1 { all } else { Vec::new() }
+    }
 }
 
 record! {
@@ -587,6 +641,7 @@ impl OptimizeFacts {
         );
         let more = [
             self.optima_table(),
+            self.assembly_table(),
             limits.if_any(),
             variables.if_any(),
             MovedHardpoint::table(&self.hardpoints, "optimised"),
@@ -615,16 +670,54 @@ impl OptimizeFacts {
             some_of(&values.collect::<Vec<_>>(), ", ")
         };
         let rows: Vec<(usize, &OptimumFact)> = self.optima.iter().enumerate().collect();
+        let several = self.has_variants();
         let note = "Each with the values of the goals, and where its design differs most from the best. `--optimum N` reports and \
                     saves another one.";
-        let columns: [Column<'_, &(usize, &OptimumFact)>; 5] = [
+        let columns: [Column<'_, &(usize, &OptimumFact)>; 6] = [
             ("optimum", &|o| (o.0 + 1).to_string()),
+            ("assembly and sense", &|o| if several { o.1.variant() } else { String::new() }),
             ("objective", &|o| number(o.1.objective)),
             ("goals", &|o| goals(o.1)),
             ("starts", &|o| o.1.starts.len().to_string()),
             ("against the best", &|o| if o.0 == 0 { "-".into() } else { other(o.1) }),
         ];
+        let columns = columns.iter().filter(|(title, _)| several || *title != "assembly and sense");
+        let columns: Vec<Column<'_, &(usize, &OptimumFact)>> = columns.copied().collect();
         Table::of("Optima", note, &columns, &rows).if_any()
+    }
+
+    /// True if several assemblies or senses were searched.
+    fn has_variants(&self) -> bool {
+        self.assemblies.len() > 1 || self.starts.iter().any(|start| start.reversed)
+    }
+
+    /// Assemblies that were searched, if there are several.
+    fn assembly_table(&self) -> Option<Table> {
+        let turned = |assembly: &AssemblyFact| {
+            let body = |placed: &PlacedBody| {
+                let angle = placed.turn.iter().map(|x| x * x).sum::<f64>().sqrt();
+                format!("{} {}", placed.body, with_unit(angle, &self.angle_unit))
+            };
+            let bodies: Vec<String> = assembly.bodies.iter().map(body).collect();
+            if bodies.is_empty() { "-".into() } else { some_of(&bodies, ", ") }
+        };
+        let ended = |of: usize| {
+            let starts = self.starts.iter().filter(|start| start.assembly == of);
+            let optimal = starts.clone().filter(|start| start.status == "optimal").count();
+            format!("{optimal} of {}", starts.count())
+        };
+        Table::of(
+            "Assemblies",
+            "Ways to put the mechanism together with all drivers at zero; assembly 1 is that of the model. Rotations are those of \
+             the nominal design against its design configuration.",
+            &[
+                ("assembly", &|a: &&AssemblyFact| a.assembly.to_string()),
+                ("bodies turned by", &|a| turned(a)),
+                ("starts that ended in an optimum", &|a| ended(a.assembly)),
+            ],
+            &self.assemblies,
+        )
+        .if_any()
     }
 
     /// Facts of the result, line by line.
@@ -677,6 +770,16 @@ impl OptimizeFacts {
                     }
                 ),
             ));
+        }
+        let best = self.best_start.and_then(|k| self.starts.get(k));
+        if let Some(best) = best.filter(|_| self.has_variants()) {
+            let sense =
+                if best.reversed { "with all drivers in the opposite sense" } else { "in the model's sense" };
+            let assembly = match best.assembly {
+                1 => "that of the model".into(),
+                n => format!("assembly {n} of {}", self.assemblies.len()),
+            };
+            rows.push(("assembly", format!("{assembly}, {sense}")));
         }
         let refused = match self.refused_count {
             0 => String::new(),
@@ -741,6 +844,13 @@ impl OptimizeFacts {
             ],
             &self.iterations,
         )
+    }
+}
+
+impl OptimumFact {
+    /// Assembly and sense in a few words.
+    fn variant(&self) -> String {
+        format!("{}, {}", self.assembly, if self.reversed { "opposite" } else { "as given" })
     }
 }
 

@@ -122,6 +122,9 @@ pub(crate) fn requested(
         starts: Some(request.starts),
         iterations: Some(request.iterations),
         selection: Some(selection),
+        // The page shows the designs of the model's own assembly.
+        other_assemblies: Some(false),
+        both_senses: Some(false),
         ..Overrides::default()
     };
     optimize::Request::of(&file.model, overrides)

@@ -162,6 +162,12 @@ pub static TOOLS: &[Tool] = &[
             arguments(model_keys(vec![
                 may("starts", count(1), "Number of start designs. Default: that of the model, or 1"),
                 may(
+                    "other_assemblies",
+                    flag(),
+                    "True to start from the other assemblies of the mechanism too",
+                ),
+                may("both_senses", flag(), "True to start with all drivers in the opposite sense too"),
+                may(
                     "iterations",
                     count(1),
                     "Maximum number of iterations of a search. Default: that of the model, or 100",
@@ -179,7 +185,8 @@ pub static TOOLS: &[Tool] = &[
             )
         },
         call: |session, collector, given| {
-            let Asked { model, case, starts, iterations, save, .. } = params_of(given)?;
+            let asked: Asked = params_of(given)?;
+            let Asked { model, case, starts, iterations, save, other_assemblies, both_senses, .. } = asked;
             let is_text = model.text.is_some();
             of_model(model, |path| {
                 let mut options = Optimize {
@@ -187,6 +194,8 @@ pub static TOOLS: &[Tool] = &[
                     motions: Motions { case },
                     save,
                     starts,
+                    other_assemblies,
+                    both_senses,
                     iterations,
                     ..Optimize::default()
                 };
@@ -493,6 +502,8 @@ struct Asked {
     admissible: bool,
     save: Option<PathBuf>,
     starts: Option<NonZero<usize>>,
+    other_assemblies: bool,
+    both_senses: bool,
     iterations: Option<NonZero<usize>>,
     samples: Option<u32>,
     seed: Option<u32>,

@@ -318,11 +318,14 @@ fn optimized(session: &Session, file: &ModelFile, asked: &StudyRequest) -> Resul
     let motions = Motions::of(&models, Formulation::Relative);
     let motions = motions.map_err(|(_, fault)| session.cannot_be_driven(&file, &fault))?;
     let mut search = optimize::Search::run(session, &file, &motions, &request, None);
-    let edited = search.to_save().map(|design| file.edit(&design)).transpose();
+    let edited = search.to_save().map(|design| {
+        let file = search.file_to_save(&design).map_err(|(found, ..)| found)?;
+        file.edit(&design).map_err(|found| found.list().to_vec())
+    });
     let mut diagnostics = Vec::new();
     // A result that cannot be written into the text is still shown.
-    let text = edited.unwrap_or_else(|found| {
-        diagnostics = found.list().to_vec();
+    let text = edited.transpose().unwrap_or_else(|found| {
+        diagnostics = found;
         search.facts.not_saved(diagnostics.first().map_or("", |d| d.message.as_str()));
         None
     });

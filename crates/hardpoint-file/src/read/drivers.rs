@@ -32,6 +32,8 @@ macro_rules! driven {
                 may "law": law::LAW, "\"30*sin(2*pi*t)\"";
                 /// Origin of the values of this driver's laws.
                 or("\"drawing\"") "counted_from": COUNTED, "\"zero\"";
+                /// True if the driver moves in the opposite sense of its laws, from the design configuration.
+                or("false") "reversed": Shape::Flag, "true";
             },
             ..table! { $($table)* }
         }
@@ -144,6 +146,7 @@ pub(super) fn drivers(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
         let form = r.led_by(&fields, FORMS, words);
         let drives = form.and_then(|(_, read)| read(r, &fields, &mut place));
         let from_zero = r.word_of(&fields, "counted_from") == Some(1);
+        let reversed = r.flag_of(&fields, "reversed").unwrap_or(false);
         let law = r.given(&fields, "law", |r, f| law::law(r, &fields, f));
         if fields.get("law").is_none() {
             if model.get("cases").is_some() {
@@ -165,6 +168,6 @@ pub(super) fn drivers(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
                 .formulas
                 .push(FormulaDraft { of: FormulaOf::Law(entry.0.clone(), parameter), expression });
         }
-        raw.draft.drivers.push(DriverDraft { name: entry.0, drives, from_zero, law });
+        raw.draft.drivers.push(DriverDraft { name: entry.0, drives, from_zero, reversed, law });
     }
 }

@@ -28,6 +28,7 @@ mod points;
 mod raw;
 mod readings;
 mod shapes;
+mod start;
 mod sweep;
 mod task;
 mod times;

@@ -14,7 +14,7 @@ use super::elements::{LOAD_MODES, LOADS};
 use super::raw::Raw;
 use super::{
     bodies, calibrate, cases, couplers, design, drivers, elements, equilibrium, hardpoints, joints, measures,
-    metrics, optimize, page, parameters, points, shapes, sweep, times, tolerance, wheels,
+    metrics, optimize, page, parameters, points, shapes, start, sweep, times, tolerance, wheels,
 };
 
 /// The file as a whole.
@@ -41,6 +41,8 @@ pub(crate) const MODEL: Table = table! {
     may "couplers": Shape::Entries("a coupler", &Shape::Kinds(&couplers::COUPLER)), "{}";
     /// Prescribed motions: of joint coordinates, points, distances and orientations.
     may "drivers": Shape::Entries("a driver", &Shape::Kinds(&drivers::DRIVER)), "{}";
+    /// Placements of bodies at which the assembly starts, for another assembly than that of the design configuration.
+    may "start": Shape::Entries("a body", &Shape::Table(&start::START)), "{ rocker = { turn = [0, 0, -73.2] } }";
     /// Design variables: changes of the design, and their effects on other elements.
     may "design": Shape::Entries("a design variable", &Shape::Kinds(&design::VARIABLE)), "{}";
     /// Points of bodies whose motion is computed.
@@ -127,7 +129,7 @@ const UNIT_WORDS: [(&str, &str); 12] = [
 ];
 /// Tables of `docs/file-format.md`, by their names there.
 #[cfg(test)]
-pub(crate) fn tables() -> [(&'static str, Shape); 49] {
+pub(crate) fn tables() -> [(&'static str, Shape); 50] {
     use super::{declared, law, mesh};
     use crate::compose::INCLUDE_TABLE;
 
@@ -145,6 +147,7 @@ pub(crate) fn tables() -> [(&'static str, Shape); 49] {
         ("drivers", Shape::Kinds(&drivers::DRIVER)),
         ("laws", Shape::Kinds(&law::LAW_TABLE)),
         ("pieces", Shape::Table(&law::PIECE)),
+        ("start", Shape::Table(&start::START)),
         ("design variables", Shape::Kinds(&design::VARIABLE)),
         ("shape fields", Shape::Kinds(&design::SHAPE_FIELD)),
         ("fields", Shape::Table(&design::FIELD)),
@@ -207,6 +210,7 @@ pub(crate) fn model<'a>(
     measures::measures(r, &fields, &mut raw);
     joints::limit_measures(&mut raw);
     drivers::drivers(r, &fields, &mut raw);
+    start::start(r, &fields, &mut raw);
     design::design(r, &fields, &mut raw, twins);
     points::points(r, &fields, &mut raw);
     wheels::vehicle(r, &fields, &mut raw);

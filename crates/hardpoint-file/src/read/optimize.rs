@@ -26,6 +26,10 @@ pub(crate) const OPTIMIZE: Table = table! {
     may "min_margin": NUMBER, "0.02";
     /// Number of designs from which the search starts: the nominal design, and others within the bounds.
     or("1") "starts": Shape::Count(OptimizationSettings::MOST), "8";
+    /// True if the searches also start from the other assemblies of the mechanism, with the same number of starts each.
+    or("false") "other_assemblies": Shape::Flag, "true";
+    /// True if the searches also start with all drivers in the opposite sense, in every assembly.
+    or("false") "both_senses": Shape::Flag, "true";
     /// Maximum number of iterations of a search.
     or("100") "max_iterations": Shape::Count(OptimizationSettings::MOST), "100";
 };
@@ -172,6 +176,8 @@ pub(super) fn optimize(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
     let trade_off = r.list_of_names(&fields, "trade_off", "all goals");
     let margin = r.number_of(&fields, "min_margin");
     let starts = r.count_of(&fields, "starts", OptimizationSettings::MOST);
+    let other_assemblies = r.flag_of(&fields, "other_assemblies").unwrap_or(false);
+    let both_senses = r.flag_of(&fields, "both_senses").unwrap_or(false);
     let iterations = r.count_of(&fields, "max_iterations", OptimizationSettings::MOST);
     if r.need(&fields, "goals").is_none() {
         r.unread.push("goals");
@@ -186,6 +192,8 @@ pub(super) fn optimize(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
         limits,
         margin,
         starts: starts.unwrap_or(1),
+        other_assemblies,
+        both_senses,
         iterations: iterations.unwrap_or(1),
         trade_off: trade_off.unwrap_or_default(),
     });

@@ -139,7 +139,15 @@ fn merge<'c>(
                 *old.decor_mut() = decor;
             }
             (_, Some(old)) => *old = Item::Value(value_of(change, path)?),
-            (_, None) => drop(table.insert(name, Item::Value(value_of(change, path)?))),
+            (_, None) => {
+                // `{ a = 1 }` ends in a space, which belongs before the brace.
+                if let Some((_, Item::Value(last))) = table.iter_mut().last()
+                    && last.decor().suffix().and_then(|s| s.as_str()).is_some_and(|s| s.trim().is_empty())
+                {
+                    last.decor_mut().set_suffix("");
+                }
+                drop(table.insert(name, Item::Value(value_of(change, path)?)));
+            }
         }
         path.pop();
     }

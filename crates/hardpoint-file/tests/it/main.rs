@@ -1,5 +1,6 @@
 //! Model files: reading, diagnostics, and the models of the gallery compared with known results.
 
+mod assemblies;
 mod bushings;
 mod calibrations;
 mod cases;

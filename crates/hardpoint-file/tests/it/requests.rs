@@ -62,7 +62,7 @@ fn an_optimisation_is_that_of_the_file_with_overrides() {
     let settings = model.optimization.clone().unwrap();
     assert_eq!(of(Overrides::default()), Ok(Request { settings: settings.clone(), first: 0 }));
     let [starts, iterations] = [Some(5), Some(7)];
-    let overridden = of(Overrides { starts, iterations, first: 2, selection: None });
+    let overridden = of(Overrides { starts, iterations, first: 2, ..Overrides::default() });
     let expected = OptimizationSettings { starts: 5, iterations: 7, ..settings.clone() };
     assert_eq!(overridden, Ok(Request { settings: expected, first: 2 }));
 

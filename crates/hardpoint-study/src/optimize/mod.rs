@@ -12,6 +12,9 @@
 //! goals on a maximum (`max` metrics) the search minimises `t` with every part of the curve below `t`, so minimax
 //! problems need no reformulation. If the motion of a design does not assemble, locks, or reaches a singular position,
 //! the step is rejected: the search steps back and continues.
+//!
+//! The searches may also start from the other assemblies of the mechanism and with its drivers in the opposite sense:
+//! each [`Variant`] is a model of its own with the same variables, goals and limits.
 
 mod gauss_newton;
 mod optima;
@@ -19,6 +22,7 @@ mod optimality;
 mod problem;
 mod request;
 mod solver;
+mod variants;
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -36,6 +40,7 @@ pub(crate) use problem::{Point, Problem, Refusal};
 pub use request::{Overrides, Request, Selection};
 pub(crate) use solver::Memory;
 use solver::{ScaledSequential, Solver, least_squares};
+pub use variants::Variant;
 
 /// A limit is satisfied if it is exceeded by less than this fraction of its scale: the rest is round-off of the search.
 pub const LIMIT_KEPT: f64 = 1e-8;
@@ -54,6 +59,8 @@ const RESTING: f64 = 1e-13;
 /// Objectives with a relative difference below this are equal to round-off; the design with the smaller optimality
 /// residual is then the better one.
 const THE_SAME: f64 = 1e-12;
+/// An optimum of another assembly or sense must be better than those of the model's own by this fraction.
+const NO_WORSE: f64 = 1e-6;
 /// A run that reduces the optimality residual to this fraction is progress, whatever its effect on the objective.
 const NEARER: f64 = 0.5;
 /// Gauss-Newton steps with a smaller predicted decrease, as a fraction of the objective, are not made: the rest is
@@ -101,7 +108,10 @@ pub struct Optimization {
     pub nominal: Option<DesignAssessment>,
     /// Reason why the nominal design cannot be evaluated.
     pub nominal_failure: Option<FailedDesign>,
-    /// Searches in the order of their starts; number 0 starts from the nominal design.
+    /// Assemblies and senses that were searched; the first is that of the model.
+    pub variants: Vec<Variant>,
+    /// Searches in the order of the variants, and for each in the order of their starts; number 0 starts from the
+    /// nominal design.
     pub searches: Vec<SearchResult>,
     /// Index of the best search: the lowest objective among those that satisfy all limits, otherwise the smallest
     /// violation. `None` if none could start.
@@ -130,6 +140,8 @@ pub struct DesignAssessment {
 /// Result of one search.
 #[derive(Clone, Debug)]
 pub struct SearchResult {
+    /// Index of its assembly and sense in [`Optimization::variants`].
+    pub variant: usize,
     /// Start values of all variables.
     pub start: Vec<f64>,
     /// Status at the end.
@@ -214,7 +226,21 @@ pub fn optimize(
         Ok(point) => (Some(assess(&problem, &point, &limit_scales(&problem, &point))), None),
         Err(refusal) => (None, Some(failed_design(vec![0.0; model.variables.len()], refusal))),
     };
-    let starts: Vec<Vec<f64>> = (0..settings.starts).map(|k| start(&problem, first + k)).collect();
+    let mut variants = Variant::all(model, motions, settings, &|| more());
+    // The first variant is the model itself, whose motions are there already.
+    let others: Vec<Option<Motions<'_>>> =
+        variants.iter().skip(1).map(|v| v.motions(model, motions)).collect();
+    let mut is_driven = std::iter::once(true).chain(others.iter().map(Option::is_some));
+    variants.retain(|_| is_driven.next().unwrap_or(false));
+    let others: Vec<Motions<'_>> = others.into_iter().flatten().collect();
+    let problems: Vec<Problem<'_>> = std::iter::once(motions)
+        .chain(&others)
+        .map(|motions| Problem::new(model, motions, settings))
+        .collect();
+    let starts: Vec<(usize, Vec<f64>)> = (0..problems.len())
+        .flat_map(|variant| (0..settings.starts).map(move |k| (variant, first + k)))
+        .map(|(variant, k)| (variant, start(&problem, k)))
+        .collect();
     let (next, ended) = (AtomicUsize::new(0), std::sync::atomic::AtomicBool::new(false));
     // Number of searches that have ended, or of iterations of the only one.
     let progress = Mutex::new((0, progress));
@@ -232,7 +258,8 @@ pub fn optimize(
                 }
             };
             let mut iterated = |i: &Iteration| report(Step::Iteration(i), is_single, &|_| i.number);
-            let search = search(&problem, &starts[k], &mut iterated, &more);
+            let (variant, start) = &starts[k];
+            let search = search(&problems[*variant], *variant, start, &mut iterated, &more);
             report(Step::Search(k, &search), !is_single, &|done| done + 1);
             searches.lock().expect("no search before has panicked")[k] = Some(search);
         }
@@ -245,7 +272,7 @@ pub fn optimize(
     let searches: Vec<SearchResult> =
         searches.into_iter().map(|s| s.expect("every start was searched from")).collect();
     searches.iter().for_each(|s| cost += s.cost);
-    Optimization { nominal, nominal_failure, best: best(&searches), searches, cost }
+    Optimization { nominal, nominal_failure, variants, best: best(&searches), searches, cost }
 }
 
 /// Evaluates the goals and limits of one design, given by the values of all variables of the model.
@@ -298,7 +325,20 @@ fn best(searches: &[SearchResult]) -> Option<usize> {
         found(k).is_some() && same(rank(k))
     };
     let residual = |k: &usize| searches[*k].optimality.residual;
-    (0..searches.len()).filter(as_good).min_by(|a, b| residual(a).total_cmp(&residual(b)))
+    let best = (0..searches.len()).filter(as_good).min_by(|a, b| residual(a).total_cmp(&residual(b)))?;
+    let own = (0..searches.len()).filter(|k| found(k).is_some_and(|f| f.violation <= KEPT));
+    let own = own.filter(|k| is_as_good_in_own_assembly(searches, *k, best));
+    Some(own.min_by(|a, b| residual(a).total_cmp(&residual(b))).unwrap_or(best))
+}
+
+/// True if a search in the model's own assembly and sense ended no worse than one elsewhere: a coupler that is turned
+/// over, or a mirror image, often moves like another design of the model, and is then not worth another assembly.
+fn is_as_good_in_own_assembly(searches: &[SearchResult], own: usize, other: usize) -> bool {
+    let [own, other] = [own, other].map(|k| &searches[k]);
+    let objective = |search: &SearchResult| search.found.as_ref().map_or(f64::INFINITY, |f| f.objective);
+    let (a, b) = (objective(own), objective(other));
+    let is_equal = own.optimality.met && other.optimality.met || a - b <= NO_WORSE * b.abs();
+    own.variant == 0 && other.variant != 0 && own.status == other.status && is_equal
 }
 
 pub(crate) fn failed_design(design: Vec<f64>, Refusal { motion, why, .. }: Refusal) -> FailedDesign {
@@ -332,6 +372,7 @@ pub(crate) fn limit_scales(problem: &Problem<'_>, point: &Point) -> Vec<f64> {
 /// Runs one search from one start.
 fn search(
     problem: &Problem<'_>,
+    variant: usize,
     start: &[f64],
     tell: &mut dyn FnMut(&Iteration),
     more: &(dyn Fn() -> bool + Sync),
@@ -350,6 +391,7 @@ fn search(
         |start: Vec<f64>| memory.at(&start, |found| found.as_ref().ok().cloned()).map(|p| (start, p));
     let point = starts.into_iter().find_map(judged_start);
     let mut search = SearchResult {
+        variant,
         start: problem.design(point.as_ref().map_or(start, |(start, _)| start)),
         status: if memory.interrupted() { Status::Interrupted } else { Status::NoStart },
         found: None,

@@ -2,10 +2,10 @@
 
 use hardpoint::model::{Model, OptimizationSettings};
 
-use super::{KEPT, Optimization, Status};
+use super::{KEPT, Optimization, Status, is_as_good_in_own_assembly};
 
-/// Optima are the same if no variable differs by more than this fraction of its bounds: an optimality residual of 1e-6
-/// leaves less than that wherever the curvature of the goals is of order one.
+/// Optima in the same assembly and sense are the same if no variable differs by more than this fraction of its bounds:
+/// an optimality residual of 1e-6 leaves less than that wherever the curvature of the goals is of order one.
 const SAME: f64 = 1e-4;
 
 impl Optimization {
@@ -15,10 +15,12 @@ impl Optimization {
     pub fn optima(&self, model: &Model, settings: &OptimizationSettings) -> Vec<Vec<usize>> {
         let design = |k: usize| &self.searches[k].found.as_ref().expect("an optimum has a design").design;
         let is_same = |a: usize, b: usize| {
-            settings.variables.iter().all(|v| {
-                let [low, high] = model.variables[v.0].bounds.unwrap_or_default();
-                (design(a)[v.0] - design(b)[v.0]).abs() <= SAME * (high - low)
-            })
+            let same_variant = self.searches[a].variant == self.searches[b].variant;
+            same_variant
+                && settings.variables.iter().all(|v| {
+                    let [low, high] = model.variables[v.0].bounds.unwrap_or_default();
+                    (design(a)[v.0] - design(b)[v.0]).abs() <= SAME * (high - low)
+                })
         };
         let kept = |k: &usize| {
             let search = &self.searches[*k];
@@ -34,6 +36,13 @@ impl Optimization {
                 Some(optimum) => optimum.push(k),
                 None => optima.push(vec![k]),
             }
+        }
+        let best = optima.first().map(|optimum| optimum[0]);
+        let own = best.and_then(|best| {
+            optima.iter().position(|optimum| is_as_good_in_own_assembly(&self.searches, optimum[0], best))
+        });
+        if let Some(own) = own {
+            optima[..=own].rotate_right(1);
         }
         let residual = |k: &usize| self.searches[*k].optimality.residual;
         for optimum in &mut optima {

@@ -499,6 +499,8 @@ mod tests {
                 .collect(),
             margin: None,
             starts: 1,
+            other_assemblies: false,
+            both_senses: false,
             iterations: 1,
             trade_off: Vec::new(),
         }

@@ -18,6 +18,10 @@ pub struct Request {
 pub struct Overrides {
     /// Number of starts.
     pub starts: Option<usize>,
+    /// True to start from the other assemblies of the mechanism too.
+    pub other_assemblies: Option<bool>,
+    /// True to start with all drivers in the opposite sense too.
+    pub both_senses: Option<bool>,
     /// Maximum number of iterations of a search.
     pub iterations: Option<usize>,
     /// Number of the first start.
@@ -72,6 +76,8 @@ impl Request {
             ));
         }
         settings.starts = overrides.starts.unwrap_or(settings.starts);
+        settings.other_assemblies = overrides.other_assemblies.unwrap_or(settings.other_assemblies);
+        settings.both_senses = overrides.both_senses.unwrap_or(settings.both_senses);
         settings.iterations = overrides.iterations.unwrap_or(settings.iterations);
         RequestError::unless_counted("starts", settings.starts, OptimizationSettings::MOST)?;
         RequestError::unless_counted("iterations", settings.iterations, OptimizationSettings::MOST)?;

@@ -44,7 +44,14 @@ impl Request {
     /// A [`RequestError`] unless there are two or three different goals, or if an override is invalid.
     pub fn of(model: &Model, overrides: Overrides) -> Result<Self, RequestError> {
         let Overrides { goals, points, starts, iterations } = overrides;
-        let request = optimize::Overrides { starts, iterations, ..optimize::Overrides::default() };
+        let request = optimize::Overrides {
+            starts,
+            iterations,
+            // A front is a set of designs of one mechanism: its points have one assembly and one sense.
+            other_assemblies: Some(false),
+            both_senses: Some(false),
+            ..optimize::Overrides::default()
+        };
         let mut settings = optimize::Request::of(model, request)?.settings;
         let mut traded = Vec::new();
         for name in &goals {

@@ -492,7 +492,12 @@ impl BodyDraft {
 impl DriverDraft {
     /// Returns a driver. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn new(name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
-        Self { name: name.into(), drives: drives.into(), from_zero: false, law }
+        Self { name: name.into(), drives: drives.into(), from_zero: false, reversed: false, law }
+    }
+
+    /// A law of this driver in its sense.
+    pub(crate) fn in_sense(&self, law: Law) -> Law {
+        if self.reversed { law.reversed() } else { law }
     }
 }
 

@@ -73,6 +73,7 @@ impl Model {
         c.add_couplers();
         c.add_points();
         c.add_drivers();
+        c.add_start();
         c.check_vehicle();
         c.add_wheels();
         c.add_axles();
@@ -215,6 +216,7 @@ impl<'a> Checker<'a> {
             joints: Vec::new(),
             couplers: Vec::new(),
             drivers: Vec::new(),
+            start: Vec::new(),
             variables: Vec::new(),
             points: Vec::new(),
             vehicle: draft.vehicle.clone(),

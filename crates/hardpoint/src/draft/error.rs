@@ -47,6 +47,8 @@ pub enum Section {
     Couplers,
     /// [`super::Draft::drivers`].
     Drivers,
+    /// [`super::Draft::start`].
+    Start,
     /// [`super::Draft::design`].
     Design,
     /// [`super::Draft::points`].
@@ -134,6 +136,7 @@ impl fmt::Display for Section {
             Self::Joints => "joints",
             Self::Couplers => "couplers",
             Self::Drivers => "drivers",
+            Self::Start => "start",
             Self::Design => "design",
             Self::Points => "points",
             Self::Vehicle => "vehicle",

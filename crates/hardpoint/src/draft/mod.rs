@@ -54,6 +54,8 @@ pub struct Draft {
     pub couplers: Vec<CouplerDraft>,
     /// Drivers.
     pub drivers: Vec<DriverDraft>,
+    /// Placements at which the assembly starts, of bodies that do not start in the design configuration.
+    pub start: Vec<StartPlacementDraft>,
     /// Design variables.
     pub design: Vec<VariableDraft>,
     /// Points to follow.
@@ -325,8 +327,21 @@ pub struct DriverDraft {
     pub drives: DrivenDraft,
     /// True if the laws give the absolute value, as for measures; false if they count from the design configuration.
     pub from_zero: bool,
+    /// True if the driver moves in the opposite sense of its laws.
+    pub reversed: bool,
     /// Law of the prescribed quantity, m or rad.
     pub law: Law,
+}
+
+/// Placement at which the assembly of a body starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartPlacementDraft {
+    /// The body's name.
+    pub body: String,
+    /// Rotation vector of the displacement from the design configuration, about the global origin, rad.
+    pub turn: Vec3,
+    /// Translation after the rotation, m.
+    pub shift: Vec3,
 }
 
 /// Quantity that a driver prescribes.
@@ -640,6 +655,10 @@ pub struct OptimizationSettingsDraft {
     pub margin: Option<f64>,
     /// Number of starting designs.
     pub starts: usize,
+    /// True if the searches also start from the other assemblies of the mechanism.
+    pub other_assemblies: bool,
+    /// True if the searches also start with all drivers in the opposite sense.
+    pub both_senses: bool,
     /// Maximum number of iterations per start.
     pub iterations: usize,
     /// Names of the goals of a trade-off; empty for all of them.
@@ -649,7 +668,17 @@ pub struct OptimizationSettingsDraft {
 impl Default for OptimizationSettingsDraft {
     fn default() -> Self {
         let (goals, limits, trade_off) = (Vec::new(), Vec::new(), Vec::new());
-        Self { variables: None, goals, limits, margin: None, starts: 1, iterations: 100, trade_off }
+        Self {
+            variables: None,
+            goals,
+            limits,
+            margin: None,
+            starts: 1,
+            other_assemblies: false,
+            both_senses: false,
+            iterations: 100,
+            trade_off,
+        }
     }
 }
 

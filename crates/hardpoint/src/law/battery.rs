@@ -49,6 +49,7 @@ fn every_kind() -> Vec<Law> {
     laws.push(nested);
     laws.push(Law::sequence(interrupted).unwrap());
     laws.extend(laws.clone().into_iter().map(|law| law.scaled(-0.25)));
+    laws.extend([0, 1, 4].map(|k| laws[k].clone().from_zero(0.3).reversed()));
     laws
 }
 

@@ -61,7 +61,7 @@ pub type TimeJet<T = f64> = Jet<T, 4>;
 
 /// Law of motion of a driver, f(t), in the driver's unit, t in seconds.
 ///
-/// Two laws are equal if they have the same text or numbers and the same scale.
+/// Two laws are equal if they have the same text or numbers, the same scale and the same sense.
 ///
 /// # Example
 ///
@@ -84,6 +84,8 @@ pub struct Law {
     factor: f64,
     /// Value of the prescribed quantity in the design configuration, in the driver's unit, if the law counts from zero.
     design_value: Option<f64>,
+    /// True if the driver moves in the opposite sense.
+    is_reversed: bool,
 }
 
 /// Name of the last parameter of a law that [counts from zero](Law::from_zero): the value of the prescribed quantity in
@@ -145,7 +147,7 @@ impl Law {
     }
 
     fn of(kind: impl Into<AnyLaw>) -> Self {
-        Self { kind: kind.into(), factor: 1.0, design_value: None }
+        Self { kind: kind.into(), factor: 1.0, design_value: None, is_reversed: false }
     }
 
     /// This law times `factor`, for a change of unit. The text remains as written.
@@ -181,6 +183,27 @@ impl Law {
     pub fn from_zero(mut self, design_value: f64) -> Self {
         self.design_value = Some(design_value);
         self
+    }
+
+    /// This law with the driver moving in the opposite sense: the change from the design configuration has the other
+    /// sign. Text and parameters remain as written.
+    ///
+    /// ```
+    /// use hardpoint::law::Law;
+    ///
+    /// let back = Law::parse("0.5 + 0.1*t")?.from_zero(0.45).reversed();
+    /// assert!((back.at(1.0).value() + 0.15).abs() < 1e-15);
+    /// # Ok::<(), hardpoint::expression::ExpressionError>(())
+    /// ```
+    #[must_use]
+    pub fn reversed(mut self) -> Self {
+        self.is_reversed = !self.is_reversed;
+        self
+    }
+
+    /// True if the driver moves in the opposite sense: see [`Law::reversed`].
+    pub fn is_reversed(&self) -> bool {
+        self.is_reversed
     }
 
     /// Index and value of the parameter with the design value of the prescribed quantity, if the law counts from zero.
@@ -297,6 +320,7 @@ impl Law {
     pub fn over(&self, from: f64, to: f64) -> Stretch {
         let over = self.kind.over(from, to) * Stretch::constant(self.factor);
         let over = over - Stretch::constant(self.design_value.unwrap_or(0.0));
+        let over = if self.is_reversed { over * Stretch::constant(-1.0) } else { over };
         over.settled(self.at(0.5 * (from + to)).value(), to - from)
     }
 
@@ -315,7 +339,8 @@ impl Law {
     /// ```
     pub fn enclosure(&self, over: Interval) -> TimeJet<Interval> {
         let value = self.kind.enclosure(over) * self.factor;
-        value - Jet::constant(Interval::constant(self.design_value.unwrap_or(0.0)))
+        let value = value - Jet::constant(Interval::constant(self.design_value.unwrap_or(0.0)));
+        if self.is_reversed { value * -1.0 } else { value }
     }
 
     /// Times between `from` and `to` (excluded), in order, at which a rate of the law may jump: a jump lies at one of
@@ -364,10 +389,11 @@ impl Law {
                 false => seed,
             });
         let value = self.kind.at(time, as_written) * self.factor;
-        match self.design_value {
+        let change = match self.design_value {
             Some(design_value) => value - Jet::constant(parameter::seeded(design_value, own, seed)),
             None => value,
-        }
+        };
+        if self.is_reversed { change * -1.0 } else { change }
     }
 
     fn check_index(&self, parameter: usize) {
@@ -376,10 +402,10 @@ impl Law {
     }
 }
 
-/// Writes the text or the numbers of the law, without the factor of [`Law::scaled`].
+/// Writes the text or the numbers of the law, without the factor of [`Law::scaled`]; of a reversed law the negative.
 impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.kind.fmt(f)
+        if self.is_reversed { write!(f, "-({})", self.kind) } else { self.kind.fmt(f) }
     }
 }
 
@@ -393,7 +419,10 @@ impl fmt::Debug for Law {
 
 impl PartialEq for Law {
     fn eq(&self, other: &Self) -> bool {
-        self.kind == other.kind && self.factor == other.factor && self.design_value == other.design_value
+        self.kind == other.kind
+            && self.factor == other.factor
+            && self.design_value == other.design_value
+            && self.is_reversed == other.is_reversed
     }
 }
 

@@ -16,6 +16,7 @@ mod measured;
 mod metric;
 mod optimization;
 mod page;
+mod placement;
 mod shape;
 mod shared;
 mod solid;
@@ -48,6 +49,7 @@ pub(crate) use metric::on_target;
 pub use metric::{Metric, Reduction};
 pub use optimization::{Goal, Limit, LimitTarget, OptimizationSettings};
 pub use page::{NamedDesign, Plot};
+pub use placement::StartPlacement;
 pub(crate) use shape::with_core;
 pub use shape::{Clearance, Shape, ShapeKind, ShapePair};
 pub use shared::SharedModel;
@@ -127,6 +129,8 @@ pub struct Model {
     pub couplers: Vec<Coupler>,
     /// Drivers, in the order of the file.
     pub drivers: Vec<Driver>,
+    /// Placements at which the assembly starts, of bodies that do not start in the design configuration.
+    pub start: Vec<StartPlacement>,
     /// Design variables, in the order of the file.
     pub variables: Vec<DesignVariable>,
     /// Body-fixed points to follow; those that only a driver, wheel or measure names come last, unnamed.

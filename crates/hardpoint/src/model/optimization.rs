@@ -16,6 +16,10 @@ pub struct OptimizationSettings {
     /// From how many designs the search starts: the one in the design configuration, and others spread within the
     /// bounds.
     pub starts: usize,
+    /// True if the searches also start from the other assemblies of the mechanism, with this number of starts each.
+    pub other_assemblies: bool,
+    /// True if the searches also start with all drivers in the opposite sense, in every assembly.
+    pub both_senses: bool,
     /// Maximum number of iterations of a search.
     pub iterations: usize,
     /// Names of the goals whose trade-off is of interest; empty for all of them.
@@ -36,6 +40,8 @@ impl Default for OptimizationSettings {
             limits: Vec::new(),
             margin: None,
             starts: 1,
+            other_assemblies: false,
+            both_senses: false,
             iterations: 100,
             trade_off: Vec::new(),
         }

@@ -7,13 +7,14 @@
 //! the nominal design is also assembled from positions around it, by least squares, and the nearest assembly is taken.
 //! If there is none, least squares give the smallest gaps.
 
+use crate::joint::Freedom;
 use crate::linalg::Elimination;
-use crate::model::{BodyId, Contact};
+use crate::model::{BodyId, Contact, StartPlacement};
 use crate::space::{Quat, Vec3};
 use crate::topology::{BlockId, CoordinateId, LoopLink, RowId, RowTerm, Topology};
 
 use super::gap::{Assembly, AssemblyShift, Closing, Gap, SINGULAR_DRAWING};
-use super::mechanism::{AcceptedPosition, Mechanism};
+use super::mechanism::{AcceptedPosition, Mechanism, StepRejection};
 use super::parts::PlanGeometry;
 use super::path::Path;
 use super::stepper::Stepper;
@@ -39,6 +40,17 @@ const DIRECTIONS: usize = 3;
 /// Largest dense system of a search, so that a failure is reported within seconds.
 const LARGEST_SEARCH: usize = 150;
 
+/// Number of positions from which other assemblies are searched for: this number divided by the square of the number of
+/// unknowns, since a search solves that many equations ...
+const SCATTERED_WORK: usize = 20_000;
+/// ... and its limits. A dyad is found on its other side from half of them.
+const SCATTERED: [usize; 2] = [24, 200];
+/// Half the range of each quasi-coordinate of a ball: Cayley's increment of this size turns it by 152 deg.
+const TURNED_OVER: f64 = 8.0;
+
+/// Displacements of bodies from the design configuration below this, sizes or rad, are round-off of the solver.
+const UNMOVED: f64 = 1e-10;
+
 /// An assembly that was found around the design configuration.
 struct FoundAssembly {
     /// Distance of the bodies from the design configuration, in sizes and rad.
@@ -61,14 +73,16 @@ impl FoundAssembly {
 /// Assembles a mechanism in its design configuration, with all drivers at zero, on its branch.
 pub(super) fn assemble(one: &mut Stepper<'_>) -> Result<(), Box<Stop>> {
     // phi_0 at q = 0; round-off counts as closed.
-    measure_gaps(&mut one.mechanism);
+    one.mechanism.measure_gaps();
     if !(one.mechanism.largest_gap() > CLOSED) {
         one.mechanism.state.gap.fill(0.0);
         return assemble_along_path(one);
     }
     let m = &one.mechanism;
     let drawn = (m.saved.clone(), m.topology.clone());
-    let gaps = gaps(m, |r| m.state.gap[r.0], REPORTED_GAP);
+    // Gaps of the design configuration; those of a changed design at the start of another assembly are none of these.
+    let reported = if m.topology.start.is_some() { f64::INFINITY } else { REPORTED_GAP };
+    let gaps = gaps(m, |r| m.state.gap[r.0], reported);
     let mut found_nearby = 0;
     if let Err(stop) = assemble_along_path(one) {
         found_nearby = match is_searched(&one.mechanism, &stop) {
@@ -93,7 +107,7 @@ fn assemble_along_path(one: &mut Stepper<'_>) -> Result<(), Box<Stop>> {
     let m = &mut one.mechanism;
     m.saved.time = 0.0;
     // s = 0: phi - phi_0 = 0 holds in the design configuration; the signs of the determinants there define the branch.
-    let drawn = m.solve_at(Path::Assembly, 0.0);
+    let drawn = m.solve_at(Path::Assembly, 0.0).and_then(|()| is_side_of_start(m));
     m.settle_branch();
     let is_open = m.largest_gap() > 0.0;
     // If the design configuration is singular, none of its gaps can be closed along the path.
@@ -113,6 +127,16 @@ fn assemble_along_path(one: &mut Stepper<'_>) -> Result<(), Box<Stop>> {
     walk(one, Path::Assembly, 1.0).map_err(of_assembly)
 }
 
+/// Rejects a changed design that is on the other side of a singular position where its assembly starts.
+fn is_side_of_start(m: &Mechanism<'_>) -> Result<(), StepRejection> {
+    let Some(start) = &m.topology.start else { return Ok(()) };
+    let signs = BlockId::each(&m.state.pivots).zip(&start.signs);
+    match signs.into_iter().find(|((_, (_, positive)), wanted)| positive != *wanted) {
+        Some(((block, _), _)) => Err(StepRejection::Branch { block }),
+        None => Ok(()),
+    }
+}
+
 /// Returns true if an assembly is searched for around the design configuration: if that is singular, and the path
 /// does not close the nominal design either. A changed design is on the branch of the nominal one, or does not
 /// assemble.
@@ -125,7 +149,7 @@ fn is_searched(m: &Mechanism<'_>, stop: &Stop) -> bool {
     let (design, laws) = (m.model.geometry(&[]), m.model.laws(&[]));
     let parts = PlanGeometry::same(m.model, &m.topology, &design, &laws);
     let mut nominal = Stepper::new(m.model, &m.topology, parts);
-    measure_gaps(&mut nominal.mechanism);
+    nominal.mechanism.measure_gaps();
     // With the same gaps it is the nominal design itself.
     nominal.mechanism.state.gap == m.state.gap || assemble_along_path(&mut nominal).is_err()
 }
@@ -161,6 +185,73 @@ fn assemble_nearby(m: &mut Mechanism<'_>, drawn: &(AcceptedPosition, Topology)) 
     m.state.balls.copy_from_slice(&taken.balls);
     m.state.contacts.copy_from_slice(&taken.contacts);
     if stand_assembled(m) { found.len() } else { 0 }
+}
+
+/// Other assemblies of the mechanism at the position of the state, with all drivers at zero, the nearest first.
+///
+/// Least squares start from coordinates scattered over their whole range: angles over a turn, lengths over the size of
+/// their loop to either side. Two assemblies of the same distance to the same side count as one.
+pub(super) fn other_assemblies(m: &mut Mechanism<'_>, more: &dyn Fn() -> bool) -> Vec<Vec<StartPlacement>> {
+    let unknowns: Vec<CoordinateId> = m.topology.unknown_coordinates().collect();
+    if unknowns.is_empty() || unknowns.len() > LARGEST_SEARCH {
+        return Vec::new();
+    }
+    let drawn = (m.saved.clone(), m.topology.clone());
+    let blocks = m.topology.block_ids();
+    let rows: Vec<RowId> = blocks.flat_map(|b| m.topology.rows_of_block(b)).collect();
+    let mut found = vec![(found_assembly(m), Vec::new())];
+    let starts = SCATTERED_WORK / (unknowns.len() * unknowns.len());
+    for start in 0..starts.clamp(SCATTERED[0], SCATTERED[1]) {
+        if !more() {
+            break;
+        }
+        scatter(m, &drawn, &unknowns, start);
+        if !(search(m, &rows, &unknowns) <= FOUND) || !stand_assembled(m) {
+            continue;
+        }
+        let assembly = found_assembly(m);
+        if found.iter().all(|(other, _)| !other.is_same(&assembly)) {
+            found.push((assembly, placements(m)));
+        }
+    }
+    set_drawn(m, &drawn);
+    let mut others = found.split_off(1);
+    let from = found[0].0.distance;
+    others.sort_by(|(a, _), (b, _)| (a.distance - from).abs().total_cmp(&(b.distance - from).abs()));
+    others.into_iter().map(|(_, placements)| placements).collect()
+}
+
+/// Moves to coordinates anywhere in their range, the same for the same number.
+fn scatter(
+    m: &mut Mechanism<'_>,
+    drawn: &(AcceptedPosition, Topology),
+    unknowns: &[CoordinateId],
+    start: usize,
+) {
+    set_drawn(m, drawn);
+    for (k, &c) in unknowns.iter().enumerate() {
+        // -1 to 1
+        let part = 2.0 * unit_number((start * unknowns.len() + k) as u64) - 1.0;
+        let is_ball = m.topology[m.topology[c].link]
+            .steps
+            .iter()
+            .any(|step| step.freedom == Freedom::Ball && (step.first.0..step.first.0 + 3).contains(&c.0));
+        let range = match (m.topology[c].is_length, is_ball) {
+            (true, _) => m.topology[c].unit,
+            (false, false) => std::f64::consts::PI,
+            (false, true) => TURNED_OVER,
+        };
+        m.state.q[c.0] += range * part;
+    }
+    m.state.turn_balls(&m.topology, m.topology.link_ids());
+}
+
+/// Number between 0 and 1 for every index, without pattern (the mixing function of SplitMix64).
+fn unit_number(index: u64) -> f64 {
+    let mut z = (index + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// Returns to the design configuration, with its selected rows.
@@ -247,20 +338,18 @@ fn found_assembly(m: &Mechanism<'_>) -> FoundAssembly {
     }
 }
 
-/// Computes the residual of every row in the design configuration, with closed tree joints.
-fn measure_gaps(m: &mut Mechanism<'_>) {
-    let zero = 0.0;
-    m.drivers.fill([zero; 3]);
-    m.state.gap_left = [0.0; 2];
-    m.state.stand(&m.topology, &m.parts);
-    for (r, place) in RowId::each(&m.topology.rows) {
-        m.state.gap[r.0] = if place.is_term {
-            zero
-        } else {
-            // phi_0, with q = 0 and all drivers at 0
-            m.state.residual_of(&m.topology, &m.parts, &m.drivers, r)
-        };
-    }
+/// Displacements of all bodies from the design configuration at the current position; those that have not moved are
+/// left out.
+pub(super) fn placements(m: &Mechanism<'_>) -> Vec<StartPlacement> {
+    let size = m.model.size();
+    let bodies = m.model.bodies.iter().enumerate().skip(1);
+    let all = bodies.map(|(b, body)| StartPlacement::between(BodyId(b), body.frame, m.state.pose[b]));
+    all.filter(|start| {
+        let frame = m.model.bodies[start.body.0].frame;
+        let moved = start.displacement.point(frame.r) - frame.r;
+        moved.norm() > UNMOVED * size || start.turn().norm() > UNMOVED
+    })
+    .collect()
 }
 
 /// Gaps per joint, driver or coupler, from a value per row; those below `least` are left out.

@@ -101,9 +101,13 @@ pub(crate) enum StepRejection {
 }
 
 impl<'m> Mechanism<'m> {
-    /// A mechanism in its design configuration.
+    /// A mechanism in its design configuration, or where its assembly starts.
     pub fn new(model: &'m Model, topology: &Topology, parts: PlanGeometry<f64>) -> Self {
         let mut state = State::new(model, topology);
+        if let Some(start) = &topology.start {
+            state.q.copy_from_slice(&start.q);
+            state.balls.copy_from_slice(&start.balls);
+        }
         state.contacts = parts.curves.iter().map(|c| Contact::at(c, c.start())).collect();
         let saved = AcceptedPosition {
             time: 0.0,
@@ -238,6 +242,29 @@ impl<'m> Mechanism<'m> {
     /// Sets the state at a change point from its coordinates, speeds and accelerations.
     pub fn stand_with_rates(&mut self, singular: &[BlockId]) {
         self.state.stand_with_rates(&self.topology, &self.parts, &self.drivers, singular);
+    }
+
+    /// Computes the residual of every row where the assembly starts, with closed tree joints.
+    pub fn measure_gaps(&mut self) {
+        let zero = 0.0;
+        self.drivers.fill([zero; 3]);
+        self.state.gap_left = [0.0; 2];
+        self.state.stand(&self.topology, &self.parts);
+        if self.topology.start.is_some() {
+            // The whole turns of couplers' angles are counted from there.
+            for r in self.topology.coupler_terms() {
+                let there = self.state.coordinate_of_row(&self.topology, r);
+                (self.state.near[r.0], self.saved.coupled[r.0]) = (there[0], there);
+            }
+        }
+        for (r, place) in RowId::each(&self.topology.rows) {
+            self.state.gap[r.0] = if place.is_term {
+                zero
+            } else {
+                // phi_0, at the coordinates of the start and with all drivers at 0
+                self.state.residual_of(&self.topology, &self.parts, &self.drivers, r)
+            };
+        }
     }
 
     /// Largest gap of the design configuration, in sizes or as a cosine.

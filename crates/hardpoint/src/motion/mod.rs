@@ -27,6 +27,7 @@ mod path;
 mod path_step;
 mod predictor;
 mod singularity;
+pub(crate) mod start;
 mod step;
 pub(crate) mod step_program;
 pub(crate) mod stepper;

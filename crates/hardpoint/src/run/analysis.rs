@@ -9,10 +9,11 @@ use crate::equilibrium::{Released, release};
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
 use crate::measure::{self, MeasureFormulas, MeasureResults, Slopes, StepValues};
-use crate::model::{BodyId, DriverId, JointLimit, MeasureKind, Model, SharedModel};
+use crate::model::{BodyId, DriverId, JointLimit, MeasureKind, Model, SharedModel, StartPlacement};
 use crate::motion::advance;
 use crate::motion::execution::{Cache, Runnable};
 use crate::motion::parts::PlanGeometry;
+use crate::motion::start;
 use crate::motion::step_program::{Programs, Purpose, RecordedExtras, RecordedStep, StepProgram};
 use crate::motion::stepper::Stepper;
 use crate::motion::{BodyState, DrivenStep, Execution, Motion, StepMethod, Stop, StopKind};
@@ -100,6 +101,8 @@ impl<'m> Analysis<'m> {
         } else {
             (Topology::of(&model, formulation)?, DesignMap::of(model), None)
         };
+        let start = start::start_coordinates(design_map.model(), &topology);
+        let topology = Topology { start, ..topology };
         let programs = Arc::new(Programs::new(Execution::default()));
         Ok(Self {
             topology,
@@ -148,6 +151,46 @@ impl<'m> Analysis<'m> {
     /// The plan.
     pub fn topology(&self) -> &Topology {
         &self.topology
+    }
+
+    /// Placements of the bodies in the other assemblies of the nominal design with all drivers at zero, the nearest
+    /// first: [`Model::starting_at`] makes the model of each. `more` is called before every search; if it returns
+    /// false, the rest is not searched.
+    ///
+    /// Least squares from scattered positions find them, of which none is proven to be the last. Mechanisms with more
+    /// than 150 unknowns are not searched.
+    ///
+    /// ```
+    /// # use hardpoint::{Analysis, draft::Draft, law::Law, model::Model};
+    /// # let z = [0.0, 0.0, 1.0];
+    /// // A four-bar in its plane: its coupler and rocker can also lie below the line through their ends.
+    /// let draft = Draft::new("four-bar")
+    ///     .bodies(["crank", "coupler", "rocker"])
+    ///     .revolute("a", ["ground", "crank"], [0.0, 0.0, 0.0], z)
+    ///     .revolute("b", ["crank", "coupler"], [0.1, 0.0, 0.0], z)
+    ///     .revolute("c", ["coupler", "rocker"], [0.4, 0.3, 0.0], z)
+    ///     .revolute("d", ["ground", "rocker"], [0.5, 0.0, 0.0], z)
+    ///     .driver("motor", "a", Law::parse("t").unwrap())
+    ///     .point("knee", "rocker", [0.4, 0.3, 0.0])
+    ///     .times([0.0, 0.5]);
+    /// let model = Model::from_draft(&draft).unwrap();
+    /// let others = Analysis::new(&model).unwrap().other_assemblies(&|| true);
+    /// assert_eq!(others.len(), 1);
+    /// let below = Analysis::new(std::sync::Arc::new(model.starting_at(&others[0]))).unwrap().run();
+    /// let y = below.measured.index("knee.y").unwrap();
+    /// assert!((below.measured.value(0, y)[0] + 0.3).abs() < 1e-12);
+    /// ```
+    pub fn other_assemblies(&self, more: &dyn Fn() -> bool) -> Vec<Vec<StartPlacement>> {
+        start::other_assemblies(self.solved_model(), &self.topology, more)
+    }
+
+    /// Placements of the bodies of a design where its assembly ends, with all drivers at zero; `None` if it does not
+    /// assemble. Bodies in their places in the design configuration are left out.
+    pub fn start_placements(&self, design: &[f64]) -> Option<Vec<StartPlacement>> {
+        let design = self.design(design);
+        let (model, topology) = (self.solved_model(), &self.topology);
+        let parts = PlanGeometry::same(model, topology, &design.geometry, &design.laws);
+        start::placements_of(&mut Stepper::new(model, topology, parts))
     }
 
     /// Solves motion, sensitivities by all design variables, and measures at all output times, for the nominal design.

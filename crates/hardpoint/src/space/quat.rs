@@ -36,6 +36,16 @@ impl Quat<f64> {
         [s * self.w, s * self.v.x, s * self.v.y, s * self.v.z]
     }
 
+    /// Rotation vector of this rotation: the axis times the angle, rad, 0 to pi.
+    pub fn rotation_vector(self) -> Vec3 {
+        let [w, x, y, z] = self.to_array();
+        let v = Vec3::new(x, y, z);
+        let sine = v.norm();
+        // angle = 2 atan2(abs(v), w); for a small rotation the vector is 2 v
+        let per_sine = if sine > 0.0 { 2.0 * sine.atan2(w) / sine } else { 2.0 };
+        v * per_sine
+    }
+
     /// Quaternion of a rotation matrix, computed from its largest component (Shepperd).
     pub fn from_rotation(a: Mat3) -> Self {
         let [f, g, h] = a.cols;

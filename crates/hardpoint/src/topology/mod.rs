@@ -13,14 +13,17 @@ mod mobility;
 mod openings;
 mod redundancy;
 mod size;
+mod start;
 mod tree;
 
 pub use error::TopologyError;
 pub use ids::{BlockId, ClosureId, CoordinateId, Ids, LinkId, RowId};
 pub(crate) use openings::{OpenTree, dependence, open_tree};
 pub use redundancy::Redundancy;
+pub use start::StartCoordinates;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::constraint::Row;
 use crate::joint::Freedom;
@@ -60,6 +63,8 @@ pub struct Topology {
     pub mobility: usize,
     /// Role of each joint, tree or cut, with the reason.
     pub roles: Vec<JointRole>,
+    /// Coordinates at which the assembly starts, if that is not the design configuration.
+    pub start: Option<Arc<StartCoordinates>>,
 }
 
 /// Role of a joint in the solution.

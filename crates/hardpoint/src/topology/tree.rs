@@ -44,6 +44,7 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation) -> Topology {
         coupler_terms: Vec::new(),
         mobility: 0,
         roles: Vec::new(),
+        start: None,
     };
     // Prim's algorithm from ground: the joint with the fewest unknowns first, and among equals the one
     // nearest to ground, then the first in the file. Shallow trees keep loops small and independent.

@@ -4,7 +4,9 @@ use crate::draft::{CouplerKindDraft, DraftLocation, Section};
 use crate::joint;
 use crate::joint::CoordinateType;
 use crate::law::Law;
-use crate::model::{Coupler, CouplerTerm, Driver, DriverId, JointId, Transmission};
+use crate::model::{
+    BodyId, Coupler, CouplerTerm, Driver, DriverId, GROUND, JointId, StartPlacement, Transmission,
+};
 
 use super::driven::Driven;
 use super::{Checker, Here};
@@ -67,7 +69,36 @@ impl Checker<'_> {
             }
             let Some(Driven { joint, coordinate, .. }) = driven else { continue };
             self.driver_of.insert((joint, coordinate), driver);
+            let law = d.in_sense(law);
             self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law });
+        }
+    }
+
+    /// Placements at which the assembly starts. HP0276: of ground, twice of one body, or not finite.
+    pub(super) fn add_start(&mut self) {
+        let draft = self.draft;
+        for (index, placement) in draft.start.iter().enumerate() {
+            let here = Here { section: Section::Start, index };
+            let name = &placement.body;
+            let bodies = ["ground"].into_iter().chain(draft.bodies.iter().map(|b| b.name.as_str()));
+            if self.find("body", name, here.key("name"), bodies).is_none() {
+                continue;
+            }
+            let Some(body) = self.model.bodies.iter().position(|b| b.name == *name).map(BodyId) else {
+                continue;
+            };
+            let message = if body == GROUND {
+                "ground cannot start anywhere else than in the design configuration".to_owned()
+            } else if self.model.start.iter().any(|start| start.body == body) {
+                format!("the start of body `{name}` is given twice")
+            } else if !(placement.turn.is_finite() && placement.shift.is_finite()) {
+                format!("the start of body `{name}` is not finite")
+            } else {
+                self.model.start.push(StartPlacement::new(body, placement.turn, placement.shift));
+                continue;
+            };
+            self.fault("HP0276", here.key("name"), message)
+                .help("give each body that starts elsewhere one entry with finite numbers");
         }
     }
 

@@ -62,10 +62,18 @@ impl Checker<'_> {
             self.check_ineffective_limits(&variables, &limits);
         }
         let limits = limits.into_iter().map(|(_, limit)| limit).collect();
-        let (margin, starts, iterations) = (o.margin, o.starts, o.iterations);
         let goals = goals.into_iter().flatten().collect();
-        self.model.optimization =
-            Some(OptimizationSettings { variables, goals, limits, margin, starts, iterations, trade_off });
+        self.model.optimization = Some(OptimizationSettings {
+            variables,
+            goals,
+            limits,
+            margin: o.margin,
+            starts: o.starts,
+            other_assemblies: o.other_assemblies,
+            both_senses: o.both_senses,
+            iterations: o.iterations,
+            trade_off,
+        });
     }
 
     /// Returns the names of the goals of the trade-off. HP0237 unless they are two or three different ones.
