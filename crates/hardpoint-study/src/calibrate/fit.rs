@@ -7,12 +7,12 @@ use crate::recent::Recent;
 use crate::request::RequestError;
 use hardpoint::joint::Quantity;
 use hardpoint::measure::{Output, outputs};
-use hardpoint::model::{Dimension, DriverId, Model, VariableId};
+use hardpoint::model::{Dimension, DriverId, Model, OutputSource, VariableId};
 use hardpoint::run::Analysis;
 
 use hardpoint_search::{LeastSquares, bounded_least_squares, dot, singular};
 
-use super::posture::{ReachedPosture, solve_posture};
+use super::posture::{ReachedPosture, read_outputs, solve_posture};
 use super::prior::{PriorRows, parameters_of};
 use super::{
     BoundSide, Calibration, Certainty, FittedParameter, FittedReading, Loss, NextReading, Reading, Request,
@@ -41,6 +41,8 @@ pub(super) struct FitWorkspace<'b> {
     pub request: &'b Request<'b>,
     /// Fitted parameters, without those that the mechanism cannot follow.
     pub parameters: Vec<FittedParameter>,
+    /// Outputs with readings; others are not solved.
+    outputs: Vec<OutputSource>,
     left_out: Vec<FittedParameter>,
     /// Drivers with a fitted offset, in the order of their variables in the models of the postures.
     pub offset_drivers: Vec<DriverId>,
@@ -101,6 +103,7 @@ impl<'b> FitWorkspace<'b> {
             analyses,
             request,
             parameters: parameters_of_request(model, request),
+            outputs: read_outputs(model, request.measured),
             left_out: Vec::new(),
             offset_drivers: request.offset_drivers(),
             steps: Vec::new(),
@@ -121,7 +124,7 @@ impl<'b> FitWorkspace<'b> {
     /// Determines the reachable postures, and the variables that the mechanism can follow in them.
     pub fn evaluate_nominal(&mut self) -> Result<(), RequestError> {
         for (posture, analysis) in self.analyses.iter().enumerate() {
-            let found = solve_posture(analysis, &[], &mut self.cost.borrow_mut());
+            let found = solve_posture(analysis, &[], &self.outputs, &mut self.cost.borrow_mut());
             if let Err(stop) = &found {
                 self.not_reached.push(UnreachedPosture { posture, why: stop.headline(analysis.model()) });
             }
@@ -268,7 +271,7 @@ impl<'b> FitWorkspace<'b> {
             if !more() {
                 return None;
             }
-            solve_posture(analysis, &design, &mut self.cost.borrow_mut()).ok().map(Some)
+            solve_posture(analysis, &design, &self.outputs, &mut self.cost.borrow_mut()).ok().map(Some)
         };
         self.analyses.iter().zip(&self.nominal).map(of).collect()
     }

@@ -26,7 +26,7 @@ mod validate;
 use std::cell::Cell;
 
 use hardpoint::measure::{Output, outputs};
-use hardpoint::model::{DriverId, Model, Reading, VariableId};
+use hardpoint::model::{DriverId, Model, OutputSource, Reading, VariableId};
 use hardpoint::run::Analysis;
 use hardpoint::topology::{Formulation, TopologyError};
 
@@ -219,10 +219,11 @@ pub fn values_in_postures(
     formulation: Formulation,
 ) -> Result<Vec<Result<Vec<f64>, String>>, TopologyError> {
     let models: Vec<Model> = postures.iter().map(|p| posture_model(model, p, &[], &[])).collect();
+    let sources: Vec<OutputSource> = outputs(model).into_iter().map(|output| output.source).collect();
     let values = |analysis: &Analysis<'_>| {
-        let solved = posture::solve_posture(analysis, design, &mut StudyCost::default());
+        let solved = posture::solve_posture(analysis, design, &sources, &mut StudyCost::default());
         let values =
-            |posture: posture::ReachedPosture| (0..outputs(model).len()).map(|m| posture.value(m)).collect();
+            |posture: posture::ReachedPosture| (0..sources.len()).map(|m| posture.value(m)).collect();
         solved.map(values).map_err(|stop| stop.headline(analysis.model()))
     };
     Ok(posture::planned(&models, formulation)?.iter().map(values).collect())

@@ -1,10 +1,15 @@
 //! Postures of measurements: the drivers are at rest, and every posture is reached separately from the design
 //! configuration.
 
+use std::collections::BTreeSet;
+
 use crate::evaluation::StudyCost;
 use crate::grid::{PHASE_ENDS, law_of};
 use hardpoint::law::Law;
-use hardpoint::model::{Case, CaseId, DriverId, ElementId, LoadMode, Measurements, Model, VariableId};
+use hardpoint::measure::outputs;
+use hardpoint::model::{
+    Case, CaseId, DriverId, ElementId, LoadMode, Measurements, Model, OutputSource, VariableId,
+};
 use hardpoint::motion::Stop;
 use hardpoint::run::{Analysis, Run, Solution};
 use hardpoint::topology::{Formulation, TopologyError};
@@ -92,16 +97,24 @@ pub(super) fn posture_models(model: &Model, measured: &Measurements, offsets: &[
     measured.postures.iter().enumerate().map(of).collect()
 }
 
-/// Solves a posture of a design.
+/// Outputs with readings.
+pub(super) fn read_outputs(model: &Model, data: &Measurements) -> Vec<OutputSource> {
+    let all = outputs(model);
+    let columns: BTreeSet<usize> = data.readings.iter().map(|reading| reading.output).collect();
+    columns.into_iter().map(|column| all[column].source).collect()
+}
+
+/// Solves a posture of a design, with these outputs and their derivatives.
 ///
 /// # Errors
 /// The [`Stop`] that prevents the posture.
 pub(super) fn solve_posture(
     analysis: &Analysis<'_>,
     design: &[f64],
+    outputs: &[OutputSource],
     cost: &mut StudyCost,
 ) -> Result<ReachedPosture, Box<Stop>> {
-    let solution = analysis.solve(Run::new().at(design));
+    let solution = analysis.solve(Run::new().at(design).for_outputs(outputs));
     cost.motions += 1;
     cost.steps += solution.motion.len();
     match solution.stop {

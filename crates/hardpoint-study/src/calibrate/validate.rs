@@ -5,7 +5,7 @@ use hardpoint::run::Analysis;
 
 use super::certainty::Directions;
 use super::fit::{FitWorkspace, SearchResult};
-use super::posture::solve_posture;
+use super::posture::{read_outputs, solve_posture};
 use super::{FittedParameter, UnreachedPosture};
 use hardpoint_search::dot;
 
@@ -40,8 +40,9 @@ impl FitWorkspace<'_> {
         let design = self.design(&search.x);
         let mut found = Validation::default();
         let mut reached = Vec::new();
+        let outputs = read_outputs(self.model, data);
         for (posture, analysis) in analyses.iter().enumerate() {
-            let solved = solve_posture(analysis, &design, &mut self.cost.borrow_mut());
+            let solved = solve_posture(analysis, &design, &outputs, &mut self.cost.borrow_mut());
             if let Err(stop) = &solved {
                 found.not_reached.push(UnreachedPosture { posture, why: stop.headline(analysis.model()) });
             }

@@ -44,6 +44,8 @@ pub(crate) struct Slopes<'a, T = f64> {
     /// Per variable, what measures depend on; the last is that of no change.
     fixed: Vec<BodyFixed<Dual<Dual<T>>>>,
     asked_for: Vec<usize>,
+    /// The measures, ascending.
+    measures: Vec<usize>,
     /// Per driver.
     poses: Vec<Vec<Pose<Dual<Dual<T>>>>>,
 }
@@ -51,6 +53,7 @@ pub(crate) struct Slopes<'a, T = f64> {
 /// Drivers that move alone and variables: directions of [`Seconds`], first the drivers, then unit vectors of the
 /// variables; pairs are every driver u with every variable w (15).
 struct Ways {
+    measures: Vec<usize>,
     drivers: Vec<DriverId>,
     variables: usize,
     directions: Vec<PairDirection>,
@@ -58,30 +61,32 @@ struct Ways {
 }
 
 impl Ways {
-    /// Directions of a model, with derivatives by the variables if requested; `None` if it has no such measures.
-    fn of(model: &Model, sensitivities: bool) -> Option<Self> {
-        let drivers = drivers_of(model);
+    /// Directions of these measures of a model, with derivatives by the variables if requested; `None` if none depends
+    /// on a driver.
+    fn of(model: &Model, asked: impl IntoIterator<Item = usize>, sensitivities: bool) -> Option<Self> {
+        let measures: Vec<usize> = asked.into_iter().filter(|m| model.depends_on_driver(*m)).collect();
+        let drivers = drivers_of(model, &measures);
         if drivers.is_empty() {
             return None;
         }
         let variables = if sensitivities { model.variables.len() } else { 0 };
         let mut directions = drivers.iter().map(|d| PairDirection::Driver(*d)).collect();
         let pairs = pair_with_variables(model, &mut directions, variables);
-        Some(Self { drivers, variables, directions, pairs })
+        Some(Self { measures, drivers, variables, directions, pairs })
     }
 }
 
 impl<'a> Slopes<'a> {
-    /// Slopes of the design with these values, with derivatives by the variables if requested; `None` if the model has
-    /// no such measures. These openings follow the drivers, if there are any.
+    /// Slopes of the design with these values, of the measures that are asked for, with derivatives by the variables if
+    /// requested; `None` if there are no such measures. These openings follow the drivers, if there are any.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,
-        values: &[f64],
+        (values, asked): (&[f64], impl IntoIterator<Item = usize>),
         sensitivities: bool,
         openings: &[DriverId],
     ) -> Option<Self> {
-        let mut ways = Ways::of(design_map.model(), sensitivities)?;
+        let mut ways = Ways::of(design_map.model(), asked, sensitivities)?;
         if !openings.is_empty() {
             // The openings follow both directions of a pair, which the equilibrium solves.
             ways.pairs.clear();
@@ -147,7 +152,7 @@ impl<'a> Slopes<'a, Number> {
     ) -> Option<(RecordedValues, Vec<Number>)> {
         let RecordedStep { topology, state, values, .. } = step;
         let model = design_map.model();
-        let ways = Ways::of(model, sensitivities)?;
+        let ways = Ways::of(model, 0..model.measures.len(), sensitivities)?;
         let seconds = Seconds::recorded(design_map, topology, values, &ways.directions, &ways.pairs)?;
         let mut slopes = recording::strictly(|| Self::along(design_map, values, ways, seconds));
         slopes.seconds.solve_at(topology, state);
@@ -194,7 +199,7 @@ impl<'a> Slopes<'a, Number> {
 
 impl<'a, T: Real> Slopes<'a, T> {
     fn along(design_map: &'a DesignMap<'a>, values: &[T], ways: Ways, seconds: Seconds<T>) -> Self {
-        let Ways { drivers, variables, .. } = ways;
+        let Ways { measures, drivers, variables, .. } = ways;
         let model = design_map.model();
         // Body-fixed data do not depend on a driver: the outer derivative is zero.
         let fixed = |by: usize| design_map.fixed(&values_along_variable(values, by));
@@ -203,6 +208,7 @@ impl<'a, T: Real> Slopes<'a, T> {
             seconds,
             fixed: (0..variables).chain([usize::MAX]).map(fixed).collect(),
             asked_for: bodies_asked_for(model).into_iter().filter(|b| *b != GROUND.0).collect(),
+            measures,
             poses: vec![vec![Pose::IDENTITY.spread(); model.bodies.len()]; drivers.len()],
             variables,
             at_equilibrium: false,
@@ -227,7 +233,7 @@ impl<'a, T: Real> Slopes<'a, T> {
                 drivers: &self.drivers,
                 instants: self.poses.iter().map(|p| Instant::new(self.model, &self.fixed[by], p)).collect(),
             };
-            for k in (0..self.model.measures.len()).filter(|k| self.model.depends_on_driver(*k)) {
+            for &k in &self.measures {
                 found(k, by, alone.measure(self.model, k));
             }
         }
@@ -235,8 +241,8 @@ impl<'a, T: Real> Slopes<'a, T> {
 }
 
 /// Drivers that measures depend on.
-fn drivers_of(model: &Model) -> Vec<DriverId> {
-    let mut drivers: Vec<DriverId> = (0..model.measures.len()).flat_map(|k| model.drivers_alone(k)).collect();
+fn drivers_of(model: &Model, measures: &[usize]) -> Vec<DriverId> {
+    let mut drivers: Vec<DriverId> = measures.iter().flat_map(|k| model.drivers_alone(*k)).collect();
     drivers.sort_unstable();
     drivers.dedup();
     drivers
@@ -265,7 +271,8 @@ fn formula(kind: &MeasureKind) -> Formula {
 /// Reason why the measures of a model that depend on a driver are not recorded, if they are not.
 pub(crate) fn hindrance(design_map: &DesignMap<'_>) -> Option<&'static str> {
     let model = design_map.model();
-    let pairs = drivers_of(model).len() * (1 + model.variables.len()) * model.bodies.len();
+    let all: Vec<usize> = (0..model.measures.len()).collect();
+    let pairs = drivers_of(model, &all).len() * (1 + model.variables.len()) * model.bodies.len();
     if pairs > MOST_PAIRS {
         return Some("the program for the motion of single drivers would be too long");
     }

@@ -252,7 +252,7 @@ impl<'m> Mechanism<'m> {
         self.state.stand(&self.topology, &self.parts);
         if self.topology.start.is_some() {
             // The whole turns of couplers' angles are counted from there.
-            for r in self.topology.coupler_terms() {
+            for &r in &self.topology.coupler_terms {
                 let there = self.state.coordinate_of_row(&self.topology, r);
                 (self.state.near[r.0], self.saved.coupled[r.0]) = (there[0], there);
             }

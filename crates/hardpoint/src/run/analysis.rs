@@ -21,6 +21,7 @@ use crate::number::record as recording;
 use crate::sensitivity::{Admissibility, JointDefect, admissibility_at_design, along, record_derivatives};
 use crate::topology::{Formulation, Topology, TopologyError};
 
+use super::needed::NeededResults;
 use super::request::Run;
 use super::sink::Sink;
 use super::solution::{Solution, StreamSummary};
@@ -201,7 +202,9 @@ impl<'m> Analysis<'m> {
     /// Solves the request at all output times. If the run ends before the last one, [`Solution::stop`] has the reason,
     /// and the results up to there are complete.
     pub fn solve(&self, mut run: Run<'_>) -> Solution {
-        let (design, mut solution) = (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
+        let (mut design, mut solution) =
+            (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
+        design.needs = run.outputs.map(|outputs| Arc::new(NeededResults::of_outputs(self.model(), outputs)));
         if self.equilibrium.is_some()
             && run.scope.for_metrics
             && run.scope.sensitivities

@@ -16,7 +16,7 @@ use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
 use super::metric::{unresolved_times, window_times};
-use super::needed::NeededDerivatives;
+use super::needed::NeededResults;
 use super::request::Progress;
 use super::solution::Solution;
 use super::walk::{PreparedDesign, Scope};
@@ -155,7 +155,7 @@ impl Analysis<'_> {
         solution: &mut Solution,
     ) {
         let model = self.model();
-        if let Some(needs) = NeededDerivatives::of_times(model) {
+        if let Some(needs) = NeededResults::of_times(model) {
             let design = PreparedDesign { needs: Some(Arc::new(needs)), ..design };
             self.walk(&design, model.times.len(), progress, solution, &mut |_, _| ());
             return;
@@ -169,7 +169,7 @@ impl Analysis<'_> {
         // All output times have been reported as solved before.
         let end = Progress { done: model.times.len() - 1, total: model.times.len() };
         let mut go_on = |_: Progress| progress(end);
-        let needs = Some(Arc::new(NeededDerivatives::of_solution(model, solution)));
+        let needs = Some(Arc::new(NeededResults::of_solution(model, solution)));
         match &solution.between {
             None => {
                 let design = PreparedDesign { needs, ..design };

@@ -4,6 +4,8 @@ use std::fmt;
 use std::num::NonZero;
 use std::ops::ControlFlow;
 
+use crate::model::OutputSource;
+
 use super::solution::Solution;
 use super::walk::Scope;
 
@@ -17,6 +19,7 @@ use super::walk::Scope;
 /// | [`at`](Run::at) | yes | yes | | yes | |
 /// | [`without_sensitivities`](Run::without_sensitivities) | yes | yes | yes | yes | yes |
 /// | [`for_metrics`](Run::for_metrics) | yes | | | | |
+/// | [`for_outputs`](Run::for_outputs) | yes | | | | |
 /// | [`without_measures`](Run::without_measures) | yes | yes | yes | has none | has none |
 /// | [`progress`](Run::progress) | yes | yes | | yes | |
 /// | [`reusing`](Run::reusing) | yes | yes | by itself | stores nothing | stores nothing |
@@ -54,6 +57,7 @@ use super::walk::Scope;
 #[must_use = "a request is answered by an analysis"]
 pub struct Run<'r> {
     pub(super) design: &'r [f64],
+    pub(super) outputs: Option<&'r [OutputSource]>,
     pub(super) scope: Scope,
     pub(super) threads: NonZero<usize>,
     pub(super) progress: Box<dyn FnMut(Progress) -> ControlFlow<()> + 'r>,
@@ -65,6 +69,7 @@ impl<'r> Run<'r> {
     pub fn new() -> Self {
         Self {
             design: &[],
+            outputs: None,
             scope: Scope::of_one(true, true),
             threads: NonZero::<usize>::MIN,
             progress: Box::new(|_| ControlFlow::Continue(())),
@@ -90,6 +95,12 @@ impl<'r> Run<'r> {
     /// results of these functions are the same.
     pub fn for_metrics(self) -> Self {
         Self { scope: Scope { for_metrics: true, ..self.scope }, ..self }
+    }
+
+    /// Requests of the measures and points these alone. The run leaves out other measures that take more than the
+    /// positions, such as roll centres and slopes; they are NaN.
+    pub fn for_outputs(self, outputs: &'r [OutputSource]) -> Self {
+        Self { outputs: Some(outputs), ..self }
     }
 
     /// Requests the motion without measures and points: [`Solution::measured`] stays empty.

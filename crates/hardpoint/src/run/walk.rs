@@ -21,7 +21,7 @@ use crate::motion::{BodyState, Stop, StopKind, advance, assembly};
 use crate::sensitivity::{Admissibility, BodySensitivity, JointDefect, SensitivitySolver};
 
 use super::analysis::Analysis;
-use super::needed::NeededDerivatives;
+use super::needed::NeededResults;
 use super::request::Progress;
 use super::sink::{NullSink, Sink, hand_over};
 
@@ -52,14 +52,20 @@ pub(crate) struct PreparedDesign {
     pub fields: Vec<DesignVelocity>,
     pub opens: Vec<Vec<JointDefect>>,
     pub scope: Scope,
-    /// Derivatives to solve at an equilibrium; all of them if `None`.
-    pub needs: Option<Arc<NeededDerivatives>>,
+    /// Results that count: all of them if `None`. The derivatives of others are left out at an equilibrium, and of
+    /// measures during the motion of one driver.
+    pub needs: Option<Arc<NeededResults>>,
 }
 
 impl PreparedDesign {
     /// True if the derivatives of a measure are requested.
     pub fn needs_derivatives_of(&self, measure: usize) -> bool {
         self.needs.as_ref().is_none_or(|needs| needs.measure(measure))
+    }
+
+    /// True if the value of a measure is requested.
+    pub fn needs_value_of(&self, measure: usize) -> bool {
+        self.needs.as_ref().is_none_or(|needs| needs.value(measure))
     }
 }
 
@@ -77,7 +83,7 @@ pub(crate) struct Walk<'a> {
     /// Per body: true if its results are requested.
     wanted: Vec<bool>,
     /// Derivatives to solve; all of them if `None`.
-    needs: Option<Arc<NeededDerivatives>>,
+    needs: Option<Arc<NeededResults>>,
     /// Stop at the limit of a joint, which ends the output times.
     at_limit: Option<Stop>,
     /// Output times solved.

@@ -96,7 +96,10 @@ impl Analysis<'_> {
         let variables = if sensitive { model.variables.len() } else { 0 };
         let of_motion = self.openings().is_none();
         let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
-        let slopes = || Slopes::new(self.design_map(), topology, &design.values, sensitive, openings);
+        let slopes = || {
+            let asked = (0..model.measures.len()).filter(|m| design.needs_value_of(*m));
+            Slopes::new(self.design_map(), topology, (&design.values, asked), sensitive, openings)
+        };
         let mut slopes = measures.then(slopes).flatten();
         let wanted = vec![true; model.bodies.len()];
         let giving = || Compliances::new(self.design_map(), topology, &design.values, sensitive);
@@ -142,7 +145,7 @@ impl Analysis<'_> {
             window.done += count;
             match solved {
                 SolvedSteps::One(one, loads, mut equilibrium) => {
-                    if slopes.is_some() || loads.is_some() || equilibrium.is_some() {
+                    if measures && !window.slopes.measures().is_empty() {
                         window.slopes.begin();
                     }
                     if let (Some(found), Some(equilibrium)) = (&mut slopes, &mut equilibrium) {
@@ -183,6 +186,8 @@ impl Analysis<'_> {
                 SolvedSteps::Batch(tape, lanes, turns) => {
                     if !tape.measures().is_empty() {
                         window.slopes.take_recorded(tape.measures(), lanes.clone());
+                    } else if measures && !window.slopes.measures().is_empty() {
+                        lanes.clone().for_each(|_| window.slopes.begin());
                     }
                     tape.coordinates(topology, window.motion.coordinates.block_mut(k));
                     if let Some(turns) = turns {
