@@ -4,10 +4,10 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use hardpoint::model::{VariableId, VehicleEnd, WheelMeasure, WheelRequirement};
+use hardpoint::model::{Model, VariableId, VehicleEnd, WheelMeasure, WheelRequirement};
 use hardpoint::space::Vec3;
 use hardpoint::topology::Formulation;
-use hardpoint::{Analysis, Solution};
+use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse};
 use hardpoint_study::verify::{self, verify};
 
@@ -862,4 +862,43 @@ fn a_pad_requires_a_wheel_with_a_contact_point() {
     ];
     let codes = faults.map(|text| parse(&text, "pad.toml").unwrap_err().list()[0].code);
     assert_eq!(codes, ["HP0204", "HP0231", "HP0213"]);
+}
+
+#[test]
+fn a_run_for_some_outputs_has_the_same_numbers_for_these_and_leaves_out_other_slopes() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/front_axle.toml");
+    let model = hardpoint_file::read(&path).unwrap().model;
+    let asked = ["left.toe", "left.bump_steer", "toe_difference", "left_wheel_centre.z"];
+    // The kernel, and programs.
+    for steps in [3, model.times.len()] {
+        let few = Model { times: model.times[..steps].to_vec(), ..model.clone() };
+        let analysis = Analysis::new(&few).unwrap();
+        let all = analysis.run();
+        let column = |name: &str| all.measured.index(name).unwrap();
+        let sources: Vec<_> =
+            asked[..2].iter().map(|name| all.measured.outputs[column(name)].source).collect();
+        let some = analysis.solve(Run::new().for_outputs(&sources));
+        let last = steps - 1;
+        for name in asked {
+            let m = column(name);
+            let [a, b] = [&all, &some].map(|run| run.measured.value(last, m));
+            // Programs of other results are other arithmetic.
+            assert!((a[0] - b[0]).abs() <= 1e-12 * a[0].abs().max(1.0), "{name}: {a:?} {b:?}");
+            for v in (0..few.variables.len()).map(VariableId) {
+                let [a, b] = [&all, &some].map(|run| run.measured.d(last, v, m)[0]);
+                assert!((a - b).abs() <= 1e-10 * a.abs().max(1.0), "{name}: {a} {b}");
+            }
+        }
+        let other = column("left.anti_dive");
+        assert!(all.measured.value(last, other)[0].is_finite());
+        // A program may have it none the less, but nothing is zero.
+        let left_out = some.measured.value(last, other)[0];
+        assert!(left_out.is_nan() || left_out == all.measured.value(last, other)[0], "{left_out}");
+        let plain: Vec<_> = sources[..1].to_vec();
+        let none = analysis.solve(Run::new().for_outputs(&plain));
+        for k in 0..steps {
+            assert!(none.measured.value(k, column("left.bump_steer"))[0].is_nan());
+            assert!(none.measured.d(k, VariableId(0), column("left.bump_steer"))[0].is_nan());
+        }
+    }
 }
