@@ -121,7 +121,8 @@ fn remedy(min: f64, least: f64, by: &[ClearanceSensitivity], cores_meet: bool, u
 
 /// Allowance of a proof below the least distance, as a fraction of the mechanism's size: round-off of solved positions.
 const ROUND_OFF: f64 = 1e-12;
-/// The same for a distance that does not change: no interval is so short that a bound of it has no slack.
+/// The same for a distance that does not change, or is the least over a part of the motion: no interval is so short
+/// that a bound of it has no slack.
 const OF_CONSTANT: f64 = 1e-5;
 
 record! {
@@ -151,8 +152,8 @@ fn reason_in_words(model: &Model, reason: ProofFailure) -> String {
         }
         ProofFailure::Unresolved => "no bound reaches the claim".into(),
         ProofFailure::WithinRing => "bounds exist only for rings that are nearest from the outside".into(),
-        ProofFailure::Surface { shape } => {
-            format!("`{}` is a hull or a mesh, for which no bounds are computed", model.shapes[shape.0].name)
+        ProofFailure::Mesh { shape } => {
+            format!("`{}` is a mesh, for which no bounds are computed", model.shapes[shape.0].name)
         }
         ProofFailure::Motion(failure) => {
             format!("the motion has no bounds there: {}", motion_in_words(model, failure))
@@ -190,9 +191,20 @@ pub fn proof(
     found: &PairClearance,
 ) -> Option<ProofFact> {
     let least = found.least()?.at.distance[0];
-    let allowance = if found.is_constant { OF_CONSTANT } else { ROUND_OFF } * model.size();
-    let claim = least - allowance;
-    Some(ProofFact::of(model, units, claim, prover.prove(found.shapes, claim)))
+    let mut prove = |allowance: f64| {
+        let claim = least - allowance * model.size();
+        let proof = prover.prove(found.shapes, claim);
+        let is_unresolved =
+            matches!(proof, ClearanceProof::NotProved { reason: ProofFailure::Unresolved, .. });
+        (ProofFact::of(model, units, claim, proof), is_unresolved)
+    };
+    if found.is_constant {
+        return Some(prove(OF_CONSTANT).0);
+    }
+    let (exact, is_unresolved) = prove(ROUND_OFF);
+    // The least distance may be that over a part of the motion, as between points that move as one.
+    let lower = is_unresolved.then(|| prove(OF_CONSTANT).0).filter(|lower| lower.proved);
+    Some(lower.unwrap_or(exact))
 }
 
 record! {
@@ -327,7 +339,7 @@ impl ClearanceFact {
             };
             let proof =
                 self.proof.as_ref().map_or_else(String::new, |proof| match (proof.slabs, proof.unproved) {
-                    (Some(slabs), _) if self.constant => {
+                    (Some(slabs), _) if rounded(proof.claim, DIGITS) != rounded(lowest.distance, DIGITS) => {
                         format!(
                             "; never less than {} {unit} (proved, {slabs} slabs)",
                             rounded(proof.claim, DIGITS)

@@ -39,6 +39,7 @@ mod prescribed;
 mod priors;
 mod proof;
 mod published;
+mod random_clearances;
 mod requests;
 mod robustness;
 mod searches;

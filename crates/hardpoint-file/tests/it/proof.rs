@@ -86,7 +86,7 @@ fn clearances_of_suspensions_are_proved() {
 }
 
 /// Deterministic generator of numbers in (0, 1).
-fn numbers(seed: u64) -> impl FnMut() -> f64 {
+pub fn numbers(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

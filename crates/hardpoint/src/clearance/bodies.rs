@@ -14,6 +14,10 @@ pub(crate) trait Bodies<T> {
     fn direction(&self, body: BodyId, e: Vec3<T>) -> Vec3<T>;
     /// The body's pose in plain numbers.
     fn pose(&self, body: BodyId) -> Pose;
+    /// Point of a body in plain numbers.
+    fn place(&self, body: BodyId, s: Vec3) -> Vec3;
+    /// Direction that is fixed in a body in plain numbers.
+    fn heading(&self, body: BodyId, e: Vec3) -> Vec3;
 }
 
 impl<T: Real> Bodies<T> for [Pose<T>] {
@@ -27,6 +31,14 @@ impl<T: Real> Bodies<T> for [Pose<T>] {
 
     fn pose(&self, body: BodyId) -> Pose {
         self[body.0].value()
+    }
+
+    fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
+        self.pose(body).point(s)
+    }
+
+    fn heading(&self, body: BodyId, e: Vec3) -> Vec3 {
+        self.pose(body).rot * e
     }
 }
 
@@ -48,6 +60,15 @@ impl Bodies<Rates> for MovingBodies<'_> {
 
     fn pose(&self, body: BodyId) -> Pose {
         self.0.body(body.0).pose()
+    }
+
+    fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
+        let state = self.0.body(body.0);
+        state.r + state.rotation * s
+    }
+
+    fn heading(&self, body: BodyId, e: Vec3) -> Vec3 {
+        self.0.body(body.0).rotation * e
     }
 }
 
@@ -107,10 +128,19 @@ impl Bodies<Dual<Rates>> for ChangingBodies {
     fn pose(&self, body: BodyId) -> Pose {
         self.at[body.0].0.pose()
     }
+
+    fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
+        let (state, _) = &self.at[body.0];
+        state.r + state.rotation * s
+    }
+
+    fn heading(&self, body: BodyId, e: Vec3) -> Vec3 {
+        self.at[body.0].0.rotation * e
+    }
 }
 
 /// A vector that is fixed in a body, with its rates: `omega x y` and `alpha x y + omega x (omega x y)`.
-fn rates_of(state: &BodyState, y: Vec3) -> [Vec3; 3] {
+pub(super) fn rates_of(state: &BodyState, y: Vec3) -> [Vec3; 3] {
     let v = state.omega.cross(y);
     [y, v, state.alpha.cross(y) + state.omega.cross(v)]
 }

@@ -31,21 +31,6 @@ pub(crate) enum Core<T = f64> {
 }
 
 impl<T: Real> Core<T> {
-    /// The plain numbers.
-    pub fn value(&self) -> Core {
-        match self {
-            Self::Point(p) => Core::Point(p.value()),
-            Self::Segment(ends) => Core::Segment(ends.map(Vec3::value)),
-            Self::Circle(circle) => Core::Circle(circle.value()),
-            Self::Cylinder { middle, half_width } => {
-                Core::Cylinder { middle: middle.value(), half_width: half_width.value() }
-            }
-            Self::HalfSpace { point, normal } => {
-                Core::HalfSpace { point: point.value(), normal: normal.value() }
-            }
-        }
-    }
-
     /// One of its features, and the distance by which the core extends beyond it: the radius of a cylinder beyond its
     /// axis, otherwise 0. What is no point, rim or cap is its line or circle.
     pub fn feature(&self, feature: Feature) -> (Placed<T>, T) {

@@ -83,7 +83,8 @@ pub(super) fn distance<T: Real>(a: &Placed<T>, b: &Placed<T>, near: [Vec3; 2]) -
             normal.dot(circle.centre - *point) - circle.radius * normal.cross(circle.axis).norm()
         }
         (Placed::Line { .. } | Placed::Circle(_), Placed::Line { .. } | Placed::Circle(_)) => {
-            stationary(&Curve::of(a, near[0]), &Curve::of(b, near[1]))
+            let [p, q] = stationary(&Curve::of(a, near[0]), &Curve::of(b, near[1]));
+            (q - p).norm()
         }
         // The place on the line is one of many that are equally near, and stays.
         (line @ Placed::Line { .. }, Placed::Face { point, normal }) => {
@@ -94,6 +95,62 @@ pub(super) fn distance<T: Real>(a: &Placed<T>, b: &Placed<T>, near: [Vec3; 2]) -
         }
         (Placed::Face { .. }, Placed::Face { .. }) => T::constant(f64::NAN),
     }
+}
+
+/// The nearest points of two features, and the unit vector n by which their distance changes with the points, as in
+/// `n . (Q' - P')`; `None` for two faces.
+pub(super) fn nearest_points<T: Real>(
+    [a, b]: [&Placed<T>; 2],
+    near: [Vec3; 2],
+) -> Option<([Vec3<T>; 2], Vec3<T>)> {
+    let unit = |v: Vec3<T>| v * (T::one() / v.norm());
+    let along_points = |p: Vec3<T>, q: Vec3<T>| Some(([p, q], unit(q - p)));
+    match (a, b) {
+        (Placed::Point(p), Placed::Point(q)) => along_points(*p, *q),
+        (Placed::Point(p), Placed::Line { from, along }) => along_points(*p, foot(*p, *from, *along)),
+        (Placed::Point(p), Placed::Circle(circle)) => along_points(*p, beside(*p, circle)),
+        (Placed::Line { from: a, along: e }, Placed::Line { from: c, along: f }) => {
+            let (across, from) = (e.cross(*f), *c - *a);
+            let det = across.dot(across);
+            let p = e.times_plus(from.cross(*f).dot(across) / det, *a);
+            let q = f.times_plus(from.cross(*e).dot(across) / det, *c);
+            let side = if from.value().dot(across.value()) < 0.0 { -1.0 } else { 1.0 };
+            Some(([p, q], unit(across) * T::constant(side)))
+        }
+        (Placed::Line { .. } | Placed::Circle(_), Placed::Line { .. } | Placed::Circle(_)) => {
+            let [p, q] = stationary(&Curve::of(a, near[0]), &Curve::of(b, near[1]));
+            along_points(p, q)
+        }
+        (other, Placed::Face { point, normal }) => {
+            let p = match other {
+                Placed::Point(p) => *p,
+                Placed::Line { .. } => Curve::of(other, near[0]).at(T::zero())[0],
+                // The lowest point.
+                Placed::Circle(circle) => {
+                    let down = circle.axis * normal.dot(circle.axis) - *normal;
+                    unit(down).times_plus(circle.radius, circle.centre)
+                }
+                Placed::Face { .. } => return None,
+            };
+            Some(([p, p - *normal * normal.dot(p - *point)], -*normal))
+        }
+        (Placed::Line { .. } | Placed::Circle(_) | Placed::Face { .. }, _) => {
+            let ([q, p], n) = nearest_points([b, a], [near[1], near[0]])?;
+            Some(([p, q], -n))
+        }
+    }
+}
+
+/// The point of a line that is nearest to a point.
+fn foot<T: Real>(p: Vec3<T>, from: Vec3<T>, along: Vec3<T>) -> Vec3<T> {
+    along.times_plus(along.dot(p - from) / along.dot(along), from)
+}
+
+/// The point of a circle that is nearest to a point.
+fn beside<T: Real>(p: Vec3<T>, circle: &Circle<T>) -> Vec3<T> {
+    let v = p - circle.centre;
+    let out = v - circle.axis * circle.axis.dot(v);
+    out.times_plus(circle.radius / out.norm(), circle.centre)
 }
 
 /// A line or a circle, with a parameter that is 0 near the nearest point.
@@ -150,12 +207,12 @@ const PLAIN_STEPS: usize = 4;
 /// Corrections that follow for numbers with derivatives: each completes one further order.
 const CORRECTIONS: usize = 5;
 
-/// Least distance of two curves near their points of parameter 0.
+/// The nearest points of two curves near their points of parameter 0.
 ///
 /// With `G = Q(v) - P(u)` it is `abs(G)` where `g = (-G . P_u, G . Q_v) = 0`. Newton's method with the matrix
 /// `K = [P_u.P_u - G.P_uu, -P_u.Q_v; -P_u.Q_v, Q_v.Q_v + G.Q_vv]` of plain numbers completes one order of the
 /// derivatives per step.
-fn stationary<T: Real>(p: &Curve<T>, q: &Curve<T>) -> T {
+fn stationary<T: Real>(p: &Curve<T>, q: &Curve<T>) -> [Vec3<T>; 2] {
     let mut plain = [0.0; 2];
     let (a, b) = (p.value(), q.value());
     let mut inverse = inverse_curvature(&a, &b, plain);
@@ -169,7 +226,7 @@ fn stationary<T: Real>(p: &Curve<T>, q: &Curve<T>) -> T {
         let step = correction(p, q, at, inverse);
         at = [0, 1].map(|k| at[k] - step[k]);
     }
-    (q.at(at[1])[0] - p.at(at[0])[0]).norm()
+    [p.at(at[0])[0], q.at(at[1])[0]]
 }
 
 /// `K^-1 g`.

@@ -11,6 +11,7 @@ mod bodies;
 mod circle;
 mod core;
 mod feature;
+mod gradient;
 mod nearest;
 mod placed;
 mod separation;
@@ -20,7 +21,7 @@ mod swept;
 mod tests;
 
 pub(crate) use bodies::{ChangingBodies, MovingBodies};
-pub(crate) use nearest::nearest;
+pub(crate) use gradient::{DistanceGradient, moves_points_only};
 pub(crate) use placed::{NearestPair, PlacedShapes};
-pub(crate) use separation::{Direction, EnclosedCore, direction_of, lower_bound, separations};
+pub(crate) use separation::{Direction, EnclosedSolid, lower_bound, separations};
 pub(crate) use swept::ShapeAtPose;

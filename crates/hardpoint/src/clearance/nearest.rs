@@ -26,6 +26,7 @@ pub(crate) struct Nearest {
 
 impl Nearest {
     /// The distance of the cores by the formula of these features.
+    #[cfg(test)]
     pub fn distance_of<T: Real>(&self, cores: [&Core<T>; 2]) -> T {
         self.distance_between([0, 1].map(|k| cores[k].feature(self.features[k])))
     }
@@ -143,6 +144,43 @@ fn least_within(f: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
         }
     }
     0.5 * (low + high)
+}
+
+/// The place in [0, 1] of the least of a convex function, whose slope never decreases.
+///
+/// The zero of the slope by the Illinois method; every third step halves the interval, since the slope may jump.
+fn least_of_convex(slope: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = ((0.0, slope(0.0)), (1.0, slope(1.0)));
+    if !(low.1 < 0.0) {
+        return 0.0;
+    }
+    if !(high.1 > 0.0) {
+        return 1.0;
+    }
+    // True if the lower end was moved last.
+    let mut raised = None;
+    for k in 0..HALVINGS {
+        let width: f64 = high.0 - low.0;
+        if width <= 2.0 * f64::EPSILON * high.0 {
+            break;
+        }
+        let part = if k % 3 == 2 { 0.5 } else { low.1 / (low.1 - high.1) };
+        let t = low.0 + part * width;
+        let at = slope(t);
+        if at == 0.0 {
+            return t;
+        }
+        // An end that stays twice counts half.
+        if at < 0.0 {
+            low = (t, at);
+            high.1 *= if raised == Some(true) { 0.5 } else { 1.0 };
+        } else {
+            high = (t, at);
+            low.1 *= if raised == Some(false) { 0.5 } else { 1.0 };
+        }
+        raised = Some(at < 0.0);
+    }
+    0.5 * (low.0 + high.0)
 }
 
 /// The point of a core that is nearest to a plane: the one that is farthest against its normal.
@@ -382,6 +420,23 @@ impl Drum {
         if above > 0.0 && beyond > 0.0 { above.hypot(beyond) } else { above.max(beyond) }
     }
 
+    /// Rate of the distance of a point that moves along e.
+    fn slope(&self, p: Vec3, e: Vec3) -> f64 {
+        let (z, rho, out) = self.cylindrical(p);
+        let (above, beyond) = (z.abs() - self.half_width, rho - self.middle.radius);
+        let along = self.middle.axis.dot(e);
+        let rises = if z < 0.0 { -along } else { along };
+        // On the axis all ways lead away from it.
+        let recedes = if rho > 0.0 { out.dot(e) / rho } else { (e - self.middle.axis * along).norm() };
+        if above > 0.0 && beyond > 0.0 {
+            (above * rises + beyond * recedes) / above.hypot(beyond)
+        } else if above >= beyond {
+            rises
+        } else {
+            recedes
+        }
+    }
+
     /// The feature that a point is nearest to, the nearest point there, and the distance.
     fn nearest(&self, p: Vec3) -> (Feature, Vec3, f64) {
         let (z, rho, out) = self.cylindrical(p);
@@ -404,7 +459,7 @@ impl Drum {
 pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
     let at = |t: f64| a + (b - a) * t;
     let depth = |t: f64| drum.distance(at(t));
-    let mut t = least_within(depth, [0.0, 1.0]);
+    let mut t = least_of_convex(|t| drum.slope(at(t), b - a));
     let is_end = |end: f64, best: f64| depth(end) <= depth(best) || (end - best).abs() < AT_END;
     t = [0.0, 1.0].into_iter().fold(t, |best, end| if is_end(end, best) { end } else { best });
     // Over a cap, and along a side, all points of a parallel segment are nearest: the middle of them.

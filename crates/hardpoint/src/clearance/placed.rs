@@ -7,7 +7,7 @@ use crate::space::{Pose, Real, Vec3};
 use super::bodies::Bodies;
 use super::circle::Circle;
 use super::core::Core;
-use super::feature::{Feature, Placed};
+use super::feature::{Feature, Placed, nearest_points};
 use super::nearest::{Nearest, nearest};
 use super::surface::{View, core_and_surface, moved, surfaces};
 
@@ -23,51 +23,27 @@ pub(crate) struct PlacedShapes<'a, T, B: ?Sized = [Pose<T>]> {
 }
 
 impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
-    fn point(&self, p: PointId) -> Vec3<T> {
+    /// A point, in global coordinates.
+    pub(super) fn point(&self, p: PointId) -> Vec3<T> {
         self.bodies.point(self.model.points[p.0].body, self.fixed.points[p.0])
     }
 
-    fn axis(&self, shape: ShapeId, body: BodyId) -> Vec3<T> {
-        let axis = self.fixed.shapes[shape.0].axis.expect("a shape with an axis");
-        self.bodies.direction(body, axis)
+    /// The same in plain numbers.
+    fn place(&self, p: PointId) -> Vec3 {
+        self.bodies.place(self.model.points[p.0].body, self.fixed.points[p.0].value())
     }
 
     /// Core of a shape, in global coordinates; `None` for a surface.
     pub fn core(&self, shape: ShapeId) -> Option<Core<T>> {
-        let ShapeGeometry { size, round, .. } = self.fixed.shapes[shape.0];
-        let body = |p: PointId| self.model.points[p.0].body;
-        Some(match &self.model.shapes[shape.0].kind {
-            ShapeKind::Sphere { centre } => Core::Point(self.point(*centre)),
-            ShapeKind::Capsule { ends } => Core::Segment(ends.map(|p| self.point(p))),
-            ShapeKind::Ring { centre, .. } => Core::Circle(Circle {
-                centre: self.point(*centre),
-                axis: self.axis(shape, body(*centre)),
-                radius: size,
-            }),
-            ShapeKind::Cylinder { ends, .. } => {
-                let [a, b] = ends.map(|p| self.point(p));
-                let length = (b - a).norm();
-                let middle = Circle {
-                    centre: (a + b) * T::constant(0.5),
-                    axis: (b - a) * (T::one() / length),
-                    radius: size - round,
-                };
-                Core::Cylinder { middle, half_width: length * 0.5 - round }
-            }
-            ShapeKind::Tyre { wheel, .. } => {
-                let wheel = &self.model.wheels[wheel.0];
-                let middle = Circle {
-                    centre: self.point(wheel.centre),
-                    axis: self.axis(shape, wheel.body),
-                    radius: T::constant(wheel.radius) - round,
-                };
-                Core::Cylinder { middle, half_width: size * 0.5 - round }
-            }
-            ShapeKind::Plane { point, .. } => {
-                Core::HalfSpace { point: self.point(*point), normal: self.axis(shape, body(*point)) }
-            }
-            ShapeKind::Hull { .. } | ShapeKind::Mesh { .. } => return None,
-        })
+        let direction = |body, e| self.bodies.direction(body, e);
+        core_of(self.model, shape, self.fixed.shapes[shape.0], &|p| self.point(p), &direction)
+    }
+
+    /// The same in plain numbers.
+    pub fn plain_core(&self, shape: ShapeId) -> Option<Core> {
+        let heading = |body, e| self.bodies.heading(body, e);
+        let numbers = self.fixed.shapes[shape.0].map(T::value);
+        core_of(self.model, shape, numbers, &|p| self.place(p), &heading)
     }
 
     /// Radii around the cores of two shapes.
@@ -113,14 +89,22 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
                 let points = self.points(points);
                 View::Hull { points: &points, facets }.ball()
             }
-            with_core!() => self.core(shape).expect("it is no surface").value().ball(),
+            with_core!() => self.plain_core(shape).expect("it is no surface").ball(),
         };
         (centre, radius + round)
     }
 
+    /// Corners of a hull, in global coordinates; none of another shape.
+    pub fn corners(&self, shape: ShapeId) -> Vec<Vec3<T>> {
+        match &self.model.shapes[shape.0].kind {
+            ShapeKind::Hull { points, .. } => points.iter().map(|p| self.point(*p)).collect(),
+            ShapeKind::Mesh { .. } | with_core!() => Vec::new(),
+        }
+    }
+
     /// Points in global coordinates.
     pub fn points(&self, points: &[PointId]) -> Vec<Vec3> {
-        points.iter().map(|p| self.point(*p).value()).collect()
+        points.iter().map(|p| self.place(*p)).collect()
     }
 
     /// The nearest points of two shapes, with the distance of the shapes.
@@ -129,9 +113,10 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         Nearest { distance: near.distance - self.rounds(shapes).value(), ..near }
     }
 
-    fn nearest_of_cores(&self, shapes: [ShapeId; 2]) -> Nearest {
+    /// The nearest points of the cores of two shapes, with the distance of the cores.
+    pub fn nearest_of_cores(&self, shapes: [ShapeId; 2]) -> Nearest {
         let kinds = shapes.map(|s| &self.model.shapes[s.0].kind);
-        let cores = shapes.map(|s| self.core(s).map(|core| core.value()));
+        let cores = shapes.map(|s| self.plain_core(s));
         let corners = kinds.map(|kind| match kind {
             ShapeKind::Hull { points, .. } => self.points(points),
             ShapeKind::Mesh { .. } | with_core!() => Vec::new(),
@@ -170,8 +155,23 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         if !near.distance.is_finite() {
             return T::constant(f64::NAN);
         }
-        let features = [0, 1].map(|k| self.feature(shapes[k], near.features[k]));
-        near.distance_between(features) - self.rounds(shapes)
+        near.distance_between(self.features(shapes, near)) - self.rounds(shapes)
+    }
+
+    /// Unit vector from the nearest point of the first core to that of the second: `D' = n . (Q' - P')`. `None` where
+    /// the cores meet.
+    pub fn direction(&self, shapes: [ShapeId; 2], near: &Nearest) -> Option<Vec3<T>> {
+        if !(near.distance > 0.0) {
+            return None;
+        }
+        let features = self.features(shapes, near);
+        let (_, n) = nearest_points(features.each_ref().map(|(placed, _)| placed), near.points)?;
+        Some(n * T::constant(near.sign)).filter(|n| n.value().is_finite())
+    }
+
+    /// The features that hold the nearest points.
+    pub(super) fn features(&self, shapes: [ShapeId; 2], near: &Nearest) -> [(Placed<T>, T); 2] {
+        [0, 1].map(|k| self.feature(shapes[k], near.features[k]))
     }
 
     /// The pair of a clearance whose shapes are nearest, and where they are; `None` if it has no pairs.
@@ -211,4 +211,44 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         let nearest = known.get(clearance.0).copied().unwrap_or_else(|| self.nearest_pair(clearance));
         nearest.map_or_else(|| T::constant(f64::NAN), |(k, near)| self.distance(pairs[k].shapes, &near))
     }
+}
+
+/// Core of a shape from its numbers, its points and directions of its bodies; `None` for a surface.
+fn core_of<T: Real>(
+    model: &Model,
+    shape: ShapeId,
+    ShapeGeometry { axis, size, round }: ShapeGeometry<T>,
+    point: &dyn Fn(PointId) -> Vec3<T>,
+    direction: &dyn Fn(BodyId, Vec3<T>) -> Vec3<T>,
+) -> Option<Core<T>> {
+    let body = |p: PointId| model.points[p.0].body;
+    let axis = |body: BodyId| direction(body, axis.expect("a shape with an axis"));
+    Some(match &model.shapes[shape.0].kind {
+        ShapeKind::Sphere { centre } => Core::Point(point(*centre)),
+        ShapeKind::Capsule { ends } => Core::Segment(ends.map(point)),
+        ShapeKind::Ring { centre, .. } => {
+            Core::Circle(Circle { centre: point(*centre), axis: axis(body(*centre)), radius: size })
+        }
+        ShapeKind::Cylinder { ends, .. } => {
+            let [a, b] = ends.map(point);
+            let length = (b - a).norm();
+            let middle = Circle {
+                centre: (a + b) * T::constant(0.5),
+                axis: (b - a) * (T::one() / length),
+                radius: size - round,
+            };
+            Core::Cylinder { middle, half_width: length * 0.5 - round }
+        }
+        ShapeKind::Tyre { wheel, .. } => {
+            let wheel = &model.wheels[wheel.0];
+            let middle = Circle {
+                centre: point(wheel.centre),
+                axis: axis(wheel.body),
+                radius: T::constant(wheel.radius) - round,
+            };
+            Core::Cylinder { middle, half_width: size * 0.5 - round }
+        }
+        ShapeKind::Plane { point: p, .. } => Core::HalfSpace { point: point(*p), normal: axis(body(*p)) },
+        ShapeKind::Hull { .. } | ShapeKind::Mesh { .. } => return None,
+    })
 }

@@ -1,6 +1,6 @@
-//! Proven lower bounds of the distance of two cores over an interval of time.
+//! Proven lower bounds of the distance of two convex solids over an interval of time: of cores, and of hulls of points.
 //!
-//! For any unit vector n, two convex cores are at least `min n . Q - max n . P` apart, Q in the second and P in the
+//! For any unit vector n, two convex solids are at least `min n . Q - max n . P` apart, Q in the second and P in the
 //! first; with n along the nearest points it is their distance. n may turn in any way: over an interval of time every
 //! `n(t) . (Q(t) - P(t))` of the points at which the extrema can be (ends of a segment, points of two rims) is a smooth
 //! function, and the distance is never less than the least of these. So no bound depends on which features are nearest.
@@ -9,12 +9,12 @@
 //! |---|---|---|
 //! | fixed | constant | at one time, to first order |
 //! | turning | along a vector that is a polynomial in time | at an instant and its rates, or at both ends |
-//! | normal | of a plane, or of the cap of a cylinder | while that is nearest |
+//! | normal | of a plane, of the cap of a cylinder, or of a facet of a hull | while that is nearest |
 //!
 //! A circle has the bound of its disc, and from a point its own: the distance by the formula of `feature.rs`, always.
 
 use crate::law::TimeJet;
-use crate::number::{Dual, Interval, Jet, Rates};
+use crate::number::{Interval, Jet};
 use crate::space::{Real, Vec3};
 
 use super::circle::Circle;
@@ -22,8 +22,13 @@ use super::core::Core;
 use super::feature::Feature;
 use super::nearest::Nearest;
 
-/// A core with bounds of its place and rates.
-pub(crate) type EnclosedCore = Core<TimeJet<Interval>>;
+/// A convex solid with bounds of its place and rates.
+pub(crate) enum EnclosedSolid {
+    /// A core.
+    Core(Core<TimeJet<Interval>>),
+    /// The hull of points.
+    Hull(Vec<Vec3<TimeJet<Interval>>>),
+}
 
 /// Unit vector from the first core to the second one, over time.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +37,8 @@ pub(crate) enum Direction {
     Turning { coefficients: [Vec3; 4], since: f64 },
     /// Normal of the plane or cap of core k, on this side.
     Normal { of: usize, side: f64 },
+    /// Normal of the facet of hull k between these corners, which are in order if they are seen from outside.
+    Facet { of: usize, corners: [u32; 3] },
     /// From a point to the nearest point of a circle.
     ToCircle,
 }
@@ -58,70 +65,28 @@ impl Direction {
     }
 
     /// The direction that goes with the features that are nearest, if one of them has it.
-    pub fn of_features(cores: [&Core; 2], near: &Nearest) -> Option<Self> {
-        let is_circle = |core: &Core| matches!(core, Core::Circle(_));
-        let is_point = |core: &Core| matches!(core, Core::Point(_));
-        if is_circle(cores[0]) && is_point(cores[1]) || is_point(cores[0]) && is_circle(cores[1]) {
+    pub fn of_features(solids: [&EnclosedSolid; 2], near: &Nearest) -> Option<Self> {
+        let is_circle = |k: usize| matches!(solids[k], EnclosedSolid::Core(Core::Circle(_)));
+        let is_point = |k: usize| matches!(solids[k], EnclosedSolid::Core(Core::Point(_)));
+        if is_circle(0) && is_point(1) || is_point(0) && is_circle(1) {
             return Some(Self::ToCircle);
         }
         (0..2).find_map(|of| match near.features[of] {
             Feature::Face(side) => Some(Self::Normal { of, side }),
+            Feature::Facet(corners) => Some(Self::Facet { of, corners }),
             Feature::Point(_)
             | Feature::Line
             | Feature::Circle(_)
             | Feature::Vertex(_)
-            | Feature::Edge(_)
-            | Feature::Facet(_) => None,
+            | Feature::Edge(_) => None,
         })
-    }
-}
-
-/// Unit vector along the nearest points of two cores that are apart, from the first to the second, with its first two
-/// rates: the derivatives of the distance by a translation of the second core.
-pub(crate) fn direction_of(cores: [&Core<Rates>; 2], near: &Nearest) -> Option<[Vec3; 3]> {
-    if !(near.distance > 0.0) {
-        return None;
-    }
-    let still = |v: Vec3<Rates>, _: usize| v.map(Dual::constant);
-    let moved = |v: Vec3<Rates>, axis: usize| v.with_derivative(Vec3::AXES[axis].spread());
-    let by = [0, 1, 2].map(|axis| {
-        let pair = [placed(cores[0], |v| still(v, axis)), placed(cores[1], |v| moved(v, axis))];
-        near.distance_of(pair.each_ref()).d
-    });
-    let [x, y, z] = by;
-    let rates = [0, 1, 2].map(|n| Vec3::new(x.0[n], y.0[n], z.0[n]));
-    let length = rates[0].norm();
-    ((length - 1.0).abs() < UNIT && rates.iter().all(|v| v.is_finite())).then_some(rates)
-}
-
-/// Deviation from one of the length of a direction above which it is not that of the nearest points.
-const UNIT: f64 = 1e-6;
-
-/// A core over dual numbers, with these positions.
-fn placed(core: &Core<Rates>, point: impl Fn(Vec3<Rates>) -> Vec3<Dual<Rates>>) -> Core<Dual<Rates>> {
-    let constant = |v: Vec3<Rates>| v.map(Dual::constant);
-    let circle = |c: &Circle<Rates>| Circle {
-        centre: point(c.centre),
-        axis: constant(c.axis),
-        radius: Dual::constant(c.radius),
-    };
-    match core {
-        Core::Point(p) => Core::Point(point(*p)),
-        Core::Segment(ends) => Core::Segment(ends.map(&point)),
-        Core::Circle(c) => Core::Circle(circle(c)),
-        Core::Cylinder { middle, half_width } => {
-            Core::Cylinder { middle: circle(middle), half_width: Dual::constant(*half_width) }
-        }
-        Core::HalfSpace { point: p, normal } => {
-            Core::HalfSpace { point: point(*p), normal: constant(*normal) }
-        }
     }
 }
 
 /// Bounds, over an interval of time, of functions of which the least is at most the distance of two cores; `None` if a
 /// direction bounds nothing. Their number and order depend on the direction and the kinds of the cores only.
 pub(crate) fn separations(
-    cores: [&EnclosedCore; 2],
+    solids: [&EnclosedSolid; 2],
     direction: Direction,
     over: Interval,
 ) -> Option<Vec<TimeJet<Interval>>> {
@@ -140,16 +105,24 @@ pub(crate) fn separations(
         }
         Direction::Normal { of, side } => {
             let outwards = if of == 0 { side } else { -side };
-            match cores[of] {
+            let EnclosedSolid::Core(core) = solids[of] else { return None };
+            match core {
                 Core::Cylinder { middle, .. } => middle.axis * Jet::constant(Interval::constant(outwards)),
                 Core::HalfSpace { normal, .. } if of == 0 => *normal,
                 Core::HalfSpace { normal, .. } => -*normal,
                 Core::Point(_) | Core::Segment(_) | Core::Circle(_) => return None,
             }
         }
+        Direction::Facet { of, corners } => {
+            let EnclosedSolid::Hull(points) = solids[of] else { return None };
+            let [a, b, c] = corners.map(|k| points[k as usize]);
+            let outward = (b - a).cross(c - a);
+            if of == 0 { outward } else { -outward }
+        }
         Direction::ToCircle => {
-            let [Core::Point(p), Core::Circle(circle)] = cores else {
-                let [Core::Circle(circle), Core::Point(p)] = cores else { return None };
+            let [EnclosedSolid::Core(a), EnclosedSolid::Core(b)] = solids else { return None };
+            let (Core::Point(p), Core::Circle(circle)) = (a, b) else {
+                let (Core::Circle(circle), Core::Point(p)) = (a, b) else { return None };
                 return Some(vec![to_circle(*p, circle)]);
             };
             return Some(vec![to_circle(*p, circle)]);
@@ -159,9 +132,15 @@ pub(crate) fn separations(
     let [of_first, of_second] = [0, 1].map(|k| {
         let side = match direction {
             Direction::Normal { of, side } if of == k => Some(side),
-            Direction::Normal { .. } | Direction::Turning { .. } | Direction::ToCircle => None,
+            Direction::Normal { .. }
+            | Direction::Facet { .. }
+            | Direction::Turning { .. }
+            | Direction::ToCircle => None,
         };
-        supports(cores[k], n, side)
+        match solids[k] {
+            EnclosedSolid::Core(core) => supports(core, n, side),
+            EnclosedSolid::Hull(points) => Some(points.iter().map(|p| (*p, TimeJet::zero())).collect()),
+        }
     });
     let (of_first, of_second) = (of_first?, of_second?);
     let gap = |(p, r): &Support, (q, s): &Support| n.dot(*q - *p) - *r - *s;
@@ -173,7 +152,11 @@ type Support = (Vec3<TimeJet<Interval>>, TimeJet<Interval>);
 
 /// The points of a core one of which is the farthest along n or against it. `side` is that of its own plane or cap, if
 /// n is its normal.
-fn supports(core: &EnclosedCore, n: Vec3<TimeJet<Interval>>, side: Option<f64>) -> Option<Vec<Support>> {
+fn supports(
+    core: &Core<TimeJet<Interval>>,
+    n: Vec3<TimeJet<Interval>>,
+    side: Option<f64>,
+) -> Option<Vec<Support>> {
     let zero = TimeJet::zero();
     Some(match (core, side) {
         (Core::Point(p), _) => vec![(*p, zero)],

@@ -4,10 +4,12 @@ use std::ops::Range;
 
 use hardpoint_tape::LANES;
 
-use crate::clearance::{ChangingBodies, MovingBodies, NearestPair, PlacedShapes};
+use crate::clearance::{
+    ChangingBodies, DistanceGradient, MovingBodies, NearestPair, PlacedShapes, moves_points_only,
+};
 use crate::design::{BodyFixed, DesignMap};
 use crate::law::Law;
-use crate::model::{ClearanceId, Model, VariableId};
+use crate::model::{ClearanceId, Model, ShapeId, VariableId};
 use crate::motion::{BodyState, Motion};
 use crate::number::{Dual, Jet, Rates, Real};
 use crate::sensitivity::{Admissibility, BodySensitivity, Sensitivities};
@@ -264,8 +266,11 @@ pub(crate) fn derivatives(
     // Clearances need the points of shapes only, not all poses.
     let needs_poses = listed.iter().any(|(_, m)| clearance_of(model, outputs[*m].source).is_none());
     let bodies = if needs_poses { bodies_asked_for(model) } else { Vec::new() };
-    let has_clearances = !model.clearances.is_empty();
+    let gradients =
+        distance_gradients(design, outputs, listed, (motion, sensitivities.variables), more.nearest);
     let mut carriers = ChangingBodies::of(model);
+    // Per shape: true if the variable moves it by its points only.
+    let (mut of_variable, mut by_points) = (None, Vec::new());
     let run = (motion, sensitivities);
     each_step(
         design,
@@ -275,19 +280,67 @@ pub(crate) fn derivatives(
         more,
         |instant: Option<&Instant<'_, Dual<Rates>>>, fixed, k, b, listed| {
             let Some(instant) = instant else { return };
-            if let Some(d) = sensitivities.at(k, b).filter(|_| has_clearances) {
-                carriers.set(motion.at(k), d);
+            if of_variable != Some(b) {
+                of_variable = Some(b);
+                by_points.clear();
+                by_points
+                    .extend((0..model.shapes.len()).map(|s| moves_points_only(model, fixed, ShapeId(s))));
             }
-            let shapes = PlacedShapes { model, fixed, bodies: &carriers };
+            let states = motion.at(k);
+            let mut placed = false;
             for &(_, m) in listed {
-                let value = match clearance_of(model, outputs[m].source) {
-                    Some(of) => shapes.clearance(of, instant.nearest),
-                    None => instant.output(outputs[m].source),
+                let Some(of) = clearance_of(model, outputs[m].source) else {
+                    out(k, b, m, instant.output(outputs[m].source).derivatives());
+                    continue;
                 };
-                out(k, b, m, value.derivatives());
+                let Some(d) = sensitivities.at(k, b) else { continue };
+                let gradient = gradients.get(k * model.clearances.len() + of.0).and_then(Option::as_ref);
+                let gradient = gradient.filter(|g| g.shapes.iter().all(|s| by_points[s.0]));
+                if let Some(gradient) = gradient {
+                    out(k, b, m, gradient.by(states, d, fixed));
+                    continue;
+                }
+                if !placed {
+                    carriers.set(states, d);
+                    placed = true;
+                }
+                let shapes = PlacedShapes { model, fixed, bodies: &carriers };
+                out(k, b, m, shapes.clearance(of, instant.nearest).derivatives());
             }
         },
     );
+}
+
+/// Derivatives of the distance of the nearest pair by poses, by time and clearance, at the listed times; empty if no
+/// clearance is listed, or nothing is differentiated by.
+fn distance_gradients(
+    design: &MeasuredDesign<'_>,
+    outputs: &[Output],
+    listed: &[(usize, usize)],
+    (motion, variables): (&Motion, usize),
+    nearest: &[NearestPair],
+) -> Vec<Option<DistanceGradient>> {
+    let model = design.model;
+    let count = model.clearances.len();
+    let asked = |m: usize| clearance_of(model, outputs[m].source);
+    let mut found = Vec::new();
+    if variables == 0 || !listed.iter().any(|(_, m)| asked(*m).is_some()) {
+        return found;
+    }
+    found.resize_with(motion.len() * count, || None);
+    let fixed = design.design_map.fixed(design.values).map(Jet::constant);
+    for &(first, m) in listed {
+        let Some(of) = asked(m) else { continue };
+        for k in first..usize::min(first + LANES, motion.len()) {
+            let shapes = PlacedShapes { model, fixed: &fixed, bodies: &MovingBodies(motion.at(k)) };
+            let known = nearest.get(k * count + of.0).copied();
+            let pair = known.unwrap_or_else(|| shapes.nearest_pair(of));
+            found[k * count + of.0] = pair.and_then(|(n, near)| {
+                DistanceGradient::of(&shapes, model.clearances[of.0].pairs[n].shapes, &near)
+            });
+        }
+    }
+    found
 }
 
 /// Number that has the derivatives of an output by a variable.

@@ -125,9 +125,9 @@ impl Analysis<'_> {
                 times.sort_by(f64::total_cmp);
                 times.dedup();
                 let finer = self.at_times(times.clone());
-                let mut next = Solution::default();
-                let design = finer.prepare(&design.values, design.scope);
-                finer.walk(&design, times.len(), &mut go_on, &mut next, &mut |_, _| ());
+                // Which times are needed depends on values only.
+                let scope = Scope { sensitivities: false, ..design.scope };
+                let next = finer.walked(&design.values, scope, &mut go_on);
                 if next.stop.is_some() {
                     return;
                 }
@@ -143,7 +143,30 @@ impl Analysis<'_> {
             }
             times.extend(add);
         }
+        if design.scope.sensitivities
+            && let Some(values) = &found
+        {
+            let finer = self.at_times(values.motion.times.clone());
+            let all = finer.walked(&design.values, design.scope, &mut go_on);
+            if all.stop.is_some() {
+                return;
+            }
+            found = Some(all);
+        }
         solution.between = found.map(Arc::new);
+    }
+
+    /// The results of a design at all output times.
+    fn walked(
+        &self,
+        design: &[f64],
+        scope: Scope,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Solution {
+        let mut found = Solution::default();
+        let design = self.prepare(design, scope);
+        self.walk(&design, self.model().times.len(), progress, &mut found, &mut |_, _| ());
+        found
     }
 
     /// Solves a prepared design for its metrics: values at all output times, and the derivatives that the metrics

@@ -6,7 +6,7 @@
 use crate::clearance::{ChangingBodies, MovingBodies, PlacedShapes};
 use crate::design::{BodyFixed, ShapeGeometry};
 use crate::model::{BodyId, Clearance, ClearanceId, Model, PointId, Shape, ShapeId, ShapeKind, ShapePair};
-use crate::motion::{Motion, Stop};
+use crate::motion::{BodyState, Motion, Stop};
 use crate::number::{Dual, Jet, Rates};
 use crate::space::Vec3;
 
@@ -19,8 +19,8 @@ const LOCATED: f64 = 1e-11;
 /// Candidates nearer to a located time than this fraction of the motion are the same one.
 const SAME_TIME: f64 = 1e-8;
 /// Maximum number of times that the motion is solved again; each pass is nearer to the times by several digits, or
-/// halves an interval in which the acceleration jumps.
-const MOST_PASSES: usize = 40;
+/// divides an interval in which features change. A contact that is found late takes as many passes as any other.
+const MOST_PASSES: usize = 100;
 /// Rate of a distance below which a contact is grazing, as a fraction of the largest rate: its time has no derivative.
 const GRAZING: f64 = 1e-6;
 /// Pieces of an interval of a motion without rates, in which a minimum is looked for.
@@ -231,7 +231,7 @@ impl Analysis<'_> {
             let solution = self.motion_at(&times, design, false);
             let curves = Curves::of(self, design, &pairs, &solution.motion, known);
             let plateaus = plateaus.get_or_insert_with(|| curves.plateaus());
-            located = curves.locate(plateaus);
+            located = curves.locate(plateaus, &curves.overlaps());
             known = curves.samples;
             if located.add.is_empty() {
                 break;
@@ -408,7 +408,9 @@ impl<'m> PosedMotion<'m> {
 
 /// Distances of all pairs at all times of a motion.
 struct Curves<'m> {
+    posed: PosedMotion<'m>,
     motion: &'m Motion,
+    pairs: &'m [[ShapeId; 2]],
     /// Size of the mechanism, m.
     size: f64,
     /// Per pair and time.
@@ -418,9 +420,9 @@ struct Curves<'m> {
 impl<'m> Curves<'m> {
     /// Distances that are known from an earlier motion of the same design are kept.
     fn of(
-        analysis: &Analysis<'_>,
+        analysis: &'m Analysis<'_>,
         design: &[f64],
-        pairs: &[[ShapeId; 2]],
+        pairs: &'m [[ShapeId; 2]],
         motion: &'m Motion,
         known: Vec<Vec<ShapeDistance>>,
     ) -> Self {
@@ -434,13 +436,68 @@ impl<'m> Curves<'m> {
             samples.append(&mut known);
             samples.sort_by(|a, b| a.time.total_cmp(&b.time));
         }
-        Self { motion, size: analysis.model().size(), samples }
+        Self { posed, motion, pairs, size: analysis.model().size(), samples }
+    }
+
+    /// Greatest rate of the distance of a pair of surfaces between any of their points at time k, m/s, and the radius
+    /// of the smaller ball around one of them, m. `None` for other pairs: the distance of two convex cores has one pair
+    /// of features at a time, and its rate is continuous.
+    fn fastest(&self, p: usize, k: usize) -> Option<(f64, f64)> {
+        let PosedMotion { model, motion, fixed } = &self.posed;
+        let shapes = self.pairs[p];
+        let is_concave =
+            |s: ShapeId| matches!(model.shapes[s.0].kind, ShapeKind::Mesh { .. } | ShapeKind::Ring { .. });
+        if !shapes.into_iter().any(is_concave) {
+            return None;
+        }
+        let [Some(first), Some(second)] = shapes.map(|s| match model.shapes[s.0].bodies(model)[..] {
+            [body] => Some(motion.at(k).body(body.0)),
+            _ => None,
+        }) else {
+            return None;
+        };
+        let placed = PlacedShapes { model, fixed, bodies: &MovingBodies(motion.at(k)) };
+        let balls = shapes.map(|s| placed.ball(s));
+        let (centre, radius) = if balls[0].1 <= balls[1].1 { balls[0] } else { balls[1] };
+        let at = |body: &BodyState| body.v + body.omega.cross(centre - body.r);
+        let speed = (at(&second) - at(&first)).norm() + (second.omega - first.omega).norm() * radius;
+        Some((speed, radius))
+    }
+
+    /// Times within intervals in which a pair may be nearer than at any time so far, or touch unseen, since other parts
+    /// of its shapes may pass each other there.
+    fn unseen(&self, p: usize, is_level: &dyn Fn(usize) -> bool) -> Vec<f64> {
+        let (times, samples) = (&self.motion.times, &self.samples[p]);
+        let Some(last) = samples.len().checked_sub(1) else { return Vec::new() };
+        let span = times[last] - times[0];
+        let least = samples.iter().map(|s| s.distance[0]).fold(f64::INFINITY, f64::min).max(0.0);
+        let mut add = Vec::new();
+        let Some(mut before) = self.fastest(p, 0) else { return add };
+        for k in 0..last {
+            let Some(after) = self.fastest(p, k + 1) else { return add };
+            let (speed, radius) = (SPEEDS * before.0.max(after.0), after.1);
+            before = after;
+            let h = times[k + 1] - times[k];
+            let [from, to] = [samples[k].distance, samples[k + 1].distance];
+            // The distance changes by no more than the shapes move.
+            let at_least = 0.5 * (from[0] + to[0] - speed * h);
+            if h <= NARROW * span || at_least >= least || from[0] <= 0.0 || to[0] <= 0.0 || is_level(k) {
+                continue;
+            }
+            // Accelerations at both ends of the cubic polynomial through distances and rates there.
+            let rise = 6.0 * (to[0] - from[0]) / h;
+            let bends = [(rise - 4.0 * from[1] - 2.0 * to[1]) / h, (4.0 * to[1] + 2.0 * from[1] - rise) / h];
+            let error = (bends[0] - from[2]).abs().max((bends[1] - to[2]).abs()) * h * h;
+            if speed * h > PASSING * radius || !(error <= SMOOTH * speed * h) {
+                add.extend([0.25, 0.5, 0.75].map(|part| times[k] + part * h));
+            }
+        }
+        add
     }
 
     /// Parts of the motion in which the distance of a pair does not change, by pair: of a rod through a plate for
     /// example, which is equally deep all the time. Rates there are those of either way out, and indicate nothing.
     fn plateaus(&self) -> Vec<Vec<Plateau>> {
-        let times = &self.motion.times;
         let of_pair = |samples: &Vec<ShapeDistance>| {
             let same = |a: &usize, b: &usize| {
                 (samples[*a].distance[0] - samples[*b].distance[0]).abs() <= FLAT * self.size
@@ -448,31 +505,49 @@ impl<'m> Curves<'m> {
             let steps: Vec<usize> = (0..samples.len()).collect();
             // Two equal distances may be those on both sides of a minimum, unless their rates are zero.
             let is_still = |k: &usize| samples[*k].distance[1..] == [0.0; 2];
-            let is_deep = |k: &usize| samples[*k].is_deep();
             let runs = steps
                 .chunk_by(same)
                 .filter(|run| run.len() > 2 || run.len() == 2 && run.iter().all(is_still));
-            let plateau = |run: &[usize]| {
-                let (first, last) = (run[0], run[run.len() - 1]);
-                let around = [first.saturating_sub(1), (last + 1).min(samples.len() - 1)];
-                let value = samples[first].distance[0];
-                let is_higher = |k: &usize| samples[*k].distance[0] >= value - FLAT * self.size;
-                let deep = run.iter().copied().find(is_deep);
-                let is_lowest = deep.is_some() || around.iter().all(is_higher);
-                let is_inside = 0 < first && last + 1 < samples.len();
-                let within = around.map(|k| times[k]);
-                Plateau { within, from: times[deep.unwrap_or(first)], value, is_lowest, is_inside }
-            };
-            runs.map(plateau).collect()
+            let is_deep = |run: &&[usize]| run.iter().any(|k| samples[*k].is_deep());
+            runs.filter(|run| !is_deep(run)).map(|run| self.plateau(samples, run, None)).collect()
         };
         self.samples.iter().map(of_pair).collect()
     }
 
+    /// Parts of the motion in which shapes overlap at a depth that is not known, by pair, as far as they are known: a
+    /// short one may be seen at one time only.
+    fn overlaps(&self) -> Vec<Vec<Plateau>> {
+        let of_pair = |samples: &Vec<ShapeDistance>| {
+            let steps: Vec<usize> = (0..samples.len()).collect();
+            // Beside the time of contact there may be times at which the same distance is one of shapes that touch.
+            let same = |a: &usize, b: &usize| {
+                (samples[*a].distance[0] - samples[*b].distance[0]).abs() <= FLAT * self.size
+            };
+            let runs = steps.chunk_by(same);
+            let deep = |run: &[usize]| run.iter().copied().find(|k| samples[*k].is_deep());
+            runs.filter_map(|run| Some(self.plateau(samples, run, Some(deep(run)?)))).collect()
+        };
+        self.samples.iter().map(of_pair).collect()
+    }
+
+    /// The part of the motion of these samples, of which one overlaps at a depth that is not known.
+    fn plateau(&self, samples: &[ShapeDistance], run: &[usize], deep: Option<usize>) -> Plateau {
+        let times = &self.motion.times;
+        let (first, last) = (run[0], run[run.len() - 1]);
+        let around = [first.saturating_sub(1), (last + 1).min(samples.len() - 1)];
+        let value = samples[first].distance[0];
+        let is_higher = |k: &usize| samples[*k].distance[0] >= value - FLAT * self.size;
+        let is_lowest = deep.is_some() || around.iter().all(is_higher);
+        let is_inside = 0 < first && last + 1 < samples.len();
+        let within = around.map(|k| times[k]);
+        Plateau { within, from: times[deep.unwrap_or(first)], value, is_lowest, is_inside }
+    }
+
     /// The minima and contacts that are located, and the times at which the motion must be solved for the others.
-    fn locate(&self, plateaus: &[Vec<Plateau>]) -> Located {
+    fn locate(&self, plateaus: &[Vec<Plateau>], overlaps: &[Vec<Plateau>]) -> Located {
         let mut located = Located { constant: vec![false; plateaus.len()], ..Located::default() };
-        for (p, plateaus) in plateaus.iter().enumerate() {
-            self.locate_pair(p, plateaus, &mut located);
+        for (p, (plateaus, overlaps)) in plateaus.iter().zip(overlaps).enumerate() {
+            self.locate_pair(p, &[&plateaus[..], overlaps].concat(), &mut located);
         }
         located
     }
@@ -583,6 +658,7 @@ impl<'m> Curves<'m> {
                 }
             }
         }
+        add.extend(self.unseen(p, &is_level).into_iter().filter(|_| rates_known));
         // Contacts: from a time at which the sign changes, Newton's method or the polynomial.
         for k in 0..last {
             let [a, b] = [value(k), value(k + 1)];
@@ -605,7 +681,7 @@ impl<'m> Curves<'m> {
                 let step = -d / rate;
                 let t = times[near] + step - 0.5 * LOCATED * span * step.signum();
                 add.extend(Some(t).filter(|t| times[k] < *t && *t < times[k + 1]));
-                add.push(0.5 * (times[k] + times[k + 1]));
+                add.extend([0.25, 0.5, 0.75].map(|part| times[k] + part * (times[k + 1] - times[k])));
                 continue;
             }
             let polynomial = |t: f64| curve.at(k, t)[0];
@@ -629,6 +705,17 @@ impl<'m> Curves<'m> {
 const CONSTANT: f64 = 1e-10;
 /// Distances that differ by less than this fraction of the mechanism's size are the same: round-off of positions.
 const FLAT: f64 = 4e-12;
+
+/// Allowance for speeds between two times that are above those at both.
+const SPEEDS: f64 = 1.1;
+/// Way of two surfaces between two times, as a part of the smaller one, in which no other parts of them pass each other
+/// unless the distance has the mark of it.
+const PASSING: f64 = 0.05;
+/// Difference of a distance from a cubic polynomial, as a part of the way between two times, below which the same
+/// features are nearest.
+const SMOOTH: f64 = 1e-3;
+/// Interval that is not divided further in search of other features, as a fraction of the motion.
+const NARROW: f64 = 1e-5;
 
 /// Part of a motion in which the distance of a pair does not change.
 #[derive(Clone, Copy)]

@@ -8,9 +8,7 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use crate::clearance::{
-    Direction, EnclosedCore, PlacedShapes, direction_of, lower_bound, nearest, separations,
-};
+use crate::clearance::{Direction, EnclosedSolid, PlacedShapes, lower_bound, separations};
 use crate::design::BodyFixed;
 use crate::law::TimeJet;
 use crate::model::{Model, ShapeId, ShapeKind};
@@ -69,6 +67,9 @@ impl Analysis<'_> {
 
 /// Length of a part of the motion, as a fraction of it, that is not halved again.
 const SHORTEST: f64 = 1e-9;
+/// Bounds of one proof, at most, or twice the number of parts between output times if that is more. A least distance that
+/// is isolated needs a few tens; one over a part of the motion, as between points of one body, would need thousands.
+const MOST_BOUNDS: usize = 200;
 /// A distance below the claim by more than this fraction of the mechanism's size refutes it: far above round-off.
 const BELOW: f64 = 1e-10;
 /// Steps of Newton's method to the time at which a distance is stationary.
@@ -110,12 +111,13 @@ pub enum ProofFailure {
         distance: f64,
     },
     /// No bound reaches the claim, in however short a part: the claim is the least distance itself up to round-off, or
-    /// the rates of a law jump where the distance is least, or the shapes are in each other.
+    /// the rates of a law jump where the distance is least, the distance is the least over a part of the motion, or the
+    /// shapes are in each other.
     Unresolved,
     /// A ring is nearest from the inside, where only points have a bound.
     WithinRing,
-    /// A shape is a hull or a mesh, which have no bounds by separation yet.
-    Surface {
+    /// A shape is a mesh, which has no bounds by separation.
+    Mesh {
         /// The shape.
         shape: ShapeId,
     },
@@ -150,7 +152,7 @@ impl Analysis<'_> {
 /// Two shapes at one time.
 struct Place {
     instant: Rc<Instant>,
-    cores: [EnclosedCore; 2],
+    solids: [EnclosedSolid; 2],
     /// Unit vector along the nearest points of the cores, with its first two rates, for plain numbers; `None` where
     /// they meet.
     direction: Option<[Vec3; 3]>,
@@ -162,7 +164,7 @@ struct Place {
 /// A part of the motion with two shapes.
 struct Part<'p> {
     slab: &'p Slab,
-    cores: [EnclosedCore; 2],
+    solids: [EnclosedSolid; 2],
     /// Start, middle and end.
     places: [Rc<Place>; 3],
     length: Interval,
@@ -173,8 +175,9 @@ impl Part<'_> {
     /// below the claim are convex.
     fn bound(&self, direction: Direction, anchor: &Place, claim: f64) -> Option<(f64, bool)> {
         let over = self.slab.over;
-        let all = separations(self.cores.each_ref(), direction, over)?;
-        let at = |place: &Place| separations(place.cores.each_ref(), direction, place.instant.enclosure.over);
+        let all = separations(self.solids.each_ref(), direction, over)?;
+        let at =
+            |place: &Place| separations(place.solids.each_ref(), direction, place.instant.enclosure.over);
         let (start, inside, end) = (at(&self.places[0])?, at(anchor)?, at(&self.places[2])?);
         let since = over - anchor.instant.enclosure.over;
         let (mut least, mut convex) = (f64::INFINITY, true);
@@ -198,7 +201,8 @@ impl<'a> ClearanceProver<'a> {
     /// Proves that two shapes are never nearer than the claim, m, over the whole motion.
     ///
     /// The least distance of [`clearances`](Analysis::clearances) less an allowance for round-off, 1e-12 of the
-    /// mechanism's size, is proved wherever it is isolated; a greater claim never is.
+    /// mechanism's size, is proved wherever it is isolated; a greater claim never is. Parts after the first one that is
+    /// not proved are not tried.
     pub fn prove(&mut self, shapes: [ShapeId; 2], claim: f64) -> ClearanceProof {
         let times: Vec<f64> = self.motion.times().collect();
         let (Some(&start), Some(&end)) = (times.first(), times.last()) else {
@@ -214,11 +218,9 @@ impl<'a> ClearanceProver<'a> {
         claim: f64,
         [start, end]: [f64; 2],
     ) -> ClearanceProof {
-        let is_surface = |s: &ShapeId| {
-            matches!(self.model.shapes[s.0].kind, ShapeKind::Hull { .. } | ShapeKind::Mesh { .. })
-        };
-        if let Some(shape) = shapes.into_iter().find(is_surface) {
-            let (bound, reason) = (f64::NEG_INFINITY, ProofFailure::Surface { shape });
+        let is_mesh = |s: &ShapeId| matches!(self.model.shapes[s.0].kind, ShapeKind::Mesh { .. });
+        if let Some(shape) = shapes.into_iter().find(is_mesh) {
+            let (bound, reason) = (f64::NEG_INFINITY, ProofFailure::Mesh { shape });
             return ClearanceProof::NotProved { from: start, to: end, bound, reason };
         }
         let mut ends: Vec<f64> = self.motion.times().filter(|t| start < *t && *t < end).collect();
@@ -235,6 +237,7 @@ impl<'a> ClearanceProver<'a> {
         if parts.is_empty() {
             parts.push([start, end]);
         }
+        let most = MOST_BOUNDS.max(2 * parts.len());
         while let Some([from, to]) = parts.pop() {
             bounds += 1;
             let failed = match pair.bound([from, to]) {
@@ -246,11 +249,13 @@ impl<'a> ClearanceProver<'a> {
                 Err(reason) => (f64::NEG_INFINITY, reason),
             };
             let middle = Interval::between(from, to).middle();
-            let halves = from < middle && middle < to && to - from > SHORTEST * (end - start);
+            // All parts that are left, and both halves of this one, are still bounded.
+            let halves = from < middle
+                && middle < to
+                && to - from > SHORTEST * (end - start)
+                && bounds + parts.len() + 2 <= most;
             let may_pass = match failed.1 {
-                ProofFailure::Nearer { .. } | ProofFailure::WithinRing | ProofFailure::Surface { .. } => {
-                    false
-                }
+                ProofFailure::Nearer { .. } | ProofFailure::WithinRing | ProofFailure::Mesh { .. } => false,
                 ProofFailure::Unresolved => true,
                 ProofFailure::Motion(reason) => reason.may_be_halved(),
             };
@@ -267,9 +272,6 @@ impl<'a> ClearanceProver<'a> {
         ClearanceProof::Proved { slabs, bounds }
     }
 }
-
-/// Surfaces are refused before.
-const HAS_CORE: &str = "a shape with a core";
 
 /// Proof of one claim.
 struct PairProof<'p, 'a> {
@@ -288,10 +290,13 @@ impl PairProof<'_, '_> {
         PlacedShapes { model, fixed: constants, bodies: poses }.rounds(self.shapes).value()
     }
 
-    fn cores(&self, poses: &[Pose<TimeJet<Interval>>]) -> [EnclosedCore; 2] {
+    fn solids(&self, poses: &[Pose<TimeJet<Interval>>]) -> [EnclosedSolid; 2] {
         let ClearanceProver { model, constants, .. } = &*self.prover;
         let placed = PlacedShapes { model, fixed: constants, bodies: poses };
-        self.shapes.map(|shape| placed.core(shape).expect(HAS_CORE))
+        self.shapes.map(|shape| match placed.core(shape) {
+            Some(core) => EnclosedSolid::Core(core),
+            None => EnclosedSolid::Hull(placed.corners(shape)),
+        })
     }
 
     /// The shapes at one time.
@@ -299,7 +304,7 @@ impl PairProof<'_, '_> {
         if let Some(place) = self.places.get(&Rc::as_ptr(instant)) {
             return place.clone();
         }
-        let cores = self.cores(&instant.enclosure.poses);
+        let solids = self.solids(&instant.enclosure.poses);
         let middle = |x: TimeJet<Interval>| Jet([x.0[0], x.0[1], x.0[2]].map(Interval::middle));
         let plain: Vec<Pose<Rates>> = instant
             .enclosure
@@ -312,15 +317,14 @@ impl PairProof<'_, '_> {
             .collect();
         let ClearanceProver { model, moving, .. } = &*self.prover;
         let placed = PlacedShapes { model, fixed: moving, bodies: &plain[..] };
-        let cores_at = self.shapes.map(|shape| placed.core(shape).expect(HAS_CORE));
-        let values = cores_at.each_ref().map(|core| core.value());
-        let near = nearest(&values[0], &values[1]);
+        let near = placed.nearest_of_cores(self.shapes);
+        let rates = |n: Vec3<Rates>| [0, 1, 2].map(|order| n.map(|x| x.0[order]));
         let place = Rc::new(Place {
             instant: instant.clone(),
-            cores,
-            direction: direction_of(cores_at.each_ref(), &near),
+            of_features: Direction::of_features(solids.each_ref(), &near),
+            solids,
+            direction: placed.direction(self.shapes, &near).map(rates),
             distance: near.distance,
-            of_features: Direction::of_features(values.each_ref(), &near),
         });
         self.places.insert(Rc::as_ptr(instant), place.clone());
         place
@@ -337,7 +341,7 @@ impl PairProof<'_, '_> {
             }
         }
         let length = Interval::constant(to) - Interval::constant(from);
-        let part = Part { cores: self.cores(&slab.poses), slab: &slab, places, length };
+        let part = Part { solids: self.solids(&slab.poses), slab: &slab, places, length };
         let [start, middle, end] = part.places.each_ref();
         let mut best = f64::NEG_INFINITY;
         if let Some(direction) = middle.of_features {
@@ -392,7 +396,7 @@ impl PairProof<'_, '_> {
             // Along the nearest points there, so that nothing is lost.
             let time = place.instant.time();
             let direction = Direction::through(place.direction?, time);
-            let gaps = separations(place.cores.each_ref(), direction, place.instant.enclosure.over)?;
+            let gaps = separations(place.solids.each_ref(), direction, place.instant.enclosure.over)?;
             let nearest = gaps.iter().min_by(|a, b| a.value().low.total_cmp(&b.value().low))?;
             let step = -nearest.d().middle() / nearest.dd().middle();
             let next = (time + step).clamp(from, to);
