@@ -349,7 +349,7 @@ pub struct CouplerMark {
 }
 
 /// Type of a coupler in the model file.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[cfg_attr(test, derive(TS))]
 pub enum CouplerKind {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use hardpoint::Analysis;
 use hardpoint_file::ModelFile;
 use hardpoint_report::course::Course;
-use hardpoint_report::page::Payload;
+use hardpoint_report::page::{CouplerKind, Payload};
 use hardpoint_report::payload::{Request, payload};
 use hardpoint_report::summary::Summary;
 
@@ -109,21 +109,21 @@ fn every_model_opens_on_a_quantity_that_varies_and_follows_the_design() {
 #[test]
 fn couplers_are_what_the_file_says_in_its_units() {
     let page = page_of(&model("gear_train"));
-    let kinds: Vec<_> = page.couplers.iter().map(|c| (c.kind.as_str(), c.sizes.clone())).collect();
+    let kinds: Vec<_> = page.couplers.iter().map(|c| (c.kind, c.sizes.clone())).collect();
     let near = |sizes: &[f64], expected: &[f64]| {
         sizes.len() == expected.len() && sizes.iter().zip(expected).all(|(x, y)| close(*x, *y))
     };
-    let expected: [(&str, &[f64]); 6] = [
-        ("belt", &[40.0, 60.0]),
-        ("gear", &[20.0, 80.0]),
-        ("bevel", &[15.0, 45.0]),
-        ("rack", &[12.0]),
-        ("linear", &[]),
-        ("screw", &[4.0]),
+    let expected: [(CouplerKind, &[f64]); 6] = [
+        (CouplerKind::Belt, &[40.0, 60.0]),
+        (CouplerKind::Gear, &[20.0, 80.0]),
+        (CouplerKind::Bevel, &[15.0, 45.0]),
+        (CouplerKind::Rack, &[12.0]),
+        (CouplerKind::Linear, &[]),
+        (CouplerKind::Screw, &[4.0]),
     ];
     assert_eq!(kinds.len(), expected.len());
     for ((kind, sizes), (of, as_written)) in kinds.iter().zip(expected) {
-        assert!(*kind == of && near(sizes, as_written), "{kind} {sizes:?}");
+        assert!(*kind == of && near(sizes, as_written), "{kind:?} {sizes:?}");
     }
     let rack = &page.couplers[3];
     assert_eq!(page.joints[rack.terms[0].joint].name, "quill");

@@ -23,6 +23,7 @@ use super::feature::Feature;
 use super::nearest::Nearest;
 
 /// A convex solid with bounds of its place and rates.
+#[expect(clippy::large_enum_variant, reason = "there are two, made for one interval")]
 pub(crate) enum EnclosedSolid {
     /// A core.
     Core(Core<TimeJet<Interval>>),
