@@ -60,6 +60,8 @@
 //!     limits: vec![],
 //!     margin: None,
 //!     starts: 1,
+//!     other_assemblies: false,
+//!     both_senses: false,
 //!     iterations: 50,
 //!     trade_off: vec![],
 //! });

@@ -77,7 +77,7 @@ impl Ways {
 }
 
 impl<'a> Slopes<'a> {
-    /// Slopes of the design with these values, of the measures that are asked for, with derivatives by the variables if
+    /// Slopes of the design with these values, of these measures, with derivatives by the variables if
     /// requested; `None` if there are no such measures. These openings follow the drivers, if there are any.
     pub fn new(
         design_map: &'a DesignMap<'a>,

@@ -19,7 +19,8 @@ const LOCATED: f64 = 1e-11;
 /// Candidates nearer to a located time than this fraction of the motion are the same one.
 const SAME_TIME: f64 = 1e-8;
 /// Maximum number of times that the motion is solved again; each pass is nearer to the times by several digits, or
-/// divides an interval in which features change. A contact that is found late takes as many passes as any other.
+/// divides an interval in which features change. A contact that is found late takes the same number of passes as any
+/// other.
 const MOST_PASSES: usize = 100;
 /// Rate of a distance below which a contact is grazing, as a fraction of the largest rate: its time has no derivative.
 const GRAZING: f64 = 1e-6;

@@ -67,8 +67,9 @@ impl Analysis<'_> {
 
 /// Length of a part of the motion, as a fraction of it, that is not halved again.
 const SHORTEST: f64 = 1e-9;
-/// Bounds of one proof, at most, or twice the number of parts between output times if that is more. A least distance that
-/// is isolated needs a few tens; one over a part of the motion, as between points of one body, would need thousands.
+/// Bounds of one proof, at most, or twice the number of parts between output times if that is more. A least distance
+/// that is isolated needs a few tens; one over a part of the motion, as between points of one body, would need
+/// thousands.
 const MOST_BOUNDS: usize = 200;
 /// A distance below the claim by more than this fraction of the mechanism's size refutes it: far above round-off.
 const BELOW: f64 = 1e-10;
