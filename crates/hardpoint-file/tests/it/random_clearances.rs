@@ -21,6 +21,8 @@ const EXCESS: f64 = 1e-9;
 const LOCATED: f64 = 1e-12;
 /// Deviation of a distance of meshes from brute force, m: 1e-10 mm.
 const BRUTE: f64 = 1e-13;
+/// Deviation of a time of contact, s: its overlap is an interval of round-off of the positions.
+const TOUCH: f64 = 1e-9;
 /// Samples of the distance of meshes over the motion.
 const DENSE: usize = 500;
 /// Bounds of the proof of one pair, at most.
@@ -521,6 +523,14 @@ fn distances_of_random_meshes_are_those_of_brute_force() {
             };
             if !((at.distance[0] - least.distance[0]).abs() <= LOCATED) {
                 fail(format!("{steps} steps: least {} at {}, {least:?}", at.distance[0], at.time));
+            }
+            let [times, others] =
+                [pair, other].map(|of| of.contacts.iter().map(|c| (c.begins, c.at.time)).collect::<Vec<_>>());
+            let near = |((begins, t), (other, u)): (&(bool, f64), &(bool, f64))| {
+                begins == other && (t - u).abs() < TOUCH
+            };
+            if times.len() != others.len() || !times.iter().zip(&others).all(near) {
+                fail(format!("{steps} steps: contacts {others:?}, {times:?}"));
             }
         }
         // Samples between the output times.

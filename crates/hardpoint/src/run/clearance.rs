@@ -691,10 +691,9 @@ impl<'m> Curves<'m> {
                 let middle = 0.5 * (low + high);
                 if (polynomial(middle) > 0.0) == (a > 0.0) { low = middle } else { high = middle }
             }
-            add.push(0.5 * (low + high));
-            if times[k + 1] - times[k] > SAME_TIME * span {
-                add.push(0.5 * (times[k] + times[k + 1]));
-            }
+            // The middle is for distances that jump between the two, as that of meshes may where they begin to overlap:
+            // the polynomial does not converge to the jump.
+            add.extend([0.5 * (low + high), 0.5 * (times[k] + times[k + 1])]);
         }
         located.events.extend(events);
         located.add.extend(add);
