@@ -104,6 +104,9 @@ describe('a linkage is drawn', () => {
     // Only a support can have one.
     await pin('B').click()
     expect(await text(page, 'linkage-hint')).toContain('B is neither a fixed pivot nor a slider')
+    // The check of the drawing does not replace the reason.
+    await checked()
+    expect(await text(page, 'linkage-hint')).toContain('B is neither a fixed pivot nor a slider')
     await pin('A').click()
     await place('A', 0, 0)
     await place('B', 30, 40)

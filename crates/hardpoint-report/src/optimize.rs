@@ -670,19 +670,19 @@ impl OptimizeFacts {
             some_of(&values.collect::<Vec<_>>(), ", ")
         };
         let rows: Vec<(usize, &OptimumFact)> = self.optima.iter().enumerate().collect();
-        let several = self.has_variants();
         let note = "Each with the values of the goals, and where its design differs most from the best. `--optimum N` reports and \
                     saves another one.";
-        let columns: [Column<'_, &(usize, &OptimumFact)>; 6] = [
+        let columns: [Column<'_, &(usize, &OptimumFact)>; 5] = [
             ("optimum", &|o| (o.0 + 1).to_string()),
-            ("assembly and sense", &|o| if several { o.1.variant() } else { String::new() }),
             ("objective", &|o| number(o.1.objective)),
             ("goals", &|o| goals(o.1)),
             ("starts", &|o| o.1.starts.len().to_string()),
             ("against the best", &|o| if o.0 == 0 { "-".into() } else { other(o.1) }),
         ];
-        let columns = columns.iter().filter(|(title, _)| several || *title != "assembly and sense");
-        let columns: Vec<Column<'_, &(usize, &OptimumFact)>> = columns.copied().collect();
+        let mut columns = columns.to_vec();
+        if self.has_variants() {
+            columns.insert(1, ("assembly and sense", &|o| o.1.variant()));
+        }
         Table::of("Optima", note, &columns, &rows).if_any()
     }
 

@@ -82,6 +82,8 @@ export class Drawing {
   #middle: Place = [WIDTH / 4, WIDTH / 8]
   #scale = 2
   #messages: Diagnostic[] = []
+  /** Reason why the last input changed nothing, shown until the next input even if a check ends meanwhile. */
+  #refusal?: string
   #checked = ''
   #waiting?: ReturnType<typeof setTimeout>
   #backdrop: Backdrop
@@ -286,7 +288,7 @@ export class Drawing {
       case 'motor': {
         if (pin.support === 'free') {
           this.#render()
-          this.#say(`\`${name}\` is neither a fixed pivot nor a slider, so that no motor can drive it.`)
+          this.#refuse(`\`${name}\` is neither a fixed pivot nor a slider, so that no motor can drive it.`)
           return
         }
         return this.#set(changed(this.#linkage, name, { motor: pin.motor ? undefined : 'turn' }))
@@ -438,8 +440,14 @@ export class Drawing {
     this.#hint.replaceChildren(...prose(words))
   }
 
+  #refuse(why: string): void {
+    this.#refusal = why
+    this.#report()
+  }
+
   /** Shows the linkage, and checks its text soon. */
   #render(): void {
+    this.#refusal = undefined
     const { pins, bars } = this.#linkage
     const exists =
       this.#chosen && (this.#chosen.kind === 'pin' ? pins : bars).some(({ name }) => name === this.#chosen!.name)
@@ -481,7 +489,8 @@ export class Drawing {
         ...this.#messages.map((one) => el('li', { class: one.severity }, el('div', {}, ...messageElements(one)))),
       )
     const { kind, name } = this.#chosen ?? {}
-    if (this.#tool === 'bar' && this.#from !== undefined && this.#linkage.pins.length > 0)
+    if (this.#refusal !== undefined) this.#say(this.#refusal)
+    else if (this.#tool === 'bar' && this.#from !== undefined && this.#linkage.pins.length > 0)
       this.#say(`Click the other end of the bar from \`${this.#from}\`: a place, or a joint. Escape ends.`)
     else if (this.#tool === 'bar' && kind === 'bar')
       this.#say(`Click a place or a joint: \`${name}\` becomes a plate through it. Escape ends.`)
@@ -524,7 +533,7 @@ export class Drawing {
 
   #rename(chosen: Chosen, to: string): void {
     const made = renamed(this.#linkage, chosen.kind, chosen.name, to)
-    if (typeof made === 'string') return this.#say(made)
+    if (typeof made === 'string') return this.#refuse(made)
     this.#chosen = { ...chosen, name: to }
     this.#set(made)
   }

@@ -205,13 +205,12 @@ pub async fn gallery(studio: Arc<Studio>) -> Answer {
             1 => format!("One model in {path}."),
             n => format!("{n} models in {path}."),
         };
-        let link = |pairs: &[(&str, &str)]| {
-            format!("/?{}", form_urlencoded::Serializer::new(String::new()).extend_pairs(pairs).finish())
+        let address = |path: &str, pairs: &[(&str, &str)]| {
+            let query = form_urlencoded::Serializer::new(String::new()).extend_pairs(pairs).finish();
+            format!("{path}?{query}")
         };
-        let drawing = |file: &str| {
-            let query = form_urlencoded::Serializer::new(String::new()).append_pair("file", file).finish();
-            gallery::pending(&format!("/api/drawing?{query}"))
-        };
+        let link = |pairs: &[(&str, &str)]| address("/", pairs);
+        let drawing = |file: &str| gallery::pending(&address("/api/drawing", &[("file", file)]));
         let card = |e: super::folder::Entry| Card {
             picture: (e.problems == 0).then(|| drawing(&e.file)),
             link: link(&[("file", &e.file)]),

@@ -26,7 +26,7 @@ pub(crate) const OPTIMIZE: Table = table! {
     may "min_margin": NUMBER, "0.02";
     /// Number of designs from which the search starts: the nominal design, and others within the bounds.
     or("1") "starts": Shape::Count(OptimizationSettings::MOST), "8";
-    /// True if the searches also start from the other assemblies of the mechanism, with the same number of starts each.
+    /// True if the searches also start from the other assemblies of the mechanism, `starts` times each.
     or("false") "other_assemblies": Shape::Flag, "true";
     /// True if the searches also start with all drivers in the opposite sense, in every assembly.
     or("false") "both_senses": Shape::Flag, "true";

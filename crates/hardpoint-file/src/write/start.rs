@@ -1,7 +1,7 @@
 //! A model file in another assembly, or with its drivers in the opposite sense.
 
 use hardpoint::joint::Quantity;
-use hardpoint::model::{CaseId, GROUND, StartPlacement};
+use hardpoint::model::{Driver, GROUND, StartPlacement};
 use hardpoint::space::Vec3;
 
 use crate::read::{ModelFile, parsed};
@@ -64,7 +64,7 @@ impl ModelFile {
         }
         let mut changes = Vec::new();
         if reversed {
-            let sense = |driver: &hardpoint::model::Driver| {
+            let sense = |driver: &Driver| {
                 let flag = if driver.law.is_reversed() { Contents::None } else { Contents::Flag(true) };
                 (driver.name.clone(), Contents::Table(vec![("reversed".to_owned(), flag)]))
             };
@@ -79,9 +79,10 @@ impl ModelFile {
         let text = merged(self.text(), &Contents::Table(changes));
         let text = text.map_err(|why| self.cannot_be_assembled(why))?;
         let mut file = parsed(Folder::Given(&self.texts), &text, self.file_name())?;
-        let wanted = |k: usize| self.model.drivers[k].law.is_reversed() != reversed;
-        let turned = file.model.drivers.iter().enumerate().find(|(k, d)| d.law.is_reversed() != wanted(*k));
-        if let Some((_, driver)) = turned {
+        let is_wrong =
+            |old: &Driver, new: &Driver| (old.law.is_reversed() != reversed) != new.law.is_reversed();
+        let mut drivers = self.model.drivers.iter().zip(&file.model.drivers);
+        if let Some((_, driver)) = drivers.find(|(old, new)| is_wrong(old, new)) {
             let why = format!("driver `{}` cannot get another sense in this file", driver.name);
             return Err(self.cannot_be_assembled(why));
         }
@@ -89,9 +90,9 @@ impl ModelFile {
             file = file.in_case(case);
         } else if let [only] = &self.model.cases[..]
             && file.model.cases.len() > 1
-            && let Some(CaseId(case)) = file.model.case(&only.name)
+            && let Some(case) = file.model.case(&only.name)
         {
-            file.model = file.model.with_case_only(CaseId(case));
+            file.model = file.model.with_case_only(case);
         }
         Ok(file)
     }

@@ -226,13 +226,15 @@ pub fn optimize(
         Ok(point) => (Some(assess(&problem, &point, &limit_scales(&problem, &point))), None),
         Err(refusal) => (None, Some(failed_design(vec![0.0; model.variables.len()], refusal))),
     };
-    let mut variants = Variant::all(model, motions, settings, &|| more());
-    // The first variant is the model itself, whose motions are there already.
-    let others: Vec<Option<Motions<'_>>> =
-        variants.iter().skip(1).map(|v| v.motions(model, motions)).collect();
-    let mut is_driven = std::iter::once(true).chain(others.iter().map(Option::is_some));
-    variants.retain(|_| is_driven.next().unwrap_or(false));
-    let others: Vec<Motions<'_>> = others.into_iter().flatten().collect();
+    let (mut variants, mut others) = (Vec::new(), Vec::new());
+    for variant in Variant::all(model, motions, settings, &|| more()) {
+        // The motions of the model itself are there already.
+        if !variant.is_own() {
+            let Some(motions) = variant.motions(model, motions) else { continue };
+            others.push(motions);
+        }
+        variants.push(variant);
+    }
     let problems: Vec<Problem<'_>> = std::iter::once(motions)
         .chain(&others)
         .map(|motions| Problem::new(model, motions, settings))

@@ -15,9 +15,14 @@ pub(crate) trait Bodies<T> {
     /// The body's pose in plain numbers.
     fn pose(&self, body: BodyId) -> Pose;
     /// Point of a body in plain numbers.
-    fn place(&self, body: BodyId, s: Vec3) -> Vec3;
+    fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
+        let Pose { rot, r } = self.pose(body);
+        r + rot * s
+    }
     /// Direction that is fixed in a body in plain numbers.
-    fn heading(&self, body: BodyId, e: Vec3) -> Vec3;
+    fn heading(&self, body: BodyId, e: Vec3) -> Vec3 {
+        self.pose(body).rot * e
+    }
 }
 
 impl<T: Real> Bodies<T> for [Pose<T>] {
@@ -31,14 +36,6 @@ impl<T: Real> Bodies<T> for [Pose<T>] {
 
     fn pose(&self, body: BodyId) -> Pose {
         self[body.0].value()
-    }
-
-    fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
-        self.pose(body).point(s)
-    }
-
-    fn heading(&self, body: BodyId, e: Vec3) -> Vec3 {
-        self.pose(body).rot * e
     }
 }
 
@@ -58,17 +55,10 @@ impl Bodies<Rates> for MovingBodies<'_> {
         Vec3::of_rates(rates_of(&state, state.rotation * e.value()))
     }
 
+    // Inlined, so that of a state only the pose is gathered.
+    #[inline(always)]
     fn pose(&self, body: BodyId) -> Pose {
         self.0.body(body.0).pose()
-    }
-
-    fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
-        let state = self.0.body(body.0);
-        state.r + state.rotation * s
-    }
-
-    fn heading(&self, body: BodyId, e: Vec3) -> Vec3 {
-        self.0.body(body.0).rotation * e
     }
 }
 
@@ -127,15 +117,6 @@ impl Bodies<Dual<Rates>> for ChangingBodies {
 
     fn pose(&self, body: BodyId) -> Pose {
         self.at[body.0].0.pose()
-    }
-
-    fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
-        let (state, _) = &self.at[body.0];
-        state.r + state.rotation * s
-    }
-
-    fn heading(&self, body: BodyId, e: Vec3) -> Vec3 {
-        self.at[body.0].0.rotation * e
     }
 }
 

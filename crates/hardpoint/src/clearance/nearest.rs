@@ -25,13 +25,8 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// The distance of the cores by the formula of these features.
-    #[cfg(test)]
-    pub fn distance_of<T: Real>(&self, cores: [&Core<T>; 2]) -> T {
-        self.distance_between([0, 1].map(|k| cores[k].feature(self.features[k])))
-    }
-
-    /// The same for features that are placed, each with the distance by which its core extends beyond it.
+    /// The distance of the cores by the formula of these features, each placed and with the distance by which its core
+    /// extends beyond it.
     pub fn distance_between<T: Real>(&self, [(a, less), (b, as_well)]: [(Placed<T>, T); 2]) -> T {
         if self.sign == 0.0 {
             return T::zero();
@@ -271,7 +266,7 @@ fn of_circle(circle: &Circle, p: Vec3) -> Vec3 {
 }
 
 /// The nearest points of two segments.
-pub(super) fn segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Nearest {
+fn segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Nearest {
     let (e, f, from) = (b - a, d - c, c - a);
     let (ee, ff) = (e.dot(e), f.dot(f));
     let across = e.cross(f);
@@ -300,6 +295,17 @@ pub(super) fn segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Nearest {
         own(1.0, from_point(d, &first)).reversed(),
     ];
     nearer(ends)
+}
+
+/// The nearest points of two segments of which one is an edge of a surface: where they cross in a plane, the way out
+/// within that plane is no depth of the surface.
+pub(super) fn segment_and_edge(segment: [Vec3; 2], edge: [Vec3; 2]) -> Nearest {
+    let near = segments(segment, edge);
+    if near.sign < 0.0 {
+        let [p, q] = near.points;
+        return found([Feature::Line; 2], near.points, (q - p).norm());
+    }
+    near
 }
 
 /// The nearest of several.

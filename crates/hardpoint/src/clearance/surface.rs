@@ -9,7 +9,7 @@ use super::circle::Circle;
 use super::core::Core;
 use super::feature::Feature;
 use super::nearest::{
-    Nearest, along_circle, around_drum, found, least_sampled, nearer, segment_and_cylinder, segments,
+    Nearest, along_circle, around_drum, found, least_sampled, nearer, segment_and_cylinder, segment_and_edge,
 };
 
 /// A surface in the frame in which its points are given.
@@ -216,7 +216,7 @@ fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
             }
             let (q, part) = nearest_of_triangle(b, corners, ids);
             let end = found([Feature::Point(1.0), of_part(part)], [b, q], (q - b).norm());
-            let near = nearer([end, view.edges(t, |edge| segments([a, b], edge))]);
+            let near = nearer([end, view.edges(t, |edge| segment_and_edge([a, b], edge))]);
             if near.distance < best.distance {
                 best = near;
             }
@@ -264,7 +264,7 @@ pub(super) fn surfaces(a: View<'_>, b: View<'_>, place: Pose) -> Nearest {
         // Of edges, and of corners over faces.
         let edges = |k: usize| {
             nearer([0, 1, 2].map(|n| {
-                let near = segments([p[k], p[(k + 1) % 3]], [q[n], q[(n + 1) % 3]]);
+                let near = segment_and_edge([p[k], p[(k + 1) % 3]], [q[n], q[(n + 1) % 3]]);
                 let [own, other] = near.features;
                 let features = [
                     of_edge(own, [ids[k], ids[(k + 1) % 3]]),

@@ -494,11 +494,6 @@ impl DriverDraft {
     pub fn new(name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
         Self { name: name.into(), drives: drives.into(), from_zero: false, reversed: false, law }
     }
-
-    /// A law of this driver in its sense.
-    pub(crate) fn in_sense(&self, law: Law) -> Law {
-        if self.reversed { law.reversed() } else { law }
-    }
 }
 
 impl PointDraft {

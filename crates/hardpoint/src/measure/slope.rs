@@ -77,8 +77,8 @@ impl Ways {
 }
 
 impl<'a> Slopes<'a> {
-    /// Slopes of the design with these values, of these measures, with derivatives by the variables if
-    /// requested; `None` if there are no such measures. These openings follow the drivers, if there are any.
+    /// Slopes of the design with these values, of these measures, with derivatives by the variables if requested;
+    /// `None` if none of them depends on a driver. These openings follow the drivers, if there are any.
     pub fn new(
         design_map: &'a DesignMap<'a>,
         topology: &Topology,

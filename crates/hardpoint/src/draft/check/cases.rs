@@ -52,13 +52,7 @@ impl Checker<'_> {
                 let given = self.formula_law_in((case, &c.name), (DriverId(d), driver), law, &at);
                 let Some(law) = given else { continue };
                 self.check_law(&format!("driver `{driver}` in case `{}`", c.name), &law, times, at);
-                laws[d] = Some(
-                    draft
-                        .drivers
-                        .iter()
-                        .find(|one| one.name == *driver)
-                        .map_or(law.clone(), |one| one.in_sense(law)),
-                );
+                laws[d] = Some(if self.model.drivers[d].law.is_reversed() { law.reversed() } else { law });
             }
             for d in (0..laws.len()).filter(|d| laws[*d].is_none()) {
                 let (name, law) = (self.model.drivers[d].name.clone(), self.model.drivers[d].law.clone());

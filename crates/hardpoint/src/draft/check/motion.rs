@@ -69,7 +69,7 @@ impl Checker<'_> {
             }
             let Some(Driven { joint, coordinate, .. }) = driven else { continue };
             self.driver_of.insert((joint, coordinate), driver);
-            let law = d.in_sense(law);
+            let law = if d.reversed { law.reversed() } else { law };
             self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law });
         }
     }
