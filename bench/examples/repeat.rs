@@ -63,7 +63,7 @@ fn metrics(model: &Model, times: &str) {
     let mut found = 0;
     for _ in 0..times {
         for analysis in &analyses {
-            let solution = analysis.solve(Run::new().for_metrics());
+            let solution = analysis.solve(Run::new().for_metrics(&[]));
             found += hardpoint::run::metrics(analysis.model(), &solution).len();
         }
     }

@@ -6,10 +6,8 @@ use std::ops::ControlFlow;
 
 use hardpoint::model::{Model, SharedModel};
 use hardpoint::motion::{Stop, StopKind};
-use hardpoint::run::{Analysis, Run, Solution};
+use hardpoint::run::{Analysis, MetricUse, MetricValue, Run, Solution, metrics};
 use hardpoint::topology::{Formulation, TopologyError};
-
-use hardpoint::run::{MetricValue, metrics};
 
 /// Motions of a mechanism, ready to be solved for any design.
 #[derive(Clone, Debug)]
@@ -107,25 +105,26 @@ impl<'m> Motions<'m> {
         cost: &mut StudyCost,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<DesignEvaluation, EvaluationError> {
-        self.evaluate_by(&Run::new, design, cost, more)
+        self.evaluate_by(&|_| Run::new(), design, cost, more)
     }
 
-    /// The same, where of the sensitivities of the solutions those that metrics depend on are enough.
+    /// Evaluates the metrics of each motion with these uses ([`Run::for_metrics`]).
     ///
     /// # Errors
     /// See [`Motions::evaluate`].
     pub fn evaluate_metrics(
         &self,
         design: &[f64],
+        uses: &[Vec<MetricUse>],
         cost: &mut StudyCost,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<DesignEvaluation, EvaluationError> {
-        self.evaluate_by(&|| Run::new().for_metrics(), design, cost, more)
+        self.evaluate_by(&|motion| Run::new().for_metrics(&uses[motion]), design, cost, more)
     }
 
     fn evaluate_by<'r>(
         &self,
-        run: &dyn Fn() -> Run<'r>,
+        run: &dyn Fn(usize) -> Run<'r>,
         design: &'r [f64],
         cost: &mut StudyCost,
         more: &'r (dyn Fn() -> bool + Sync),
@@ -134,7 +133,7 @@ impl<'m> Motions<'m> {
         let mut found = DesignEvaluation::default();
         for (motion, analysis) in self.analyses.iter().enumerate() {
             let go_on = |_| if more() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
-            let solution = analysis.solve(run().at(design).progress(go_on));
+            let solution = analysis.solve(run(motion).at(design).progress(go_on));
             cost.motions += 1;
             cost.steps += solution.motion.len();
             if let Some(stop) = &solution.stop {

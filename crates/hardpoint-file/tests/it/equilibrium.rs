@@ -6,7 +6,7 @@ use std::path::Path;
 use hardpoint::load::LargestDeflection;
 use hardpoint::model::{Model, Reduction, VariableId};
 use hardpoint::motion::StopKind;
-use hardpoint::run::{metrics, misfits, peaks};
+use hardpoint::run::{MetricUse, metrics, misfits, peaks};
 use hardpoint::topology::Formulation;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse};
@@ -912,7 +912,9 @@ fn a_run_for_metrics_has_the_same_metrics_to_the_last_bit() {
     for motion in model.motions() {
         let analysis = Analysis::new(&motion).unwrap();
         let all = analysis.run();
-        let few = analysis.solve(Run::new().for_metrics());
+        let few = analysis.solve(Run::new().for_metrics(&[]));
+        let candidates = vec![MetricUse::Candidates; motion.metrics.len()];
+        let more = analysis.solve(Run::new().for_metrics(&candidates));
         assert!(all.stop.is_none() && few.stop.is_none());
         let pairs = metrics(&motion, &all).into_iter().zip(metrics(&motion, &few));
         for (metric, (a, b)) in motion.metrics.iter().zip(pairs) {
@@ -923,7 +925,7 @@ fn a_run_for_metrics_has_the_same_metrics_to_the_last_bit() {
                 assert_eq!(misfits(&motion, &few, metric), misfits(&motion, &all, metric), "{}", metric.name);
             }
             if let Reduction::Greatest | Reduction::Range = metric.take {
-                let [a, b] = [&all, &few].map(|found| peaks(&motion, found, metric, 1.0));
+                let [a, b] = [&all, &more].map(|found| peaks(&motion, found, metric, 1.0));
                 assert_eq!(b, a, "{}", metric.name);
             }
         }

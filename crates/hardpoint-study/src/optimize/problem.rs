@@ -6,7 +6,7 @@ use crate::evaluation::{DesignEvaluation, Motions, StudyCost};
 use hardpoint::model::{Limit, LimitTarget, Model, OptimizationSettings, Reduction, VariableId};
 use hardpoint::motion::Margin;
 use hardpoint::number::Dual;
-use hardpoint::run::{MetricParts, misfits, peaks};
+use hardpoint::run::{MetricParts, MetricUse, misfits, peaks};
 
 /// Goals and limits of an optimisation, and the motions that they are evaluated in.
 #[derive(Clone, Debug)]
@@ -21,6 +21,8 @@ pub(crate) struct Problem<'m> {
     pub goals: Vec<MotionMetric>,
     /// Index and metric of each limit; no metric for a limit on the design itself.
     pub limits: Vec<(usize, Option<MotionMetric>)>,
+    /// Uses of the metrics of each motion.
+    pub uses: Vec<Vec<MetricUse>>,
 }
 
 /// A metric in one motion.
@@ -178,12 +180,24 @@ impl<'m> Problem<'m> {
             };
             (0..motions.len()).filter_map(motion)
         };
-        let goals = settings.goals.iter().enumerate().flat_map(|(k, goal)| entry(k, goal.metric)).collect();
+        let goals: Vec<MotionMetric> =
+            settings.goals.iter().enumerate().flat_map(|(k, goal)| entry(k, goal.metric)).collect();
         let limit = |(k, limit): (usize, &Limit)| match limit.of {
             LimitTarget::Metric(metric) => entry(k, metric).map(|t| (k, Some(t))).collect::<Vec<_>>(),
             _ => vec![(k, None)],
         };
-        let limits = settings.limits.iter().enumerate().flat_map(limit).collect();
+        let limits: Vec<(usize, Option<MotionMetric>)> =
+            settings.limits.iter().enumerate().flat_map(limit).collect();
+        let unused = |motion: usize| vec![MetricUse::Unused; motions.model(motion).metrics.len()];
+        let mut uses: Vec<Vec<MetricUse>> = (0..motions.len()).map(unused).collect();
+        let to_target = goals.iter().filter(|entry| settings.goals[entry.of].target.is_some());
+        let free = goals.iter().filter(|entry| settings.goals[entry.of].target.is_none());
+        for entry in to_target {
+            uses[entry.motion][entry.metric] = MetricUse::Derivative;
+        }
+        for entry in free.chain(limits.iter().flat_map(|(_, entry)| entry)) {
+            uses[entry.motion][entry.metric] = MetricUse::Candidates;
+        }
         let bounds = |v: &VariableId| model.variables[v.0].bounds.unwrap_or([0.0; 2]);
         Self {
             bounds: settings.variables.iter().map(bounds).collect(),
@@ -192,6 +206,7 @@ impl<'m> Problem<'m> {
             settings,
             goals,
             limits,
+            uses,
         }
     }
 
@@ -238,10 +253,8 @@ impl<'m> Problem<'m> {
         cost: &mut StudyCost,
         more: &(dyn Fn() -> bool + Sync),
     ) -> Result<Point, Refusal> {
-        let found = self.motions.evaluate_metrics(&design, cost, more).map_err(|rejected| Refusal {
-            motion: Some(rejected.motion),
-            interrupted: rejected.interrupted(),
-            why: rejected.why,
+        let found = self.motions.evaluate_metrics(&design, &self.uses, cost, more).map_err(|rejected| {
+            Refusal { motion: Some(rejected.motion), interrupted: rejected.interrupted(), why: rejected.why }
         })?;
         self.margins(&found)?;
         let margins = found.solutions.iter().filter_map(|s| Some(s.motion.least_margin()?.1.value));

@@ -205,12 +205,12 @@ impl<'m> Analysis<'m> {
         let (mut design, mut solution) =
             (self.prepare(run.design, run.scope), std::mem::take(&mut run.memory));
         design.needs = run.outputs.map(|outputs| Arc::new(NeededResults::of_outputs(self.model(), outputs)));
-        if self.equilibrium.is_some()
-            && run.scope.for_metrics
+        if let Some(uses) = run.metrics
+            && self.equilibrium.is_some()
             && run.scope.sensitivities
             && run.scope.measures
         {
-            self.solve_for_metrics(design, &mut *run.progress, &mut solution);
+            self.solve_for_metrics(design, uses, &mut *run.progress, &mut solution);
             return solution;
         }
         self.walk(&design, self.model().times.len(), &mut *run.progress, &mut solution, &mut |_, _| ());

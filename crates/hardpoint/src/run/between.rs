@@ -17,7 +17,7 @@ use crate::motion::mechanism::driver_units;
 use super::analysis::Analysis;
 use super::metric::{unresolved_times, window_times};
 use super::needed::NeededResults;
-use super::request::Progress;
+use super::request::{MetricUse, Progress};
 use super::solution::Solution;
 use super::walk::{PreparedDesign, Scope};
 use super::window::Footprint;
@@ -174,16 +174,19 @@ impl Analysis<'_> {
     pub(super) fn solve_for_metrics(
         &self,
         design: PreparedDesign,
+        uses: &[MetricUse],
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
         solution: &mut Solution,
     ) {
         let model = self.model();
-        if let Some(needs) = NeededResults::of_times(model) {
+        if let Some(needs) = NeededResults::of_times(model, uses) {
             let design = PreparedDesign { needs: Some(Arc::new(needs)), ..design };
             self.walk(&design, model.times.len(), progress, solution, &mut |_, _| ());
             return;
         }
-        let values = self.prepare(&design.values, Scope { sensitivities: false, ..design.scope });
+        let needs = Some(Arc::new(NeededResults::of_values(model, uses)));
+        let scope = Scope { sensitivities: false, ..design.scope };
+        let values = PreparedDesign { needs, ..self.prepare(&design.values, scope) };
         self.walk(&values, model.times.len(), progress, solution, &mut |_, _| ());
         self.solve_between(&values, progress, solution);
         if solution.stop.is_some() {
@@ -192,7 +195,11 @@ impl Analysis<'_> {
         // All output times have been reported as solved before.
         let end = Progress { done: model.times.len() - 1, total: model.times.len() };
         let mut go_on = |_: Progress| progress(end);
-        let needs = Some(Arc::new(NeededResults::of_solution(model, solution)));
+        let needs = NeededResults::of_solution(model, uses, solution);
+        if needs.is_of_values() {
+            return;
+        }
+        let needs = Some(Arc::new(needs));
         match &solution.between {
             None => {
                 let design = PreparedDesign { needs, ..design };

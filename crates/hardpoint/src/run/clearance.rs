@@ -24,7 +24,7 @@ const SAME_TIME: f64 = 1e-8;
 const MOST_PASSES: usize = 100;
 /// Rate of a distance below which a contact is grazing, as a fraction of the largest rate: its time has no derivative.
 const GRAZING: f64 = 1e-6;
-/// Pieces of an interval of a motion without rates, in which a minimum is looked for.
+/// Pieces into which an interval is divided where its ends do not indicate a place within.
 const PIECES: usize = 4;
 
 /// Distance of two shapes at one time.
@@ -224,29 +224,32 @@ impl Analysis<'_> {
     pub fn clearances(&self, design: &[f64]) -> Clearances {
         let model = self.model();
         let pairs = model.shape_pairs();
-        let mut times = self.times_within();
-        let own = model.times.clone();
+        let mut curves = Curves::new(model, &pairs);
         let mut located = Located::default();
-        let (mut plateaus, mut known) = (None, Vec::new());
-        for _ in 0..MOST_PASSES {
-            let solution = self.motion_at(&times, design, false);
-            let curves = Curves::of(self, design, &pairs, &solution.motion, known);
+        let mut plateaus = None;
+        let mut times = self.times_within();
+        let mut follows_all = model.equilibrium.is_some();
+        for pass in 0..MOST_PASSES {
+            let motion = self.motion_at(&times, design, false).motion;
+            follows_all |= pass > 0 && motion.len() < times.len();
+            curves.add(self, design, &motion);
             let plateaus = plateaus.get_or_insert_with(|| curves.plateaus());
             located = curves.locate(plateaus, &curves.overlaps());
-            known = curves.samples;
             if located.add.is_empty() {
                 break;
             }
-            times.extend(&located.add);
-            times.sort_by(f64::total_cmp);
-            times.dedup();
+            // Further times are solved by themselves from the first one on; beside all others only at equilibria, which
+            // follow the times, and after a motion that did not get there.
+            let followed = if follows_all { curves.times.len() } else { 1 };
+            times = curves.times.iter().take(followed).chain(&located.add).copied().collect();
+            sort_times(&mut times);
         }
         let of_events = located.events.iter().flat_map(|e| [e.time].into_iter().chain(e.kink));
-        let mut events: Vec<f64> = of_events.chain(own.iter().copied()).collect();
-        events.sort_by(f64::total_cmp);
-        events.dedup();
+        let mut events: Vec<f64> = of_events.chain(model.times.iter().copied()).collect();
+        sort_times(&mut events);
         let solution = self.motion_at(&events, design, true);
-        self.results(design, &pairs, &located, &solution, known)
+        curves.add(self, design, &solution.motion);
+        self.results(design, &curves, &located, &solution)
     }
 
     fn motion_at(&self, times: &[f64], design: &[f64], sensitivities: bool) -> Solution {
@@ -259,55 +262,55 @@ impl Analysis<'_> {
     fn results(
         &self,
         design: &[f64],
-        pairs: &[[ShapeId; 2]],
+        curves: &Curves<'_>,
         located: &Located,
         solution: &Solution,
-        known: Vec<Vec<ShapeDistance>>,
     ) -> Clearances {
-        let model = self.model();
-        let motion = &solution.motion;
-        let curves = Curves::of(self, design, pairs, motion, known);
-        let place = |time: f64| motion.times.iter().position(|t| *t == time);
+        let is_output = |time: f64| index_of(&self.model().times, time).is_some();
         let pair_of = |(p, shapes): (usize, &[ShapeId; 2])| {
             let samples = &curves.samples[p];
-            let at_outputs = |s: &&ShapeDistance| model.times.contains(&s.time);
-            let slopes: Vec<f64> = samples.iter().map(|s| s.distance[1].abs()).collect();
-            let fastest = slopes.iter().copied().fold(0.0, f64::max);
+            let fastest = samples.iter().map(|s| s.distance[1].abs()).fold(0.0, f64::max);
+            let derivatives = |time: f64| {
+                let k = index_of(&solution.motion.times, time)?;
+                Some(self.distance_derivatives(design, *shapes, solution, k))
+            };
+            let at = |time: f64| Some(samples[index_of(&curves.times, time)?]);
             let (mut minima, mut contacts) = (Vec::new(), Vec::new());
             for event in located.events.iter().filter(|e| e.pair == p) {
-                let Some(k) = place(event.time) else { continue };
-                let at = samples[k];
-                let mut d = self.distance_derivatives(design, *shapes, solution, k);
+                let (Some(at_event), Some(mut d)) = (at(event.time), derivatives(event.time)) else {
+                    continue;
+                };
                 // At a kink both sides change, and their intersection moves in time: the part of each is that with
                 // which the rate is zero.
-                let other = event.kink.and_then(place);
-                if let Some(k) = other {
-                    let rates = [at.distance[1], samples[k].distance[1]];
+                let other = event.kink.and_then(|time| at(time).zip(derivatives(time)));
+                if let Some((other, beside)) = &other {
+                    let rates = [at_event.distance[1], other.distance[1]];
                     let part = rates[1] / (rates[1] - rates[0]);
-                    let beside = self.distance_derivatives(design, *shapes, solution, k);
                     d.iter_mut().zip(beside).for_each(|(d, other)| *d = part * *d + (1.0 - part) * other);
                 }
                 match event.kind {
                     EventKind::Minimum(place) => {
-                        minima.push(ClearanceMinimum { at, place, is_kink: other.is_some(), d });
+                        minima.push(ClearanceMinimum { at: at_event, place, is_kink: other.is_some(), d });
                     }
                     EventKind::Contact(begins) => {
-                        let rate = at.distance[1];
+                        let rate = at_event.distance[1];
                         let rate = if rate.abs() > GRAZING * fastest { rate } else { f64::NAN };
                         // dt/db = -d_b / d.                                                              (C13)
-                        contacts.push(Contact { at, begins, d: d.iter().map(|d| -d / rate).collect() });
+                        let d = d.iter().map(|d| -d / rate).collect();
+                        contacts.push(Contact { at: at_event, begins, d });
                     }
                 }
             }
             PairClearance {
                 shapes: *shapes,
-                curve: samples.iter().filter(at_outputs).copied().collect(),
+                curve: samples.iter().filter(|s| is_output(s.time)).copied().collect(),
                 minima,
                 contacts,
                 is_constant: located.constant[p],
             }
         };
-        Clearances { pairs: pairs.iter().enumerate().map(pair_of).collect(), stop: solution.stop.clone() }
+        let pairs = curves.pairs.iter().enumerate().map(pair_of).collect();
+        Clearances { pairs, stop: solution.stop.clone() }
     }
 
     /// Distances of pairs of shapes at these times of a solved motion of a design, in the order of the pairs.
@@ -405,79 +408,86 @@ impl<'m> PosedMotion<'m> {
         });
         samples
     }
-}
 
-/// Distances of all pairs at all times of a motion.
-struct Curves<'m> {
-    posed: PosedMotion<'m>,
-    motion: &'m Motion,
-    pairs: &'m [[ShapeId; 2]],
-    /// Size of the mechanism, m.
-    size: f64,
-    /// Per pair and time.
-    samples: Vec<Vec<ShapeDistance>>,
-}
-
-impl<'m> Curves<'m> {
-    /// Distances that are known from an earlier motion of the same design are kept.
-    fn of(
-        analysis: &'m Analysis<'_>,
-        design: &[f64],
-        pairs: &'m [[ShapeId; 2]],
-        motion: &'m Motion,
-        known: Vec<Vec<ShapeDistance>>,
-    ) -> Self {
-        let at =
-            |samples: &[ShapeDistance], time: f64| samples.binary_search_by(|s| s.time.total_cmp(&time)).ok();
-        let is_new = |k: &usize| known.first().is_none_or(|s| at(s, motion.times[*k]).is_none());
-        let posed = PosedMotion::of(analysis, design, motion);
-        let mut samples = posed.distances(pairs, (0..motion.len()).filter(is_new));
-        for (samples, mut known) in samples.iter_mut().zip(known) {
-            known.retain(|s| motion.times.binary_search_by(|t| t.total_cmp(&s.time)).is_ok());
-            samples.append(&mut known);
-            samples.sort_by(|a, b| a.time.total_cmp(&b.time));
-        }
-        Self { posed, motion, pairs, size: analysis.model().size(), samples }
-    }
-
-    /// Greatest rate of the distance of a pair of surfaces between any of their points at time k, m/s, and the radius
-    /// of the smaller ball around one of them, m. `None` for other pairs: the distance of two convex cores has one pair
-    /// of features at a time, and its rate is continuous.
-    fn fastest(&self, p: usize, k: usize) -> Option<(f64, f64)> {
-        let PosedMotion { model, motion, fixed } = &self.posed;
-        let shapes = self.pairs[p];
+    /// Relative motion of two shapes at time k; `None` for other than surfaces, since the distance of two convex cores
+    /// has one pair of features at a time, and its rate is continuous.
+    fn reach(&self, shapes: [ShapeId; 2], k: usize) -> Option<Reach> {
+        let Self { model, motion, fixed } = self;
         let is_concave =
             |s: ShapeId| matches!(model.shapes[s.0].kind, ShapeKind::Mesh { .. } | ShapeKind::Ring { .. });
         if !shapes.into_iter().any(is_concave) {
             return None;
         }
-        let [Some(first), Some(second)] = shapes.map(|s| match model.shapes[s.0].bodies(model)[..] {
-            [body] => Some(motion.at(k).body(body.0)),
-            _ => None,
-        }) else {
-            return None;
+        let state = |s: ShapeId| {
+            let [body] = model.shapes[s.0].bodies(model)[..] else { return None };
+            Some(motion.at(k).body(body.0))
         };
+        let (first, second) = (state(shapes[0])?, state(shapes[1])?);
         let placed = PlacedShapes { model, fixed, bodies: &MovingBodies(motion.at(k)) };
         let balls = shapes.map(|s| placed.ball(s));
         let (centre, radius) = if balls[0].1 <= balls[1].1 { balls[0] } else { balls[1] };
         let at = |body: &BodyState| body.v + body.omega.cross(centre - body.r);
         let speed = (at(&second) - at(&first)).norm() + (second.omega - first.omega).norm() * radius;
-        Some((speed, radius))
+        Some(Reach { speed, radius })
+    }
+}
+
+/// Distances of all pairs at the times of a motion that were solved so far.
+struct Curves<'m> {
+    pairs: &'m [[ShapeId; 2]],
+    /// Size of the mechanism, m.
+    size: f64,
+    times: Vec<f64>,
+    /// Per pair and time.
+    samples: Vec<Vec<ShapeDistance>>,
+    /// The same; `None` for pairs whose distance has a continuous rate.
+    reaches: Vec<Vec<Option<Reach>>>,
+}
+
+/// Motion of two surfaces relative to each other at one time.
+#[derive(Clone, Copy)]
+struct Reach {
+    /// Greatest rate of the distance between any of their points, m/s.
+    speed: f64,
+    /// Radius of the smaller ball around one of them, m.
+    radius: f64,
+}
+
+impl<'m> Curves<'m> {
+    fn new(model: &'m Model, pairs: &'m [[ShapeId; 2]]) -> Self {
+        let none = vec![Vec::new(); pairs.len()];
+        let reaches = vec![Vec::new(); pairs.len()];
+        Self { pairs, size: model.size(), times: Vec::new(), samples: none, reaches }
+    }
+
+    /// Adds the times of a motion of the design that are not known yet.
+    fn add(&mut self, analysis: &Analysis<'_>, design: &[f64], motion: &Motion) {
+        let new: Vec<usize> =
+            (0..motion.len()).filter(|k| index_of(&self.times, motion.times[*k]).is_none()).collect();
+        let posed = PosedMotion::of(analysis, design, motion);
+        let found = posed.distances(self.pairs, new.iter().copied());
+        for (n, k) in new.into_iter().enumerate() {
+            let time = motion.times[k];
+            let place = self.times.partition_point(|t| *t < time);
+            self.times.insert(place, time);
+            for (p, shapes) in self.pairs.iter().enumerate() {
+                self.samples[p].insert(place, found[p][n]);
+                self.reaches[p].insert(place, posed.reach(*shapes, k));
+            }
+        }
     }
 
     /// Times within intervals in which a pair may be nearer than at any time so far, or touch unseen, since other parts
     /// of its shapes may pass each other there.
     fn unseen(&self, p: usize, is_level: &dyn Fn(usize) -> bool) -> Vec<f64> {
-        let (times, samples) = (&self.motion.times, &self.samples[p]);
+        let (times, samples, reaches) = (&self.times, &self.samples[p], &self.reaches[p]);
         let Some(last) = samples.len().checked_sub(1) else { return Vec::new() };
         let span = times[last] - times[0];
         let least = samples.iter().map(|s| s.distance[0]).fold(f64::INFINITY, f64::min).max(0.0);
         let mut add = Vec::new();
-        let Some(mut before) = self.fastest(p, 0) else { return add };
         for k in 0..last {
-            let Some(after) = self.fastest(p, k + 1) else { return add };
-            let (speed, radius) = (SPEEDS * before.0.max(after.0), after.1);
-            before = after;
+            let (Some(before), Some(after)) = (reaches[k], reaches[k + 1]) else { continue };
+            let (speed, radius) = (SPEEDS * before.speed.max(after.speed), after.radius);
             let h = times[k + 1] - times[k];
             let [from, to] = [samples[k].distance, samples[k + 1].distance];
             // The distance changes by no more than the shapes move.
@@ -490,7 +500,7 @@ impl<'m> Curves<'m> {
             let bends = [(rise - 4.0 * from[1] - 2.0 * to[1]) / h, (4.0 * to[1] + 2.0 * from[1] - rise) / h];
             let error = (bends[0] - from[2]).abs().max((bends[1] - to[2]).abs()) * h * h;
             if speed * h > PASSING * radius || !(error <= SMOOTH * speed * h) {
-                add.extend([0.25, 0.5, 0.75].map(|part| times[k] + part * h));
+                add.extend(pieces(times[k], times[k + 1]));
             }
         }
         add
@@ -500,17 +510,13 @@ impl<'m> Curves<'m> {
     /// example, which is equally deep all the time. Rates there are those of either way out, and indicate nothing.
     fn plateaus(&self) -> Vec<Vec<Plateau>> {
         let of_pair = |samples: &Vec<ShapeDistance>| {
-            let same = |a: &usize, b: &usize| {
-                (samples[*a].distance[0] - samples[*b].distance[0]).abs() <= FLAT * self.size
-            };
-            let steps: Vec<usize> = (0..samples.len()).collect();
             // Two equal distances may be those on both sides of a minimum, unless their rates are zero.
             let is_still = |k: &usize| samples[*k].distance[1..] == [0.0; 2];
-            let runs = steps
-                .chunk_by(same)
-                .filter(|run| run.len() > 2 || run.len() == 2 && run.iter().all(is_still));
-            let is_deep = |run: &&[usize]| run.iter().any(|k| samples[*k].is_deep());
-            runs.filter(|run| !is_deep(run)).map(|run| self.plateau(samples, run, None)).collect()
+            let is_long = |run: &[usize]| run.len() > 2 || run.len() == 2 && run.iter().all(is_still);
+            let is_deep = |run: &[usize]| run.iter().any(|k| samples[*k].is_deep());
+            let steps: Vec<usize> = (0..samples.len()).collect();
+            let runs = self.equal(samples, &steps).filter(|run| is_long(run) && !is_deep(run));
+            runs.map(|run| self.plateau(samples, run, None)).collect()
         };
         self.samples.iter().map(of_pair).collect()
     }
@@ -519,21 +525,28 @@ impl<'m> Curves<'m> {
     /// short one may be seen at one time only.
     fn overlaps(&self) -> Vec<Vec<Plateau>> {
         let of_pair = |samples: &Vec<ShapeDistance>| {
-            let steps: Vec<usize> = (0..samples.len()).collect();
             // Beside the time of contact there may be times at which the same distance is one of shapes that touch.
-            let same = |a: &usize, b: &usize| {
-                (samples[*a].distance[0] - samples[*b].distance[0]).abs() <= FLAT * self.size
-            };
-            let runs = steps.chunk_by(same);
+            let steps: Vec<usize> = (0..samples.len()).collect();
+            let runs = self.equal(samples, &steps);
             let deep = |run: &[usize]| run.iter().copied().find(|k| samples[*k].is_deep());
             runs.filter_map(|run| Some(self.plateau(samples, run, Some(deep(run)?)))).collect()
         };
         self.samples.iter().map(of_pair).collect()
     }
 
-    /// The part of the motion of these samples, of which one overlaps at a depth that is not known.
+    /// Runs of consecutive samples with the same distance.
+    fn equal<'s>(
+        &self,
+        samples: &'s [ShapeDistance],
+        steps: &'s [usize],
+    ) -> impl Iterator<Item = &'s [usize]> {
+        let flat = FLAT * self.size;
+        steps.chunk_by(move |a, b| (samples[*a].distance[0] - samples[*b].distance[0]).abs() <= flat)
+    }
+
+    /// The part of the motion of a run of samples; `deep` is one that overlaps at a depth that is not known.
     fn plateau(&self, samples: &[ShapeDistance], run: &[usize], deep: Option<usize>) -> Plateau {
-        let times = &self.motion.times;
+        let times = &self.times;
         let (first, last) = (run[0], run[run.len() - 1]);
         let around = [first.saturating_sub(1), (last + 1).min(samples.len() - 1)];
         let value = samples[first].distance[0];
@@ -554,7 +567,7 @@ impl<'m> Curves<'m> {
     }
 
     fn locate_pair(&self, p: usize, plateaus: &[Plateau], located: &mut Located) {
-        let (times, samples) = (&self.motion.times, &self.samples[p]);
+        let (times, samples) = (&self.times, &self.samples[p]);
         let Some(last) = samples.len().checked_sub(1) else { return };
         let span = times[last] - times[0];
         let value = |k: usize| samples[k].distance[0];
@@ -654,7 +667,7 @@ impl<'m> Curves<'m> {
                     event(times[k], EventKind::Minimum(MinimumPlace::Inside));
                 } else {
                     for [a, b] in [[times[k - 1], times[k]], [times[k], times[k + 1]]] {
-                        add.extend((1..PIECES).map(|n| a + (b - a) * n as f64 / PIECES as f64));
+                        add.extend(pieces(a, b));
                     }
                 }
             }
@@ -682,7 +695,7 @@ impl<'m> Curves<'m> {
                 let step = -d / rate;
                 let t = times[near] + step - 0.5 * LOCATED * span * step.signum();
                 add.extend(Some(t).filter(|t| times[k] < *t && *t < times[k + 1]));
-                add.extend([0.25, 0.5, 0.75].map(|part| times[k] + part * (times[k + 1] - times[k])));
+                add.extend(pieces(times[k], times[k + 1]));
                 continue;
             }
             let polynomial = |t: f64| curve.at(k, t)[0];
@@ -691,13 +704,29 @@ impl<'m> Curves<'m> {
                 let middle = 0.5 * (low + high);
                 if (polynomial(middle) > 0.0) == (a > 0.0) { low = middle } else { high = middle }
             }
-            // The middle is for distances that jump between the two, as that of meshes may where they begin to overlap:
-            // the polynomial does not converge to the jump.
-            add.extend([0.5 * (low + high), 0.5 * (times[k] + times[k + 1])]);
+            add.push(0.5 * (low + high));
+            if times[k + 1] - times[k] > SAME_TIME * span {
+                add.push(0.5 * (times[k] + times[k + 1]));
+            }
         }
         located.events.extend(events);
         located.add.extend(add);
     }
+}
+
+fn sort_times(times: &mut Vec<f64>) {
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+}
+
+/// Index of a time among sorted ones.
+fn index_of(times: &[f64], time: f64) -> Option<usize> {
+    times.binary_search_by(|t| t.total_cmp(&time)).ok()
+}
+
+/// Times that divide an interval into [`PIECES`].
+fn pieces(from: f64, to: f64) -> impl Iterator<Item = f64> {
+    (1..PIECES).map(move |n| from + (to - from) * n as f64 / PIECES as f64)
 }
 
 /// A distance that changes less than this fraction of the mechanism's size over a motion is constant: round-off of

@@ -213,17 +213,29 @@ fn far_out_times(
 
 /// Times of a solution, by number, whose derivatives those of a metric depend on; `None` if all of them may.
 pub(super) fn derivative_times(solution: &Solution, metric: &Metric) -> Option<Vec<usize>> {
+    // Those of an extremum: both ends of its interval, or of the two where it is at a time.
+    let of_extremum = |sign: f64| {
+        let (y, x) = curves_at(solution, metric)?;
+        let Some((_, time)) = extreme(metric, &y, &x, sign) else { return Some(Vec::new()) };
+        let times = &y.times[..y.values.len()];
+        let [first, after] = [times.partition_point(|t| *t < time), times.partition_point(|t| *t <= time)];
+        Some(if y.orders == 1 && metric.window.is_none() {
+            (first..after).collect()
+        } else {
+            (first.saturating_sub(1)..=after).collect()
+        })
+    };
     match metric.take {
         Reduction::Change => Some(vec![0, solution.motion.len().saturating_sub(1)]),
         Reduction::Value(at) if solution.motion.len() > 1 => {
             let crossing = curves_at(solution, metric).and_then(|(y, x)| crossings(&y, &x, at).next());
             Some(crossing.map_or(Vec::new(), |(k, _)| vec![k, k + 1]))
         }
+        Reduction::Greatest => of_extremum(1.0),
+        Reduction::Least => of_extremum(-1.0),
+        Reduction::Range => Some([of_extremum(1.0)?, of_extremum(-1.0)?].concat()),
         Reduction::Value(_)
         | Reduction::Slope(_)
-        | Reduction::Least
-        | Reduction::Greatest
-        | Reduction::Range
         | Reduction::Mean
         | Reduction::Integral
         | Reduction::Rms(_)

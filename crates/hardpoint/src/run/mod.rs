@@ -42,7 +42,7 @@ pub use metric::{
 };
 pub use nearest::{NearestAdmissible, nearest_admissible};
 pub use proof::{ClearanceProof, ClearanceProver, ProofFailure};
-pub use request::{Progress, Run};
+pub use request::{MetricUse, Progress, Run};
 pub use second::SecondDerivatives;
 pub use sink::Sink;
 pub use solution::{Solution, StreamSummary};

@@ -2,12 +2,13 @@
 //!
 //! A metric is taken at few times, and depends on few measures. At an equilibrium the kernel solves the sensitivities
 //! of each output time by themselves, and those of measures along single forces and drivers one direction at a time, so
-//! that a run for its metrics leaves out the others.
+//! that a run for metrics leaves out the others.
 
 use crate::measure::is_formula;
 use crate::model::{Metric, Model, OutputSource, Reduction};
 
 use super::metric::{derivative_times, solution_of};
+use super::request::MetricUse;
 use super::solution::Solution;
 
 /// Results that metrics or single outputs of a model depend on, at the times of a solution.
@@ -17,29 +18,38 @@ pub(crate) struct NeededResults {
     at: Vec<bool>,
     /// The same for measures along single forces and drivers.
     curved_at: Vec<bool>,
-    /// Per measure: true if a metric is taken of it or over it, or if it is an output that counts.
+    /// Per measure: true if a metric that counts is taken of it or over it, or if it is an output that counts.
     measures: Vec<bool>,
-    /// True if the values of all measures count, and only the derivatives of some.
-    all_values: bool,
 }
 
 impl NeededResults {
-    /// Needs of metrics that depend on the output times alone; `None` if a metric depends on values.
-    pub fn of_times(model: &Model) -> Option<Self> {
-        let all_change = model.metrics.iter().all(|metric| matches!(metric.take, Reduction::Change));
+    /// Needs of metrics with these uses that depend on the output times alone; `None` if one depends on values.
+    pub fn of_times(model: &Model, uses: &[MetricUse]) -> Option<Self> {
+        let is_change = |(metric, _): (&Metric, _)| matches!(metric.take, Reduction::Change);
         let last = model.times.len().saturating_sub(1);
-        all_change.then(|| Self::of(model, model.times.len(), |_| Some(vec![0, last])))
+        let needs = || Self::of(model, uses, model.times.len(), |_, _| Some(vec![0, last]));
+        used(model, uses).all(is_change).then(needs)
     }
 
-    /// Needs of all metrics at the times of a solution, whose values are known.
-    pub fn of_solution(model: &Model, solution: &Solution) -> Self {
+    /// Needs of metrics with these uses at the times of a solution, whose values are known.
+    pub fn of_solution(model: &Model, uses: &[MetricUse], solution: &Solution) -> Self {
         let solution = solution_of(solution);
-        Self::of(model, solution.motion.len(), |metric| derivative_times(solution, metric))
+        Self::of(model, uses, solution.motion.len(), |metric, metric_use| {
+            let is_extremum =
+                matches!(metric.take, Reduction::Least | Reduction::Greatest | Reduction::Range);
+            let of_all = is_extremum && metric_use == MetricUse::Candidates;
+            if of_all { None } else { derivative_times(solution, metric) }
+        })
+    }
+
+    /// Needs of the values of metrics with these uses, at all output times.
+    pub fn of_values(model: &Model, uses: &[MetricUse]) -> Self {
+        Self::of(model, uses, model.times.len(), |_, _| None)
     }
 
     /// Needs of some outputs at all output times.
     pub fn of_outputs(model: &Model, outputs: &[OutputSource]) -> Self {
-        let mut needs = Self { all_values: false, ..Self::none(model, model.times.len()) };
+        let mut needs = Self::none(model, model.times.len());
         let mut is_curved = false;
         outputs.iter().for_each(|output| is_curved |= needs.add(model, *output));
         needs.at.fill(true);
@@ -52,7 +62,6 @@ impl NeededResults {
             at: vec![false; steps],
             curved_at: vec![false; steps],
             measures: vec![false; model.measures.len()],
-            all_values: true,
         }
     }
 
@@ -69,20 +78,30 @@ impl NeededResults {
     }
 
     /// Needs at this number of times; `times` returns those of a metric, or `None` if all count.
-    fn of(model: &Model, steps: usize, times: impl Fn(&Metric) -> Option<Vec<usize>>) -> Self {
+    fn of(
+        model: &Model,
+        uses: &[MetricUse],
+        steps: usize,
+        times: impl Fn(&Metric, MetricUse) -> Option<Vec<usize>>,
+    ) -> Self {
         let mut needs = Self::none(model, steps);
-        for metric in &model.metrics {
+        for (metric, metric_use) in used(model, uses) {
             let mut is_curved = false;
             for output in [Some(metric.of), metric.over].into_iter().flatten() {
                 is_curved |= needs.add(model, output);
             }
-            let times = times(metric).unwrap_or_else(|| (0..steps).collect());
+            let times = times(metric, metric_use).unwrap_or_else(|| (0..steps).collect());
             for k in times.into_iter().filter(|k| *k < steps) {
                 needs.at[k] = true;
                 needs.curved_at[k] |= is_curved;
             }
         }
         needs
+    }
+
+    /// True if no sensitivities count.
+    pub fn is_of_values(&self) -> bool {
+        !self.at.contains(&true)
     }
 
     /// True if sensitivities count at output time k.
@@ -95,13 +114,14 @@ impl NeededResults {
         self.curved_at[k]
     }
 
-    /// True if the derivatives of this measure count.
+    /// True if this measure counts.
     pub fn measure(&self, m: usize) -> bool {
         self.measures[m]
     }
+}
 
-    /// True if the value of this measure counts.
-    pub fn value(&self, m: usize) -> bool {
-        self.all_values || self.measures[m]
-    }
+/// Metrics of a model that count, with their uses.
+fn used<'m>(model: &'m Model, uses: &'m [MetricUse]) -> impl Iterator<Item = (&'m Metric, MetricUse)> {
+    let uses = uses.iter().copied().chain(std::iter::repeat(MetricUse::Derivative));
+    model.metrics.iter().zip(uses).filter(|(_, metric_use)| *metric_use != MetricUse::Unused)
 }

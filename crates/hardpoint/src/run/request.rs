@@ -58,6 +58,7 @@ use super::walk::Scope;
 pub struct Run<'r> {
     pub(super) design: &'r [f64],
     pub(super) outputs: Option<&'r [OutputSource]>,
+    pub(super) metrics: Option<&'r [MetricUse]>,
     pub(super) scope: Scope,
     pub(super) threads: NonZero<usize>,
     pub(super) progress: Box<dyn FnMut(Progress) -> ControlFlow<()> + 'r>,
@@ -70,6 +71,7 @@ impl<'r> Run<'r> {
         Self {
             design: &[],
             outputs: None,
+            metrics: None,
             scope: Scope::of_one(true, true),
             threads: NonZero::<usize>::MIN,
             progress: Box::new(|_| ControlFlow::Continue(())),
@@ -90,11 +92,11 @@ impl<'r> Run<'r> {
         Self { scope: Scope { sensitivities: false, ..self.scope }, ..self }
     }
 
-    /// Requests of the sensitivities those that [metrics](super::metrics), [misfits](super::misfits) and
-    /// [peaks](super::peaks) of the model depend on. With equilibrium the run leaves out all others, which are NaN; the
-    /// results of these functions are the same.
-    pub fn for_metrics(self) -> Self {
-        Self { scope: Scope { for_metrics: true, ..self.scope }, ..self }
+    /// Requests the metrics with these uses; those without an entry are used with their derivative. With equilibrium the
+    /// run leaves out measures and sensitivities that they do not depend on, which are NaN; [metrics](super::metrics),
+    /// [misfits](super::misfits) and, of those whose candidates are used, [peaks](super::peaks) are the same.
+    pub fn for_metrics(self, uses: &'r [MetricUse]) -> Self {
+        Self { metrics: Some(uses), ..self }
     }
 
     /// Requests of the measures and points these alone. The run leaves out other measures that take more than the
@@ -139,6 +141,17 @@ impl fmt::Debug for Run<'_> {
         let mut out = f.debug_struct("Run");
         out.field("design", design).field("scope", scope).field("threads", threads).finish_non_exhaustive()
     }
+}
+
+/// Use of a metric by the caller of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MetricUse {
+    /// Not used.
+    Unused,
+    /// Its value and derivative, and its misfits.
+    Derivative,
+    /// These, and, of a maximum, minimum or range, all candidates ([`peaks`](super::peaks)).
+    Candidates,
 }
 
 /// Progress of a run.

@@ -30,8 +30,6 @@ use super::sink::{NullSink, Sink, hand_over};
 pub(crate) struct Scope {
     pub sensitivities: bool,
     pub measures: bool,
-    /// True if of the sensitivities those that metrics depend on are enough.
-    pub for_metrics: bool,
     /// Total number of designs, this one included; it decides whether a program saves time.
     pub of_many: usize,
 }
@@ -39,7 +37,7 @@ pub(crate) struct Scope {
 impl Scope {
     /// Scope of a single design.
     pub fn of_one(sensitivities: bool, measures: bool) -> Self {
-        Self { sensitivities, measures, for_metrics: false, of_many: 1 }
+        Self { sensitivities, measures, of_many: 1 }
     }
 }
 
@@ -52,20 +50,14 @@ pub(crate) struct PreparedDesign {
     pub fields: Vec<DesignVelocity>,
     pub opens: Vec<Vec<JointDefect>>,
     pub scope: Scope,
-    /// Results that count: all of them if `None`. The derivatives of others are left out at an equilibrium, and of
-    /// measures during the motion of one driver.
+    /// Results that count: all of them if `None`.
     pub needs: Option<Arc<NeededResults>>,
 }
 
 impl PreparedDesign {
-    /// True if the derivatives of a measure are requested.
-    pub fn needs_derivatives_of(&self, measure: usize) -> bool {
+    /// True if a measure is requested.
+    pub fn needs_measure(&self, measure: usize) -> bool {
         self.needs.as_ref().is_none_or(|needs| needs.measure(measure))
-    }
-
-    /// True if the value of a measure is requested.
-    pub fn needs_value_of(&self, measure: usize) -> bool {
-        self.needs.as_ref().is_none_or(|needs| needs.value(measure))
     }
 }
 

@@ -97,7 +97,7 @@ impl Analysis<'_> {
         let of_motion = self.openings().is_none();
         let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
         let slopes = || {
-            let asked = (0..model.measures.len()).filter(|m| design.needs_value_of(*m));
+            let asked = (0..model.measures.len()).filter(|m| design.needs_measure(*m));
             Slopes::new(self.design_map(), topology, (&design.values, asked), sensitive, openings)
         };
         let mut slopes = measures.then(slopes).flatten();
@@ -119,7 +119,7 @@ impl Analysis<'_> {
         });
         if loads {
             let measures = load_measures(model);
-            let differentiates = sensitive && measures.iter().any(|m| design.needs_derivatives_of(*m));
+            let differentiates = sensitive && measures.iter().any(|m| design.needs_measure(*m));
             let solver =
                 LoadSolver::new(self.design_map(), topology, &design.values, measures, differentiates);
             walk.loads = Some(solver);
@@ -222,7 +222,7 @@ impl Analysis<'_> {
 /// Directions along which compliances and slopes at an equilibrium are derivatives: their derivatives by the variables
 /// are curvatures.
 fn derived_along(model: &Model, slopes: &Option<Slopes<'_>>, design: &PreparedDesign) -> Vec<Along> {
-    let is_needed = |m: usize| design.needs_derivatives_of(m);
+    let is_needed = |m: usize| design.needs_measure(m);
     let mut directions: Vec<Along> = Vec::new();
     for (_, measure) in model.measures.iter().enumerate().filter(|(m, _)| is_needed(*m)) {
         if let Some((_, force)) = measure.kind.compliance()
