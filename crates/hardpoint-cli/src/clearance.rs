@@ -4,6 +4,7 @@ use hardpoint::model::Grid;
 use hardpoint_file::ModelFile;
 use hardpoint_report::clearance::{self, ClearanceFact, GridClearanceFact};
 use hardpoint_report::diagnose;
+use hardpoint_report::figures::number;
 use hardpoint_study::grid::GridClearances;
 use serde_json::json;
 
@@ -96,6 +97,9 @@ fn clearance_in(
     } else {
         text::print(&format!("{}\n", text::bold(&file.model.name)));
         ClearanceFact::sentences(&facts).iter().for_each(|line| text::print(&format!("{line}\n")));
+        if let Some(end) = found.stop.as_ref().and_then(|stop| stop.last_time) {
+            text::print(&format!("All of this is until the motion ends, at t = {} s.\n", number(end)));
+        }
         ClearanceFact::table(&facts).iter().for_each(|table| text::print(&text::section(table)));
         written.iter().for_each(|path| text::print(&format!("\nwritten: {}\n", path.display())));
     }

@@ -230,8 +230,8 @@ record! {
     least: Option<f64> = least.map(|at| length(at.distance[0]));
     /// Distance that is required.
     min: Option<f64> = pair.min.map(length);
-    /// False if the least distance is below the required one.
-    kept: bool = !pair.min.is_some_and(below);
+    /// False if the least distance is below the required one, or not known.
+    kept: bool = least.is_some() && !pair.min.is_some_and(below);
     /// True if the distance is the same at all times.
     constant: bool = found.is_constant;
     /// Index of the least of the minima.
@@ -323,7 +323,7 @@ impl ClearanceFact {
     fn lines(&self) -> Vec<String> {
         let Self { clearance, shapes: [a, b], unit, .. } = self;
         let Some(lowest) = self.lowest() else {
-            return vec![format!("{clearance}: no output time was solved")];
+            return vec![format!("{clearance}: no distance of {a} and {b} was solved")];
         };
         let at = |time: f64, drivers: &str| {
             let drivers = if drivers.is_empty() { String::new() } else { format!(" ({drivers})") };

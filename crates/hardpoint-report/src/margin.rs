@@ -160,6 +160,7 @@ fn few(joints: &[String]) -> String {
 
 /// Names of joints that are written in the model file.
 pub(crate) fn named(model: &Model, joints: &[JointId]) -> Vec<String> {
-    let joints = joints.iter().map(|j| &model.joints[j.0]);
+    // Joints that place bodies of an elastic mechanism are not in its model.
+    let joints = joints.iter().filter_map(|j| model.joints.get(j.0));
     joints.filter(|j| !j.unnamed).map(|j| j.name.clone()).collect()
 }

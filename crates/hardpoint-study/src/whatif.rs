@@ -8,7 +8,7 @@ use hardpoint::model::{
     Change, DesignVariable, Dimension, End, HardpointId, JointId, Model, VariableId, change,
 };
 use hardpoint::run::{Analysis, Run, Solution};
-use hardpoint::sensitivity::{Admissibility, JointDefect, admissibility_at_design};
+use hardpoint::sensitivity::{Admissibility, JointDefect};
 use hardpoint::space::Vec3;
 
 use super::validity::linear_up_to;
@@ -73,7 +73,7 @@ pub fn what_if(analysis: &Analysis<'_>, today: Solution, change: &[f64]) -> What
         part: change.iter().enumerate().map(part).fold(0.0, f64::max),
         exact: analysis.solve(Run::new().at(&change).without_sensitivities()),
         bend: analysis.second(&[], std::slice::from_ref(&change), &[[0, 0]]),
-        opens: admissibility_at_design(model, &field),
+        opens: analysis.opens_along(&field),
         cannot_follow,
         change,
         today,

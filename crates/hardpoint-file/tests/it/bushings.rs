@@ -535,3 +535,75 @@ fn snapshot_all(name: &str, found: &[String]) {
         insta::assert_snapshot!(name, found.join("\n\n"));
     });
 }
+
+/// An arm on two coaxial joints under a load and a spring beside their axis. Each end is a type of joint with the
+/// directions in which it gives; `cut` requests that joint to be cut.
+fn arm([front, rear]: [(&str, &str); 2], is_turned: bool, cut: Option<&str>) -> String {
+    let axis = |kind: &str| match kind {
+        "spherical" => "",
+        _ => ", axis = { through = [\"f\", \"r\"] }",
+    };
+    let joint = |(name, at, (kind, _)): (&str, &str, (&str, &str))| {
+        let cut = if cut == Some(name) { ", cut = true" } else { "" };
+        let axis = axis(kind);
+        format!(
+            "{name} = {{ type = \"{kind}\", bodies = [\"ground\", \"arm\"], at = \"{at}\"{axis}{cut} }}\n"
+        )
+    };
+    let elastic = |(name, (_, gives)): (&str, (&str, &str))| match gives {
+        "" => String::new(),
+        gives => format!("e{name} = {{ type = \"elastic_joint\", joint = \"{name}\", {gives} }}\n"),
+    };
+    let mut joints = [("jf", "f", front), ("jr", "r", rear)].map(joint);
+    if is_turned {
+        joints.reverse();
+    }
+    format!(
+        "name = \"arm\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\n\
+         [hardpoints]\nf = [150, 0, 0]\nr = [-150, 0, 20]\nt = [0, 350, -10]\ns = [0, 200, 0]\nu = [0, 180, 300]\n\
+         [bodies]\narm = {{}}\n[joints]\n{}[points]\nt = {{ body = \"arm\", at = \"t\" }}\n[forces]\n{}{}\
+         sp = {{ type = \"spring\", from = {{ body = \"ground\", at = \"u\" }}, to = {{ body = \"arm\", at = \"s\" }}, \
+         stiffness = 40 }}\n\
+         l = {{ type = \"force\", at = \"t\", force = 2000, along = [-1, 0.8, 0.6] }}\n[equilibrium]\n[time]\nat = [0]\n",
+        joints.concat(),
+        elastic(("jf", front)),
+        elastic(("jr", rear)),
+    )
+}
+
+#[test]
+fn an_arm_turns_about_its_joints_whichever_are_elastic_first_or_cut() {
+    const ALONG: &str = "x = 5000, y = 5000, z = 600";
+    const ALL: &str = "x = 5000, y = 5000, z = 600, about_x = 30, about_y = 30";
+    // Places of `t`, mm, where the potential energy is least in rotations and translations that the joints leave:
+    // 1/2 sum k u^2 of the joints, 1/2 40 (L - L0)^2 of the spring, and -F . (t - t0).
+    let cases = [
+        ([("spherical", ALONG), ("spherical", ALONG)], Some([2.41669, 349.34241, 40.38341])),
+        ([("revolute", ALONG), ("spherical", ALONG)], Some([3.09968, 349.37124, 40.18129])),
+        ([("revolute", ALONG), ("spherical", "")], Some([3.34396, 349.25524, 40.15944])),
+        ([("revolute", ALL), ("spherical", "")], None),
+        ([("revolute", ALL), ("revolute", "")], Some([3.34396, 349.25524, 40.15944])),
+        ([("revolute", ALL), ("cylindrical", "")], Some([1.010589, 349.276548, 40.068009])),
+    ];
+    // Digits of the places above, mm.
+    const DIGITS: f64 = 1e-5;
+    for (joints, expected) in cases {
+        let mut first: Option<[f64; 3]> = None;
+        for is_turned in [false, true] {
+            for cut in [None, Some("jf"), Some("jr")] {
+                for formulation in [Formulation::Relative, Formulation::Absolute] {
+                    let text = arm(joints, is_turned, cut);
+                    let solution = solve(&model_of(&text), formulation);
+                    let place = ["t.x", "t.y", "t.z"].map(|of| 1e3 * value(&solution, 0, of));
+                    for (x, expected) in place.iter().zip(expected.into_iter().flatten()) {
+                        assert!((x - expected).abs() < DIGITS, "{place:?}\n{text}");
+                    }
+                    let first = *first.get_or_insert(place);
+                    for (x, first) in place.iter().zip(first) {
+                        assert!((x - first).abs() <= SAME * 350.0, "{place:?} {first:?}\n{text}");
+                    }
+                }
+            }
+        }
+    }
+}

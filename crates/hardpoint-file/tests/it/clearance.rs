@@ -2,7 +2,7 @@
 
 use hardpoint::Analysis;
 use hardpoint::model::Model;
-use hardpoint::run::{Clearances, MinimumPlace, PairClearance};
+use hardpoint::run::{ClearanceProof, Clearances, MinimumPlace, PairClearance};
 use hardpoint_file::parse;
 use serde_json::Value;
 
@@ -480,6 +480,104 @@ fn what_pierces_a_shape_overlaps_it() {
             let least = pair.least().unwrap().at;
             assert_near(least.distance[0] * 1e3, depth, &name);
             assert!(least.cores_meet || least.distance[0] < 0.0, "{name}");
+        }
+    }
+}
+
+/// A rod that turns within a solid at rest.
+fn rod_in(solid: &str, [p, q]: [[f64; 3]; 2], steps: usize) -> String {
+    format!(
+        "name = \"c\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntime = {{ end = 1.0, steps = {steps} }}\n[bodies]\narm = {{}}\n\
+         [joints.s]\ntype = \"revolute\"\nbodies = [\"ground\", \"arm\"]\naxis = [0.2, 0.3, 1]\nat = [-80, -90, 5]\n\
+         [drivers]\nd = {{ joint = \"s\", law = \"8*t\" }}\n[hardpoints]\nP = {p:?}\nQ = {q:?}\n[shapes]\n\
+         rod = {{ body = \"arm\", capsule = [\"P\", \"Q\"], radius = 4 }}\nsolid = {{ body = \"ground\", {solid} }}\n\
+         [clearances.c]\nbetween = [\"rod\", \"solid\"]\n[design]\nP = {{ move = \"P\", along = \"xyz\" }}\n"
+    )
+}
+
+#[test]
+fn the_deepest_point_between_two_faces_of_a_solid_has_a_depth_without_rates() {
+    // Depths of a rod whose deepest point is between two faces, at t = 0.05 s and for the drum at 0, mm: the greatest of
+    // the least distances of points of the rod from all faces.
+    let cases = [
+        ("box = [60, 40, 100]", [[-60.0, 10.0, 3.0], [60.0, -30.0, -4.0]]),
+        ("cylinder = [[0, 0, -30], [0, 0, 30]], radius = 30", [[-60.0, 10.0, 23.0], [60.0, -5.0, 4.0]]),
+    ];
+    for (solid, ends) in cases {
+        let mut all: Vec<f64> = Vec::new();
+        for steps in [7, 20, 40] {
+            let model = model_of(&rod_in(solid, ends, steps));
+            let found = Analysis::new(&model).unwrap().clearances(&[]);
+            let pair = pair(&model, &found, "c");
+            let tied = pair.curve.iter().filter(|at| at.distance[1].is_nan()).count();
+            assert!(tied > 0 && pair.curve.iter().all(|at| at.distance[0].is_finite()), "{solid}: {tied}");
+            assert!(pair.minima.len() < 5, "{solid}, {steps} steps: {} minima", pair.minima.len());
+            all.push(1e3 * pair.least().unwrap().at.distance[0]);
+        }
+        // Without rates a minimum is located to a millionth of the motion.
+        assert!(all.iter().all(|x| (x - all[0]).abs() < 1e-6), "{solid}: {all:?}");
+    }
+}
+
+#[test]
+fn rods_that_pass_through_each_other_are_as_deep_as_their_radii_at_any_output_times() {
+    for steps in [19, 20, 23, 40, 200] {
+        let model = model_of(&format!(
+            "name = \"c\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntime = {{ end = 1.0, steps = {steps} }}\n[bodies]\nslide = {{}}\n\
+             [joints.s]\ntype = \"translational\"\nbodies = [\"ground\", \"slide\"]\naxis = \"z\"\nat = [0, 0, 0]\n\
+             [drivers]\nd = {{ joint = \"s\", law = \"-20+40*t\" }}\n[hardpoints]\nP = [-50, 0, 0]\nQ = [50, 0, 0]\n\
+             A = [0, -50, 3]\nB = [0, 50, 3]\n[shapes]\nrod = {{ body = \"slide\", capsule = [\"P\", \"Q\"], radius = 4 }}\n\
+             bar = {{ body = \"ground\", capsule = [\"A\", \"B\"], radius = 5 }}\n\
+             [clearances.c]\nbetween = [\"rod\", \"bar\"]\nmin = 1\n"
+        ));
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        let pair = pair(&model, &found, "c");
+        let least = pair.least().unwrap_or_else(|| panic!("{steps} steps: {:?}", pair.contacts));
+        assert!(least.at.cores_meet, "{steps} steps: {least:?}");
+        assert!((least.at.distance[0] + 9e-3).abs() < 1e-8, "{steps} steps: {least:?}");
+        assert!((least.at.time - 0.575).abs() < 1e-6, "{steps} steps: {least:?}");
+        let times: Vec<f64> = pair.contacts.iter().map(|c| c.at.time).collect();
+        assert!(times.len() == 2, "{steps} steps: {times:?}");
+        assert_near(times[0], 0.35, "begins");
+        assert_near(times[1], 0.8, "ends");
+    }
+}
+
+#[test]
+fn a_motion_that_ends_early_has_the_same_clearances_up_to_its_end_at_any_output_times() {
+    let text = |steps: usize| {
+        format!(
+            "name = \"c\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntime = {{ end = 1.0, steps = {steps} }}\nplanar = \"xy\"\n\
+             hardpoints = {{ A = [0, 0], B = [60, 40], C = [140, 50], D = [100, 0], S = [43.1, 29.4] }}\n\
+             bodies = {{ ground = [\"A\", \"D\"], crank = [\"A\", \"B\"], coupler = [\"B\", \"C\"], rocker = [\"C\", \"D\"] }}\n\
+             drivers.motor = {{ joint = \"A\", law = \"360*t\" }}\n[shapes]\n\
+             coupler = {{ body = \"coupler\", capsule = [\"B\", \"C\"], radius = 4 }}\n\
+             stud = {{ body = \"ground\", sphere = \"S\", radius = 3 }}\n\
+             [clearances.c]\nbetween = [\"coupler\", \"stud\"]\nmin = 1\n"
+        )
+    };
+    let mut first: Option<(f64, Vec<f64>)> = None;
+    for steps in [4, 5, 30, 173] {
+        let model = model_of(&text(steps));
+        let analysis = Analysis::new(&model).unwrap();
+        let found = analysis.clearances(&[]);
+        let end = found.stop.as_ref().and_then(|stop| stop.last_time).unwrap();
+        let pair = pair(&model, &found, "c");
+        let least = pair.least().unwrap().at;
+        let contacts: Vec<f64> = pair.contacts.iter().map(|c| c.at.time).collect();
+        let mut prover = analysis.clearance_prover(&[]).unwrap();
+        // A claim above the least distance is refuted wherever that is.
+        let refuted = prover.prove(pair.shapes, least.distance[0] + 1e-6);
+        assert!(matches!(refuted, ClearanceProof::NotProved { .. }), "{steps} steps: {refuted:?}");
+        let (distance, times) = first.get_or_insert((least.distance[0], contacts.clone()));
+        // The end of the motion is a singular position: it is reached to the square root of round-off.
+        assert!(
+            (least.distance[0] - *distance).abs() < 1e-7,
+            "{steps} steps: {least:?}, {distance}, end {end}"
+        );
+        assert!(contacts.len() == times.len(), "{steps} steps: {contacts:?} {times:?}");
+        for (a, b) in contacts.iter().zip(times) {
+            assert!((a - *b).abs() < 1e-8, "{steps} steps: {contacts:?}");
         }
     }
 }

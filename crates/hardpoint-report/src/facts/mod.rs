@@ -331,7 +331,7 @@ fn bodies(model: &Model, topology: &Topology) -> Vec<BodyFact> {
     }
     let fact = |(b, joints): (usize, Vec<String>)| BodyFact {
         name: model.bodies[b].name.clone(),
-        placed_by: link_of[b].and_then(|l| l.joint).map(|j| joint_name(model, j)),
+        placed_by: link_of[b].and_then(|l| l.joint).and_then(|j| name_in_file(model, j)),
         carried_by: link_of[b].map_or(String::new(), |l| model.bodies[l.parent.0].name.clone()),
         joints,
     };
@@ -484,20 +484,23 @@ fn blocks(model: &Model, topology: &Topology, in_plane: &[RowId]) -> Vec<BlockFa
     let fact = |(k, block): (usize, &Block)| {
         let links = block.unknowns.iter().map(|&c| &topology[topology[c].link]);
         let mut joints: Vec<String> = links
-            .map(|link| match link.joint {
-                Some(j) => joint_name(model, j),
-                None => model.bodies[link.child.0].name.clone(),
+            .map(|link| {
+                let joint = link.joint.and_then(|j| name_in_file(model, j));
+                joint.unwrap_or_else(|| model.bodies[link.child.0].name.clone())
             })
             .collect();
         joints.dedup();
         let is_further_term = |c: &Closure| topology[c.first_row].is_term;
         let closures = block.closures.iter().map(|&c| &topology[c]);
         let closes = closures.filter(|c| !c.rows.is_empty() && !is_further_term(c));
-        let closes = closes.map(|c| match (c.driver, c.coupler) {
-            (Some(d), _) => model.drivers[d.0].name.clone(),
-            (None, Some(k)) => model.couplers[k].name.clone(),
-            (None, None) => joint_name(model, c.joint),
-        });
+        // An opening of an elastic mechanism is no driver of its model.
+        let driver = |c: &Closure| c.driver.and_then(|d| model.drivers.get(d.0)).map(|d| d.name.clone());
+        let coupler = |c: &Closure| c.coupler.map(|k| model.couplers[k].name.clone());
+        let joint = |c: &Closure| {
+            let name = name_in_file(model, c.joint);
+            name.unwrap_or_else(|| model.bodies[c.bodies[1].0].name.clone())
+        };
+        let closes = closes.map(|c| driver(c).or_else(|| coupler(c)).unwrap_or_else(|| joint(c)));
         let rows = block.closures.iter().flat_map(|&c| topology[c].row_ids());
         BlockFact {
             number: k + 1,
@@ -643,4 +646,9 @@ pub(crate) fn measures(model: &Model, units: Units) -> Vec<MeasureFact> {
 
 fn joint_name(model: &Model, joint: JointId) -> String {
     model.joints[joint.0].name.clone()
+}
+
+/// Name of a joint of the solved mechanism; `None` if it places a body of an elastic mechanism, and is not in its model.
+fn name_in_file(model: &Model, joint: JointId) -> Option<String> {
+    model.joints.get(joint.0).map(|j| j.name.clone())
 }

@@ -14,6 +14,9 @@ pub(crate) trait Bodies<T> {
     fn direction(&self, body: BodyId, e: Vec3<T>) -> Vec3<T>;
     /// The body's pose in plain numbers.
     fn pose(&self, body: BodyId) -> Pose;
+    /// True if two bodies move relative to each other out of the plane through a point with this unit normal; false for
+    /// bodies without rates.
+    fn leave_plane(&self, bodies: [BodyId; 2], at: Vec3, normal: Vec3) -> bool;
     /// Point of a body in plain numbers.
     fn place(&self, body: BodyId, s: Vec3) -> Vec3 {
         let Pose { rot, r } = self.pose(body);
@@ -37,6 +40,10 @@ impl<T: Real> Bodies<T> for [Pose<T>] {
     fn pose(&self, body: BodyId) -> Pose {
         self[body.0].value()
     }
+
+    fn leave_plane(&self, _: [BodyId; 2], _: Vec3, _: Vec3) -> bool {
+        false
+    }
 }
 
 /// Bodies of a motion, with rates. Body-fixed data are constant over time, so that points need a fraction of the
@@ -59,6 +66,10 @@ impl Bodies<Rates> for MovingBodies<'_> {
     #[inline(always)]
     fn pose(&self, body: BodyId) -> Pose {
         self.0.body(body.0).pose()
+    }
+
+    fn leave_plane(&self, bodies: [BodyId; 2], at: Vec3, normal: Vec3) -> bool {
+        leave_plane(bodies.map(|body| self.0.body(body.0)), at, normal)
     }
 }
 
@@ -118,6 +129,21 @@ impl Bodies<Dual<Rates>> for ChangingBodies {
     fn pose(&self, body: BodyId) -> Pose {
         self.at[body.0].0.pose()
     }
+
+    fn leave_plane(&self, bodies: [BodyId; 2], at: Vec3, normal: Vec3) -> bool {
+        leave_plane(bodies.map(|body| self.at[body.0].0), at, normal)
+    }
+}
+
+/// Part of a relative motion that is out of a plane above which it is no round-off.
+const OUT_OF_PLANE: f64 = 1e-6;
+
+/// True if two bodies move relative to each other out of the plane through a point with this unit normal.
+fn leave_plane([a, b]: [BodyState; 2], at: Vec3, normal: Vec3) -> bool {
+    let velocity = |body: &BodyState| body.v + body.omega.cross(at - body.r);
+    let (slides, turns) = (velocity(&b) - velocity(&a), b.omega - a.omega);
+    slides.dot(normal).abs() > OUT_OF_PLANE * slides.norm()
+        || turns.cross(normal).norm() > OUT_OF_PLANE * turns.norm()
 }
 
 /// A vector that is fixed in a body, with its rates: `omega x y` and `alpha x y + omega x (omega x y)`.

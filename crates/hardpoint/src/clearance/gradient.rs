@@ -104,7 +104,7 @@ impl DistanceGradient {
         shapes: [ShapeId; 2],
         near: &Nearest,
     ) -> Option<Self> {
-        if !near.distance.is_finite() {
+        if !near.distance.is_finite() || near.is_tied {
             return None;
         }
         let features = placed.features(shapes, near);

@@ -22,16 +22,20 @@ pub(crate) struct Nearest {
     pub(super) sign: f64,
     /// True if more than one pair of points is nearest, since lines or faces are parallel.
     pub is_parallel: bool,
+    /// True if other features are as deep: those that are deepest change with any motion, and the distance has no
+    /// derivatives.
+    pub is_tied: bool,
 }
 
 impl Nearest {
     /// The distance of the cores by the formula of these features, each placed and with the distance by which its core
     /// extends beyond it.
     pub fn distance_between<T: Real>(&self, [(a, less), (b, as_well)]: [(Placed<T>, T); 2]) -> T {
-        if self.sign == 0.0 {
-            return T::zero();
-        }
-        distance(&a, &b, self.points) * self.sign - less - as_well
+        let distance = match self.sign {
+            0.0 => T::zero(),
+            sign => distance(&a, &b, self.points) * sign - less - as_well,
+        };
+        if self.is_tied { distance.without_derivatives() } else { distance }
     }
 
     /// With the sign by which the formula gives this distance: a formula between points or lines is never negative,
@@ -55,6 +59,26 @@ impl Nearest {
         Self { points: [at; 2], distance: 0.0, sign: 0.0, ..self }
     }
 
+    /// True if two segments cross, and the distance is the way out of each other within their plane.
+    pub fn is_way_out_in_plane(&self) -> bool {
+        self.sign < 0.0
+    }
+
+    /// Segments that cross for a moment, on their way through each other: there is no way out within a plane that they
+    /// leave.
+    pub fn passing(self) -> Self {
+        Self { is_tied: true, ..self.overlapping(self.points[0]) }
+    }
+
+    /// With the mark of a tie if the deepest point is inside another core, and could move deeper along this tangent of
+    /// its own core: another feature of the other core is as near there.
+    pub(super) fn tied_along(self, tangent: Vec3) -> Self {
+        let [p, q] = self.points;
+        let slope = (q - p).dot(tangent).abs();
+        let is_tied = self.distance < 0.0 && slope > TIED * (q - p).norm() * tangent.norm();
+        Self { is_tied, ..self }
+    }
+
     pub(super) fn reversed(self) -> Self {
         let ([a, b], [p, q]) = (self.features, self.points);
         Self { features: [b, a], points: [q, p], ..self }
@@ -68,6 +92,11 @@ const SAMPLES: usize = 48;
 const HALVINGS: usize = 60;
 /// A place nearer to an end of a segment than this fraction of it is the end: a search stops short of it by round-off.
 const AT_END: f64 = 1e-10;
+/// Cosine between a core and the way out of another one above which the way out is not the shortest: searches find the
+/// deepest point to the square root of the resolution of its depth.
+const TIED: f64 = 1e-6;
+/// Depths that differ by less than this fraction of the size are the same: round-off.
+const SAME_DEPTH: f64 = 1e-11;
 /// Distance of two lines below which they lie in one plane, as a fraction of their size: round-off.
 const COPLANAR: f64 = 1e-11;
 
@@ -115,7 +144,7 @@ pub(crate) fn nearest(a: &Core, b: &Core) -> Nearest {
 }
 
 pub(super) fn found(features: [Feature; 2], points: [Vec3; 2], distance: f64) -> Nearest {
-    Nearest { features, points, distance, sign: 1.0, is_parallel: false }
+    Nearest { features, points, distance, sign: 1.0, is_parallel: false, is_tied: false }
 }
 
 /// The least of a function over [0, 1] that has one minimum.
@@ -326,7 +355,9 @@ fn crossing([a, b]: [Vec3; 2], [c, d]: [Vec3; 2], points: [Vec3; 2]) -> Nearest 
         ([Feature::Line, Feature::Point(1.0)], from_first(d)),
     ];
     let (features, depth) = ends.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a }).expect("four ends");
-    Nearest { sign: -1.0, ..found(features, points, -depth) }
+    let within = depth + SAME_DEPTH * (e.norm() + f.norm());
+    let is_tied = ends.iter().filter(|(_, other)| *other <= within).count() > 1;
+    Nearest { sign: -1.0, is_tied, ..found(features, points, -depth) }
 }
 
 /// Parallel segments that are beside each other: the middle of what they have in common.
@@ -490,7 +521,8 @@ pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
             | Feature::Facet(_) => false,
         };
     let own = if slides { Feature::Line } else { Feature::Point(t) };
-    Nearest { is_parallel, ..found([own, feature], [at(t), q], distance) }
+    let near = Nearest { is_parallel, ..found([own, feature], [at(t), q], distance) };
+    if is_inside && !slides { near.tied_along(b - a) } else { near }
 }
 
 /// True if the distance from the axis has its minimum at a place along a segment.
@@ -511,11 +543,13 @@ pub(super) fn along_circle(circle: &Circle, itself: Feature, from: impl Fn(Vec3)
         circle.centre + (x * cos + y * sin) * circle.radius
     };
     let apart = |turn: f64| from(at(turn)).distance;
-    let near = from(at(least_sampled(apart, circle.radius * TAU, true)));
+    let turn = least_sampled(apart, circle.radius * TAU, true);
+    let near = from(at(turn)).tied_along(at(turn + 0.25) - circle.centre);
     // Parallel circles and faces: all points of the circle are nearest.
     let is_level = |k: u8| (apart(f64::from(k) * 0.25) - near.distance).abs() <= PARALLEL * circle.radius;
     let is_parallel = (0..4).all(is_level);
-    Nearest { features: [itself, near.features[1]], is_parallel, ..near }
+    let is_tied = near.is_tied && !is_parallel;
+    Nearest { features: [itself, near.features[1]], is_parallel, is_tied, ..near }
 }
 
 /// The nearest points of two solid cylinders: of a rim of one and the other, or of both sides.

@@ -130,7 +130,11 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             with_core!() => None,
         });
         let (near, frame) = match (cores, views) {
-            ([Some(a), Some(b)], _) => return nearest(&a, &b),
+            ([Some(a), Some(b)], _) => {
+                let near = nearest(&a, &b);
+                let passes = near.is_way_out_in_plane() && self.leave_their_plane(shapes, [&a, &b], &near);
+                return if passes { near.passing() } else { near };
+            }
             ([Some(core), _], [_, Some((view, frame))]) => {
                 (core_and_surface(&moved(&core, frame.inverse()), view), frame)
             }
@@ -148,6 +152,15 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             (placed.value(), less.value())
         };
         near.signed([plain(0), plain(1)])
+    }
+
+    /// True if two segments that cross leave the plane that they are in.
+    fn leave_their_plane(&self, shapes: [ShapeId; 2], cores: [&Core; 2], near: &Nearest) -> bool {
+        let [Core::Segment([a, b]), Core::Segment([c, d])] = cores else { return false };
+        let carriers = shapes.map(|s| self.model.shapes[s.0].bodies(self.model));
+        let ([first], [second]) = (&carriers[0][..], &carriers[1][..]) else { return false };
+        let normal = (*b - *a).cross(*d - *c).unit();
+        normal.is_some_and(|n| self.bodies.leave_plane([*first, *second], near.points[0], n))
     }
 
     /// Distance of two shapes between these features: that of their cores minus both radii.

@@ -231,7 +231,8 @@ fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
     }
     let t = least_sampled(|t| view.nearest_to(at(t)).distance, (b - a).norm(), false);
     let near = view.nearest_to(at(t));
-    Nearest { features: [Feature::Point(t), near.features[1]], ..near }
+    let near = Nearest { features: [Feature::Point(t), near.features[1]], ..near };
+    if t > 0.0 && t < 1.0 { near.tied_along(b - a) } else { near }
 }
 
 /// True if a segment goes through a triangle.

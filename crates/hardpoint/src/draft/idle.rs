@@ -2,7 +2,8 @@
 
 use crate::constraint::Row;
 use crate::linalg::FullPivot;
-use crate::model::{BodyId, GROUND, IdleRotation, JointId, Model};
+use crate::model::element::ActsOn;
+use crate::model::{BodyId, GROUND, IdleRotation, JointId, Model, PointId};
 use crate::space::{Mat3, Twist, Vec3};
 
 /// Pivot, relative to the largest, below which a constraint is ignored.
@@ -41,12 +42,40 @@ impl Model {
             let is_ball = |j: &JointId| self.joints[j.0].kind.is_ball();
             let Some(ball) = joints.iter().copied().find(is_ball) else { continue };
             let Some(axis) = self.spin(&bodies, &joints, ball, &prescribed, size) else { continue };
+            if self.equilibrium.is_some() && self.is_turned_by_forces(&bodies, ball, axis) {
+                continue;
+            }
             let z = axis.any_perpendicular();
             let frame = Mat3 { cols: [axis.cross(z), z.cross(axis.cross(z)), z] };
             let fixed = &mut self.joints[ball.0];
             (fixed.kind, fixed.frames) = (&crate::joint::UNIVERSAL, [frame; 2]);
             self.idle.push(IdleRotation { bodies, joint: ball, axis });
         }
+    }
+
+    /// Returns true if a force may turn these bodies about an axis through this joint, so that their rotation is one of
+    /// equilibrium. Weights are left out: a rod whose centre of mass is beside its axis need not hang down.
+    fn is_turned_by_forces(&self, bodies: &[BodyId], ball: JointId, axis: Vec3) -> bool {
+        let size = self.size();
+        let centre = self.position(self.joints[ball.0].at[0]);
+        let is_beside = |p: PointId| {
+            let point = &self.points[p.0];
+            let lever = (self.position(point.at) - centre).cross(axis).norm();
+            bodies.contains(&point.body) && lever > ON_AXIS * size
+        };
+        let on_bodies = |acts_on: ActsOn| acts_on.bodies(self).into_iter().any(|b| bodies.contains(&b));
+        let forces = self.elements.iter().filter_map(|e| Some((e, e.kind.force(self)?.acts_on)));
+        forces.filter(|(_, acts_on)| on_bodies(*acts_on)).any(|(element, acts_on)| match acts_on {
+            ActsOn::Line(points) => points.into_iter().any(is_beside),
+            ActsOn::Points(points) => {
+                let turns = element.kind.elastic_law().is_some_and(|law| law.gives()[3..].contains(&true));
+                turns || points.into_iter().any(is_beside)
+            }
+            ActsOn::Point(point) => is_beside(point),
+            ActsOn::Wheel(_) | ActsOn::Body(_) => true,
+            // Along the other joints the bodies slide, or turn about the same axis as all that they are connected to.
+            ActsOn::Coordinate(..) | ActsOn::Joint(_) => false,
+        })
     }
 
     /// Returns the axis through the spherical joint about which these bodies can rotate while all others are fixed, if

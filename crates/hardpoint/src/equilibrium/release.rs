@@ -5,7 +5,9 @@ use crate::law::Law;
 use crate::model::element::Compliance;
 use crate::model::{BodyId, Driver, DriverId, GROUND, HardpointId, Joint, JointId, LoadMode, Model};
 use crate::space::Mat3;
-use crate::topology::{Formulation, OpenTree, Topology, TopologyError, dependence, open_tree};
+use crate::topology::{
+    CutReason, Formulation, JointRole, OpenTree, Topology, TopologyError, dependence, open_tree,
+};
 
 /// A mechanism whose elastic joints are open: drivers prescribe the openings.
 #[derive(Clone, Debug)]
@@ -56,19 +58,22 @@ pub(crate) fn release(
     };
     drive_all(&mut open, &elastic_joints);
     // Bodies that springs alone hold are placed by openings from ground.
-    let OpenTree { floating, .. } = open_tree(&open);
+    // The rows of some joints do not belong to single directions, so that they are no cut ones.
+    let uncut: Vec<JointId> = elastic_joints.iter().filter(|j| !j.2).map(|j| j.0).collect();
+    let OpenTree { floating, .. } = open_tree(&open, &uncut);
     for body in floating {
         float(&mut open, body);
     }
     drive_all(&mut open, &elastic_joints);
     // A joint that closes a loop of elastic joints leaves its directions to its force.
-    let OpenTree { cut, .. } = open_tree(&open);
-    for (joint, _, can_be_cut) in &elastic_joints {
-        if cut[joint.0] && !can_be_cut {
-            // Its rows do not belong to single directions.
-            let name = &model.joints[joint.0].name;
-            return Err(TopologyError::ElasticLoop { joint: *joint, joint_name: name.clone() });
-        }
+    let OpenTree { cut, .. } = open_tree(&open, &uncut);
+    if let Some(joint) = uncut.iter().copied().find(|joint| cut[joint.0]) {
+        let name = &model.joints[joint.0].name;
+        return Err(TopologyError::ElasticLoop { joint, joint_name: name.clone() });
+    }
+    // The tree stays the same whatever openings turn out to be determined.
+    for (joint, cut) in open.joints.iter_mut().zip(&cut) {
+        joint.cut |= cut;
     }
     elastic_joints.retain(|(joint, ..)| !cut[joint.0]);
     drive_all(&mut open, &elastic_joints);
@@ -92,7 +97,15 @@ pub(crate) fn release(
         std::mem::take(&mut open.drivers).into_iter().enumerate().collect();
     numbered.retain(|(d, _)| !depends.determined.contains(&DriverId(*d)));
     open.drivers = numbered.into_iter().map(|(_, driver)| driver).collect();
-    let topology = Topology::of_openings(&open, formulation)?;
+    let mut topology = Topology::of_openings(&open, formulation)?;
+    for (role, joint) in topology.roles.iter_mut().zip(&model.joints) {
+        if *role == JointRole::Cut(CutReason::Requested) && !joint.cut {
+            *role = JointRole::Cut(match formulation {
+                Formulation::Relative => CutReason::ClosesLoop,
+                Formulation::Absolute => CutReason::Absolute,
+            });
+        }
+    }
     let released = model.equilibrium.iter().flat_map(|e| e.released.iter().copied());
     let openings = released.chain((own.0..open.drivers.len()).map(DriverId)).collect();
     Ok((Released { model: open, openings }, topology))

@@ -139,6 +139,10 @@ impl<T: Real> Real for Dual<T> {
         Self { v: self.v.abs(), d: self.d * self.v.sign() }
     }
     #[inline(always)]
+    fn without_derivatives(self) -> Self {
+        Self { v: self.v.without_derivatives(), d: T::constant(f64::NAN) }
+    }
+    #[inline(always)]
     fn sign_or(self, next: Self) -> Self {
         Self::constant(self.v.sign_or(next.v))
     }

@@ -354,6 +354,12 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         self.times(self.sign().0[0])
     }
     #[inline(always)]
+    fn without_derivatives(self) -> Self {
+        let mut orders = [T::constant(f64::NAN); N];
+        orders[0] = self.0[0].without_derivatives();
+        Self(orders)
+    }
+    #[inline(always)]
     fn sign_or(self, next: Self) -> Self {
         Self::constant(self.0.into_iter().rev().fold(next.0[0], |next, x| x.sign_or(next)))
     }

@@ -105,6 +105,12 @@ pub trait Real:
         self
     }
 
+    /// This value with unknown derivatives, which are NaN, where it has a kink.
+    #[inline(always)]
+    fn without_derivatives(self) -> Self {
+        self
+    }
+
     /// This value to the power `exponent`.
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {

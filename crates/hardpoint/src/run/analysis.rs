@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use crate::design::DesignMap;
+use crate::design::{DesignMap, DesignVelocity};
 use crate::equilibrium::{Released, release};
 use crate::law::Law;
 use crate::load::{self, RecordedLoads};
@@ -236,7 +236,7 @@ impl<'m> Analysis<'m> {
         let mut design = self.design(&[]);
         let along = along(&self.model().whole(change));
         let field = self.design_map.field_along(&along, &design.values);
-        design.opens = vec![admissibility_at_design(self.solved_model(), &field)];
+        design.opens = vec![self.opens_along(&field)];
         design.fields = vec![field];
         let mut walk = Walk::new(self, &design, vec![false; self.model().bodies.len()]);
         walk.each(|_| ());
@@ -319,15 +319,17 @@ impl<'m> Analysis<'m> {
     pub(crate) fn opens(&self) -> &[Vec<JointDefect>] {
         self.opens.get_or_init(|| {
             let nominal = self.design_map.fields(&self.model().whole(&[]));
-            let own = self.model().joints.len();
-            let opened = |field| {
-                let mut opened = admissibility_at_design(self.solved_model(), field);
-                // What places a floating body is no joint of the user.
-                opened.retain(|defect| defect.joint.0 < own);
-                opened
-            };
-            nominal.iter().map(opened).collect()
+            nominal.iter().map(|field| self.opens_along(field)).collect()
         })
+    }
+
+    /// Joints of the model that a change of the nominal design opens if all bodies are fixed.
+    pub fn opens_along(&self, field: &DesignVelocity) -> Vec<JointDefect> {
+        let own = self.model().joints.len();
+        let mut opened = admissibility_at_design(self.solved_model(), field);
+        // What places a floating body is no joint of the user.
+        opened.retain(|defect| defect.joint.0 < own);
+        opened
     }
 
     /// Method that solves the smooth steps of the nominal motion, with or without measures.

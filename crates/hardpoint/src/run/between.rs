@@ -16,8 +16,8 @@ use crate::motion::mechanism::driver_units;
 
 use super::analysis::Analysis;
 use super::metric::{unresolved_times, window_times};
-use super::needed::NeededResults;
-use super::request::{MetricUse, Progress};
+use super::needed::{MetricUse, NeededResults};
+use super::request::Progress;
 use super::solution::Solution;
 use super::walk::{PreparedDesign, Scope};
 use super::window::Footprint;

@@ -230,11 +230,14 @@ impl Analysis<'_> {
         let mut times = self.times_within();
         let mut follows_all = model.equilibrium.is_some();
         for pass in 0..MOST_PASSES {
-            let motion = self.motion_at(&times, design, false).motion;
+            let Solution { motion, stop, .. } = self.motion_at(&times, design, false);
             follows_all |= pass > 0 && motion.len() < times.len();
             curves.add(self, design, &motion);
             let plateaus = plateaus.get_or_insert_with(|| curves.plateaus());
             located = curves.locate(plateaus, &curves.overlaps());
+            // A motion that ends early is followed up to its end.
+            let end = stop.and_then(|stop| stop.last_time).filter(|_| pass == 0);
+            located.add.extend(end.filter(|end| curves.times.last().is_some_and(|last| last < end)));
             if located.add.is_empty() {
                 break;
             }
@@ -596,11 +599,15 @@ impl<'m> Curves<'m> {
         let is_level = |k: usize| level(k).is_some();
         // Ends.
         let is_lowest = |k: usize, or: bool| level(k).map_or(or, |plateau| plateau.is_lowest);
-        if last > 0 && is_lowest(0, value(0) <= value(1) && !(samples[0].distance[1] < 0.0)) {
+        // Where there is no rate, or it is zero, the next distance decides.
+        let leads_down = |end: usize, next: usize, sense: f64| {
+            let rate = sense * samples[end].distance[1];
+            if rate.is_finite() && rate != 0.0 { rate < 0.0 } else { value(next) < value(end) }
+        };
+        if last > 0 && is_lowest(0, !leads_down(0, 1, 1.0)) {
             event(times[0], EventKind::Minimum(MinimumPlace::Start));
         }
-        let falls = value(last) <= value(last.saturating_sub(1)) && !(samples[last].distance[1] > 0.0);
-        if last > 0 && is_lowest(last - 1, falls) {
+        if last > 0 && is_lowest(last - 1, !leads_down(last, last - 1, -1.0)) {
             event(times[last], EventKind::Minimum(MinimumPlace::End));
         }
         for plateau in plateaus.iter().filter(|plateau| plateau.is_lowest && plateau.is_inside) {
@@ -658,17 +665,25 @@ impl<'m> Curves<'m> {
             let of_kink = |[time, other]: [f64; 2]| Event { pair: p, time, kink: Some(other), kind };
             located.events.extend(kinks.into_iter().map(of_kink));
         } else {
-            for k in 1..last {
-                let is_low = value(k) <= value(k - 1) && value(k) <= value(k + 1);
-                if !is_low || is_level(k - 1) || is_level(k) {
+            let steps: Vec<usize> = (0..=last).collect();
+            for run in self.equal(samples, &steps) {
+                let (first, end) = (run[0], run[run.len() - 1]);
+                if first == 0 || end == last || is_level(first - 1) || is_level(end) {
                     continue;
                 }
-                if times[k + 1] - times[k - 1] <= AT_REST * span {
-                    event(times[k], EventKind::Minimum(MinimumPlace::Inside));
-                } else {
-                    for [a, b] in [[times[k - 1], times[k]], [times[k], times[k + 1]]] {
-                        add.extend(pieces(a, b));
+                let (before, after) = (first - 1, end + 1);
+                if value(before) < value(first) || value(after) < value(end) {
+                    continue;
+                }
+                let is_narrow = times[after] - times[before] <= AT_REST * span;
+                match run.len() {
+                    1 if !is_narrow => {
+                        add.extend(pieces(times[before], times[first]));
+                        add.extend(pieces(times[first], times[after]));
                     }
+                    // On both sides of a minimum, or at the ends of a part in which the distance does not change.
+                    2 if !is_narrow => add.push(0.5 * (times[first] + times[end])),
+                    _ => event(times[first], EventKind::Minimum(MinimumPlace::Inside)),
                 }
             }
         }
@@ -708,6 +723,20 @@ impl<'m> Curves<'m> {
             if times[k + 1] - times[k] > SAME_TIME * span {
                 add.push(0.5 * (times[k] + times[k + 1]));
             }
+        }
+        // A distance may jump to its least value, which then is that of a solved time.
+        let lowest = (0..=last).reduce(|a, b| if value(b) < value(a) { b } else { a }).unwrap_or_default();
+        let found = events.iter().chain(located.events.iter().filter(|event| event.pair == p));
+        let minima = found.filter(|event| matches!(event.kind, EventKind::Minimum(_)));
+        let at_minimum = |event: &Event| index_of(times, event.time).map_or(f64::INFINITY, value);
+        let least = minima.map(at_minimum).fold(f64::INFINITY, f64::min);
+        if value(lowest) < least - FLAT * self.size {
+            let place = match lowest {
+                0 => MinimumPlace::Start,
+                k if k == last => MinimumPlace::End,
+                _ => MinimumPlace::Inside,
+            };
+            events.push(Event { pair: p, time: times[lowest], kink: None, kind: EventKind::Minimum(place) });
         }
         located.events.extend(events);
         located.add.extend(add);

@@ -41,8 +41,9 @@ pub use metric::{
     place_of,
 };
 pub use nearest::{NearestAdmissible, nearest_admissible};
+pub use needed::MetricUse;
 pub use proof::{ClearanceProof, ClearanceProver, ProofFailure};
-pub use request::{MetricUse, Progress, Run};
+pub use request::{Progress, Run};
 pub use second::SecondDerivatives;
 pub use sink::Sink;
 pub use solution::{Solution, StreamSummary};

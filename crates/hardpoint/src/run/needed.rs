@@ -8,8 +8,18 @@ use crate::measure::is_formula;
 use crate::model::{Metric, Model, OutputSource, Reduction};
 
 use super::metric::{derivative_times, solution_of};
-use super::request::MetricUse;
 use super::solution::Solution;
+
+/// Use of a metric by the caller of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MetricUse {
+    /// Not used.
+    Unused,
+    /// Its value and derivative, and its misfits.
+    Derivative,
+    /// These, and, of a maximum, minimum or range, all candidates ([`peaks`](super::peaks)).
+    Candidates,
+}
 
 /// Results that metrics or single outputs of a model depend on, at the times of a solution.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use crate::model::OutputSource;
 
+use super::needed::MetricUse;
 use super::solution::Solution;
 use super::walk::Scope;
 
@@ -141,17 +142,6 @@ impl fmt::Debug for Run<'_> {
         let mut out = f.debug_struct("Run");
         out.field("design", design).field("scope", scope).field("threads", threads).finish_non_exhaustive()
     }
-}
-
-/// Use of a metric by the caller of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MetricUse {
-    /// Not used.
-    Unused,
-    /// Its value and derivative, and its misfits.
-    Derivative,
-    /// These, and, of a maximum, minimum or range, all candidates ([`peaks`](super::peaks)).
-    Candidates,
 }
 
 /// Progress of a run.

@@ -28,9 +28,9 @@ pub(crate) struct Dependence {
     pub free_balls: Vec<JointId>,
 }
 
-/// Returns the tree of a mechanism in relative coordinates.
-pub(crate) fn open_tree(model: &Model) -> OpenTree {
-    let topology = choose_tree(model, Formulation::Relative);
+/// Returns the tree of a mechanism in relative coordinates, with these joints in it if there is room for them.
+pub(crate) fn open_tree(model: &Model, preferred: &[JointId]) -> OpenTree {
+    let topology = choose_tree(model, Formulation::Relative, preferred);
     OpenTree {
         cut: topology.roles.iter().map(|role| matches!(role, JointRole::Cut(_))).collect(),
         floating: topology.links.iter().filter(|l| l.joint.is_none()).map(|l| l.child).collect(),
@@ -42,7 +42,7 @@ pub(crate) fn open_tree(model: &Model) -> OpenTree {
 ///
 /// The rows are eliminated over the unknown coordinates first, then over the openings, always by the largest pivot.
 pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
-    let mut topology = choose_tree(model, Formulation::Relative);
+    let mut topology = choose_tree(model, Formulation::Relative, &[]);
     size::measure(model, &mut topology);
     let mut rows: Vec<BTreeMap<CoordinateId, f64>> = Vec::new();
     for row in design_jacobian(model, &topology) {
@@ -56,8 +56,11 @@ pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
         SetBy::Driver(d) => d >= first,
         SetBy::Block { .. } => false,
     };
+    // Entries are of size one; those that are small beside the largest of all are round-off, even if no larger ones of
+    // their columns remain.
+    let largest = rows.iter().flat_map(BTreeMap::values).fold(0.0, |most, x| f64::max(most, x.abs()));
     let unknown: Vec<CoordinateId> = topology.unknown_coordinates().collect();
-    let pivots = eliminate(&mut rows, |c| topology[c].is_unknown());
+    let pivots = eliminate(&mut rows, largest, |c| topology[c].is_unknown());
     let (mut free, mut free_balls) = (Vec::new(), Vec::new());
     for c in unknown.iter().filter(|c| !pivots.contains(c)) {
         let link = &topology[topology[*c].link];
@@ -71,27 +74,28 @@ pub(crate) fn dependence(model: &Model, first: DriverId) -> Dependence {
             None => free_balls.push(joint),
         }
     }
-    let determined = eliminate(&mut rows, is_opening).into_iter().filter_map(|c| match topology[c].set_by {
-        SetBy::Driver(d) => Some(d),
-        SetBy::Block { .. } => None,
-    });
+    let determined =
+        eliminate(&mut rows, largest, is_opening).into_iter().filter_map(|c| match topology[c].set_by {
+            SetBy::Driver(d) => Some(d),
+            SetBy::Block { .. } => None,
+        });
     Dependence { determined: determined.collect(), free, free_balls }
 }
 
 /// Eliminates rows over the columns that count, by the largest pivot, and removes them. Returns the columns of the
-/// pivots.
+/// pivots, none of which is small beside `largest`.
 fn eliminate(
     rows: &mut Vec<BTreeMap<CoordinateId, f64>>,
+    largest: f64,
     counts: impl Fn(CoordinateId) -> bool,
 ) -> Vec<CoordinateId> {
-    let (mut pivots, mut largest) = (Vec::new(), 0.0);
+    let mut pivots = Vec::new();
     loop {
         let entries = rows.iter().enumerate().flat_map(|(r, row)| row.iter().map(move |(c, x)| (r, *c, *x)));
         let candidates = entries.filter(|(_, c, _)| counts(*c));
         // Among equals the first one, so that the choice does not depend on round-off alone.
         let best = candidates.reduce(|best, next| if next.2.abs() > best.2.abs() { next } else { best });
         let Some((r, column, pivot)) = best else { break };
-        largest = f64::max(largest, pivot.abs());
         if !(pivot.abs() > RANK_TOLERANCE * largest) {
             break;
         }

@@ -19,8 +19,9 @@ const REQUESTED_CUT: usize = 6;
 /// Drivers of each joint, with the freedom of the joint that each prescribes.
 type DriversOf = Vec<Vec<(DriverId, Option<usize>)>>;
 
-/// Chooses the tree and lists links, coordinates and closures. Blocks are assigned later.
-pub(super) fn choose_tree(model: &Model, formulation: Formulation) -> Topology {
+/// Chooses the tree and lists links, coordinates and closures. Blocks are assigned later. `preferred` are joints that
+/// are in the tree if a tree has room for them.
+pub(super) fn choose_tree(model: &Model, formulation: Formulation, preferred: &[JointId]) -> Topology {
     let mut roles: Vec<JointRole> = model
         .joints
         .iter()
@@ -53,7 +54,7 @@ pub(super) fn choose_tree(model: &Model, formulation: Formulation) -> Topology {
     for (k, d) in model.drivers.iter().enumerate() {
         drivers_of[d.joint.0].push((DriverId(k), model.driven(d).freedom));
     }
-    let mut reachable = Reachable::new(model, &drivers_of, formulation);
+    let mut reachable = Reachable::new(model, &drivers_of, formulation, preferred);
     let mut first_orphan = 0;
     reachable.place(&mut depth, GROUND, 0);
     loop {
@@ -141,13 +142,22 @@ struct Reachable<'m> {
 }
 
 impl<'m> Reachable<'m> {
-    fn new(model: &'m Model, drivers_of: &DriversOf, formulation: Formulation) -> Self {
+    fn new(
+        model: &'m Model,
+        drivers_of: &DriversOf,
+        formulation: Formulation,
+        preferred: &[JointId],
+    ) -> Self {
         let mut joints_of = vec![Vec::new(); model.bodies.len()];
         if formulation == Formulation::Relative {
             for (k, j) in model.joints.iter().enumerate() {
                 let Some(freedoms) = j.kind.freedom_count() else { continue };
                 let driven = drivers_of[k].iter().filter(|d| d.1.is_some()).count();
-                let unknowns = if j.cut { REQUESTED_CUT } else { freedoms - driven };
+                let unknowns = match j.cut {
+                    true => REQUESTED_CUT,
+                    false if preferred.contains(&JointId(k)) => 0,
+                    false => freedoms - driven,
+                };
                 if unknowns < REQUESTED_CUT {
                     for (end, body) in j.bodies.iter().enumerate() {
                         joints_of[body.0].push((k, unknowns, end));
