@@ -806,8 +806,8 @@ fn a_limit_load_is_at_its_time_whatever_the_law_and_the_drivers_are_those_of_the
     }
 }
 
-/// A pendulum of 2 m that stands upright on a torsion spring of 100 N m/deg, under a force down that grows with this
-/// law in N, and a force across.
+/// An upright pendulum of 2 m on a torsion spring of 100 N m/deg, under a force down by this law in N, and a force
+/// across.
 fn upright(law: &str, across: f64, times: &str, size: f64) -> String {
     let [length, stiffness] = [2.0 * size, 100.0 * size];
     format!(

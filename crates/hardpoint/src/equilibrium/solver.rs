@@ -34,20 +34,20 @@ const LONGEST: f64 = 0.5;
 const SHORTEST: f64 = 1e-9;
 /// Maximum number of equilibria that a prediction uses.
 const PREDICTED_FROM: usize = 3;
-/// Maximum sum of the sizes of the weights of a prediction: 7 for uniform output times. A larger sum amplifies what the
-/// polynomial does not follow.
+/// Maximum sum of the sizes of the weights of a prediction: 7 for uniform output times. A larger sum amplifies what
+/// the polynomial does not follow.
 const AMPLIFIED: f64 = 8.0;
-/// Maximum error of a prediction, as a fraction of the distances between the equilibria that it connects: a larger one
-/// means that the output times do not resolve the path.
+/// Maximum error of a prediction, as a fraction of the distances between the equilibria that it connects: a larger
+/// one means that the output times do not resolve the path.
 const CONFIRMED: f64 = 0.1;
 /// Part of the stiffness along a step that the loads at its end leave, at least. If it falls further, it may vanish
 /// within the step, and the path turn.
 const LEFT_BY_LOADS: f64 = 0.5;
-/// Part of the stiffness at the ends of a step that is left in its middle, at least: between two equilibria of different
-/// branches the stiffness is negative.
+/// Part of the stiffness at the ends of a step that is left in its middle, at least: between two equilibria of
+/// different branches the stiffness is negative.
 const LEFT_IN_MIDDLE: f64 = 0.5;
-/// Length of a step, rad or sizes, within which no other branch is expected: a stop that the loads touch or leave changes
-/// the stiffness at once, however short the step.
+/// Length of a step, rad or sizes, within which no other branch is expected: a stop that the loads touch or leave
+/// changes the stiffness at once, however short the step.
 const NEAR: f64 = 1e-6;
 /// A pivot of the scaled stiffness below this holds nothing.
 const HOLDS_NOTHING: f64 = 1e-12;
@@ -224,8 +224,8 @@ impl<'a> EquilibriumSolver<'a> {
         Ok(())
     }
 
-    /// Time, drivers and loads after this part of the way to output time t, with the openings where they are. The way to
-    /// the first output time leads straight from the design configuration without loads; all others follow the laws.
+    /// Time, drivers and loads after this part of the way to output time t, with the openings where they are. The way
+    /// to the first output time leads straight from the design configuration without loads; others follow the laws.
     fn on_the_way(&self, one: &Stepper<'_>, t: f64, part: f64) -> (f64, Vec<f64>, GivenLoads) {
         let mut drivers = self.last.drivers.clone();
         let law = |d: &DriverId, time: f64| one.mechanism.parts.law(d.0, time)[0];
@@ -242,8 +242,8 @@ impl<'a> EquilibriumSolver<'a> {
         }
     }
 
-    /// Openings and stiffness at time t by the polynomial through the last equilibria, as many of them as do not amplify
-    /// what it does not follow.
+    /// Openings and stiffness at time t by the polynomial through the last equilibria; through fewer of them if it would
+    /// amplify what it does not follow.
     fn predicted(&self, t: f64) -> Option<Prediction> {
         let weights = |path: &[Passed]| -> Vec<f64> {
             let weight = |(i, passed): (usize, &Passed)| {
@@ -271,8 +271,8 @@ impl<'a> EquilibriumSolver<'a> {
         None
     }
 
-    /// Solves the equilibrium from a prediction. It continues the path if it confirms the prediction: the output times
-    /// resolve the path.
+    /// Solves the equilibrium from a prediction. It continues the path if it confirms the prediction: the output
+    /// times resolve the path.
     fn attempt_predicted(
         &mut self,
         one: &mut Stepper<'_>,
@@ -315,11 +315,11 @@ impl<'a> EquilibriumSolver<'a> {
             && (way <= NEAR || (found - predicted).abs() <= CONFIRMED * found.abs())
     }
 
-    /// Solves the equilibrium from the one that was accepted last. It continues the path if the equilibrium stays stable
-    /// from there to here: the stiffness is positive under the new loads before the openings change, at the end of their
-    /// change and, unless the first correction by it was nearly right, in the middle, and nowhere much smaller than
-    /// before and after. In a region where it is positive under all loads of the step there is one equilibrium for each
-    /// of them.
+    /// Solves the equilibrium from the one that was accepted last. It continues the path if the equilibrium stays
+    /// stable from there to here: the stiffness is positive under the new loads before the openings change, at the
+    /// end of their change and, unless the first correction by it was nearly right, in the middle, and nowhere much
+    /// smaller than before and after. In a region where it is positive under all loads of the step there is one
+    /// equilibrium for each of them.
     fn attempt(
         &mut self,
         one: &mut Stepper<'_>,
@@ -379,9 +379,9 @@ impl<'a> EquilibriumSolver<'a> {
         self.openings.iter().map(change).fold(0.0, f64::max)
     }
 
-    /// Corrects the openings of these drivers, from their position that was solved last, until they are in equilibrium
-    /// under these loads. The stiffness that was factored last serves for the first correction; it is predicted, or that
-    /// of the position. Returns the drivers after the first correction.
+    /// Corrects the openings of these drivers, from their position that was solved last, until they are in
+    /// equilibrium under these loads. The stiffness that was factored last serves for the first correction; it is
+    /// predicted, or that of the position. Returns the drivers after the first correction.
     fn correct(
         &mut self,
         one: &mut Stepper<'_>,
