@@ -242,8 +242,8 @@ impl<'a> EquilibriumSolver<'a> {
         }
     }
 
-    /// Openings and stiffness at time t by the polynomial through the last equilibria; through fewer of them if it would
-    /// amplify what it does not follow.
+    /// Openings and stiffness at time t by the polynomial through the last equilibria; through fewer of them if it
+    /// would amplify what it does not follow.
     fn predicted(&self, t: f64) -> Option<Prediction> {
         let weights = |path: &[Passed]| -> Vec<f64> {
             let weight = |(i, passed): (usize, &Passed)| {
