@@ -553,8 +553,8 @@ impl Edit<'_> {
         }
     }
 
-    /// Entry of `[design]` that makes a variable: its own, or the one of the point `P` for `P_x`; `None` if it is not in
-    /// this file.
+    /// Entry of `[design]` that makes a variable: its own, or the one of the point `P` for `P_x`; `None` if it is not
+    /// in this file.
     fn entry_of(&self, variable: &str) -> Option<String> {
         let has = |name: &str| self.document.get("design").and_then(|d| d.get(name)).is_some();
         let whole = variable.strip_suffix(['x', 'y', 'z']).and_then(|n| n.strip_suffix('_'));

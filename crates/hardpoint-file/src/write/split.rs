@@ -2,9 +2,9 @@
 
 use toml_edit::{Decor, DocumentMut, InlineTable, Item, Key, Table, TableLike, Value};
 
-/// Splits the entry of `[design]` that moves a point along several axes into one for each of `axes`, with all its other
-/// keys: `B` becomes `B_x`, `B_y` and `B_z`, the names of its variables. Order, layout and comments stay. Returns false,
-/// and changes nothing, if there is no such entry.
+/// Splits the entry of `[design]` that moves a point along several axes into one for each of `axes`, with all its
+/// other keys: `B` becomes `B_x`, `B_y` and `B_z`, the names of its variables. Order, layout and comments stay.
+/// Returns false, and changes nothing, if there is no such entry.
 ///
 /// ```text
 /// B = { move = "B", along = "xy", bounds = [-5, 5] }     # before
