@@ -124,7 +124,7 @@ fn failed(session: &Session, file: &ModelFile, request: &Request, error: &MapErr
     outcome
 }
 
-/// `NAME=FROM..TO`, in the unit of the driver unless another one is given.
+/// `NAME=FROM..TO`, in the unit of the driver unless another one is given; a unit at the end is that of both ends.
 fn range(session: &Session, file: &ModelFile, text: &str) -> Result<(String, [f64; 2]), Outcome> {
     let refuse = |why: &str| session.misunderstood(&format!("`--over {text}`: {why}"));
     let parts = text.split_once('=').and_then(|(name, ends)| Some((name.trim(), ends.split_once("..")?)));
@@ -133,9 +133,8 @@ fn range(session: &Session, file: &ModelFile, text: &str) -> Result<(String, [f6
     };
     let driver = Request::driver(&file.model, name).map_err(|error| session.refused(file, &error))?;
     let quantity = file.model.driven(&file.model.drivers[driver.0]).quantity;
-    let end =
-        |text: &str| crate::whatif::in_si(text.trim(), quantity, file.units).map_err(|why| refuse(&why));
-    Ok((name.to_owned(), [end(from)?, end(to)?]))
+    let ends = crate::whatif::range_in_si([from, to], quantity, file.units).map_err(|why| refuse(&why))?;
+    Ok((name.to_owned(), ends))
 }
 
 /// `[NAME=]NUMBER[UNIT]`; without a name it is that of all outputs with this unit, and without a unit that of all

@@ -234,6 +234,17 @@ pub fn in_si(text: &str, quantity: Quantity, units: Units) -> Result<f64, String
     }
 }
 
+/// Parses both ends of a range and converts them to SI. A unit after the second end is that of the first as well,
+/// unless that has a unit of its own: `-3..6deg` is from -3 deg to 6 deg.
+pub fn range_in_si([from, to]: [&str; 2], quantity: Quantity, units: Units) -> Result<[f64; 2], String> {
+    let [from, to] = [from.trim(), to.trim()];
+    let first = match (amount(from), amount(to)) {
+        (Some((_, "")), Some((_, unit))) => format!("{from} {unit}"),
+        _ => from.to_owned(),
+    };
+    Ok([in_si(&first, quantity, units)?, in_si(to, quantity, units)?])
+}
+
 /// Number and unit of a text, by the rules of the page's fields. The unit may be empty.
 pub fn amount(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
@@ -268,6 +279,25 @@ pub fn amount(text: &str) -> Option<(f64, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_unit_after_a_range_is_that_of_both_ends() {
+        let units = Units { length: LengthUnit::Millimetre, angle: AngleUnit::Radian };
+        let length = |from, to| range_in_si([from, to], Quantity::Length, units);
+        let angle =
+            |from, to| range_in_si([from, to], Quantity::Angle, units).map(|ends| ends.map(f64::to_degrees));
+        let near = |found: Result<[f64; 2], String>, expected: [f64; 2]| {
+            let found = found.unwrap();
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?} {expected:?}");
+        };
+        near(length("-1", "0.5in"), [-0.0254, 0.0127]);
+        near(length("-1", "0.5"), [-0.001, 0.0005]);
+        near(length("-1cm", "0.5in"), [-0.01, 0.0127]);
+        near(length("-1cm", "5"), [-0.01, 0.005]);
+        near(angle(" -3 ", " 6° "), [-3.0, 6.0]);
+        assert_eq!(length("-1", "5deg"), Err("it is a length, but deg is not a unit of length".to_owned()));
+        assert_eq!(length("a", "5mm"), Err("`a` is not a number with a unit".to_owned()));
+    }
 
     #[test]
     fn amounts_are_read_as_in_the_fields_of_the_page() {

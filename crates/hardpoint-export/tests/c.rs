@@ -476,3 +476,30 @@ fn the_example_compiles_for_a_controller_without_an_operating_system() {
         assert!(called.iter().all(is_known), "{compiler}: {called:?}");
     }
 }
+
+/// A four-bar without a link that turns fully: its crank reaches a limit position.
+const ROCKER: &str = r#"
+name = "rocker"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { A = [0, 0], B = [0, 60], C = [80, 70], D = [100, 0] }
+bodies = { ground = ["A", "D"], crank = ["A", "B"], coupler = ["B", "C"], rocker = ["C", "D"] }
+drivers.motor = { joint = "A", law = "200*t" }
+measures.angle = { type = "coordinate", joint = "D" }
+time = { end = 1, steps = 50 }
+"#;
+
+#[test]
+fn a_motion_that_ends_by_itself_is_reported_with_its_reason() {
+    let file = hardpoint_file::parse(ROCKER, "rocker.toml").unwrap_or_else(|e| panic!("{e}"));
+    let stop = Analysis::new(&file.model).unwrap().run().stop.unwrap();
+    let reported = |name: &str| {
+        let exported =
+            Format::named("c").unwrap().export_with(&file, name, ExportOptions::default()).unwrap();
+        exported.unsupported.into_iter().find(|u| u.kind == "motion").unwrap()
+    };
+    let motion = reported("rocker");
+    assert_eq!(stop.code(), "HP0401");
+    assert!(motion.name.starts_with("from t = "), "{}", motion.name);
+    assert!(motion.why.contains("HP0401") && !motion.why.contains("redundant"), "{}", motion.why);
+}

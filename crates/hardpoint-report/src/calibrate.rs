@@ -23,8 +23,9 @@ const FAR: f64 = 3.0;
 const LISTED: usize = 10;
 /// Correlation above which two variables are reported as a pair.
 const TOGETHER: f64 = 0.95;
-/// Number of standard errors within which the scatter of residuals agrees with the given standard deviations.
-const FITS: f64 = 4.0;
+/// Probability below which a scatter of residuals disagrees with the given standard deviations, on either side: that of
+/// a normal deviation of more than four standard deviations.
+const UNLIKELY: f64 = 3.17e-5;
 /// Largest posterior standard deviation, as a fraction of the prior one, of a variable that is learnt from the data:
 /// its variance is then at most half of the prior's, so that the data carry no less information than the prior.
 const LEARNT: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -295,6 +296,34 @@ record! {
     predicted: f64 = root_mean_square(&sigmas).unwrap_or_default();
 }
 
+/// Returns true if a chi square of n degrees of freedom is hardly ever so small, or so large.
+fn is_unlikely(chi_square: f64, freedom: usize) -> bool {
+    let below = chi_square_probability(chi_square, freedom);
+    below < UNLIKELY || 1.0 - below < UNLIKELY
+}
+
+/// Probability that a chi square of n degrees of freedom is at most `chi_square`: with a = n/2 and x = chi_square/2,
+/// P(a, x) = x^a exp(-x) / Gamma(a + 1) (1 + x/(a + 1) + x^2/((a + 1)(a + 2)) + ...).
+fn chi_square_probability(chi_square: f64, freedom: usize) -> f64 {
+    let (a, x) = (0.5 * freedom as f64, 0.5 * chi_square);
+    if !(x > 0.0) {
+        return 0.0;
+    }
+    // Gamma(a + 1) = a (a - 1) ... Gamma(1) or Gamma(1/2), Gamma(1) = 1, Gamma(1/2) = sqrt(pi)
+    let rest = if freedom % 2 == 0 { 0.0 } else { 0.5 * std::f64::consts::PI.ln() };
+    let log_gamma = rest + (0..freedom.div_ceil(2)).map(|k| (a - k as f64).ln()).sum::<f64>();
+    let (mut term, mut sum, mut k) = (1.0, 1.0, a);
+    // The terms grow up to k = x, then fall; their sum is below exp(x).
+    while term > f64::EPSILON * sum && sum.is_finite() {
+        k += 1.0;
+        term *= x / k;
+        sum += term;
+    }
+    let log = a * x.ln() - x - log_gamma + sum.ln();
+    // A sum beyond the range of numbers is one of a very large chi square.
+    if log.is_finite() { log.exp().min(1.0) } else { 1.0 }
+}
+
 fn root_mean_square(x: &[f64]) -> Option<f64> {
     (!x.is_empty()).then(|| (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt())
 }
@@ -506,8 +535,8 @@ impl CalibrateFacts {
 
     fn sentence(&self, of: &CalibrationInputs<'_>) -> String {
         let fit = match self.scatter.filter(|_| of.has_sigmas()) {
-            // The standard deviation from a chi square of n degrees of freedom is 1 within 1 / sqrt(2 n).
-            Some(s) if (s - 1.0).abs() * (2.0 * self.freedom as f64).sqrt() > FITS => {
+            // n s^2 is a chi square of n degrees of freedom.
+            Some(s) if is_unlikely(s * s * self.freedom as f64, self.freedom) => {
                 let than = if s > 1.0 {
                     "larger: the model is incomplete, or the measurements are less accurate"
                 } else {
@@ -770,4 +799,44 @@ fn together(covariance: &[Vec<f64>], variables: &[CalibratedVariable]) -> Vec<(S
     found.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
     found.truncate(LISTED);
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{chi_square_probability, is_unlikely};
+
+    /// Tolerance of probabilities: tables have six digits.
+    const TABLE: f64 = 1e-6;
+
+    #[test]
+    fn probabilities_of_chi_squares_are_those_of_tables() {
+        // Two degrees of freedom: 1 - exp(-x/2). One: the normal distribution within one and two standard deviations.
+        for x in [1e-9, 0.1, 1.0, 5.0, 60.0] {
+            let exact = -(-0.5 * x as f64).exp_m1();
+            assert!((chi_square_probability(x, 2) / exact - 1.0).abs() < 1e-12, "{x}");
+        }
+        let known = [
+            (1.0, 1, 0.682_689),
+            (4.0, 1, 0.954_500),
+            (14.067_140, 7, 0.95),
+            (18.307_038, 10, 0.95),
+            (70.064_895, 100, 0.01),
+            (1074.679_449, 1000, 0.95),
+        ];
+        for (x, n, expected) in known {
+            let found = chi_square_probability(x, n);
+            assert!((found - expected).abs() < TABLE, "{x} {n}: {found}");
+        }
+        assert_eq!(chi_square_probability(1e6, 3), 1.0);
+        assert_eq!(chi_square_probability(0.0, 3), 0.0);
+    }
+
+    #[test]
+    fn residuals_can_be_too_small_at_any_number_of_degrees_of_freedom() {
+        for n in [1, 2, 7, 8, 100, 100_000] {
+            let of = |s: f64| is_unlikely(s * s * n as f64, n);
+            let far = 6.0 / (2.0 * n as f64).sqrt();
+            assert!(of(6.5e-13) && of(1.0 + far) && !of(1.0) && !of(0.9) == (n < 1000), "{n}");
+        }
+    }
 }

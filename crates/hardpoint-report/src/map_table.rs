@@ -124,11 +124,11 @@ impl MapTableFact {
         lines.extend(self.drivers.iter().map(axis));
         lines.extend(self.outputs.iter().map(|output| {
             let error = |x: f64| rounded(x, DIGITS);
+            let unit = if output.unit == "1" { String::new() } else { format!(" {}", output.unit) };
             format!(
-                "  {}: error at most {} {} everywhere, proved ({} permitted)",
+                "  {}: error at most {}{unit} everywhere, proved ({} permitted)",
                 output.name,
                 error(output.proved_error),
-                output.unit,
                 error(output.permitted_error)
             )
         }));

@@ -632,8 +632,17 @@ impl SynthesisFacts {
         }
         let made = |t: &Option<TallyFact>| t.as_ref().map_or(0, |t| t.made);
         if made(&self.four_bars) + made(&self.slider_cranks) == 0 {
-            let why = "no linkage of the atlas comes near the path";
-            return Some((why.into(), "give more points where it bends, or fewer where it does not".into()));
+            let (why, help) = match self.aim {
+                "poses" => (
+                    "the dyads of these poses make no linkage of the requested type",
+                    "allow the other type in `linkages`, widen the regions, or change a pose a little",
+                ),
+                _ => (
+                    "no linkage of the atlas comes near the path",
+                    "give more points where it bends, or fewer where it does not",
+                ),
+            };
+            return Some((why.into(), help.into()));
         }
         let sum = |part: fn(&TallyFact) -> usize| {
             [&self.four_bars, &self.slider_cranks].into_iter().flatten().map(part).sum::<usize>()

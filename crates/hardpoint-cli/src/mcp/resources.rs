@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use crate::new::TEMPLATES;
 
-/// A document: name, title, and text.
+/// A document: name, title, and text. All are served but those for contributors.
 struct Document {
     name: &'static str,
     what: &'static str,
@@ -31,8 +31,18 @@ static DOCUMENTS: &[Document] = documents! {
     "sweep": "Sweeps over design variables";
     "calibration": "Fits to measured data";
     "synthesis": "Synthesis of linkages for poses or paths";
+    "maps": "Tables over drivers with a proved error";
     "import": "Formats of other programs that can be imported";
+    "export": "Formats of models and results that can be exported";
     "export-c": "Export as C code";
+    "export-fmi": "Export as an FMU (FMI 3.0)";
+    "machine-code": "Safety of the machine code that solves steps";
+    "performance": "Run times and instruction counts";
+    "scaling": "Sweeps on several machines";
+    "studio": "The page that shows and changes a model";
+    "python": "The Python package, in ten minutes";
+    "python-api": "Reference of the Python package";
+    "theory": "Equations, with their numbers and sources";
     "glossary": "Terms, with those of other programs";
     "agents": "The server for agents: tools, resources, clients";
     "editors": "The language server: features, editors";
@@ -80,4 +90,26 @@ pub fn read(uri: &str) -> Option<Value> {
     let name = uri.strip_prefix("hardpoint://templates/")?.strip_suffix(".toml")?;
     let template = TEMPLATES.iter().find(|t| t.name == name)?;
     Some(content("application/toml", template.text))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// Documents for contributors.
+    const OTHERS: [&str; 2] = ["development.md", "release.md"];
+
+    #[test]
+    fn all_documents_are_served_but_those_for_contributors() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
+        let names = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+        let names: Vec<String> = names.filter(|name| name.ends_with(".md")).collect();
+        assert!(names.len() > 20, "{names:?}");
+        for name in names {
+            let served = read(&format!("hardpoint://docs/{name}"));
+            assert_eq!(served.is_none(), OTHERS.contains(&name.as_str()), "{name}");
+        }
+    }
 }

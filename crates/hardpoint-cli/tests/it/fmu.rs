@@ -125,3 +125,34 @@ fn the_design_is_an_argument_only_where_there_is_motion() {
     assert!(shown.contains("`--design`: the format urdf does not contain the motion"), "{shown}");
     assert!(shown.ends_with("exit 2\n"), "{shown}");
 }
+
+#[test]
+fn names_outside_ascii_are_unique_in_a_unit_and_reported() {
+    let bench = Bench::with(&[]);
+    let model = r#"
+name = "crank"
+units = { length = "mm", angle = "deg" }
+planar = "xy"
+hardpoints = { O = [0, 0], A = [20, 5] }
+bodies = { ground = ["O"], crank = ["O", "A"] }
+drivers.motor = { joint = "O", law = "30*t" }
+points.A = { body = "crank", at = "A" }
+measures."α" = { type = "coordinate", joint = "O" }
+measures."β" = { type = "position", point = "A", along = "x" }
+time = { end = 1, steps = 4 }
+"#;
+    bench.put("greek.toml", model);
+    let shown = bench.shown(&["export", "greek.toml", "-o", "greek.fmu"]);
+    assert!(shown.ends_with("exit 0\n"), "{shown}");
+    assert!(shown.contains("name `β`: named __2 in the unit"), "{shown}");
+    let description = text(&contents(&bench, "greek.fmu"), "modelDescription.xml");
+    let names: Vec<&str> = description
+        .lines()
+        .filter(|line| line.contains("<Float64"))
+        .map(|line| line.split_once(" name=\"").unwrap().1.split('"').next().unwrap())
+        .collect();
+    let different: std::collections::HashSet<&str> = names.iter().copied().collect();
+    assert_eq!(different.len(), names.len(), "{names:?}");
+    assert!(names.iter().all(|name| name.is_ascii()), "{names:?}");
+    assert!(description.contains("Measure β"), "{description}");
+}

@@ -9,6 +9,7 @@ mod gltf;
 mod golden;
 mod import;
 mod joint_limits;
+mod map;
 mod new;
 mod optimize;
 mod pdf;

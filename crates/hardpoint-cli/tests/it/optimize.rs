@@ -276,7 +276,7 @@ fn two_files_are_compared_in_every_case_that_both_have() {
     assert!(String::from_utf8_lossy(&no_measure.stderr).contains("did you mean `toe`?"));
 }
 
-/// A crank whose tip is to reach a height; one entry makes two variables with one pair of bounds.
+/// A crank whose tip is to reach a height.
 const CRANK: &str = r#"
 name = "crank"
 units = { length = "mm", angle = "deg" }
@@ -297,12 +297,15 @@ fn a_design_that_cannot_be_saved_is_rejected_before_the_search() {
     let bench = Bench::with(&[]);
     bench.put(
         "one.toml",
-        &format!("{CRANK}design.A = {{ move = \"A\", along = \"xy\", bounds = [-9, 9] }}\n"),
+        &format!(
+            "{CRANK}design.x = {{ markers = [{{ joint = \"pivot\", on = \"j\", move = [1, 0, 0] }}], bounds = [-9, 9] }}\n\
+             design.y = {{ markers = [{{ joint = \"pivot\", on = \"j\", move = [0, 1, 0] }}], bounds = [-9, 9] }}\n"
+        ),
     );
     let output = bench.run(&["optimize", "one.toml", "--save", "found.toml"]);
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{text}");
-    assert!(text.contains("HP0505") && text.contains("bounds of its own"), "{text}");
+    assert!(text.contains("HP0505") && text.contains("away from its hardpoint"), "{text}");
     assert!(!text.contains("objective"), "the search has not started: {text}");
     assert!(!bench.path("found.toml").exists());
     // Without saving it is searched.
@@ -329,6 +332,27 @@ fn the_saved_design_is_read_and_solved_again_and_tables_show_values() {
     assert_eq!((&json["saved"]["why"], &json["status"]), (&serde_json::Value::Null, &"optimal".into()));
     assert!(json["saved"]["margin"].as_f64().unwrap() > 0.0);
     assert!(json["variables"][0]["nominal"].as_f64().unwrap() == 20.0);
+}
+
+#[test]
+fn an_entry_of_two_variables_is_split_where_they_move_differently() {
+    let bench = Bench::with(&[]);
+    let template = root().join("crates/hardpoint-cli/templates/four-bar.toml");
+    bench.put("four-bar.toml", &std::fs::read_to_string(template).unwrap());
+    let output = bench.run(&["optimize", "four-bar.toml", "--save", "found.toml", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["saved"]["why"], serde_json::Value::Null, "{json}");
+    let text = bench.text("found.toml");
+    assert!(text.contains("\nB_x = { move = \"B\", along = \"x\", bounds = ["), "{text}");
+    // The saved design meets the goal.
+    assert_eq!(bench.run(&["run", "found.toml", "--case", "turn", "-o", "run"]).status.code(), Some(0));
+    let metrics = bench.json("run/summary.json")["metrics"].clone();
+    let swing = metrics.as_array().unwrap().iter().find(|m| m["name"] == "swing").unwrap()["value"].clone();
+    assert!((swing.as_f64().unwrap() - 50.0).abs() < 1e-6, "{swing}");
+    let output = bench.run(&["whatif", "four-bar.toml", "--set", "B.x=1", "--save", "moved.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(bench.text("moved.toml").contains("\nB = [36, 60] "), "{}", bench.text("moved.toml"));
 }
 
 #[test]

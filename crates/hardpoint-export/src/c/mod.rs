@@ -147,8 +147,15 @@ pub fn generate(
     let design = arguments(&analysis, &step, out);
     let ReplayResult { end, undefined, residual } = replay(model, &step, formulas.as_ref());
     if let Some(t) = end {
-        let why = "the formulas end there: the motion goes on with other rows of redundant constraints, or through a \
-                   change point";
+        // A motion that ends before that time by itself is that of the model.
+        let stop =
+            analysis.solve(Run::new().without_sensitivities()).stop.filter(|stop| stop.failed_time <= t);
+        let why = match stop {
+            Some(stop) => format!("the motion of the model ends: {} ({})", stop.headline(model), stop.code()),
+            None => "the formulas end there: the motion goes on with other rows of redundant constraints, or through a \
+                     change point"
+                .to_owned(),
+        };
         out.report_unsupported("motion", &format!("from t = {t} s"), why);
     }
     for measure in &measures.list {

@@ -5,6 +5,8 @@
 
 mod description;
 
+use std::collections::HashSet;
+
 use hardpoint::joint::Quantity;
 use hardpoint::model::Dimension;
 use hardpoint_file::ModelFile;
@@ -96,7 +98,11 @@ fn write(
         }
         other => other?,
     };
-    let variables = variables(file, &source);
+    let names = structured_names(file, &source);
+    for (name, renamed) in names.renamed() {
+        out.report_unsupported("name", name, format!("named {renamed} in the unit, where names are ASCII"));
+    }
+    let variables = variables(file, &source, &names);
     let described = description::Description { file, source: &source, variables: &variables };
     let token = token(&[&source.header, &source.source, &described.text("")]);
     let name = source.name.clone();
@@ -118,8 +124,60 @@ fn write(
     Ok(())
 }
 
+/// Names in the unit, in the order of the model: drivers, design variables, measures, and bodies without ground.
+struct StructuredNames {
+    drivers: Vec<(String, String)>,
+    design: Vec<(String, String)>,
+    measures: Vec<(String, String)>,
+    bodies: Vec<(String, String)>,
+}
+
+impl StructuredNames {
+    /// Names with characters that names of units do not have, with those in the unit.
+    fn renamed(&self) -> impl Iterator<Item = (&str, &str)> {
+        let all = [&self.drivers, &self.design, &self.measures, &self.bodies].into_iter().flatten();
+        all.filter(|(name, _)| plain(name) != *name).map(|(name, unit)| (name.as_str(), unit.as_str()))
+    }
+}
+
+fn structured_names(file: &ModelFile, source: &MotionSource) -> StructuredNames {
+    let model = &file.model;
+    StructuredNames {
+        drivers: unique(model.drivers.iter().map(|driver| driver.name.as_str())),
+        design: unique(source.design.iter().map(|of| model.variables[*of].name.as_str())),
+        measures: unique(source.measures.iter().map(|measure| measure.output.name.as_str())),
+        bodies: unique(model.bodies.iter().skip(1).map(|body| body.name.as_str())),
+    }
+}
+
+/// Names with those in the unit. The grammar of names has ASCII characters only, so `_` replaces others; among equal
+/// ones, `_2`, `_3` and so on follow, as in the C source.
+fn unique<'n>(names: impl Iterator<Item = &'n str> + Clone) -> Vec<(String, String)> {
+    let mut taken: HashSet<String> =
+        names.clone().filter(|name| plain(name) == **name).map(str::to_owned).collect();
+    let one = |name: &str| {
+        let plain = plain(name);
+        let mut unit = plain.clone();
+        if plain != name {
+            let mut count = 1;
+            while !taken.insert(unit.clone()) {
+                count += 1;
+                unit = format!("{plain}_{count}");
+            }
+        }
+        (name.to_owned(), structured(&unit))
+    };
+    names.map(one).collect()
+}
+
+/// Name in the characters that names of units have.
+fn plain(name: &str) -> String {
+    let plain = |c: char| if (c.is_ascii_graphic() || c == ' ') && c != '`' { c } else { '_' };
+    name.chars().map(plain).collect()
+}
+
 /// All variables, in the order of their value references.
-fn variables(file: &ModelFile, source: &MotionSource) -> Vec<Variable> {
+fn variables(file: &ModelFile, source: &MotionSource, names: &StructuredNames) -> Vec<Variable> {
     let model = &file.model;
     let dimension = |quantity: Quantity| Dimension::from(quantity);
     let mut list = vec![Variable {
@@ -132,7 +190,7 @@ fn variables(file: &ModelFile, source: &MotionSource) -> Vec<Variable> {
         let quantity = dimension(model.driven(driver).quantity);
         for (order, of) in ["position", "velocity", "acceleration"].into_iter().enumerate() {
             list.push(Variable {
-                name: format!("drivers.{}.{of}", structured(&driver.name)),
+                name: format!("drivers.{}.{of}", names.drivers[k].1),
                 about: match order {
                     0 => format!("Position of driver {} from the design configuration", driver.name),
                     _ => format!("{} of driver {}", ["", "Velocity", "Acceleration"][order], driver.name),
@@ -145,7 +203,7 @@ fn variables(file: &ModelFile, source: &MotionSource) -> Vec<Variable> {
     for (k, of) in source.design.iter().enumerate() {
         let variable = &model.variables[*of];
         list.push(Variable {
-            name: format!("design.{}", structured(&variable.name)),
+            name: format!("design.{}", names.design[k].1),
             about: format!("Change of design variable {} from the value of the model", variable.name),
             role: Role::Design(k),
             dimension: dimension(variable.quantity),
@@ -154,7 +212,7 @@ fn variables(file: &ModelFile, source: &MotionSource) -> Vec<Variable> {
     for (k, measure) in source.measures.iter().enumerate() {
         for (order, of) in ["value", "rate", "acceleration"].into_iter().enumerate().take(measure.orders()) {
             list.push(Variable {
-                name: format!("measures.{}.{of}", structured(&measure.output.name)),
+                name: format!("measures.{}.{of}", names.measures[k].1),
                 about: match order {
                     0 => format!("Measure {}", measure.output.name),
                     _ => {
@@ -168,13 +226,13 @@ fn variables(file: &ModelFile, source: &MotionSource) -> Vec<Variable> {
     }
     for (k, body) in model.bodies.iter().skip(1).enumerate() {
         list.push(Variable {
-            name: format!("bodies.{}.position", structured(&body.name)),
+            name: format!("bodies.{}.position", names.bodies[k].1),
             about: format!("Origin of body {} in global axes", body.name),
             role: Role::BodyPosition(k),
             dimension: Dimension::LENGTH,
         });
         list.push(Variable {
-            name: format!("bodies.{}.rotation", structured(&body.name)),
+            name: format!("bodies.{}.rotation", names.bodies[k].1),
             about: format!(
                 "Rotation matrix of body {}: its columns are the axes in global components",
                 body.name
@@ -186,7 +244,7 @@ fn variables(file: &ModelFile, source: &MotionSource) -> Vec<Variable> {
     list
 }
 
-/// Name by the structured naming convention: identifiers that are separated by dots, and quoted ones.
+/// ASCII name by the structured naming convention: identifiers that are separated by dots, and quoted ones.
 fn structured(name: &str) -> String {
     let is_identifier = |part: &str| {
         part.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
@@ -195,8 +253,8 @@ fn structured(name: &str) -> String {
     if name.split('.').all(is_identifier) {
         return name.to_owned();
     }
-    let plain = |c: char| if c.is_ascii_graphic() || c == ' ' { c } else { '_' };
-    let escaped = name.chars().map(plain).collect::<String>().replace('\\', "\\\\").replace('\'', "\\'");
+    let escape = |c: char| if matches!(c, '\\' | '\'' | '"') { format!("\\{c}") } else { c.to_string() };
+    let escaped: String = name.chars().map(escape).collect();
     format!("'{escaped}'")
 }
 
@@ -267,6 +325,15 @@ mod tests {
         assert_eq!(structured("front.camber_2"), "front.camber_2");
         assert_eq!(structured("wheel-centre"), "'wheel-centre'");
         assert_eq!(structured("2nd gear's"), "'2nd gear\\'s'");
+        assert_eq!(structured("1\"-pin"), "'1\\\"-pin'");
+    }
+
+    #[test]
+    fn names_outside_ascii_stay_different() {
+        let names = ["α", "β", "_", "größe", "gr__e_2", "grüße", "a`b", "α β"];
+        let unit: Vec<String> = unique(names.into_iter()).into_iter().map(|(_, unit)| unit).collect();
+        let expected = ["__2", "__3", "_", "gr__e", "gr__e_2", "gr__e_3", "a_b", "'_ _'"];
+        assert_eq!(unit, expected);
     }
 
     #[test]

@@ -357,7 +357,13 @@ fn moves(
         }
         Some(word) if axis_named(word).is_none() => {
             let known = ["x", "y", "z", "-x", "-y", "-z", "xyz"];
-            r.unknown_word(f.value.span(), &fields.subject("along"), word, &known);
+            let d = r.unknown_word(f.value.span(), &fields.subject("along"), word, &known);
+            // Two coordinates, as in a plane.
+            if word.len() == 2 && word.chars().all(|c| ('x'..='z').contains(&c)) {
+                d.help = Some(
+                    "did you mean `xyz`? Only a model with `planar` has points of two coordinates".into(),
+                );
+            }
             None
         }
         _ => {

@@ -79,12 +79,19 @@ impl Reader<'_> {
     }
 
     /// HP0106: an unknown word.
-    pub fn unknown_word(&mut self, at: Range<usize>, subject: &Subject, word: &str, known: &[&str]) {
+    pub fn unknown_word(
+        &mut self,
+        at: Range<usize>,
+        subject: &Subject,
+        word: &str,
+        known: &[&str],
+    ) -> &mut Diagnostic {
         let message = format!("{} cannot be `{}`", subject.name, shown(word));
         let close = closest(word, known.iter().copied());
         let d = self.report("HP0106", at, message);
         d.notes.push(format!("possible: {}", quoted(known)));
         d.help = close.map(|c| format!("did you mean `{c}`?"));
+        d
     }
 
     /// HP0109: an invalid value of the right type.

@@ -396,7 +396,9 @@ impl Reader<'_> {
         let word = kind.get_ref().as_str();
         let known = kinds.iter().find(|k| word == Some(k.0.name));
         match (word, known) {
-            (Some(word), None) => self.unknown_word(kind.span(), &subject, word, &types),
+            (Some(word), None) => {
+                self.unknown_word(kind.span(), &subject, word, &types);
+            }
             (None, _) => self.wrong(kind, &subject, &format!("the name of {one} type")),
             _ => {}
         }

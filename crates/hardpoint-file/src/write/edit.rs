@@ -11,6 +11,8 @@ use crate::read::{ModelFile, parsed};
 use crate::values::{Diagnostic, Diagnostics, Folder, Severity, quoted};
 use hardpoint_table::Units;
 
+use super::split::split;
+
 /// Tolerance of written numbers in units of round-off, which covers the sums, products and roots between a number of
 /// the file and of the changed design: 5.200000000000001 is written as 5.2.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
@@ -488,32 +490,16 @@ impl Edit<'_> {
     /// parameters are absolute.
     fn bounds(&mut self) {
         let model = &self.file.model;
-        let mut done: Vec<(String, f64)> = Vec::new();
+        self.split_entries();
+        let mut done: Vec<String> = Vec::new();
         for (variable, value) in model.variables.iter().zip(self.values.clone()) {
             let Some([low, high]) = variable.bounds else { continue };
-            let whole = variable.name.strip_suffix(['x', 'y', 'z']).and_then(|n| n.strip_suffix('_'));
-            let has = |name: &str| self.document.get("design").and_then(|d| d.get(name)).is_some();
-            let all = whole.filter(|whole| !has(&variable.name) && has(whole));
-            let entry = all.unwrap_or(&variable.name).to_owned();
-            if !has(&entry) {
+            let Some(entry) = self.entry_of(&variable.name) else { continue };
+            // Variables of one entry move alike.
+            if done.contains(&entry) {
                 continue;
             }
-            match done.iter().find(|d| d.0 == entry) {
-                Some((_, other)) if *other != value => {
-                    let name = format!("`{}`", variable.name);
-                    let why = format!(
-                        "`{entry}` makes three variables with one pair of bounds, and they move differently"
-                    );
-                    self.refuse(
-                        &name,
-                        why,
-                        "write three variables along x, y and z, each with bounds of its own",
-                    );
-                    continue;
-                }
-                Some(_) => continue,
-                None => done.push((entry.clone(), value)),
-            }
+            done.push(entry.clone());
             if value == 0.0 {
                 continue;
             }
@@ -539,6 +525,40 @@ impl Edit<'_> {
                 }
             }
         }
+    }
+
+    /// Splits entries of several variables, if these have bounds and move differently.
+    fn split_entries(&mut self) {
+        let model = &self.file.model;
+        let mut shared: Vec<(String, Vec<usize>)> = Vec::new();
+        for (k, variable) in model.variables.iter().enumerate().filter(|(_, v)| v.bounds.is_some()) {
+            let Some(entry) = self.entry_of(&variable.name) else { continue };
+            match shared.iter_mut().find(|(name, _)| *name == entry) {
+                Some((_, variables)) => variables.push(k),
+                None => shared.push((entry, vec![k])),
+            }
+        }
+        for (entry, variables) in shared {
+            let names: Vec<&str> = variables.iter().map(|k| model.variables[*k].name.as_str()).collect();
+            if variables.iter().all(|k| self.values[*k] == self.values[variables[0]]) {
+                continue;
+            }
+            let axes: Vec<&str> = names.iter().map(|name| &name[entry.len() + 1..]).collect();
+            if !split(&mut self.document, &entry, &axes) {
+                let count = names.len();
+                let why = format!("`{entry}` makes {count} variables with one pair of bounds");
+                let help = "write one variable for each coordinate, with bounds of its own";
+                self.refuse(&quoted(&names), why, help);
+            }
+        }
+    }
+
+    /// Entry of `[design]` that makes a variable: its own, or the one of the point `P` for `P_x`; `None` if it is not
+    /// in this file.
+    fn entry_of(&self, variable: &str) -> Option<String> {
+        let has = |name: &str| self.document.get("design").and_then(|d| d.get(name)).is_some();
+        let whole = variable.strip_suffix(['x', 'y', 'z']).and_then(|n| n.strip_suffix('_'));
+        [Some(variable), whole].into_iter().flatten().find(|name| has(name)).map(str::to_owned)
     }
 
     /// Values of named designs stay the same: x of a variable whose value v becomes 0 is written as x - v. Those of

@@ -6,6 +6,7 @@ mod docs;
 mod edit;
 mod merge;
 mod schema;
+mod split;
 mod start;
 
 pub use edit::{at_keys, hardpoint_in, hardpoints_in, placed, with_keys};

@@ -719,3 +719,14 @@ fn invalid_priors_are_reported_with_their_places() {
     );
     calibration("calibrate_offset_of_no_name", "[calibrate]\noffsets = [3]\n");
 }
+
+#[test]
+fn two_coordinates_of_a_point_are_all_three_in_a_model_without_a_plane() {
+    for word in ["xy", "zx"] {
+        let text = VALID.replace("along = \"xyz\"", &format!("along = \"{word}\""));
+        let found = parse(&text, "four_bar.toml").unwrap_err();
+        let diagnostic = found.list().iter().find(|d| d.code == "HP0106").unwrap();
+        let help = diagnostic.help.as_deref().unwrap();
+        assert!(help.starts_with("did you mean `xyz`?"), "{help}");
+    }
+}

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use hardpoint::run::metrics;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse, read};
 
@@ -215,4 +216,169 @@ fn named_designs_stay_at_the_same_values() {
     for (before, after) in places(&file).into_iter().zip(places(&again)) {
         assert!((before - after).norm() < 1e-12, "{before:?} {after:?}");
     }
+}
+
+/// Metrics of the saved file are those of the changed design to this part of them, or of 1.
+const SAME_METRIC: f64 = 1e-9;
+/// Change of a variable relative to its bounds, or its natural step: small enough that every template still moves.
+const ROOM: f64 = 0.02;
+
+/// Metrics of all cases at a design.
+fn metrics_of(file: &ModelFile, design: &[f64]) -> Vec<(String, f64)> {
+    let values = |model: &hardpoint::model::Model| {
+        let solution = Analysis::new(model).unwrap().solve(Run::new().at(design).without_sensitivities());
+        assert!(solution.stop.is_none(), "{}: {:?}", model.name, solution.stop);
+        let values = metrics(model, &solution).into_iter();
+        let named = model.metrics.iter().zip(values);
+        named.map(|(metric, value)| (metric.name.clone(), value.value.unwrap())).collect::<Vec<_>>()
+    };
+    file.model.motions().iter().flat_map(values).collect()
+}
+
+#[test]
+fn templates_are_saved_with_every_variable_at_another_value() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-cli/templates");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    files.sort();
+    assert!(files.len() >= 9);
+    let (mut split, mut expressions) = (0, Vec::new());
+    for path in files {
+        let file = read(&path).unwrap_or_else(|e| panic!("{e}"));
+        let model = &file.model;
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let value = |k: usize| {
+            let room = match model.variables[k].bounds {
+                Some([low, high]) => high.min(-low),
+                None => model.natural_step(hardpoint::model::VariableId(k)),
+            };
+            ROOM * room * (1.0 + 0.1 * k as f64)
+        };
+        let mut design: Vec<f64> = (0..model.variables.len()).map(value).collect();
+        // A variable may move a point that follows from parameters: such a place has no number.
+        for k in 0..design.len() {
+            let alone: Vec<f64> = (0..design.len()).map(|n| if n == k { design[k] } else { 0.0 }).collect();
+            if let Some(why) = refused(&file, &alone) {
+                assert!(why.contains("given by an expression"), "{name}: {why}");
+                expressions.push(format!("{name}: {}", model.variables[k].name));
+                design[k] = 0.0;
+            }
+        }
+        let text = file.edit(&design).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let again = parse(&text, &name).unwrap_or_else(|e| panic!("{name}: {e}\n{text}"));
+        // The same variables, with the same effect, tolerance and bounds of the value.
+        assert_eq!(model.variables.len(), again.model.variables.len(), "{name}");
+        for ((old, new), value) in model.variables.iter().zip(&again.model.variables).zip(&design) {
+            assert_eq!((&old.name, &old.changes), (&new.name, &new.changes), "{name}");
+            assert_eq!(
+                (old.tolerance, old.typical, old.fixed_length),
+                (new.tolerance, new.typical, new.fixed_length),
+                "{name}"
+            );
+            let shifted = old.bounds.map(|ends| ends.map(|x| x - value));
+            let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) < 1e-12;
+            assert!(
+                shifted.is_none() && new.bounds.is_none() || near(shifted.unwrap(), new.bounds.unwrap()),
+                "{name}"
+            );
+        }
+        let (before, after) = (metrics_of(&file, &design), metrics_of(&again, &[]));
+        assert!(!before.is_empty(), "{name}");
+        for ((metric, a), (_, b)) in before.iter().zip(&after) {
+            assert!((a - b).abs() <= SAME_METRIC * a.abs().max(1.0), "{name}: {metric}: {a} {b}");
+        }
+        split += text.lines().count() - file.text().lines().count();
+        // Comments stay, once.
+        let comments = |text: &str| {
+            text.lines().filter_map(|l| l.split_once('#')).map(|(_, c)| c.to_owned()).collect::<Vec<_>>()
+        };
+        assert_eq!(comments(file.text()), comments(&text), "{name}");
+        assert_eq!(again.edit(&[]).unwrap(), text, "{name}");
+    }
+    // B and C of the four-bar, and B of the slider-crank.
+    assert_eq!(split, 3);
+    assert_eq!(expressions, ["delta.toml: rod_error"]);
+}
+
+#[test]
+fn an_entry_of_several_variables_is_split_in_every_layout() {
+    let head = "\
+name = \"crank\"
+units = { length = \"mm\", angle = \"deg\" }
+planar = \"xy\"
+hardpoints = { O = [0, 0], A = [20, 0] }
+bodies = { ground = [\"O\"], crank = [\"O\", \"A\"] }
+drivers.turn = { joint = \"O\", law = \"30*t\" }
+points.A = { body = \"crank\", at = \"A\" }
+time = { end = 1, steps = 4 }
+";
+    let layouts = [
+        (
+            "\n[design] # all\n# the pin\nA  = { move = \"A\", along = \"xy\", bounds = [-9, 9], tolerance = 0.1 } # mm\n# last\n",
+            "\n[design] # all\n# the pin\nA_x  = { move = \"A\", along = \"x\", bounds = [-10, 8], tolerance = 0.1 } # mm\n\
+             A_y  = { move = \"A\", along = \"y\", bounds = [-11, 7], tolerance = 0.1 }\n# last\n",
+        ),
+        (
+            "design = { A = { move = \"A\", along = \"xyz\", bounds = [-9, 9] } }\n",
+            "design = { A_x = { move = \"A\", along = \"x\", bounds = [-10, 8] }, \
+             A_y = { move = \"A\", along = \"y\", bounds = [-11, 7] } }\n",
+        ),
+        (
+            "# the pin\ndesign.A = { move = \"A\", along = \"xy\", bounds = [-9, 9] } # mm\n",
+            "# the pin\ndesign.A_x = { move = \"A\", along = \"x\", bounds = [-10, 8] } # mm\n\
+             design.A_y = { move = \"A\", along = \"y\", bounds = [-11, 7] }\n",
+        ),
+        (
+            "\n# the pin\n[design.A] # one\nmove = \"A\" # moved\nalong = \"xy\"\n# both\nbounds = [-9, 9]\n\n# next\n[page]\n",
+            "\n# the pin\n[design.A_x] # one\nmove = \"A\" # moved\nalong = \"x\"\n# both\nbounds = [-10, 8]\n\
+             \n[design.A_y]\nmove = \"A\"\nalong = \"y\"\nbounds = [-11, 7]\n\n# next\n[page]\n",
+        ),
+        (
+            "[design]\nA.move = \"A\" # moved\nA.along = \"xy\"\nA.bounds = [-9, 9]\n",
+            "[design]\nA_x.move = \"A\" # moved\nA_x.along = \"x\"\nA_x.bounds = [-10, 8]\n\
+             A_y.move = \"A\"\nA_y.along = \"y\"\nA_y.bounds = [-11, 7]\n",
+        ),
+    ];
+    for (old, new) in layouts {
+        let file = parse(&format!("{head}{old}"), "crank.toml").unwrap_or_else(|e| panic!("{e}"));
+        let design = of(&file, &[("A_x", 0.001), ("A_y", 0.002)]);
+        let text = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(text, format!("{}{new}", head.replace("A = [20, 0]", "A = [21, 2]")));
+        // Variables that move alike stay together.
+        let alike = file.edit(&of(&file, &[("A_x", 0.001), ("A_y", 0.001)])).unwrap();
+        let both = old.replace("[-9, 9]", "[-10, 8]");
+        assert_eq!(alike, format!("{}{both}", head.replace("A = [20, 0]", "A = [21, 1]")));
+    }
+    // The name of the point in tolerances is still that of both.
+    let tolerance =
+        "design.A = { move = \"A\", along = \"xy\", bounds = [-9, 9] }\ntolerance.variables.A = 0.1\n";
+    let file = parse(&format!("{head}{tolerance}"), "crank.toml").unwrap_or_else(|e| panic!("{e}"));
+    let text = file.edit(&of(&file, &[("A_x", 0.001)])).unwrap();
+    let again = parse(&text, "crank.toml").unwrap_or_else(|e| panic!("{e}\n{text}"));
+    assert_eq!(again.model.tolerancing, file.model.tolerancing);
+}
+
+#[test]
+fn mirrored_points_are_split_with_their_images() {
+    let text = "\
+name = \"two\"
+units = { length = \"mm\", angle = \"deg\" }
+mirror = { across = \"y\" }
+hardpoints = { left_O = [0, 100, 0], left_A = [20, 100, 0] }
+bodies.left_crank = {}
+joints.left_pin = { type = \"revolute\", bodies = [\"ground\", \"left_crank\"], at = \"left_O\", axis = \"z\" }
+drivers.left_turn = { joint = \"left_pin\", law = \"30*t\" }
+design.left_A = { move = \"left_A\", along = \"xyz\", bounds = [-9, 9] }
+points.left_A = { body = \"left_crank\", at = \"left_A\" }
+time = { end = 1, steps = 4 }
+";
+    let file = parse(text, "two.toml").unwrap_or_else(|e| panic!("{e}"));
+    let design = of(&file, &[("left_A_x", 0.001), ("left_A_y", 0.002)]);
+    let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+    let again = parse(&saved, "two.toml").unwrap_or_else(|e| panic!("{e}\n{saved}"));
+    for (old, new) in file.model.variables.iter().zip(&again.model.variables) {
+        assert_eq!((&old.name, &old.changes), (&new.name, &new.changes));
+        assert!(old.changes.len() == 2);
+    }
+    assert_eq!(file.model.variables.len(), again.model.variables.len());
+    assert!(apart(0.1, &solved(&file, &design), &solved(&again, &[])) < SAME_MOTION);
 }

@@ -20,6 +20,8 @@ const VALUES: f64 = 1e-10;
 const FORCES: f64 = 1e-9;
 /// Sensitivities and compliances, relative to the largest of their row.
 const DERIVATIVES: f64 = 1e-8;
+/// Times of limits, s: the shortest part of the way that is tried, and the distance at which its stiffness vanishes.
+const TIME_OF_LIMIT: f64 = 1e-8;
 /// Gradients of compliances, each relative to itself.
 const SECOND_DERIVATIVES: f64 = 1e-7;
 
@@ -781,6 +783,111 @@ fn a_truss_snaps_through_at_its_limit_load() {
     let stop = Analysis::new(&model).unwrap().run().stop.unwrap();
     let StopKind::LimitLoad { part } = stop.kind else { panic!("{stop:?}") };
     near(part, 1.0 / 1.2, 1e-6, "limit load");
+}
+
+#[test]
+fn a_limit_load_is_at_its_time_whatever_the_law_and_the_drivers_are_those_of_the_last_output_time() {
+    // The force of the closed form above, which grows like t^2: 1.3 t^2 = 1.
+    let drawn = 1.09_f64.sqrt();
+    let long = drawn.cbrt();
+    let limit = 1e5 * (drawn - long) * (long * long - 1.0).sqrt() / long;
+    for times in ["at = [0, 1]", "end = 1\nsteps = 7", "at = [0, 0.1, 0.8, 2]"] {
+        let text = truss(limit)
+            .replace("along = \"-z\"", "along = \"-z\", law = \"1.3*t^2\"")
+            .replace("at = [0]", times);
+        let solution = Analysis::new(&file(&text).model).unwrap().run();
+        let stop = solution.stop.as_ref().unwrap();
+        assert_eq!(stop.kind, StopKind::NoEquilibrium, "{times}");
+        near(stop.failed_time, (1.0 / 1.3_f64).sqrt(), TIME_OF_LIMIT, times);
+        // The block begins at 0.3 m, where `sink` is zero.
+        let last = solution.measured.len() - 1;
+        assert_eq!(stop.last_time, Some(solution.motion.times[last]), "{times}");
+        near(stop.drivers[0], value(&solution, last, "top.z") - 0.3, VALUES, times);
+    }
+}
+
+/// An upright pendulum of 2 m on a torsion spring of 100 N m/deg, under a force down by this law in N, and a force
+/// across.
+fn upright(law: &str, across: f64, times: &str, size: f64) -> String {
+    let [length, stiffness] = [2.0 * size, 100.0 * size];
+    format!(
+        r#"
+name = "upright"
+units = {{ length = "m", angle = "deg" }}
+[bodies]
+b = {{}}
+[joints]
+j = {{ type = "revolute", bodies = ["ground", "b"], at = [0, 0, 0], axis = "y" }}
+[drivers]
+d = {{ joint = "j", law = 0 }}
+[points]
+top = {{ body = "b", at = [0, 0, {length:?}] }}
+[forces]
+spring = {{ type = "torsion_spring", joint = "j", stiffness = {stiffness:?} }}
+down = {{ type = "force", at = "top", force = 1, along = "-z", law = "{law}" }}
+across = {{ type = "force", at = "top", force = {across:?}, along = "x" }}
+[equilibrium]
+released = ["d"]
+[measures]
+angle = {{ type = "coordinate", joint = "j" }}
+[time]
+{times}
+"#
+    )
+}
+
+/// Angle of that pendulum in rad, on the side of the force across: `k a = 2 F sin a + 2 H cos a`, whose largest root is
+/// the equilibrium that continues the one without loads.
+fn angle_of_upright(down: f64, across: f64) -> f64 {
+    let spring = 100.0_f64.to_degrees();
+    let rest = |a: f64| spring * a - 2.0 * down * a.sin() - 2.0 * across.abs() * a.cos();
+    // Below its largest root, which is beyond that of the pendulum without imperfection, the rest is negative.
+    let [mut below, mut above] = [0.0, std::f64::consts::PI];
+    if 2.0 * down > spring {
+        below = (1.0 - spring / (2.0 * down)).sqrt();
+        assert!(rest(below) < 0.0);
+    }
+    for _ in 0..100 {
+        let middle = 0.5 * (below + above);
+        if rest(middle) < 0.0 { below = middle } else { above = middle }
+    }
+    0.5 * (below + above) * across.signum()
+}
+
+#[test]
+fn the_equilibrium_continues_the_one_without_loads_for_any_output_times() {
+    // The load passes that at which the perfect pendulum becomes unstable, 0.572958 of the last.
+    let uniform = [1, 2, 3, 5, 7, 8, 9, 10, 11, 15, 19, 20, 21, 22, 40, 100, 200];
+    let uniform = uniform.map(|steps| format!("end = 1\nsteps = {steps}"));
+    let irregular = [
+        "at = [0, 0.2, 0.4, 0.5, 0.57, 0.58, 0.6, 0.8, 1]",
+        "at = [0, 0.572, 0.573, 0.574, 1]",
+        "at = [0, 0.5729, 0.57295, 0.572955, 0.9, 1]",
+        "at = [0, 0.001, 1]",
+        "at = [1]",
+    ];
+    for times in uniform.iter().map(String::as_str).chain(irregular) {
+        for (across, size) in [(1e-3, 1.0), (0.1, 1e3), (-1.0, 1.0), (1.0, 1e-3), (10.0, 1.0), (-10.0, 1.0)] {
+            let solution = solved(&upright("5000*t", across, times, size));
+            for (k, t) in solution.motion.times.iter().enumerate() {
+                let found = value(&solution, k, "angle");
+                let expected = angle_of_upright(5000.0 * t, across);
+                near(found, expected, VALUES, &format!("{across} N, size {size}, t = {t}, {times}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn an_equilibrium_becomes_unstable_at_its_time_whatever_the_law() {
+    let spring = 100.0_f64.to_degrees();
+    for times in ["at = [0, 1]", "end = 1\nsteps = 10", "end = 1\nsteps = 11"] {
+        let solution = Analysis::new(&file(&upright("5000*t^2", 0.0, times, 1.0)).model).unwrap().run();
+        let stop = solution.stop.unwrap();
+        assert!(matches!(stop.kind, StopKind::Unstable { .. }), "{stop:?}");
+        // 2 m * 5000 N t^2 = k
+        near(stop.failed_time, (spring / 10000.0).sqrt(), TIME_OF_LIMIT, times);
+    }
 }
 
 /// Two pendulums that stand upright on torsion springs of this stiffness: 1 kg at 1 m each.

@@ -140,3 +140,46 @@ fn poses_without_an_answer_have_an_advice() {
     assert!(!why.is_empty() && help.contains("pose"), "{why} {help}");
     assert_eq!(facts.status, "none");
 }
+
+/// Change of a coordinate of a synthesised model, m: far below its bounds of a tenth of the size of the task.
+const SHIFT: f64 = 1e-5;
+
+#[test]
+fn synthesised_models_are_saved_with_every_coordinate_at_another_place() {
+    let (file, _, found) = read("tailgate");
+    for (k, answer) in found.answers.iter().enumerate() {
+        let text = model_text(&file, answer, k + 1);
+        let (model, _) =
+            followed_model(answer, &text, "model.toml", found.size).unwrap_or_else(|e| panic!("{e}"));
+        let design: Vec<f64> = (1..=model.model.variables.len()).map(|k| SHIFT * k as f64).collect();
+        let saved = model.edit(&design).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let again = hardpoint_file::parse(&saved, "model.toml").unwrap_or_else(|e| panic!("{e}\n{saved}"));
+        let of = |file: &hardpoint_file::ModelFile, design: &[f64]| -> Vec<f64> {
+            let analysis = Analysis::new(&file.model).unwrap();
+            let solution = analysis.solve(Run::new().at(design).without_sensitivities());
+            metrics(&file.model, &solution).into_iter().map(|m| m.value.unwrap()).collect()
+        };
+        let (before, after) = (of(&model, &design), of(&again, &[]));
+        assert!(before.len() >= 3 && before.iter().zip(of(&model, &[])).any(|(a, b)| (a - b).abs() > SHIFT));
+        for (a, b) in before.iter().zip(after) {
+            assert!((a - b).abs() <= 1e-9, "{a} {b}\n{saved}");
+        }
+        let names = |file: &hardpoint_file::ModelFile| -> Vec<String> {
+            file.model.variables.iter().map(|v| v.name.clone()).collect()
+        };
+        assert_eq!(names(&model), names(&again));
+    }
+}
+
+#[test]
+fn poses_without_linkages_are_not_explained_by_a_path() {
+    let file = parsed(
+        "poses = [[0, 0, 0], [1, 0, 0.3], [2, 0.5, 0.8]]\nlinkages = [\"slider_crank\"]\nmoving_region = { x = [50, 51], y = [50, 51] }\n",
+    );
+    let found = synthesize(&task_of(&file), &|| true).unwrap();
+    let mut facts = SynthesisFacts::of(&file, &task_of(&file), &found);
+    facts.cranks = Some(3);
+    facts.sliders = Some(0);
+    let (why, help) = facts.advice().unwrap();
+    assert!(!why.contains("path") && why.contains("poses") && !help.contains("bends"), "{why}; {help}");
+}

@@ -60,6 +60,16 @@ impl Region {
         let within = |[low, high]: [f64; 2], x: f64| low <= x && x <= high;
         within(self.x, p.x) && within(self.y, p.y)
     }
+
+    fn corners(&self) -> [Complex; 4] {
+        let [[left, right], [low, high]] = [self.x, self.y];
+        [(left, low), (right, low), (right, high), (left, high)].map(|(x, y)| Complex::new(x, y))
+    }
+
+    fn middle(&self) -> Complex {
+        let [x, y] = [self.x, self.y].map(|[low, high]| 0.5 * (low + high));
+        Complex::new(x, y)
+    }
 }
 
 /// A task of synthesis.
@@ -203,7 +213,7 @@ const LINES: usize = 48;
 const FIELD: f64 = 2.0;
 /// Sliders of a family.
 const SLIDERS: usize = 24;
-/// Pins and pivots of a family farther away, in sizes of the task, are left out.
+/// Pins and pivots of a family farther away, in sizes of the task, are left out, unless a region asks for them.
 const PRACTICAL: f64 = 5.0;
 /// Starts of each type from the atlas, and steps of each.
 const STARTS: usize = 120;
@@ -433,16 +443,27 @@ fn one_pole(poses: &[Pose], size: f64) -> Option<Complex> {
 /// All dyads of the displacements, or samples of their families.
 fn dyads_of(task: &Task, moves: &[Displacement], frame: &Frame) -> (Vec<Dyad>, Vec<Dyad>) {
     let sliders = if task.slider_cranks { dyads::sliders(moves, SLIDERS) } else { Vec::new() };
+    // The regions are the limits of what they are for; a crank may reach from a far region to the body.
+    let reach = |region: Option<Region>| match region {
+        Some(region) => {
+            PRACTICAL + region.corners().map(|p| frame.inward(p).norm()).into_iter().fold(0.0, f64::max)
+        }
+        None => PRACTICAL,
+    };
+    let pivots = reach(task.fixed_region);
+    let pins = reach(task.moving_region).max(pivots);
     let near = |d: &Dyad| match d {
-        Dyad::Crank { pivot, pin } => pivot.norm().max(pin.norm()) < PRACTICAL,
-        Dyad::Slider { pin, .. } => pin.norm() < PRACTICAL,
+        Dyad::Crank { pivot, pin } => pivot.norm() < pivots && pin.norm() < pins,
+        Dyad::Slider { pin, .. } => pin.norm() < reach(task.moving_region),
     };
     let mut cranks: Vec<Dyad> = match moves.len() {
         5 => return (dyads::cranks(moves, &[]), sliders),
         4 => {
+            // Through the middle of the region, or of the poses.
+            let middle = task.fixed_region.map_or(Complex::ZERO, |r| frame.inward(r.middle()));
             let line = |k: usize| {
                 let normal = Complex::<f64>::unit(std::f64::consts::PI * (k as f64 + 0.5) / LINES as f64);
-                dyads::cranks(moves, &[(normal, 0.0)])
+                dyads::cranks(moves, &[(normal, normal.dot(middle))])
             };
             (0..LINES).flat_map(line).collect()
         }

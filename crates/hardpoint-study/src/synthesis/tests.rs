@@ -524,3 +524,32 @@ fn regions_and_full_turns_are_respected_and_counted() {
         assert!(!matches!(linkage.guide, Guide::Rocker(d) if !inside(d)), "{linkage:?}");
     }
 }
+
+#[test]
+fn regions_far_from_the_poses_have_pivots_in_them() {
+    // Three and four poses; the region is ten sizes away.
+    let three = vec![pose(0.0, 0.0, 0.0), pose(10.0, 0.0, 20.0), pose(20.0, 5.0, 45.0)];
+    let region = super::Region { x: [95.0, 115.0], y: [95.0, 115.0] };
+    let task = Task { fixed_region: Some(region), slider_cranks: false, ..poses_of(three.clone()) };
+    let found = of(&task);
+    assert!(!found.answers.is_empty(), "{:?}", found.four_bars);
+    for answer in &found.answers {
+        let Guide::Rocker(d) = answer.linkage.guide else { panic!("a four-bar") };
+        assert!(region.has(answer.linkage.a) && region.has(d), "{:?}", answer.linkage);
+        // Pins are where the cranks about these pivots have them, as with given pivots.
+        let given =
+            Task { fixed_pivots: vec![answer.linkage.a, d], slider_cranks: false, ..poses_of(three.clone()) };
+        let same = of(&given);
+        let near = same.answers.iter().any(|a| distance(&a.linkage, &answer.linkage) < FOUND);
+        assert!(near, "{:?}", answer.linkage);
+    }
+    // Of four poses of a crank-rocker seen from far away, a region around its pivots has cranks.
+    let hidden = crank_rocker();
+    let four = poses_at(&hidden, &[0.0, 0.02, 0.05, 0.09]);
+    let size = (four[3].at - four[0].at).norm();
+    let near = |x: f64| [x - 0.1, x + 0.1];
+    assert!((hidden.a - four[0].at).norm() > 5.0 * size, "{size}");
+    let task = |region| Task { fixed_region: region, slider_cranks: false, ..poses_of(four.clone()) };
+    let around = super::Region { x: near(hidden.a.x), y: near(hidden.a.y) };
+    assert!(!of(&task(Some(around))).cranks.is_empty());
+}

@@ -26,14 +26,29 @@ const ROUND_OFF: f64 = 1e-15;
 /// Maximum number of iterations of an attempt; from a good prediction two to four are enough, and eight from the rigid
 /// position under full load. What takes longer may have found another equilibrium.
 const MOST_ITERATIONS: usize = 12;
-/// Each correction is below this fraction of the one before, from the second on.
+/// Each correction is below this fraction of the one before, from the third on.
 const CONTRACTION: f64 = 0.5;
-/// Largest first correction of an attempt, rad or sizes: a longer one may lead to another equilibrium.
+/// Largest of the first two corrections of an attempt, rad or sizes: a longer one may lead to another equilibrium.
 const LONGEST: f64 = 0.5;
-/// Shortest part of the way from one equilibrium to the next: if it is rejected, there is none near by.
+/// Shortest part of the way from one output time to the next: if it is rejected, there is no equilibrium near by.
 const SHORTEST: f64 = 1e-9;
-/// Number of equilibria that a prediction uses.
+/// Maximum number of equilibria that a prediction uses.
 const PREDICTED_FROM: usize = 3;
+/// Maximum sum of the sizes of the weights of a prediction: 7 for uniform output times. A larger sum amplifies what
+/// the polynomial does not follow.
+const AMPLIFIED: f64 = 8.0;
+/// Maximum error of a prediction, as a fraction of the distances between the equilibria that it connects: a larger
+/// one means that the output times do not resolve the path.
+const CONFIRMED: f64 = 0.1;
+/// Part of the stiffness along a step that the loads at its end leave, at least. If it falls further, it may vanish
+/// within the step, and the path turn.
+const LEFT_BY_LOADS: f64 = 0.5;
+/// Part of the stiffness at the ends of a step that is left in its middle, at least: between two equilibria of
+/// different branches the stiffness is negative.
+const LEFT_IN_MIDDLE: f64 = 0.5;
+/// Length of a step, rad or sizes, within which no other branch is expected: a stop that the loads touch or leave
+/// changes the stiffness at once, however short the step.
+const NEAR: f64 = 1e-6;
 /// A pivot of the scaled stiffness below this holds nothing.
 const HOLDS_NOTHING: f64 = 1e-12;
 /// Difference of symmetric entries of the scaled stiffness above which the forces have no potential; round-off is
@@ -66,19 +81,28 @@ impl Rejection {
     }
 }
 
-/// Accepted equilibrium.
+/// Accepted equilibrium, at an output time or between two.
 struct Accepted {
-    /// Time; `None` before the first.
-    time: Option<f64>,
     /// Values of all drivers.
     drivers: Vec<f64>,
     loads: GivenLoads,
+    /// Stiffness there; `None` before the first.
+    stiffness: Option<Vec<f64>>,
 }
 
 /// Equilibrium at an output time.
 struct Passed {
     time: f64,
-    openings: Vec<f64>,
+    /// Values of all drivers.
+    drivers: Vec<f64>,
+    stiffness: Vec<f64>,
+}
+
+/// Openings and stiffness at an output time by the polynomial through equilibria at output times before.
+struct Prediction {
+    /// Number of equilibria used.
+    from: usize,
+    drivers: Vec<f64>,
     stiffness: Vec<f64>,
 }
 
@@ -137,9 +161,9 @@ impl<'a> EquilibriumSolver<'a> {
             held,
             fixed: design_map.fixed(&constant),
             last: Accepted {
-                time: None,
                 drivers: vec![0.0; model.drivers.len()],
                 loads: GivenLoads::none(model),
+                stiffness: None,
             },
             path: Vec::new(),
             forces: vec![0.0; n],
@@ -155,46 +179,35 @@ impl<'a> EquilibriumSolver<'a> {
     /// Moves the mechanism to its equilibrium at time t, at rest. Before the first it is in the design configuration,
     /// without loads.
     pub fn step(&mut self, one: &mut Stepper<'_>, t: f64) -> Result<(), Box<Stop>> {
-        let drivers = self.last.drivers.len();
-        let mut to: Vec<Option<f64>> = (0..drivers).map(|d| Some(one.mechanism.parts.law(d, t)[0])).collect();
-        let predicted = self.predicted(t, |passed| &passed.openings);
-        for (k, d) in self.openings.iter().enumerate() {
-            // Without a prediction the openings stay.
-            to[d.0] = predicted.as_ref().map(|p| p[k]);
-        }
-        let mut stiffness = self.predicted(t, |passed| &passed.stiffness);
-        let (start, end) = (self.last.loads.clone(), GivenLoads::at(self.model, t));
+        let mut prediction = self.predicted(t);
         let (mut done, mut part, mut certain) = (0.0, 1.0, true);
         while done < 1.0 {
             let next = f64::min(done + part, 1.0);
-            // The part of the rest that this attempt goes.
-            let way = (next - done) / (1.0 - done);
-            let between = |(now, to): (&f64, &Option<f64>)| match to {
-                Some(to) if next == 1.0 => *to,
-                Some(to) => now + (to - now) * way,
-                None => *now,
+            self.is_prepared = false;
+            let (time, drivers, loads) = self.on_the_way(one, t, next);
+            let prediction = prediction.take();
+            let is_predicted = prediction.is_some();
+            let found = match prediction {
+                Some(prediction) => self.attempt_predicted(one, drivers, &loads, prediction),
+                None => self.attempt(one, drivers, &loads),
             };
-            let target: Vec<f64> = self.last.drivers.iter().zip(&to).map(between).collect();
-            let loads = start.towards(&end, next);
-            match self.attempt(one, target, &loads, stiffness.take()) {
+            match found {
                 Ok((drivers, is_stable)) => {
-                    advance::accept_at_rest(one, t);
+                    advance::accept_at_rest(one, time);
                     certain = is_stable;
-                    self.last.drivers = drivers;
-                    self.last.loads = loads;
+                    self.last = Accepted { drivers, loads, stiffness: Some(self.stiffness.clone()) };
                     (done, part) = (next, 2.0 * part);
                 }
+                // The same way from the equilibrium that was found last.
+                Err(_) if is_predicted => {}
                 Err(rejection) => {
                     part *= 0.5;
-                    // A shorter part of the way begins from the openings that were found, not from the prediction.
-                    self.openings.iter().for_each(|d| to[d.0] = None);
                     if part < SHORTEST || matches!(rejection, Rejection::NothingHolds(_)) {
                         return Err(self.stop(one, t, done, rejection));
                     }
                 }
             }
         }
-        self.last.time = Some(t);
         if self.path.len() == PREDICTED_FROM {
             self.path.remove(0);
         }
@@ -205,78 +218,213 @@ impl<'a> EquilibriumSolver<'a> {
         advance::count(one);
         self.path.push(Passed {
             time: t,
-            openings: self.openings.iter().map(|d| self.last.drivers[d.0]).collect(),
+            drivers: self.last.drivers.clone(),
             stiffness: self.stiffness.clone(),
         });
         Ok(())
     }
 
-    /// Openings or stiffness at time t by the polynomial through the last equilibria.
-    fn predicted(&self, t: f64, of: impl Fn(&Passed) -> &Vec<f64>) -> Option<Vec<f64>> {
-        let mut sum = vec![0.0; of(self.path.last()?).len()];
-        for (i, passed) in self.path.iter().enumerate() {
-            let others = self.path.iter().enumerate().filter(|(j, _)| *j != i);
-            let weight: f64 =
-                others.map(|(_, other)| (t - other.time) / (passed.time - other.time)).product();
-            sum.iter_mut().zip(of(passed)).for_each(|(sum, p)| *sum += weight * p);
+    /// Time, drivers and loads after this part of the way to output time t, with the openings where they are. The way
+    /// to the first output time leads straight from the design configuration without loads; others follow the laws.
+    fn on_the_way(&self, one: &Stepper<'_>, t: f64, part: f64) -> (f64, Vec<f64>, GivenLoads) {
+        let mut drivers = self.last.drivers.clone();
+        let law = |d: &DriverId, time: f64| one.mechanism.parts.law(d.0, time)[0];
+        match self.path.last() {
+            None => {
+                self.held.iter().for_each(|d| drivers[d.0] = part * law(d, t));
+                (t, drivers, GivenLoads::at(self.model, t).times(part))
+            }
+            Some(Passed { time: from, .. }) => {
+                let time = if part == 1.0 { t } else { from + (t - from) * part };
+                self.held.iter().for_each(|d| drivers[d.0] = law(d, time));
+                (time, drivers, GivenLoads::at(self.model, time))
+            }
         }
-        Some(sum)
     }
 
-    /// Solves the equilibrium with the held drivers at these values, under these loads; the openings are predicted, and
-    /// maybe the stiffness. Returns the values of the drivers, and true if it is certainly stable.
+    /// Openings and stiffness at time t by the polynomial through the last equilibria; through fewer of them if it
+    /// would amplify what it does not follow.
+    fn predicted(&self, t: f64) -> Option<Prediction> {
+        let weights = |path: &[Passed]| -> Vec<f64> {
+            let weight = |(i, passed): (usize, &Passed)| {
+                let others = path.iter().enumerate().filter(|(j, _)| *j != i);
+                others.map(|(_, other)| (t - other.time) / (passed.time - other.time)).product()
+            };
+            path.iter().enumerate().map(weight).collect()
+        };
+        let mut path = &self.path[..];
+        while !path.is_empty() {
+            let weights = weights(path);
+            if weights.iter().map(|w: &f64| w.abs()).sum::<f64>() <= AMPLIFIED {
+                let sum = |of: fn(&Passed) -> &Vec<f64>| {
+                    let mut sum = vec![0.0; of(&path[0]).len()];
+                    for (weight, passed) in weights.iter().zip(path) {
+                        sum.iter_mut().zip(of(passed)).for_each(|(sum, p)| *sum += weight * p);
+                    }
+                    sum
+                };
+                let (drivers, stiffness) = (sum(|passed| &passed.drivers), sum(|passed| &passed.stiffness));
+                return Some(Prediction { from: path.len(), drivers, stiffness });
+            }
+            path = &path[1..];
+        }
+        None
+    }
+
+    /// Solves the equilibrium from a prediction. It continues the path if it confirms the prediction: the output
+    /// times resolve the path.
+    fn attempt_predicted(
+        &mut self,
+        one: &mut Stepper<'_>,
+        mut drivers: Vec<f64>,
+        given: &GivenLoads,
+        prediction: Prediction,
+    ) -> Result<(Vec<f64>, bool), Rejection> {
+        for d in self.openings {
+            drivers[d.0] = prediction.drivers[d.0];
+        }
+        advance::move_at_rest(one, &drivers).map_err(Rejection::of)?;
+        self.stiffness.clone_from(&prediction.stiffness);
+        self.factor()?;
+        let first = self.correct(one, &mut drivers, given, true)?;
+        let is_stable = self.examine(one, given)?;
+        let before = &self.path[self.path.len() - prediction.from..];
+        let distances = before.iter().map(|passed| self.distance(one, &drivers, &passed.drivers));
+        let way = distances.fold(0.0, f64::max);
+        // From one equilibrium alone the first correction, by the stiffness there, is the prediction.
+        let position = if prediction.from == 1 { &first } else { &prediction.drivers };
+        match self.confirms(one, &drivers, (position, &prediction.stiffness), way) {
+            true => Ok((drivers, is_stable)),
+            false => Err(Rejection::NoConvergence),
+        }
+    }
+
+    /// True if the equilibrium with these drivers, whose stiffness was set last, confirms a predicted position and
+    /// stiffness; `way` is the largest distance to the equilibria that the prediction connects.
+    fn confirms(
+        &self,
+        one: &Stepper<'_>,
+        drivers: &[f64],
+        (position, stiffness): (&[f64], &[f64]),
+        way: f64,
+    ) -> bool {
+        // abs(p - predicted) <= 0.1 max abs(p - p_k),  abs(dp . (K - predicted) dp) <= 0.1 abs(dp . K dp)
+        let step = self.between(&self.last.drivers, drivers);
+        let [predicted, found] = [stiffness, &self.stiffness].map(|k| along(k, &step));
+        self.distance(one, drivers, position) <= f64::max(CONFIRMED * way, QUADRATIC)
+            && (way <= NEAR || (found - predicted).abs() <= CONFIRMED * found.abs())
+    }
+
+    /// Solves the equilibrium from the one that was accepted last. It continues the path if the equilibrium stays
+    /// stable from there to here: the stiffness is positive under the new loads before the openings change, at the
+    /// end of their change and, unless the first correction by it was nearly right, in the middle, and nowhere much
+    /// smaller than before and after. In a region where it is positive under all loads of the step there is one
+    /// equilibrium for each of them.
     fn attempt(
         &mut self,
         one: &mut Stepper<'_>,
         mut drivers: Vec<f64>,
         given: &GivenLoads,
-        stiffness: Option<Vec<f64>>,
     ) -> Result<(Vec<f64>, bool), Rejection> {
-        self.is_prepared = false;
         advance::move_at_rest(one, &drivers).map_err(Rejection::of)?;
-        let is_predicted = stiffness.is_some_and(|stiffness| {
-            self.stiffness = stiffness;
-            self.factor().is_ok()
-        });
+        let positive = self.prepare_with(one, given)?;
+        self.is_certainly_stable(positive)?;
+        let under_loads = self.stiffness.clone();
+        let first = self.correct(one, &mut drivers, given, false)?;
+        let way = self.distance(one, &drivers, &self.last.drivers);
+        let step = self.between(&self.last.drivers, &drivers);
+        let begin = along(&under_loads, &step);
+        // dp . K(p_0, c) dp >= 1/2 dp . K(p_0, c_0) dp
+        let without = self.last.stiffness.as_ref().map(|stiffness| along(stiffness, &step));
+        if way > NEAR && without.is_some_and(|without| !(begin >= LEFT_BY_LOADS * without)) {
+            return Err(Rejection::NoConvergence);
+        }
+        let is_stable = self.examine(one, given)?;
+        if way <= NEAR || self.confirms(one, &drivers, (&first, &under_loads), way) {
+            return Ok((drivers, is_stable));
+        }
+        // dp . K(p_0 + dp/2, c) dp >= 1/2 min(dp . K(p_0, c) dp, dp . K(p_0 + dp, c) dp)
+        let least = f64::min(begin, along(&self.stiffness, &step));
+        let mut middle = drivers.clone();
+        for (d, step) in self.openings.iter().zip(&step) {
+            middle[d.0] -= 0.5 * step;
+        }
+        advance::shift_at_rest(one, &middle).map_err(Rejection::of)?;
+        let positive = self.prepare_with(one, given)?;
+        self.is_certainly_stable(positive).map_err(|_| Rejection::NoConvergence)?;
+        if !(along(&self.stiffness, &step) >= least - (1.0 - LEFT_IN_MIDDLE) * least.abs()) {
+            return Err(Rejection::NoConvergence);
+        }
+        advance::shift_at_rest(one, &drivers).map_err(Rejection::of)?;
+        self.examine(one, given)?;
+        Ok((drivers, is_stable))
+    }
+
+    /// Sets the derivatives at the equilibrium that was found. Returns true if it is certainly stable.
+    fn examine(&mut self, one: &mut Stepper<'_>, given: &GivenLoads) -> Result<bool, Rejection> {
+        let positive = self.prepare_with(one, given)?;
+        let is_stable = self.is_certainly_stable(positive)?;
+        self.is_prepared = true;
+        Ok(is_stable)
+    }
+
+    /// Change of the openings between two positions.
+    fn between(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
+        self.openings.iter().map(|d| to[d.0] - from[d.0]).collect()
+    }
+
+    /// Largest change of an opening between two positions, rad or sizes.
+    fn distance(&self, one: &Stepper<'_>, from: &[f64], to: &[f64]) -> f64 {
+        let change = |d: &DriverId| (to[d.0] - from[d.0]).abs() / one.mechanism.driver_units[d.0];
+        self.openings.iter().map(change).fold(0.0, f64::max)
+    }
+
+    /// Corrects the openings of these drivers, from their position that was solved last, until they are in
+    /// equilibrium under these loads. The stiffness that was factored last serves for the first correction; it is
+    /// predicted, or that of the position. Returns the drivers after the first correction.
+    fn correct(
+        &mut self,
+        one: &mut Stepper<'_>,
+        drivers: &mut [f64],
+        given: &GivenLoads,
+        is_predicted: bool,
+    ) -> Result<Vec<f64>, Rejection> {
+        let mut first = Vec::new();
         // A predicted stiffness is good for the first correction if it is not too long.
         let mut before = LONGEST / SAME_STIFFNESS;
         for pass in 0..MOST_ITERATIONS {
             self.iterations += 1;
             self.set_forces(one, given);
             // A stiffness serves as long as the corrections shrink fast.
-            let mut correction = Vec::new();
-            let mut size = f64::NAN;
-            if pass > 0 || is_predicted {
-                (correction, size) = self.correction(one);
-            }
-            let is_new = !(size <= SAME_STIFFNESS * before);
-            if is_new {
+            let (mut correction, mut size) = self.correction(one);
+            let is_of_position = pass == 0 && !is_predicted;
+            let serves = is_of_position || size <= SAME_STIFFNESS * before;
+            if !serves {
                 self.set_tangent(one);
-                self.factor()?;
+                let positive = self.factor()?;
+                // Beyond a position that is not stable there may be another equilibrium.
+                if !is_predicted {
+                    self.is_certainly_stable(positive).map_err(|_| Rejection::NoConvergence)?;
+                }
                 (correction, size) = self.correction(one);
             }
-            let limit = match pass {
-                0 => LONGEST,
-                // The first correction by the stiffness of a position.
-                1 if is_predicted && is_new => LONGEST,
-                1 => before,
-                _ => CONTRACTION * before,
-            };
+            let is_new = is_of_position || !serves;
+            let limit = if pass < 2 { LONGEST } else { CONTRACTION * before };
             if !(size <= limit) {
                 return Err(Rejection::NoConvergence);
             }
             for (dp, d) in correction.iter().zip(self.openings) {
                 drivers[d.0] += dp;
             }
-            advance::shift_at_rest(one, &drivers).map_err(Rejection::of)?;
+            advance::shift_at_rest(one, drivers).map_err(Rejection::of)?;
             // The error that remains is the square of the correction, or what an unchanged stiffness leaves of it.
             let shrinks = if pass == 0 { SAME_STIFFNESS } else { size / before };
             let is_solved = if is_new { size <= QUADRATIC } else { size * shrinks <= ROUND_OFF };
+            if pass == 0 {
+                first = drivers.to_vec();
+            }
             if is_solved {
-                let positive = self.prepare_with(one, given)?;
-                let is_stable = self.is_certainly_stable(positive)?;
-                self.is_prepared = true;
-                return Ok((drivers, is_stable));
+                return Ok(first);
             }
             before = size;
         }
@@ -299,6 +447,7 @@ impl<'a> EquilibriumSolver<'a> {
     /// Sets the derivatives at the position of the stepper under these loads. Returns the sign of the determinant of
     /// the stiffness.
     fn prepare_with(&mut self, one: &mut Stepper<'_>, given: &GivenLoads) -> Result<bool, Rejection> {
+        self.is_prepared = false;
         self.set_forces(one, given);
         self.set_tangent(one);
         self.factor()
@@ -375,10 +524,11 @@ impl<'a> EquilibriumSolver<'a> {
 
     /// Sets the derivatives at the equilibrium that was found last, unless they are set.
     fn prepare(&mut self, one: &mut Stepper<'_>) {
-        if !std::mem::replace(&mut self.is_prepared, true) {
+        if !self.is_prepared {
             let given = self.last.loads.clone();
             // A singular stiffness gives derivatives that are not known.
             let _ = self.prepare_with(one, &given);
+            self.is_prepared = true;
         }
     }
 
@@ -527,7 +677,11 @@ impl<'a> EquilibriumSolver<'a> {
 
     /// Reason why the way to the equilibrium at time t ends after a part of it.
     fn stop(&mut self, one: &mut Stepper<'_>, t: f64, done: f64, rejection: Rejection) -> Box<Stop> {
-        let kind = match (rejection, self.last.time) {
+        let at_output = self.path.last();
+        let last_time = at_output.map(|passed| passed.time);
+        let failed_time = last_time.map_or(t, |from| from + (t - from) * done);
+        let drivers = at_output.map_or(&self.last.drivers, |passed| &passed.drivers).clone();
+        let kind = match (rejection, last_time) {
             (Rejection::Locked(rejection), _) => advance::stop_at_rest(one, t, rejection).kind,
             (Rejection::NothingHolds(k), _) => {
                 StopKind::NothingHolds { direction: self.direction(self.openings[k]) }
@@ -543,12 +697,11 @@ impl<'a> EquilibriumSolver<'a> {
                 StopKind::Unstable { direction: self.direction(self.openings[k]) }
             }
         };
-        let failed_time = self.last.time.map_or(t, |from| from + (t - from) * done);
         Box::new(Stop {
             kind,
-            last_time: self.last.time,
+            last_time,
             failed_time,
-            drivers: self.last.drivers.clone(),
+            drivers,
             block: None,
             pivot_ratio: 1.0,
             joints: Vec::new(),
@@ -571,4 +724,10 @@ impl<'a> EquilibriumSolver<'a> {
             GivingDirection::Joint(driver.joint, along)
         }
     }
+}
+
+/// Stiffness along a change of the openings, `dp . K dp`.
+fn along(stiffness: &[f64], step: &[f64]) -> f64 {
+    let rows = stiffness.chunks_exact(step.len().max(1));
+    rows.zip(step).map(|(row, a)| a * row.iter().zip(step).map(|(k, b)| k * b).sum::<f64>()).sum()
 }

@@ -35,13 +35,11 @@ impl GivenLoads {
         Self { laws: vec![0.0; model.elements.len()], share: 0.0 }
     }
 
-    /// Loads on the straight way from these to others.
-    pub fn towards(&self, to: &Self, part: f64) -> Self {
-        let between = |a: f64, b: f64| if part == 1.0 { b } else { a + (b - a) * part };
-        Self {
-            laws: self.laws.iter().zip(&to.laws).map(|(a, b)| between(*a, *b)).collect(),
-            share: between(self.share, to.share),
-        }
+    /// This part of the loads.
+    pub fn times(mut self, part: f64) -> Self {
+        self.laws.iter_mut().for_each(|law| *law *= part);
+        self.share *= part;
+        self
     }
 }
 
