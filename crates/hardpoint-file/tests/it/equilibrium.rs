@@ -181,10 +181,10 @@ knuckle = {{}}
 rack = {{}}
 
 [joints]
-lca_front = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_front", axis = [0.98430677050583, 0.0, 0.1764658084060003]{cut_front} }}
-lca_rear = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_rear", axis = [0.98430677050583, 0.0, 0.1764658084060003] }}
-uca_front = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_front", axis = [0.9800298014418598, 0.0, 0.19885066830621678]{cut_upper} }}
-uca_rear = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_rear", axis = [0.9800298014418598, 0.0, 0.19885066830621678] }}
+lca_front = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_front", axis = [0.98430677050583, 0.0, 0.1764658084060003], axis2 = "y"{cut_front} }}
+lca_rear = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_rear", axis = [0.98430677050583, 0.0, 0.1764658084060003], axis2 = "y" }}
+uca_front = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_front", axis = [0.9800298014418598, 0.0, 0.19885066830621678], axis2 = "y"{cut_upper} }}
+uca_rear = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_rear", axis = [0.9800298014418598, 0.0, 0.19885066830621678], axis2 = "y" }}
 lower_ball = {{ type = "spherical", bodies = ["lca", "knuckle"], at = "lower_ball"{cut_ball} }}
 upper_ball = {{ type = "spherical", bodies = ["uca", "knuckle"], at = "upper_ball" }}
 tie_rod = {{ type = "distance", bodies = ["rack", "knuckle"], at = ["tie_inner", "tie_outer"] }}

@@ -4,11 +4,11 @@ use crate::draft::measure::Field;
 use crate::draft::{DraftError, ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
 use crate::joint::{DIRECTION_NAMES, Quantity};
 use crate::law::Law;
-use crate::model::element::{CoupledStiffness, JointFriction, StiffnessEntry};
+use crate::model::element::{CoupledStiffness, ElasticLaw, Elasticity, JointFriction, StiffnessEntry};
 use crate::model::{
     Angle, BodyId, Coupling, CubicStiffness, Damping, Density, Direction, Element, ElementKind, ElementUnit,
-    Force, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId, SpringTable,
-    Stiffness, TorsionalDamping, TorsionalStiffness, each_number, elements,
+    Force, Formula, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId,
+    SpringTable, Stiffness, Target, TorsionalDamping, TorsionalStiffness, each_number, elements,
 };
 
 use super::{Checker, Here, MeasureCheck, PERPENDICULAR_TOLERANCE};
@@ -172,6 +172,41 @@ impl ElementCheck<'_, '_> {
             }
             (Some(_) | None, None) => {}
         }
+    }
+
+    /// True if a law is the same for all directions of its x and y axes perpendicular to z, in every design.
+    pub fn is_even_across(&self, law: &ElasticLaw<'_>) -> bool {
+        let formula = |n: NumberId| {
+            let found = self.model().formulas.iter().find(|f| f.of == Target::Number(n));
+            found.map(Formula::text)
+        };
+        let is_same = |a: Option<NumberId>, b: Option<NumberId>| match (a, b) {
+            (Some(a), Some(b)) => self.value(a) == self.value(b) && formula(a) == formula(b),
+            (Some(one), None) | (None, Some(one)) => self.value(one) == 0.0 && formula(one).is_none(),
+            (None, None) => true,
+        };
+        // A cubic law along both axes has another force between them.
+        let is_linear = |of: &Elasticity<'_>| {
+            [of.cubic, of.preload].into_iter().flatten().all(|n| is_same(Some(n), None)) && of.curve.is_none()
+        };
+        let [x, y, _, about_x, about_y, _] = &law.directions;
+        let pairs = [[x, y], [about_x, about_y]];
+        let is_even =
+            |[a, b]: &[&Elasticity<'_>; 2]| is_same(a.stiffness, b.stiffness) && is_linear(a) && is_linear(b);
+        law.coupled.is_none_or(|matrix| matrix.entries.is_empty()) && pairs.iter().all(is_even)
+    }
+
+    /// Help for a missing `axis2` beside this axis: the key with the global axis that is closest to perpendicular to it.
+    pub fn example_of_axis2(&self, axis: Direction) -> String {
+        let [x, y, z] = self.model().vector(axis).to_array().map(f64::abs);
+        let example = if x <= y && x <= z {
+            "x"
+        } else if y <= z {
+            "y"
+        } else {
+            "z"
+        };
+        format!("`axis2 = \"{example}\"`")
     }
 
     /// HP0251: mass on ground.
