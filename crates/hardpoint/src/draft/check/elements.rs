@@ -4,7 +4,7 @@ use crate::draft::measure::Field;
 use crate::draft::{DraftError, ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
 use crate::joint::{DIRECTION_NAMES, Quantity};
 use crate::law::Law;
-use crate::model::element::{CoupledStiffness, ElasticLaw, Elasticity, JointFriction, StiffnessEntry};
+use crate::model::element::{CoupledStiffness, ElasticLaw, JointFriction, StiffnessEntry};
 use crate::model::{
     Angle, BodyId, Coupling, CubicStiffness, Damping, Density, Direction, Element, ElementKind, ElementUnit,
     Force, Formula, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId,
@@ -180,20 +180,25 @@ impl ElementCheck<'_, '_> {
             let found = self.model().formulas.iter().find(|f| f.of == Target::Number(n));
             found.map(Formula::text)
         };
-        let is_same = |a: Option<NumberId>, b: Option<NumberId>| match (a, b) {
-            (Some(a), Some(b)) => self.value(a) == self.value(b) && formula(a) == formula(b),
-            (Some(one), None) | (None, Some(one)) => self.value(one) == 0.0 && formula(one).is_none(),
-            (None, None) => true,
-        };
+        let k = |r: usize, c: usize| law.stiffnesses(r, c).map(|n| self.value(n)).sum::<f64>();
+        let across = [0, 1, 3, 4];
+        // A symmetric matrix that no rotation about z changes.
+        let is_round = k(0, 0) == k(1, 1) && k(3, 3) == k(4, 4) && k(0, 3) == k(1, 4) && k(0, 4) == -k(1, 3);
+        let is_plain = [(0, 1), (3, 4)].iter().all(|&(r, c)| k(r, c) == 0.0)
+            && across.iter().all(|r| k(*r, 2) == 0.0 && k(*r, 5) == 0.0);
+        // Numbers that are the same in this design may differ in others.
+        let entries = law.coupled.iter().flat_map(|matrix| &matrix.entries);
+        let mut entries = entries.filter(|e| across.contains(&e.row) || across.contains(&e.column));
+        let own = |k: usize| law.directions[k].stiffness.and_then(formula);
+        let are_constant =
+            own(0) == own(1) && own(3) == own(4) && entries.all(|e| formula(e.value).is_none());
         // A cubic law along both axes has another force between them.
-        let is_linear = |of: &Elasticity<'_>| {
-            [of.cubic, of.preload].into_iter().flatten().all(|n| is_same(Some(n), None)) && of.curve.is_none()
+        let is_zero = |n: NumberId| self.value(n) == 0.0 && formula(n).is_none();
+        let is_linear = |k: &usize| {
+            let of = &law.directions[*k];
+            of.curve.is_none() && [of.cubic, of.preload].into_iter().flatten().all(is_zero)
         };
-        let [x, y, _, about_x, about_y, _] = &law.directions;
-        let pairs = [[x, y], [about_x, about_y]];
-        let is_even =
-            |[a, b]: &[&Elasticity<'_>; 2]| is_same(a.stiffness, b.stiffness) && is_linear(a) && is_linear(b);
-        law.coupled.is_none_or(|matrix| matrix.entries.is_empty()) && pairs.iter().all(is_even)
+        is_round && is_plain && are_constant && across.iter().all(is_linear)
     }
 
     /// Help for a missing `axis2` beside this axis: the key with the global axis that is closest to perpendicular to it.
