@@ -272,7 +272,7 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
     let mut shared = None;
     let mut list = Vec::new();
     for (m, measure) in model.measures.iter().enumerate() {
-        let is_compliance = matches!(measure.kind, MeasureKind::Compliance { .. });
+        let is_compliance = measure.kind.is_compliance();
         if !measure.kind.is_load() && !is_compliance {
             continue;
         }

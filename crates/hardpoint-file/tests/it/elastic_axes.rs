@@ -15,8 +15,8 @@ use crate::equilibrium::verify_all;
 
 /// Positions and forces of the same model in another place, relative to the largest.
 const SAME: f64 = 1e-10;
-/// The same where any x axis serves: equal stiffnesses about x and y differ by the square of the tilt, here 0.1 rad, and
-/// forces by a part of that.
+/// The same where any x axis serves: with equal stiffnesses about x and y, moments differ by a part of the square of the
+/// tilt, which is 0.1 rad here.
 const SAME_BUT_TILT: f64 = 1e-4;
 /// Round-off of the balance of a body's forces, relative to the largest.
 const BALANCE: f64 = 1e-9;
@@ -383,6 +383,48 @@ fn slopes_of_drivers_that_move_together_have_exact_sensitivities() {
         verify_all(&motion);
     }
     assert!(model.measures.iter().any(|m| m.name == "left_steer_in_roll"));
+}
+
+/// A point that turns and slides on a tube that swings: in the mirror the angle of a tube changes its sign, that of a
+/// hinge does not.
+const SWINGING: &str = r#"
+name = "swinging"
+units = { length = "m", angle = "rad" }
+[mirror]
+across = "y"
+names = { left = "right" }
+[hardpoints]
+left_o = [0.1, 0.5, 0.2]
+left_q = [0.4, 0.9, 0.3]
+left_p = [0.6, 1.1, 0.7]
+[bodies]
+left_a = {}
+left_b = {}
+[joints]
+left_hinge = { type = "revolute", bodies = ["ground", "left_a"], at = "left_o", axis = [0.3, 0.5, 0.8] }
+left_tube = { type = "cylindrical", bodies = ["left_a", "left_b"], at = "left_q", axis = [0.2, 0.9, 0.4] }
+[points]
+left_p = { body = "left_b", at = "left_p" }
+[drivers]
+left_swing = { joint = "left_hinge", law = "0.2" }
+left_turn = { joint = "left_tube", coordinate = "angle", law = "0.1" }
+left_slide = { joint = "left_tube", coordinate = "displacement", law = "0.05" }
+[measures]
+left_both = { type = "slope", of = "left_p.z", over = "left_p.x", driver = "left_swing", together = ["left_turn"] }
+left_against = { type = "slope", of = "left_p.z", over = "left_p.x", driver = "left_turn", opposed = ["left_swing"] }
+[time]
+at = [0]
+"#;
+
+#[test]
+fn slopes_of_several_drivers_are_mirrored() {
+    let solution = solved(SWINGING);
+    for name in ["both", "against"] {
+        let [left, right] = ["left", "right"].map(|side| value(&solution, 0, &format!("{side}_{name}")));
+        assert!(left.abs() > 1e-3 && (left - right).abs() <= SAME * left.abs(), "{name}: {left} {right}");
+    }
+    let [both, against] = ["left_both", "left_against"].map(|name| value(&solution, 0, name));
+    assert!((both - against).abs() > 1e-3, "{both} {against}");
 }
 
 #[test]

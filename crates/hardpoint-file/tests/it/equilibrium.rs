@@ -862,7 +862,9 @@ fn the_limit_load_and_the_stability_of_the_wishbone_are_those_published() {
 
 #[test]
 fn what_nothing_holds_is_named() {
-    let loose = lever(0.0).replace(", about_z = 250", "").replace("\"fixed\"", "\"revolute\", axis = \"z\"");
+    let loose = lever(0.0)
+        .replace(", about_z = 250", "")
+        .replace("\"fixed\"", "\"revolute\", axis = \"z\", axis2 = \"x\"");
     let model = file(&loose).model;
     let stop = Analysis::new(&model).unwrap().run().stop.unwrap();
     assert!(matches!(stop.kind, StopKind::NothingHolds { .. }), "{stop:?}");

@@ -135,6 +135,8 @@ fn rigid_mechanism_is_left_out_with_a_sentence_if_only_forces_hold_it() {
         [", \"bump_steer\", \"bump_camber\"]", "]"],
         ["\nbump_steer = {", "\n# {"],
         ["\nroll_steer = {", "\n# {"],
+        ["\nleft_steer_in_bump = {", "\n# {"],
+        ["\nleft_steer_in_roll = {", "\n# {"],
     ];
     let page = page(&axle("braking", &without));
     assert!(page.designs.is_empty());

@@ -417,8 +417,8 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// Returns the frame of marker e of a joint whose axes pass through hardpoints.
     ///
-    /// The smallest rotation takes z to its new direction; then x rotates about z to the part of `axis2` perpendicular to
-    /// z, as of a file with the new hardpoints.
+    /// The smallest rotation takes z to its new direction; then x rotates about z to the part of `axis2` that is
+    /// perpendicular to z, as of a file with the new hardpoints.
     fn followed_frame(&self, joint: &Joint, e: usize, values: &Values<T>) -> Mat3<T> {
         self.followed(joint.frames[e].spread(), joint.axes_of_marker(e), values)
     }

@@ -364,8 +364,7 @@ impl<T: Real> AppliedLoads<'_, T> {
         sum
     }
 
-    /// Sum of a wrench and the elastic wrenches on body j of the elastic joints at a joint; the wrench itself in a model
-    /// without equilibrium.
+    /// Sum of a wrench and the elastic wrenches on body j of a joint; the wrench itself in a model without equilibrium.
     pub fn elastic_wrench_of(&self, joint: JointId, rigid: Wrench<T>) -> Wrench<T> {
         let Some(opening) = self.opening(joint) else { return rigid };
         let mut sum = rigid;

@@ -7,8 +7,8 @@ use crate::law::Law;
 use crate::model::element::{CoupledStiffness, ElasticLaw, JointFriction, StiffnessEntry};
 use crate::model::{
     Angle, BodyId, Coupling, CubicStiffness, Damping, Density, Direction, Element, ElementKind, ElementUnit,
-    Force, Formula, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId,
-    SpringTable, Stiffness, Target, TorsionalDamping, TorsionalStiffness, each_number, elements,
+    Force, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId, SpringTable,
+    Stiffness, TorsionalDamping, TorsionalStiffness, each_number, elements,
 };
 
 use super::{Checker, Here, MeasureCheck, PERPENDICULAR_TOLERANCE};
@@ -176,10 +176,7 @@ impl ElementCheck<'_, '_> {
 
     /// True if a law is the same for all directions of its x and y axes perpendicular to z, in every design.
     pub fn is_even_across(&self, law: &ElasticLaw<'_>) -> bool {
-        let formula = |n: NumberId| {
-            let found = self.model().formulas.iter().find(|f| f.of == Target::Number(n));
-            found.map(Formula::text)
-        };
+        let formula = |n: NumberId| self.check.expression_of(n);
         let k = |r: usize, c: usize| law.stiffnesses(r, c).map(|n| self.value(n)).sum::<f64>();
         let across = [0, 1, 3, 4];
         // A symmetric matrix that no rotation about z changes.
@@ -201,7 +198,7 @@ impl ElementCheck<'_, '_> {
         is_round && is_plain && are_constant && across.iter().all(is_linear)
     }
 
-    /// Help for a missing `axis2` beside this axis: the key with the global axis that is closest to perpendicular to it.
+    /// Example of the `axis2` of this axis: the global axis that is closest to perpendicular to it.
     pub fn example_of_axis2(&self, axis: Direction) -> String {
         let [x, y, z] = self.model().vector(axis).to_array().map(f64::abs);
         let example = if x <= y && x <= z {
