@@ -15,8 +15,8 @@ use crate::equilibrium::verify_all;
 
 /// Positions and forces of the same model in another place, relative to the largest.
 const SAME: f64 = 1e-10;
-/// The same where any x axis serves: with equal stiffnesses about x and y, moments differ by a part of the square of the
-/// tilt, which is 0.1 rad here.
+/// The same where any x axis serves: with equal stiffnesses about x and y, moments differ by a part of the square of
+/// the tilt, which is 0.1 rad here.
 const SAME_BUT_TILT: f64 = 1e-4;
 /// Round-off of the balance of a body's forces, relative to the largest.
 const BALANCE: f64 = 1e-9;
