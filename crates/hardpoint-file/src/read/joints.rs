@@ -34,8 +34,8 @@ pub(super) const JOINT: Table = table! {
     may "at": Shape::Any("Places", "", &[PLACE, Shape::exactly(2, &PLACE)]), "\"A\"";
     /// The axis, in the design configuration; required if the joint type moves along or about one.
     may "axis": LINE, "\"z\"";
-    /// The second axis: perpendicular to the first, or the axis on body j, by joint type; of a type with one axis, the x
-    /// direction of elastic joints and reactions.
+    /// The second axis: perpendicular to the first, or the axis on body j, by joint type; of a type with one axis, the
+    /// x direction of elastic joints and reactions.
     may "axis2": LINE, "\"x\"";
     /// For a mirror image of another joint: the global axis perpendicular to the mirror. The default of `axis2` is then
     /// the image of that joint's default.
