@@ -185,7 +185,9 @@ impl<'a> Side<'_, 'a> {
             return;
         };
         let changes_sign = |driver: &str| {
-            let of_side = self.rule.said(driver).unwrap_or_else(|| driver.to_owned());
+            // The side that the file describes, or its image.
+            let described = self.rule.twin(driver).map(|_| driver.to_owned());
+            let of_side = described.or_else(|| self.rule.said(driver)).unwrap_or_else(|| driver.to_owned());
             let is_shared = self.rule.twin(&of_side).is_none();
             if is_shared { self.opposite.contains(&of_side) } else { self.is_handed(&of_side) }
         };
