@@ -309,7 +309,7 @@ fn reactions_of_elastic_joints_balance_the_body() {
         assert!(sum.norm() <= BALANCE * 2000.0, "{sum:?}");
         let mut about = of("jf", "moment") + of("jr", "moment");
         for (place, force) in [(at("f"), front), (at("r"), rear), (at("t"), load), (at("s"), spring)] {
-            about = about + place.cross(force);
+            about += place.cross(force);
         }
         assert!(about.norm() <= BALANCE * 600.0, "{about:?}");
         assert_eq!(model.variables.len(), 3);
