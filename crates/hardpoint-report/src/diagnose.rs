@@ -272,7 +272,7 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
     let mut shared = None;
     let mut list = Vec::new();
     for (m, measure) in model.measures.iter().enumerate() {
-        let is_compliance = matches!(measure.kind, MeasureKind::Compliance { .. });
+        let is_compliance = measure.kind.is_compliance();
         if !measure.kind.is_load() && !is_compliance {
             continue;
         }
@@ -295,6 +295,9 @@ fn loads(file: &ModelFile, course: &Course) -> Vec<Diagnostic> {
         } else if !without_length.is_empty() {
             d.note(format!("both ends of {} coincide there: a spring of zero length has no direction", names_of(&without_length)))
                 .help("move one of its ends, or use a `bushing`")
+        } else if let Some(force) = force_without_size(model, &measure.kind) {
+            d.note(format!("the size of `{force}` is zero: such a force has no direction"))
+                .help("give it a size, such as 1: the compliance is per unit of force, whatever the size, and its `law` may be zero")
         } else if is_compliance {
             d.note("compliant elements need a support, and redundant constraints support one another")
                 .help("release only drivers that something else supports, and remove redundant constraints: `check` names them")
@@ -337,6 +340,14 @@ fn has_no_length(model: &Model, motion: &Motion, k: usize, kind: &ElementKind) -
         state.r + state.rotation * in_body
     });
     (q - p).norm() <= ENDS_MEET * model.size()
+}
+
+/// Name of the given force of a compliance, if all its components are zero in the design configuration.
+fn force_without_size<'m>(model: &'m Model, kind: &MeasureKind) -> Option<&'m str> {
+    let MeasureKind::Compliance { force: Some(force), .. } = kind else { return None };
+    let name = &model.elements[force.0].name;
+    let mut components = model.numbers.iter().filter(|number| number.owner == *name);
+    components.all(|number| number.value == 0.0).then_some(name)
 }
 
 /// Names in backticks.

@@ -98,6 +98,10 @@ pub fn symbol(units: Units, quantity: Quantity) -> &'static str {
 /// assert_eq!(unit(metres, Dimension::LENGTH.rate(2)), "m/s^2");
 /// assert_eq!(unit(metres, Dimension::ANGLE.over(Dimension::LENGTH).rate(1)), "rad/(m*s)");
 /// assert_eq!(unit(metres, Dimension::NUMBER.over(Dimension::LENGTH)), "1/m");
+/// // Moments are in N m for any unit of length.
+/// let millimetres = Units { length: hardpoint_table::LengthUnit::Millimetre, ..metres };
+/// assert_eq!(unit(millimetres, Dimension::ANGLE.over(Dimension::MOMENT)), "rad/(N*m)");
+/// assert_eq!(millimetres.per_si(Dimension::ANGLE.over(Dimension::MOMENT)), 1.0);
 /// ```
 pub fn unit(units: Units, of: impl Into<Dimension>) -> String {
     let of = of.into();

@@ -32,9 +32,10 @@ pub(super) const JOINT: Table = table! {
     /// Location: a hardpoint's name or coordinates; or two of them, one on each body, for rods, legs and open joints.
     /// Default: the first hardpoint of the axis, if it has any.
     may "at": Shape::Any("Places", "", &[PLACE, Shape::exactly(2, &PLACE)]), "\"A\"";
-    /// The axis, in the design configuration; required if the joint type has one.
+    /// The axis, in the design configuration; required if the joint type moves along or about one.
     may "axis": LINE, "\"z\"";
-    /// The second axis: perpendicular to the first, or the axis on body j, depending on the joint type.
+    /// The second axis: perpendicular to the first, or the axis on body j, by joint type; of a type with one axis, the
+    /// x direction of elastic joints and reactions.
     may "axis2": LINE, "\"x\"";
     /// For a mirror image of another joint: the global axis perpendicular to the mirror. The default of `axis2` is then
     /// the image of that joint's default.

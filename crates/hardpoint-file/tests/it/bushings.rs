@@ -529,7 +529,8 @@ fn faults_are_reported() {
     snapshot_all("bushing_faults", &found);
 }
 
-fn snapshot_all(name: &str, found: &[String]) {
+/// Takes a snapshot of diagnostics.
+pub(crate) fn snapshot_all(name: &str, found: &[String]) {
     assert!(found.iter().all(|f| f != "none"), "{found:?}");
     insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false, omit_expression => true }, {
         insta::assert_snapshot!(name, found.join("\n\n"));

@@ -117,7 +117,11 @@ fn keys() {
     broken("missing_bodies_of_joint", &[("bodies = [\"ground\", \"crank\"]\n", "")]);
     broken("missing_time", &[("[time]\nend = 1.0\nsteps = 100\n", "")]);
     broken("missing_axis", &[("axis = \"z\"\n\n[joints.J2]", "\n[joints.J2]")]);
-    broken("axis_not_wanted", &[("at = \"B\"", "at = \"B\"\naxis = \"z\"")]);
+    let rod = [
+        ("type = \"spherical\"", "type = \"distance\""),
+        ("at = \"B\"", "at = [\"B\", \"C\"]\naxis = \"z\""),
+    ];
+    broken("axis_not_wanted", &rod);
     broken("two_kinds_of_change", &[("along = \"xyz\"", "along = \"xyz\"\ntilt = \"J1\"")]);
     broken("no_kind_of_change", &[("move = \"B\"\nalong = \"xyz\"\n", "fixed_length = true\n")]);
     broken("measure_without_type", &[("type = \"position\"\n", "")]);

@@ -71,7 +71,7 @@ fn four_bar(cut: &str, elastic: &[(&str, &str)]) -> String {
         .iter()
         .map(|(name, i, j)| {
             let cut = if *name == cut { ", cut = true" } else { "" };
-            format!("{name} = {{ type = \"revolute\", bodies = [\"{i}\", \"{j}\"], at = \"{name}\", axis = \"z\"{cut} }}\n")
+            format!("{name} = {{ type = \"revolute\", bodies = [\"{i}\", \"{j}\"], at = \"{name}\", axis = \"z\", axis2 = \"x\"{cut} }}\n")
         })
         .collect();
     let elastic: String = elastic

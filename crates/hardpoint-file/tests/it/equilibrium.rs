@@ -183,10 +183,10 @@ knuckle = {{}}
 rack = {{}}
 
 [joints]
-lca_front = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_front", axis = [0.98430677050583, 0.0, 0.1764658084060003]{cut_front} }}
-lca_rear = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_rear", axis = [0.98430677050583, 0.0, 0.1764658084060003] }}
-uca_front = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_front", axis = [0.9800298014418598, 0.0, 0.19885066830621678]{cut_upper} }}
-uca_rear = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_rear", axis = [0.9800298014418598, 0.0, 0.19885066830621678] }}
+lca_front = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_front", axis = [0.98430677050583, 0.0, 0.1764658084060003], axis2 = "y"{cut_front} }}
+lca_rear = {{ type = "revolute", bodies = ["ground", "lca"], at = "lca_rear", axis = [0.98430677050583, 0.0, 0.1764658084060003], axis2 = "y" }}
+uca_front = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_front", axis = [0.9800298014418598, 0.0, 0.19885066830621678], axis2 = "y"{cut_upper} }}
+uca_rear = {{ type = "revolute", bodies = ["ground", "uca"], at = "uca_rear", axis = [0.9800298014418598, 0.0, 0.19885066830621678], axis2 = "y" }}
 lower_ball = {{ type = "spherical", bodies = ["lca", "knuckle"], at = "lower_ball"{cut_ball} }}
 upper_ball = {{ type = "spherical", bodies = ["uca", "knuckle"], at = "upper_ball" }}
 tie_rod = {{ type = "distance", bodies = ["rack", "knuckle"], at = ["tie_inner", "tie_outer"] }}
@@ -969,7 +969,9 @@ fn the_limit_load_and_the_stability_of_the_wishbone_are_those_published() {
 
 #[test]
 fn what_nothing_holds_is_named() {
-    let loose = lever(0.0).replace(", about_z = 250", "").replace("\"fixed\"", "\"revolute\", axis = \"z\"");
+    let loose = lever(0.0)
+        .replace(", about_z = 250", "")
+        .replace("\"fixed\"", "\"revolute\", axis = \"z\", axis2 = \"x\"");
     let model = file(&loose).model;
     let stop = Analysis::new(&model).unwrap().run().stop.unwrap();
     assert!(matches!(stop.kind, StopKind::NothingHolds { .. }), "{stop:?}");

@@ -11,6 +11,7 @@ mod diagnostics;
 mod docs;
 mod domain;
 mod edit;
+mod elastic_axes;
 mod elements;
 mod envelope;
 mod equilibrium;

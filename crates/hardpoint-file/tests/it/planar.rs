@@ -299,11 +299,11 @@ fn the_planar_shorthand_of_every_joint_type_equals_its_long_form() {
             1 => ", at = <10 400>",
             _ => ", at = [<10 400>, <50 430>]",
         };
-        if kind.axis != Need::Unused {
+        if ![Need::Unused, Need::Orienting].contains(&kind.axis) {
             keys += if kind.normal_in_plane { "<axis>" } else { ", axis = <0.9 0.4>" };
         }
         keys += match kind.axis2 {
-            Need::Unused | Need::Optional => "",
+            Need::Unused | Need::Optional | Need::Orienting => "",
             Need::Required => ", axis2 = <-0.4 0.9>",
             Need::OnBodyJ => ", axis2 = <0.4 0.8 0.5>",
         };
@@ -329,9 +329,9 @@ fn the_planar_shorthand_of_every_joint_type_equals_its_long_form() {
 fn swinging(drivers: &str, measures: &str, forces: &str) -> String {
     format!(
         "{HEADER}gravity = {{ along = <0.1 -1> }}\n[bodies]\na = {{}}\nb = {{}}\nc = {{}}\n[joints]\n\
-         hinge = {{ type = \"revolute\", bodies = [\"ground\", \"a\"], at = <-200 300><axis> }}\n\
+         hinge = {{ type = \"revolute\", bodies = [\"ground\", \"a\"], at = <-200 300><axis>, axis2 = <0.8 0.6> }}\n\
          slide = {{ type = \"translational\", bodies = [\"a\", \"b\"], at = <10 400>, axis = <0.9 0.4> }}\n\
-         pin = {{ type = \"revolute\", bodies = [\"b\", \"c\"], at = <60 430><axis> }}\n\
+         pin = {{ type = \"revolute\", bodies = [\"b\", \"c\"], at = <60 430><axis>, axis2 = <1 0> }}\n\
          [points]\np = {{ body = \"c\", at = <90 450> }}\n[drivers]\nswing = {{ joint = \"hinge\", law = \"14*t - 3*t^2\" }}\n\
          way = {{ joint = \"slide\", law = \"25*t + 9*t^2\" }}\n{drivers}\n[masses]\n\
          mass_b = {{ type = \"rigid\", centre = {{ body = \"b\", at = <20 410> }}, mass = 4, ixx = 0.02, iyy = 0.03, izz = 0.04 }}\n\

@@ -192,13 +192,15 @@ fn with_joint(kind: &JointType, across: usize, with_axis2: bool) -> String {
         1 => ", at = \"left_O\"",
         _ => ", at = [\"left_O\", \"left_P\"]",
     };
-    if kind.axis != Need::Unused {
-        keys += ", axis = [0.2, 0.9, 0.4]";
-    }
+    keys += match kind.axis {
+        Need::Unused => "",
+        Need::Orienting if !with_axis2 => "",
+        Need::Orienting | Need::Optional | Need::Required | Need::OnBodyJ => ", axis = [0.2, 0.9, 0.4]",
+    };
     keys += match kind.axis2 {
         Need::Unused => "",
-        Need::Optional if !with_axis2 => "",
-        Need::Optional | Need::Required => ", axis2 = [0.9, -0.2, 0]",
+        Need::Optional | Need::Orienting if !with_axis2 => "",
+        Need::Optional | Need::Orienting | Need::Required => ", axis2 = [0.9, -0.2, 0]",
         Need::OnBodyJ => ", axis2 = [0.4, 0.8, 0.5]",
     };
     if kind.has_lead() {
@@ -236,7 +238,7 @@ pub(crate) fn joint_types(hold: Hold<'_>) {
             if ["cylindrical", "screw"].contains(&kind.name) { &["q_angle"] } else { &[] };
         for across in 0..3 {
             for with_axis2 in [true, false] {
-                if with_axis2 || kind.axis2 == Need::Optional {
+                if with_axis2 || [Need::Optional, Need::Orienting].contains(&kind.axis2) {
                     hold(kind.name, &with_joint(kind, across, with_axis2), across, opposite);
                 }
             }
@@ -517,7 +519,7 @@ fn loaded(across: usize, tables: &str) -> String {
             "{gravity}[hardpoints]\nleft_H = [-200, 300, 100]\nleft_O = [10, 400, 20]\nleft_P = [50, 430, -20]\nleft_B = [150, 500, 60]\nleft_R = [300, 350, 40]\n\
          [bodies]\nleft_a = {{}}\nleft_b = {{}}\nleft_c = {{}}\nleft_e = {{}}\n\
          [joints]\n\
-         left_hinge = {{ type = \"revolute\", bodies = [\"ground\", \"left_a\"], at = \"left_H\", axis = [0.3, 0.5, 0.8] }}\n\
+         left_hinge = {{ type = \"revolute\", bodies = [\"ground\", \"left_a\"], at = \"left_H\", axis = [0.3, 0.5, 0.8], axis2 = [1, 0.2, 0.1] }}\n\
          left_tube = {{ type = \"cylindrical\", bodies = [\"left_a\", \"left_b\"], at = \"left_O\", axis = [0.2, 0.9, 0.4] }}\n\
          left_ball = {{ type = \"spherical\", bodies = [\"left_a\", \"left_c\"], at = \"left_B\" }}\n\
          left_rail = {{ type = \"translational\", bodies = [\"ground\", \"left_e\"], at = \"left_R\", axis = [0.5, 0.5, 0.7] }}\n\

@@ -131,7 +131,9 @@ impl Compose<'_> {
     /// Hardpoints that define the axis of a hinge: both are on both of its bodies.
     pub(super) fn hinge_points(&self, joint: &Joint) -> Option<[HardpointId; 2]> {
         let turns = joint.kind.freedoms.is_some_and(|f| f.iter().all(|f| matches!(f, Freedom::Turn(_))));
-        joint.axis.filter(|_| turns && joint.axis2.is_none())?.hardpoints()
+        let is_pin = joint.kind.axis != Need::Orienting;
+        let has_one_axis = joint.axis2.is_none() || joint.kind.axis2 == Need::Orienting;
+        joint.axis.filter(|_| turns && is_pin && has_one_axis)?.hardpoints()
     }
 
     /// Position of a hardpoint in the design configuration, in a body's frame.
@@ -164,12 +166,15 @@ impl Compose<'_> {
             let [i, k] = &geometry.markers[j];
             // The second pin of a cross is the x axis of body j: z_i . x_j = 0.
             let crosses = joint.kind.rows.contains(&Row::Dot1(2, 0));
-            let axis2 = joint.axis2.map(|_| match joint.kind.axis2 {
+            // Axes that orient the markers alone are not those of a motion.
+            let moving = |axis: Option<Direction>, need: Need| axis.filter(|_| need != Need::Orienting);
+            let axis = moving(joint.axis, joint.kind.axis);
+            let axis2 = moving(joint.axis2, joint.kind.axis2).map(|_| match joint.kind.axis2 {
                 Need::OnBodyJ => k.rot.cols[2],
                 _ if crosses => k.rot.cols[0],
                 _ => i.rot.cols[0],
             });
-            let ends = joint.axis.and_then(Direction::hardpoints);
+            let ends = axis.and_then(Direction::hardpoints);
             JointMark {
                 name: joint.name.clone(),
                 kind: written_kind(joint, spins.contains(&JointId(j))),
@@ -177,8 +182,8 @@ impl Compose<'_> {
                 body_j: joint.bodies[1].0,
                 at_i: self.length(i.r),
                 at_j: self.length(k.r),
-                axis: joint.axis.map(|_| i.rot.cols[2].to_array()),
-                axis_j: joint.axis.map(|_| k.rot.cols[2].to_array()),
+                axis: axis.map(|_| i.rot.cols[2].to_array()),
+                axis_j: axis.map(|_| k.rot.cols[2].to_array()),
                 axis2: axis2.map(Vec3::to_array),
                 slide: match joint.kind.slide {
                     Slide::None => None,

@@ -135,10 +135,37 @@ fn rigid_mechanism_is_left_out_with_a_sentence_if_only_forces_hold_it() {
         [", \"bump_steer\", \"bump_camber\"]", "]"],
         ["\nbump_steer = {", "\n# {"],
         ["\nroll_steer = {", "\n# {"],
+        ["\nleft_steer_in_bump = {", "\n# {"],
+        ["\nleft_steer_in_roll = {", "\n# {"],
     ];
     let page = page(&axle("braking", &without));
     assert!(page.designs.is_empty());
     let notes: Vec<&String> = page.notes.iter().filter(|n| n.contains("rigid mechanism")).collect();
     let [note] = notes[..] else { panic!("{:?}", page.notes) };
     assert!(note.starts_with("The rigid mechanism is not shown: ") && note.contains("`left_bump`"), "{note}");
+}
+
+#[test]
+fn a_compliance_per_a_force_of_size_zero_reports_why_it_has_no_value() {
+    let zero = [
+        "left_align = { type = \"wheel_force\", wheel = \"left\", about_up = 1",
+        "left_align = { type = \"wheel_force\", wheel = \"left\", about_up = 0",
+    ];
+    let notes = |file: &ModelFile| {
+        let analysis = Analysis::new(&file.model).unwrap();
+        let course = Course::of(&file.model, &analysis.run());
+        let summary = Summary::new(file, analysis.topology(), &course);
+        let found = hardpoint_report::diagnose::all(file, &summary, &course, None);
+        let text = |d: &hardpoint_file::Diagnostic| format!("{} {} {}", d.code, d.message, d.notes.join(" "));
+        found.iter().map(text).collect::<Vec<_>>().join("\n")
+    };
+    let with_size = axle("steer", &[]);
+    let shown = notes(&with_size);
+    assert!(!shown.contains("HP0409"), "{shown}");
+    // Moments are in N m, whatever the unit of length.
+    let page = page(&with_size);
+    let found = page.quantities.iter().find(|q| q.name == "left_toe_per_align").unwrap();
+    assert_eq!(found.unit, "deg/(N*m)");
+    let shown = notes(&axle("steer", &[zero]));
+    assert!(shown.contains("HP0409") && shown.contains("the size of `left_align` is zero"), "{shown}");
 }

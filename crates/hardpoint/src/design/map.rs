@@ -417,7 +417,8 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
 
     /// Returns the frame of marker e of a joint whose axes pass through hardpoints.
     ///
-    /// The smallest rotation takes z to its new direction; then x rotates about z with `axis2`.
+    /// The smallest rotation takes z to its new direction; then x rotates about z to the part of `axis2` that is
+    /// perpendicular to z, as of a file with the new hardpoints.
     fn followed_frame(&self, joint: &Joint, e: usize, values: &Values<T>) -> Mat3<T> {
         self.followed(joint.frames[e].spread(), joint.axes_of_marker(e), values)
     }
@@ -433,7 +434,8 @@ impl<'e, T: Real> PlacedDesign<'e, T> {
             // The rotation about z x h takes z to h; to first order it is h x h'.
             rot = Mat3::between(rot.cols[2], self.direction(axis, values)) * rot;
         }
-        if let Some(axis2 @ Direction::Through(..)) = axis2 {
+        let follows = |of: Option<Direction>| matches!(of, Some(Direction::Through(..)));
+        if let Some(axis2) = axis2.filter(|_| follows(axis) || follows(axis2)) {
             let (d, z) = (self.direction(axis2, values), rot.cols[2]);
             // x = (d - z z . d) / abs(..),  y = z x x
             let across = d - z * z.dot(d);

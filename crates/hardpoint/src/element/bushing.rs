@@ -2,10 +2,8 @@
 
 use crate::draft::{CheckElement, ElementCheck};
 use crate::load::{AppliedLoads, ForceFormula};
-use crate::model::element::{
-    ActsOn, Bushing, Compliance, Elasticity, ForceProperties, Properties, StiffnessEntry,
-};
-use crate::model::{Dimension, ElementId, Model, NumberId};
+use crate::model::element::{ActsOn, Bushing, Compliance, ForceProperties, Properties, StiffnessEntry};
+use crate::model::{Dimension, ElementId, Model};
 use crate::space::{Real, Wrench};
 
 impl Bushing {
@@ -23,17 +21,12 @@ impl Bushing {
 impl Bushing {
     /// HP0251: x and y axes that are not given, but differ.
     fn check_across(&self, c: &mut ElementCheck<'_, '_>) {
-        let [x, y, _, about_x, about_y, _] = self.law().directions;
-        let value = |n: Option<NumberId>| n.map_or(0.0, |n| c.value(n));
-        let is_even = |x: &Elasticity<'_>, y: &Elasticity<'_>| {
-            let is_same = value(x.stiffness) == value(y.stiffness) && value(x.cubic) == value(y.cubic);
-            is_same && [x, y].iter().all(|of| of.preload.is_none() && of.curve.is_none())
-        };
-        let is_even = self.matrix.is_none() && is_even(&x, &y) && is_even(&about_x, &about_y);
-        if self.axis.is_some() && self.axis2.is_none() && !is_even {
+        let Some(axis) = self.axis.filter(|_| self.axis2.is_none()) else { return };
+        if !c.is_even_across(&self.law()) {
             let message =
                 format!("the x and y axes of `{}` differ, and their directions are not given", c.name);
-            c.fault("HP0251", "axis", message).help("add the direction of its x axis, like `axis2 = \"x\"`");
+            let help = format!("add the direction of its x axis, like {}", c.example_of_axis2(axis));
+            c.fault("HP0251", "axis", message).help(help);
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Joint that gives along its own axes.
 
 use crate::draft::{CheckElement, ElementCheck};
+use crate::joint::{DIRECTION_NAMES, DIRECTIONS, Need, free_directions};
 use crate::linalg::semidefinite::is_definite;
 use crate::load::{AppliedLoads, ForceFormula};
 use crate::model::element::{ActsOn, Compliance, ElasticJoint, ForceProperties, Properties};
-use crate::model::{Dimension, ElementId, Model, NumberId};
+use crate::model::{Dimension, ElementId, Joint, Model, NumberId};
 use crate::space::{Real, Wrench};
 
 impl ForceProperties for ElasticJoint {
@@ -24,32 +25,124 @@ impl ForceProperties for ElasticJoint {
     }
 }
 
-impl CheckElement for ElasticJoint {
-    fn check(&self, c: &mut ElementCheck<'_, '_>) {
+/// Keys of the cubic stiffnesses, as far as directions have them.
+const CUBIC: [&str; 3] = ["cubic_x", "cubic_y", "cubic_z"];
+/// Keys of the curves.
+const CURVES: [&str; 3] = ["curve_x", "curve_y", "curve_z"];
+/// Keys of the preloads.
+const PRELOADS: [&str; DIRECTIONS] =
+    ["preload_x", "preload_y", "preload_z", "preload_about_x", "preload_about_y", "preload_about_z"];
+
+impl ElasticJoint {
+    /// HP0252: stiffnesses that are not positive, or a matrix that is not positive definite.
+    fn check_stiffness(&self, c: &mut ElementCheck<'_, '_>) {
         let law = self.law();
         let gives = law.gives();
         let value = |n: NumberId| c.value(n);
         // Curves may have any slope in the design configuration.
         let is_linear = |k: &usize| gives[*k] && law.directions[*k].curve.is_none();
-        let linear: Vec<usize> = (0..6).filter(is_linear).collect();
+        let linear: Vec<usize> = (0..DIRECTIONS).filter(is_linear).collect();
         let stiffness = |r: usize, k: usize| law.stiffnesses(r, k).map(value).sum();
         let row = |r: &usize| linear.iter().map(|k| stiffness(*r, *k)).collect();
         let matrix: Vec<Vec<f64>> = linear.iter().map(row).collect();
-        let given = |k: &usize| law.directions[*k].stiffness.is_none_or(|n| value(n) > 0.0);
-        if !gives.contains(&true) {
-            let message = format!("`{}` is rigid in all directions", c.name);
-            c.fault("HP0251", "type", message)
-                .help("give it a stiffness along or about one of its axes, or remove it");
-        } else if !(0..6).all(|k| given(&k)) {
-            let message = format!("a stiffness of `{}` is not positive", c.name);
-            c.fault("HP0252", "joint", message)
-                .help("give a positive stiffness, or remove the key to make that direction rigid");
+        let is_given = |k: &usize| law.directions[*k].stiffness.is_none_or(|n| value(n) > 0.0);
+        if let Some(k) = (0..DIRECTIONS).find(|k| !is_given(k)) {
+            let key = DIRECTION_NAMES[k];
+            let message = format!("stiffness `{key}` of `{}` is not positive", c.name);
+            let help = match law.directions[k].curve {
+                Some(_) => format!(
+                    "give a positive stiffness, or remove `{key}`: the direction then deflects by `{}` alone",
+                    CURVES[k]
+                ),
+                None => format!("give a positive stiffness, or remove `{key}` to make that direction rigid"),
+            };
+            c.fault("HP0252", key, message).help(help);
         } else if self.matrix.is_some() && !is_definite(&matrix) {
             let message = format!("the stiffness matrix of `{}` is not positive definite", c.name);
             c.fault("HP0252", "matrix", message)
                 .note("it counts with the stiffnesses along and about single axes on its diagonal")
                 .help("increase the diagonal, or reduce the entries beside it");
         }
+    }
+
+    /// HP0252: forces along directions in which the joint is rigid, and so has no displacement.
+    fn check_rigid(&self, c: &mut ElementCheck<'_, '_>) {
+        let law = self.law();
+        let (gives, kind) = (law.gives(), c.model().joints[self.joint.0].kind);
+        let free = free_directions(kind);
+        let rigid = |k: usize| !gives[k] && !free[k] && kind.freedoms.is_some();
+        for k in (0..DIRECTIONS).filter(|k| rigid(*k)) {
+            let (of, name) = (&law.directions[k], DIRECTION_NAMES[k]);
+            let curve = CURVES.get(k).map_or(String::new(), |curve| format!(", or a `{curve}`"));
+            let cubic = of.cubic.and(CUBIC.get(k).copied());
+            for key in cubic.into_iter().chain(of.preload.map(|_| PRELOADS[k])) {
+                let message = format!(
+                    "`{key}` of `{}` has no effect: the joint is rigid in direction `{name}`",
+                    c.name
+                );
+                let fault = c.fault("HP0252", key, message);
+                if cubic == Some(key) {
+                    fault.note(
+                        "a cubic stiffness alone resists nothing in the design configuration without load",
+                    );
+                }
+                fault.help(format!("add the stiffness `{name}`{curve}; or remove `{key}`"));
+            }
+        }
+        let entries = law.coupled.iter().flat_map(|matrix| &matrix.entries);
+        let idle = entries.flat_map(|e| [e.row, e.column]).find(|k| rigid(*k));
+        if let Some(k) = idle {
+            let name = DIRECTION_NAMES[k];
+            let message = format!(
+                "entries of the matrix of `{}` have no effect: the joint is rigid in direction `{name}`",
+                c.name
+            );
+            c.fault("HP0252", "matrix", message).help(format!(
+                "add the stiffness `{name}` or a diagonal entry of it, or set its row and column to zero"
+            ));
+        }
+    }
+
+    /// HP0251: x and y axes that differ, but are any directions perpendicular to the axis of the joint.
+    fn check_across(&self, c: &mut ElementCheck<'_, '_>) {
+        let Joint { name, kind, axis, axis2, .. } = &c.model().joints[self.joint.0];
+        let is_open = match kind.axis2 {
+            Need::OnBodyJ => true,
+            Need::Required | Need::Optional | Need::Orienting | Need::Unused => axis2.is_none(),
+        };
+        let Some(axis) = axis.filter(|_| is_open && kind.freedoms.is_some()) else { return };
+        if c.is_even_across(&self.law()) {
+            return;
+        }
+        let message = format!(
+            "the x and y axes of `{}` differ, and joint `{name}` does not give their directions",
+            c.name
+        );
+        let help = match kind.axis2 {
+            Need::OnBodyJ => format!(
+                "`axis2` of a `{}` is on its second body: give `{}` the same stiffness along and about x and y",
+                kind.name, c.name
+            ),
+            Need::Required | Need::Optional | Need::Orienting | Need::Unused => {
+                let example = c.example_of_axis2(axis);
+                format!("add the direction of the x axis to joint `{name}`, like {example}")
+            }
+        };
+        c.fault("HP0251", "joint", message).help(help);
+    }
+}
+
+impl CheckElement for ElasticJoint {
+    fn check(&self, c: &mut ElementCheck<'_, '_>) {
+        if !self.law().gives().contains(&true) {
+            let message = format!("`{}` is rigid in all directions", c.name);
+            c.fault("HP0251", "type", message)
+                .help("give it a stiffness along or about one of its axes, or remove it");
+        } else {
+            self.check_stiffness(c);
+            self.check_rigid(c);
+        }
+        self.check_across(c);
         let joint = &c.model().joints[self.joint.0];
         if joint.kind.places == 0 {
             let message = format!("joint `{}` has no location at which it could deflect", joint.name);

@@ -13,7 +13,7 @@ pub static CYLINDRICAL: JointType = JointType {
     summary: "slides along its axis and turns about it",
     places: 1,
     axis: Need::Required,
-    axis2: Need::Unused,
+    axis2: Need::Orienting,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
     relaxations: &[&INLINE],

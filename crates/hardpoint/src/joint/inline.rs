@@ -13,7 +13,7 @@ pub static INLINE: JointType = JointType {
     summary: "a point of body j stays on the line along `axis` on body i",
     places: 1,
     axis: Need::Required,
-    axis2: Need::Unused,
+    axis2: Need::Orienting,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
     relaxations: &[],

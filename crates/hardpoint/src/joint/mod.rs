@@ -9,8 +9,9 @@
 //! A joint connects body i, the first of its `bodies`, with body j, the second. It has a marker on each: an origin P
 //! and right-handed axes x, y, z fixed in the body. In the design configuration both origins are at the joint's
 //! hardpoint (or each at its own, for joints with two), z points along `axis`, and x along `axis2` if the type has one.
-//! If only z matters, x is any perpendicular direction, the same for both markers. If `axis2` belongs to body j
-//! ([`Need::OnBodyJ`]), it is the z axis of marker j.
+//! If only z matters, x is along the part of `axis2` perpendicular to z; without `axis2`, x is any perpendicular
+//! direction, the same for both markers. If no direction matters and none is given, the axes are the global ones. If
+//! `axis2` belongs to body j ([`Need::OnBodyJ`]), it is the z axis of marker j.
 //!
 //! ```text
 //!          z_i   z_j                       d = P_j - P_i, from marker i to marker j
@@ -166,6 +167,9 @@ pub enum Need {
     Optional,
     /// Required, on body j, at any angle to the axis of body i.
     OnBodyJ,
+    /// Optional: the type moves alike for all such axes, but they orient its markers, along whose axes elastic joints
+    /// deflect and reactions have components. Of a second axis the part perpendicular to the first counts.
+    Orienting,
     /// Not used by this type.
     Unused,
 }
@@ -315,7 +319,7 @@ impl JointType {
     pub fn axes_in_mirror(&self) -> [i8; 3] {
         let [z, axis2] = self.vector_kinds.map(VectorKind::sign);
         let x = match self.axis2 {
-            Need::Required | Need::Optional => axis2,
+            Need::Required | Need::Optional | Need::Orienting => axis2,
             // Any direction, mirrored as a polar vector.
             Need::OnBodyJ | Need::Unused => VectorKind::Polar.sign(),
         };

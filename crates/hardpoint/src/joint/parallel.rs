@@ -13,7 +13,7 @@ pub static PARALLEL: JointType = JointType {
     summary: "`axis` on body j stays parallel to `axis` on body i",
     places: 0,
     axis: Need::Required,
-    axis2: Need::Unused,
+    axis2: Need::Orienting,
     vector_kinds: [VectorKind::Axial, VectorKind::Polar],
     normal_in_plane: false,
     relaxations: &[],

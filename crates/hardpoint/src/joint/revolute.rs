@@ -13,7 +13,7 @@ pub static REVOLUTE: JointType = JointType {
     summary: "a hinge: turns about its axis",
     places: 1,
     axis: Need::Required,
-    axis2: Need::Unused,
+    axis2: Need::Orienting,
     vector_kinds: [VectorKind::Axial, VectorKind::Polar],
     normal_in_plane: true,
     relaxations: &[&CYLINDRICAL, &SPHERICAL, &INLINE],

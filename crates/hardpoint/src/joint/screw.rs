@@ -14,7 +14,7 @@ pub static SCREW: JointType = JointType {
     summary: "turns about `axis` and advances along it by `lead` per turn",
     places: 1,
     axis: Need::Required,
-    axis2: Need::Unused,
+    axis2: Need::Orienting,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
     relaxations: &[],

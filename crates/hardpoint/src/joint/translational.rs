@@ -13,7 +13,7 @@ pub static TRANSLATIONAL: JointType = JointType {
     summary: "a slide: moves along its axis and cannot turn",
     places: 1,
     axis: Need::Required,
-    axis2: Need::Unused,
+    axis2: Need::Orienting,
     vector_kinds: [VectorKind::Polar; 2],
     normal_in_plane: false,
     relaxations: &[&CYLINDRICAL, &INLINE],

@@ -6,7 +6,7 @@
 use crate::constraint::{MarkerPair, Row};
 use crate::design::Geometry;
 use crate::measure::WheelAt;
-use crate::model::element::{ActsOn, ElasticLaw, Elasticity, JointFriction, StiffnessEntry};
+use crate::model::element::{ActsOn, Compliance, ElasticLaw, Elasticity, JointFriction, StiffnessEntry};
 use crate::model::{
     Axes, BodyId, ENDS_MEET, ElementId, ElementKind, JointId, LoadMode, Model, NumberId, PointId, UnitForce,
     Wheel, WheelId, elements, if_mass,
@@ -359,6 +359,20 @@ impl<T: Real> AppliedLoads<'_, T> {
         for (k, wrench) in opening.wrenches.iter().enumerate() {
             if !forces[k].vanishes() {
                 sum = wrench.times_plus(forces[k], sum);
+            }
+        }
+        sum
+    }
+
+    /// Sum of a wrench and the elastic wrenches on body j of a joint; the wrench itself in a model without equilibrium.
+    pub fn elastic_wrench_of(&self, joint: JointId, rigid: Wrench<T>) -> Wrench<T> {
+        let Some(opening) = self.opening(joint) else { return rigid };
+        let mut sum = rigid;
+        for force in self.model.elements.iter().filter_map(|element| element.kind.force(self.model)) {
+            if let Compliance::Joint(elastic) = force.compliance
+                && elastic.joint == joint
+            {
+                sum += self.elastic_wrench(&opening, &elastic.law());
             }
         }
         sum

@@ -49,7 +49,7 @@ impl LoadFunction<'_> {
         transmitted: &TransmittedLoads<Dual<T>>,
     ) -> T {
         match self {
-            Self::Measure(kind) => LoadMeasures { applied, transmitted }.measure(kind).d,
+            Self::Measure(kind) => LoadMeasures::new(applied, transmitted).measure(kind).d,
             Self::Friction(k) => friction.residual(k, applied, transmitted).d,
         }
     }

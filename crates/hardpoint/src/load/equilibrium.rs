@@ -192,7 +192,7 @@ impl<'a, T: Real> Equilibrium<'a, T> {
 
     /// All loads at the position.
     pub fn measures<'s>(&'s self, applied: &'s AppliedLoads<'s, T>) -> LoadMeasures<'s, T> {
-        LoadMeasures { applied, transmitted: &self.transmitted }
+        LoadMeasures::new(applied, &self.transmitted)
     }
 
     /// Solves for the reactions to the required wrenches: T and mu of (18) with F.
@@ -252,7 +252,7 @@ impl<'a, T: Real> Equilibrium<'a, T> {
                 pulls.iter().filter(|(c, _)| site.closures.contains(c)).for_each(|(_, l)| *to += *l);
             }
             let loads = TransmittedLoads { joints, ..TransmittedLoads::new(self.model) };
-            let largest = LoadMeasures { applied: &self.applied(), transmitted: &loads }.largest_reaction();
+            let largest = LoadMeasures::of_stress(&self.applied(), &loads).largest_reaction();
             self.stresses.push(SelfStress { loads, largest });
         }
     }
@@ -266,7 +266,7 @@ impl<'a, T: Real> Equilibrium<'a, T> {
         }
         let applied = &self.applied();
         let of = |stress: &SelfStress<T>| {
-            LoadMeasures { applied, transmitted: &stress.loads }.excess(kind, stress.largest)
+            LoadMeasures::of_stress(applied, &stress.loads).excess(kind, stress.largest)
         };
         self.stresses.iter().fold(none, |most, stress| most.larger(of(stress)))
     }

@@ -100,7 +100,7 @@ impl Friction {
         self.moments.fill(0.0);
         for friction in &mut self.elements {
             let is_independent = |SelfStress { loads, largest }: &SelfStress<f64>| {
-                LoadMeasures { applied, transmitted: loads }.has_no_normal_force(
+                LoadMeasures::of_stress(applied, loads).has_no_normal_force(
                     friction.element,
                     friction.joint,
                     *largest,

@@ -8,8 +8,22 @@ use super::equilibrium::TransmittedLoads;
 
 /// All loads at one time.
 pub(super) struct LoadMeasures<'a, T> {
-    pub applied: &'a AppliedLoads<'a, T>,
-    pub transmitted: &'a TransmittedLoads<T>,
+    applied: &'a AppliedLoads<'a, T>,
+    transmitted: &'a TransmittedLoads<T>,
+    /// True if the applied loads act; false for a self-stress, which is there without them.
+    is_loaded: bool,
+}
+
+impl<'a, T: Real> LoadMeasures<'a, T> {
+    /// Loads that the applied loads cause: `transmitted` is what rigid directions of joints transmit.
+    pub fn new(applied: &'a AppliedLoads<'a, T>, transmitted: &'a TransmittedLoads<T>) -> Self {
+        Self { applied, transmitted, is_loaded: true }
+    }
+
+    /// Loads of a self-stress at the position of these loads.
+    pub fn of_stress(applied: &'a AppliedLoads<'a, T>, transmitted: &'a TransmittedLoads<T>) -> Self {
+        Self { applied, transmitted, is_loaded: false }
+    }
 }
 
 impl<T: Real> LoadMeasures<'_, T> {
@@ -44,8 +58,15 @@ impl<T: Real> LoadMeasures<'_, T> {
         let AppliedLoads { model, geometry, bodies, .. } = *self.applied;
         let body = model.joints[joint.0].bodies[1];
         let place = bodies[body.0].pose.point(geometry.markers[joint.0][1].r);
-        let Wrench { m, f } = self.transmitted.joints[joint.0];
+        let Wrench { m, f } = self.joint_wrench(joint);
         [place, f, m - place.cross(f)]
+    }
+
+    /// Reaction wrench of a joint on its body j, about the world origin: what its rigid directions transmit, and its
+    /// elastic forces.
+    fn joint_wrench(&self, joint: JointId) -> Wrench<T> {
+        let rigid = self.transmitted.joints[joint.0];
+        if self.is_loaded { self.applied.elastic_wrench_of(joint, rigid) } else { rigid }
     }
 
     /// Reaction of a joint on one of its bodies.
@@ -53,7 +74,7 @@ impl<T: Real> LoadMeasures<'_, T> {
         let AppliedLoads { model, geometry, bodies, .. } = *self.applied;
         let [i, j] = model.joints[joint.0].bodies;
         let end = usize::from(on.is_none_or(|on| on == j));
-        let wrench = self.transmitted.joints[joint.0];
+        let wrench = self.joint_wrench(joint);
         let Wrench { m, f } = if end == 1 { wrench } else { Wrench::zero() - wrench };
         let body = [i, j][end];
         let pose = bodies[body.0].pose;

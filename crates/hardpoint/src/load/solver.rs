@@ -148,21 +148,21 @@ impl<'a> LoadSolver<'a> {
     /// self-stresses can change is left out.
     pub fn known_force(&self, joint: JointId) -> (Vec3, usize) {
         let applied = self.equilibrium.applied();
-        let of = |transmitted| LoadMeasures { applied: &applied, transmitted };
         // Orthogonal basis of the forces that self-stresses change.
         let mut open: Vec<Vec3> = Vec::new();
         for SelfStress { loads, largest } in &self.equilibrium.stresses {
             let kind = MeasureKind::Reaction { joint, part: ReactionPart::Force, on: None, axes: None };
-            if of(loads).excess(&kind, *largest) <= 0.0 {
+            let stress = LoadMeasures::of_stress(&applied, loads);
+            if stress.excess(&kind, *largest) <= 0.0 {
                 continue;
             }
-            let [_, force, _] = of(loads).wrench(joint);
+            let [_, force, _] = stress.wrench(joint);
             let rest = across(force, &open);
             if rest.norm() > PARALLEL * force.norm() {
                 open.push(rest * (1.0 / rest.norm()));
             }
         }
-        let [_, force, _] = of(self.transmitted()).wrench(joint);
+        let [_, force, _] = LoadMeasures::new(&applied, self.transmitted()).wrench(joint);
         (across(force, &open), 3 - open.len())
     }
 

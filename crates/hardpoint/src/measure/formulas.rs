@@ -3,6 +3,7 @@
 use crate::clearance::{NearestPair, PlacedShapes};
 use crate::constraint::Row;
 use crate::design::BodyFixed;
+use crate::joint::Need;
 use crate::model::{
     ArmPlane, AxleMeasure, BodyId, ClearanceId, JointId, MeasureKind, Model, OutputSource, PointId, Ray,
     WheelId, loads,
@@ -270,7 +271,7 @@ impl<'a, T: Real> Instant<'a, T> {
         }
         let markers = self.fixed.markers[k].expect("a measure of a joint");
         let axis = |end: usize, c: usize| self.poses[j.bodies[end].0].rot * markers[end].rot.cols[c];
-        if j.axis.is_some() {
+        if j.axis.is_some() && j.kind.axis != Need::Orienting {
             // The shafts of a cross are perpendicular to both pins.
             let along = if j.kind.is_cross() { 1 } else { 2 };
             return between([0, 1].map(|end| axis(end, along)));

@@ -332,8 +332,21 @@ impl<T: Real> DriverAlone<'_, T> {
             brakes: model.wheels[wheel.0].brakes,
         };
         match &model.measures[k].kind {
-            // (d of/dq) / (d over/dq), each with its derivative by the variable; the quotient rule is the dual's
-            MeasureKind::Slope { of, over, .. } => first.output(*of).d / first.output(*over).d,
+            // (d of/dq) / (d over/dq), each with its derivative by the variable; the quotient rule is the dual's.
+            // Several drivers move by dq or -dq in terms of their laws: d/dq = sum +-d/dq_k
+            MeasureKind::Slope { of, over, driver, together, opposed } => {
+                let along = |output: OutputSource| {
+                    let mut sum = first.output(output).d;
+                    let with = together.iter().flatten().map(|d| (d, false));
+                    for (d, is_opposed) in with.chain(opposed.iter().flatten().map(|d| (d, true))) {
+                        let rate = self.instant(*d).output(output).d;
+                        let turned = model.is_reversed(*d) != model.is_reversed(*driver);
+                        sum = if turned == is_opposed { sum + rate } else { sum - rate };
+                    }
+                    sum
+                };
+                along(*of) / along(*over)
+            }
             MeasureKind::Dexterity { points, drivers, value } => {
                 let jacobian = |d: usize, p: usize| {
                     let instant = self.instant(drivers[d]);

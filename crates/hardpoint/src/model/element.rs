@@ -413,8 +413,8 @@ macro_rules! elements {
             damping: Option<NumberDraft> => Option<Damping>,
         }
 
-        /// A joint that gives along its own axes, z along its axis: under load with `[equilibrium]`, otherwise only for
-        /// measures of `compliance`.
+        /// A joint that gives along its own axes, z along its `axis`, x along its `axis2`: under load with
+        /// `[equilibrium]`, otherwise only for measures of `compliance`.
         ElasticJoint "elastic_joint" forces {
             /// The joint.
             joint: String => JointId,

@@ -152,7 +152,7 @@ macro_rules! measures {
         moving(m.known(*of).orders.saturating_sub(1)),
         format!("rate of {}", w.output(*of));
 
-    /// Derivative of one measure by another while one driver alone moves, such as a motion ratio.
+    /// Derivative of one measure by another while one driver moves, alone or with others, such as a motion ratio.
     Slope "slope" [Polar, normal: false] {
         /// The measure, or `POINT.x`, that changes.
         of: String => OutputSource,
@@ -160,9 +160,20 @@ macro_rules! measures {
         over: String => OutputSource,
         /// The driver that moves. Default: the only one.
         driver: Option<String> => DriverId,
+        /// Drivers that move with it, each by the same amount: the other wheel in parallel travel.
+        together: Option<Vec<String>> => Option<Vec<DriverId>>,
+        /// Drivers that move with it, each by the opposite amount: the other wheel in roll.
+        opposed: Option<Vec<String>> => Option<Vec<DriverId>>,
     } |m, w| m.dimension(*of).over(m.dimension(*over)), moving(1), {
-        let driver = &w.model.drivers[driver.0].name;
-        format!("{} over {} while driver `{driver}` alone moves", w.output(*of), w.output(*over))
+        let name = |d: &DriverId| format!("`{}`", w.model.drivers[d.0].name);
+        let list = |drivers: &Option<Vec<DriverId>>, sign: &str| -> String {
+            drivers.iter().flatten().map(|d| format!(" {sign} {}", name(d))).collect()
+        };
+        let (with, against) = (list(together, "and"), list(opposed, "against"));
+        let moving = if with.is_empty() && against.is_empty() { "alone moves" } else { "move" };
+        let drivers = format!("{}{with}{against}", name(driver));
+        let word = if moving == "move" { "drivers" } else { "driver" };
+        format!("{} over {} while {word} {drivers} {moving}", w.output(*of), w.output(*over))
     };
 
     /// Dexterity: how the velocities of points on a body follow those of drivers, by the singular values of their
@@ -562,6 +573,7 @@ impl OnBodies for Option<Direction> {}
 impl OnBodies for DriverId {}
 impl OnBodies for Option<DriverId> {}
 impl OnBodies for Vec<DriverId> {}
+impl OnBodies for Option<Vec<DriverId>> {}
 impl OnBodies for JacobianValue {}
 impl OnBodies for OutputSource {}
 impl OnBodies for Combination {}
@@ -1057,9 +1069,12 @@ impl Dimension {
     /// A moment, or an energy.
     pub const MOMENT: Self = Self { force: 1, ..Self::LENGTH };
 
-    /// Exponent of the user's unit of length: moments, energies and powers are in N m, J and W for any unit of length.
+    /// Exponent of the user's unit of length: moments, energies and powers are in N m, J and W for any unit of length,
+    /// and what is given per moment is per N m.
     pub const fn length_in_units(self) -> i8 {
-        if self.force > 0 && self.length > 0 { 0 } else { self.length }
+        let of_moment = self.force > 0 && self.length > 0;
+        let per_moment = self.force < 0 && self.length < 0;
+        if of_moment || per_moment { 0 } else { self.length }
     }
 
     /// That of the time derivative of this order; of -1 that of an integral over time.
@@ -1146,22 +1161,30 @@ impl Model {
         self.depends_on_driver(measure) || kind.is_load() || matches!(kind, MeasureKind::Compliance { .. })
     }
 
-    /// The drivers that a measure moves alone, if it does: of an axle that of each wheel.
+    /// The drivers along each of which a measure needs a derivative, if it does: of an axle that of each wheel.
     pub(crate) fn drivers_alone(&self, measure: usize) -> impl Iterator<Item = DriverId> {
         let of_wheel = |wheel: WheelId, need: WheelRequirement| self.wheels[wheel.0].driver(need);
-        let (one, other, all): (_, _, &[DriverId]) = match &self.measures[measure].kind {
-            MeasureKind::Slope { driver, .. } => (Some(*driver), None, &[]),
-            MeasureKind::Dexterity { drivers, .. } => (None, None, drivers),
-            MeasureKind::Wheel { wheel, what } => (of_wheel(*wheel, what.needs()), None, &[]),
+        let list = |drivers: &'_ Option<Vec<DriverId>>| drivers.clone().unwrap_or_default();
+        let (one, other, all) = match &self.measures[measure].kind {
+            MeasureKind::Slope { driver, together, opposed, .. } => {
+                (Some(*driver), None, [list(together), list(opposed)].concat())
+            }
+            MeasureKind::Dexterity { drivers, .. } => (None, None, drivers.clone()),
+            MeasureKind::Wheel { wheel, what } => (of_wheel(*wheel, what.needs()), None, Vec::new()),
             MeasureKind::Axle { axle, .. } => {
                 let [left, right] =
                     self.axles[axle.0].wheels.map(|wheel| of_wheel(wheel, WheelRequirement::Bump));
-                (left, right, &[])
+                (left, right, Vec::new())
             }
-            of_bodies!() | loads!() | MeasureKind::Compliance { .. } => (None, None, &[]),
+            of_bodies!() | loads!() | MeasureKind::Compliance { .. } => (None, None, Vec::new()),
         };
         let depends = self.depends_on_driver(measure);
-        one.into_iter().chain(other).chain(all.iter().copied()).filter(move |_| depends)
+        one.into_iter().chain(other).chain(all).filter(move |_| depends)
+    }
+
+    /// True if a driver moves backward where its own law goes forward.
+    pub(crate) fn is_reversed(&self, driver: DriverId) -> bool {
+        self.drivers[driver.0].law.is_reversed()
     }
 
     /// Dimension of a driver's force: its product with the driven quantity is work.

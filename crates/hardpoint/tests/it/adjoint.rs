@@ -165,7 +165,7 @@ fn gradients_of_other_measures_are_those_of_a_run() {
     let (of, over) = ("aside".to_owned(), "height".to_owned());
     let mut add = |name: &str, kind| draft.measures.push(MeasureDraft::new(name, kind));
     let (points, drivers) = (vec![point()], driver.clone().map(|driver| vec![driver]));
-    add("slope", MeasureKindDraft::Slope { of, over, driver });
+    add("slope", MeasureKindDraft::Slope { of, over, driver, together: None, opposed: None });
     add("gain", MeasureKindDraft::Dexterity { points, drivers, value: Some(JacobianValue::GreatestGain) });
     let expression = hardpoint::expression::Expression::parse("height*aside").unwrap();
     add("product", MeasureKindDraft::Combination { expression });

@@ -595,7 +595,7 @@ fn the_builder_adds_every_type_of_mass_and_force() {
         .wheel_force("road", "fl", [100.0, 200.0, 4000.0])
         .tyre("tyre", "fl", 2e5)
         .bushing("bushing", ["arm", "block"], [a, b], [1e5, 2e5, 3e5])
-        .elastic_joint("elastic", "pin", [1e6, 2e6, 3e6]);
+        .elastic_joint("elastic", "pin", [1e6, 1e6, 3e6]);
     let model = Model::from_draft(&draft).unwrap();
     for kind in ElementType::ALL {
         let element = model.elements.iter().find(|e| e.kind.type_name() == kind.name);

@@ -513,6 +513,7 @@ fn elastic(name: &str, joint: &str, stiffness: [f64; 3], about_z: Option<f64>) -
 fn a_lever_in_a_bushing_deflects_by_force_over_stiffness_times_arm_squared() {
     let (arm, k, about) = (0.5, [2e5, 4e5, 8e5], 3e3);
     let mut draft = rotor("0.4*t").point("tip", "rotor", [arm, 0.0, 0.0]);
+    draft.joints[0].axis2 = Some([1.0, 0.0, 0.0].into());
     draft.forces.push(elastic("bushing", "pivot", k, Some(about)));
     let tip = || on("rotor", [arm, 0.0, 0.0]);
     let draft = draft

@@ -332,7 +332,9 @@ fn joint(j: &Value) -> Result<JointDraft, String> {
     let pivot_axis = j.get("pivots").and_then(|p| Some(vec3(&p[1])? - vec3(&p[0])?));
     // A case may give a marker's axes where the joint needs none (a weld's, say): they place nothing.
     let kind = hardpoint::joint::named(&text(j, "type")?);
-    let needs = |need: fn(&JointType) -> Need| kind.is_none_or(|k| need(k) != Need::Unused);
+    let needs = |need: fn(&JointType) -> Need| {
+        kind.is_none_or(|k| ![Need::Unused, Need::Orienting].contains(&need(k)))
+    };
     let axis = |key: &str| j.get(key).and_then(vec3).map(DirectionDraft::Along);
     Ok(JointDraft {
         name: text(j, "name")?,

@@ -153,6 +153,7 @@ impl<'a> Side<'_, 'a> {
                 }
             }
             "couplers" => self.coupler(name, table, span),
+            "measures" => self.slope(name, table),
             "drivers" => {
                 if let (true, Some(law)) = (self.is_turned(name), table.get_mut("law")) {
                     let at = law.span();
@@ -175,6 +176,51 @@ impl<'a> Side<'_, 'a> {
             _ => {}
         }
         named
+    }
+
+    /// Moves drivers of a slope from `together` to `opposed` and back, where either they or its `driver` change their
+    /// sign in the mirror.
+    fn slope(&self, name: &str, table: &mut DeTable<'a>) {
+        let Some(original) = self.entry("measures", name).filter(|m| word(m, "type") == Some("slope")) else {
+            return;
+        };
+        let changes_sign = |driver: &str| {
+            // The side that the file describes, or its image.
+            let described = self.rule.twin(driver).map(|_| driver.to_owned());
+            let of_side = described.or_else(|| self.rule.said(driver)).unwrap_or_else(|| driver.to_owned());
+            let is_shared = self.rule.twin(&of_side).is_none();
+            if is_shared { self.opposite.contains(&of_side) } else { self.is_handed(&of_side) }
+        };
+        let first = word(original, "driver").is_some_and(changes_sign);
+        let keys = ["together", "opposed"];
+        let mut moved = Vec::new();
+        for (key, other) in keys.into_iter().zip(keys.into_iter().rev()) {
+            let names = original.get(key).and_then(|v| v.get_ref().as_array());
+            let is_moved = names
+                .into_iter()
+                .flatten()
+                .map(|driver| driver.get_ref().as_str().is_some_and(|driver| changes_sign(driver) != first));
+            let Some(list) = table.get_mut(key) else { continue };
+            let at = list.span();
+            let Some(images) = list_of(list) else { continue };
+            let images: Vec<_> =
+                std::mem::replace(images, DeArray::new()).into_iter().zip(is_moved).collect();
+            let (out, kept): (Vec<_>, Vec<_>) = images.into_iter().partition(|(_, is_moved)| *is_moved);
+            let kept: DeArray<'a> = kept.into_iter().map(|(image, _)| image).collect();
+            if kept.is_empty() {
+                table.remove(key);
+            } else if let Some(list) = table.get_mut(key).and_then(list_of) {
+                *list = kept;
+            }
+            moved.extend(out.into_iter().map(|(image, _)| (other, at.clone(), image)));
+        }
+        for (key, at, image) in moved {
+            if let Some(list) = table.get_mut(key).and_then(list_of) {
+                list.push(image);
+            } else {
+                put(table, key, Spanned::new(at, DeValue::Array([image].into_iter().collect())));
+            }
+        }
     }
 
     /// Exchanges the ends of limits of coordinates with the opposite sign in the mirror.

@@ -4,7 +4,7 @@ use crate::draft::measure::Field;
 use crate::draft::{DraftError, ElementDraft, FieldDraft, FieldKind, NumberDraft, Section};
 use crate::joint::{DIRECTION_NAMES, Quantity};
 use crate::law::Law;
-use crate::model::element::{CoupledStiffness, JointFriction, StiffnessEntry};
+use crate::model::element::{CoupledStiffness, ElasticLaw, JointFriction, StiffnessEntry};
 use crate::model::{
     Angle, BodyId, Coupling, CubicStiffness, Damping, Density, Direction, Element, ElementKind, ElementUnit,
     Force, GROUND, Inertia, JointId, Length, Mass, Model, Moment, NumberId, Plain, PointId, SpringTable,
@@ -172,6 +172,43 @@ impl ElementCheck<'_, '_> {
             }
             (Some(_) | None, None) => {}
         }
+    }
+
+    /// True if a law is the same for all directions of its x and y axes perpendicular to z, in every design.
+    pub fn is_even_across(&self, law: &ElasticLaw<'_>) -> bool {
+        let formula = |n: NumberId| self.check.expression_of(n);
+        let k = |r: usize, c: usize| law.stiffnesses(r, c).map(|n| self.value(n)).sum::<f64>();
+        let across = [0, 1, 3, 4];
+        // A symmetric matrix that no rotation about z changes.
+        let is_round = k(0, 0) == k(1, 1) && k(3, 3) == k(4, 4) && k(0, 3) == k(1, 4) && k(0, 4) == -k(1, 3);
+        let is_plain = [(0, 1), (3, 4)].iter().all(|&(r, c)| k(r, c) == 0.0)
+            && across.iter().all(|r| k(*r, 2) == 0.0 && k(*r, 5) == 0.0);
+        // Numbers that are the same in this design may differ in others.
+        let entries = law.coupled.iter().flat_map(|matrix| &matrix.entries);
+        let mut entries = entries.filter(|e| across.contains(&e.row) || across.contains(&e.column));
+        let own = |k: usize| law.directions[k].stiffness.and_then(formula);
+        let are_constant =
+            own(0) == own(1) && own(3) == own(4) && entries.all(|e| formula(e.value).is_none());
+        // A cubic law along both axes has another force between them.
+        let is_zero = |n: NumberId| self.value(n) == 0.0 && formula(n).is_none();
+        let is_linear = |k: &usize| {
+            let of = &law.directions[*k];
+            of.curve.is_none() && [of.cubic, of.preload].into_iter().flatten().all(is_zero)
+        };
+        is_round && is_plain && are_constant && across.iter().all(is_linear)
+    }
+
+    /// Example of the `axis2` of this axis: the global axis that is closest to perpendicular to it.
+    pub fn example_of_axis2(&self, axis: Direction) -> String {
+        let [x, y, z] = self.model().vector(axis).to_array().map(f64::abs);
+        let example = if x <= y && x <= z {
+            "x"
+        } else if y <= z {
+            "y"
+        } else {
+            "z"
+        };
+        format!("`axis2 = \"{example}\"`")
     }
 
     /// HP0251: mass on ground.

@@ -304,6 +304,12 @@ impl<'a> Checker<'a> {
         })
     }
 
+    /// Text of the expression of a number of a mass or force; `None` if it is a plain number.
+    pub(super) fn expression_of(&self, number: NumberId) -> Option<&str> {
+        let of = |written: &&LocatedFormula| written.formula.of == Target::Number(number);
+        self.written.iter().find(of).map(|written| written.formula.text())
+    }
+
     /// Adds a number of a mass or force, given as a value or an expression.
     pub(super) fn element_number(
         &mut self,

@@ -52,10 +52,10 @@ impl Checker<'_> {
         let [axis, axis2] =
             [(&j.axis, kind.axis, "axis"), (&j.axis2, kind.axis2, "axis2")].map(|(line, need, key)| {
                 match (line, need) {
-                    (Some(line), Need::Required | Need::Optional | Need::OnBodyJ) => {
+                    (Some(line), Need::Required | Need::Optional | Need::OnBodyJ | Need::Orienting) => {
                         self.line(line, name, here, key)
                     }
-                    (None, Need::Optional | Need::Unused) => None,
+                    (None, Need::Optional | Need::Orienting | Need::Unused) => None,
                     (None, _) if self.unread(here, key) => None,
                     (None, Need::Required | Need::OnBodyJ) => {
                         let message = format!("joint `{name}` has no `{key}`");
@@ -97,7 +97,12 @@ impl Checker<'_> {
                 [i, Mat3::between(z, z_j) * i]
             }
             (Some((_, z)), Some((_, x))) => {
-                if z.dot(x).abs() > PERPENDICULAR_TOLERANCE {
+                let is_orienting = kind.axis2 == Need::Orienting;
+                if is_orienting && z.cross(x).norm() <= PERPENDICULAR_TOLERANCE {
+                    let message = format!("the axes of joint `{name}` are parallel to each other");
+                    self.fault("HP0209", here.key("axis2"), message).help("give two different directions");
+                }
+                if !is_orienting && z.dot(x).abs() > PERPENDICULAR_TOLERANCE {
                     let angle = degrees_between(z, x);
                     let message = format!("the axes of joint `{name}` are not perpendicular to each other");
                     self.fault("HP0209", here.key("axis2"), message)
@@ -107,7 +112,15 @@ impl Checker<'_> {
                 [frame_along(z, (x - z * z.dot(x)).unit()?); 2]
             }
             (Some((_, z)), None) => [frame_along(z, default_x(z, j.mirror)); 2],
-            _ => [Mat3::IDENTITY; 2],
+            (None, _) => {
+                let is_missing = j.axis.is_none() && !self.unread(here, "axis");
+                if is_missing && j.axis2.is_some() && kind.axis == Need::Orienting {
+                    let message = format!("joint `{name}` has `axis2`, but no `axis`");
+                    self.fault("HP0208", here.key("axis2"), message)
+                        .help("add `axis`, the direction of its z axis");
+                }
+                [Mat3::IDENTITY; 2]
+            }
         };
         let length = self.rod_length(j, kind, here);
         self.check_lead(j, kind, here);

@@ -236,9 +236,19 @@ impl Checker<'_> {
         }
         if let (Reduction::Slope(_), KnownOrders { orders: 1, .. }) = (&take, self.model.known(of)) {
             let message = format!("metric `{}` needs the rate of `{}`, which is not known", m.name, m.of);
-            self.fault("HP0233", here.key("of"), message)
-                .note("the motion is solved up to accelerations, and slopes over a driver have no rates")
-                .help("use its value, or the slope of a measure that depends on positions only");
+            let [note, help] = if self.model.equilibrium.is_some() {
+                [
+                    "an equilibrium is solved at each output time by itself, at rest: nothing has a rate",
+                    "take the `value` of a measure of `type = \"slope\"`: the exact slope while its `driver` moves, with \
+                     the drivers in `together` or `opposed`; over a force take one of `type = \"compliance\"`",
+                ]
+            } else {
+                [
+                    "the motion is solved up to accelerations, and slopes over a driver have no rates",
+                    "use its value, or the slope of a measure that depends on positions only",
+                ]
+            };
+            self.fault("HP0233", here.key("of"), message).note(note).help(help);
             return None;
         }
         // Between its output times an equilibrium is known by straight lines.
@@ -425,7 +435,10 @@ impl Checker<'_> {
             MeasureKind::Dexterity { points, drivers, .. } => {
                 self.is_one_jacobian(points, drivers, name, here)
             }
-            MeasureKind::Slope { of, over, .. } => {
+            MeasureKind::Slope { of, over, driver, together, opposed } => {
+                if !self.is_one_motion(*driver, [together, opposed], name, here) {
+                    return false;
+                }
                 for (key, source) in [("of", *of), ("over", *over)] {
                     if !self.model.known(source).by_position {
                         let what = self.model.output_name(source);
@@ -443,6 +456,40 @@ impl Checker<'_> {
             }
             _ => true,
         }
+    }
+
+    /// HP0274: a driver that a slope names twice, or drivers of lengths and angles together.
+    fn is_one_motion(
+        &mut self,
+        driver: DriverId,
+        others: [&Option<Vec<DriverId>>; 2],
+        name: &str,
+        here: Here,
+    ) -> bool {
+        let quantity = |d: DriverId| self.model.driven(&self.model.drivers[d.0]).quantity;
+        let mut moving = vec![driver];
+        for (key, d) in ["together", "opposed"]
+            .into_iter()
+            .zip(others)
+            .flat_map(|(key, list)| list.iter().flatten().map(move |d| (key, *d)))
+        {
+            let other = &self.model.drivers[d.0].name;
+            let (message, help) = if moving.contains(&d) {
+                (format!("`{name}` moves driver `{other}` twice"), "name each driver once")
+            } else if quantity(d) != quantity(driver) {
+                let first = &self.model.drivers[driver.0].name;
+                let message = format!(
+                    "`{name}` moves `{first}` and `{other}` by the same amount, a length and an angle"
+                );
+                (message, "name drivers of lengths only, or of angles only")
+            } else {
+                moving.push(d);
+                continue;
+            };
+            self.fault("HP0274", here.key(key), message).help(help);
+            return false;
+        }
+        true
     }
 
     /// HP0274: points of several bodies, no driver or too many, lengths and angles mixed.
@@ -621,6 +668,10 @@ field!(Vec<DriverId>, Drivers, Names: Option<Vec<String>>, may |names, key, c| {
         let found: Vec<_> = names.iter().map(|name| c.check.driver_named(name, c.here.key(key))).collect();
         found.into_iter().collect()
     })
+});
+field!(Option<Vec<DriverId>>, Drivers, Names: Option<Vec<String>>, may |names, key, c| match names {
+    Some(_) => Vec::<DriverId>::resolve(names, key, c).map(Some),
+    None => Some(None),
 });
 field!(JacobianValue, JacobianValue, Jacobian: Option<JacobianValue>, may |value, _key, _c| {
     Some(value.unwrap_or_default())

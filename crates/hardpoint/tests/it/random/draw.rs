@@ -420,11 +420,11 @@ impl<'r> Drawing<'r> {
             bodies: bodies.map(|b| self.name(b)),
             ..JointDraft::default()
         };
-        if kind.axis != Need::Unused {
+        if ![Need::Unused, Need::Orienting].contains(&kind.axis) {
             j.axis = Some(self.line(z));
         }
         j.axis2 = match kind.axis2 {
-            Need::Unused => None,
+            Need::Unused | Need::Orienting => None,
             Need::Required | Need::Optional => {
                 let x = self.square_to(z);
                 Some(self.line(x))
@@ -742,11 +742,12 @@ impl<'r> Drawing<'r> {
         };
         let angle = self.rng.between(0.0, 6.25);
         let x = plane.rot.cols[0] * angle.cos() + plane.rot.cols[1] * angle.sin();
+        let is_moving = |need: Need| ![Need::Unused, Need::Orienting].contains(&need);
         let places = kind.places;
         let at = (0..places).map(|_| at(self)).collect();
         let axis = match kind.name {
             "translational" => Some(x),
-            _ => (kind.axis != Need::Unused).then_some(plane.rot.cols[2]),
+            _ => is_moving(kind.axis).then_some(plane.rot.cols[2]),
         };
         JointDraft {
             name: self.new_joint_name(),
@@ -754,7 +755,7 @@ impl<'r> Drawing<'r> {
             bodies: bodies.map(|b| self.name(b)),
             at,
             axis: axis.map(DirectionDraft::Along),
-            axis2: (kind.axis2 != Need::Unused).then_some(DirectionDraft::Along(x)),
+            axis2: is_moving(kind.axis2).then_some(DirectionDraft::Along(x)),
             ..JointDraft::default()
         }
     }
@@ -817,7 +818,13 @@ impl<'r> Drawing<'r> {
             let (over, driver) = (format!("m{}", self.draft.measures.len()), Some(driver.name.clone()));
             self.measure(MeasureKindDraft::Coordinate { joint, coordinate });
             let drivers = driver.clone().map(|driver| vec![driver]);
-            self.measure(MeasureKindDraft::Slope { of: position, over, driver });
+            self.measure(MeasureKindDraft::Slope {
+                of: position,
+                over,
+                driver,
+                together: None,
+                opposed: None,
+            });
             let at = LocationDraft::At([0.1, 0.2, -0.1].into());
             let points = vec![PointRef::On { body: self.name(body), at }];
             let value = Some(JacobianValue::LeastGain);

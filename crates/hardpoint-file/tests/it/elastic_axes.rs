@@ -1,0 +1,443 @@
+//! Axes, reactions and slopes of elastic joints: what must not depend on how a model lies, balances of forces, and
+//! differences of neighbouring output times.
+
+use std::path::Path;
+
+use hardpoint::joint::{self, JointType, Need};
+use hardpoint::model::Model;
+use hardpoint::space::{Mat3, Vec3};
+use hardpoint::topology::Formulation;
+use hardpoint::{Analysis, Solution};
+use hardpoint_file::parse;
+
+use crate::bushings::snapshot_all;
+use crate::equilibrium::verify_all;
+
+/// Positions and forces of the same model in another place, relative to the largest.
+const SAME: f64 = 1e-10;
+/// The same where any x axis serves: with equal stiffnesses about x and y, moments differ by a part of the square of
+/// the tilt, which is 0.1 rad here.
+const SAME_BUT_TILT: f64 = 1e-4;
+/// Round-off of the balance of a body's forces, relative to the largest.
+const BALANCE: f64 = 1e-9;
+/// Forces on joints of stiffness 1e7 N/mm instead of rigid ones, relative: the deflections are 2e-4 mm, by which the
+/// spring's force changes by 1e-2 N of 2 kN.
+const NEARLY_RIGID: f64 = 1e-5;
+/// Error of the second order of central differences over 1/400 of the travel, relative to the slope.
+const DIFFERENCES: f64 = 1e-4;
+
+/// Components of a reaction.
+const PARTS: [&str; 6] = ["force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"];
+
+fn model_of(text: &str) -> Model {
+    parse(text, "elastic.toml").unwrap_or_else(|e| panic!("{e}\n{text}")).model
+}
+
+fn solved_by(model: &Model, formulation: Formulation) -> Solution {
+    let solution = Analysis::with(model, formulation).unwrap().run();
+    assert!(solution.stop.is_none(), "{:?}", solution.stop);
+    solution
+}
+
+fn solved(text: &str) -> Solution {
+    solved_by(&model_of(text), Formulation::Relative)
+}
+
+fn value(solution: &Solution, k: usize, name: &str) -> f64 {
+    let m = solution.measured.index(name).unwrap_or_else(|| panic!("{name}"));
+    solution.measured.value(k, m)[0]
+}
+
+fn faults(text: &str) -> String {
+    parse(text, "elastic.toml").err().map_or("none".into(), |e| e.to_string())
+}
+
+/// Joint types that an elastic joint can name.
+fn elastic_types() -> impl Iterator<Item = &'static JointType> {
+    joint::ALL.iter().copied().filter(|kind| kind.freedoms.is_some() && kind.places == 1)
+}
+
+/// A body on ground by an elastic joint of a type, the whole model turned by `rot`, under a force and a moment.
+fn on_elastic_joint(kind: &JointType, rot: Mat3, has_axis2: bool) -> String {
+    let vector = |x: f64, y: f64, z: f64| {
+        let v = rot * Vec3::new(x, y, z);
+        format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
+    };
+    let axis = match kind.axis {
+        Need::Unused => String::new(),
+        Need::Required | Need::Optional | Need::OnBodyJ | Need::Orienting => {
+            format!(", axis = {}", vector(1.0, 0.501, 0.5))
+        }
+    };
+    let axis2 = match kind.axis2 {
+        Need::Unused => String::new(),
+        Need::Required => format!(", axis2 = {}", vector(0.0, 0.5, -0.501)),
+        Need::OnBodyJ => format!(", axis2 = {}", vector(1.0, 0.6, 0.4)),
+        Need::Optional | Need::Orienting if !has_axis2 => String::new(),
+        Need::Optional => format!(", axis2 = {}", vector(0.0, 0.5, -0.501)),
+        Need::Orienting => format!(", axis2 = {}", vector(0.3, 0.9, -0.2)),
+    };
+    let lead = if kind.has_lead() { ", lead = 0.02" } else { "" };
+    // The second shaft of a joint whose `axis2` is on body j leaves the x axis open.
+    let (y, about_y) = if kind.axis2 == Need::OnBodyJ { (1000, 100) } else { (4000, 150) };
+    format!(
+        r#"
+name = "turned"
+units = {{ length = "m", angle = "rad" }}
+[hardpoints]
+o = {o}
+p = {p}
+[bodies]
+b = {{}}
+[joints]
+j = {{ type = "{kind}", bodies = ["ground", "b"], at = "o"{axis}{axis2}{lead} }}
+[points]
+p = {{ body = "b", at = "p" }}
+[forces]
+soft = {{ type = "elastic_joint", joint = "j", x = 1000, y = {y}, z = 2000, about_x = 100, about_y = {about_y}, about_z = 70 }}
+push = {{ type = "force", at = "p", force = 30, along = {push} }}
+twist = {{ type = "moment", body = "b", moment = 2, about = {twist} }}
+[equilibrium]
+[measures]
+force = {{ type = "reaction", joint = "j", part = "force" }}
+moment = {{ type = "reaction", joint = "j", part = "moment" }}
+[time]
+at = [0]
+"#,
+        o = vector(0.1, 0.2, 0.3),
+        p = vector(0.5, 0.1, 0.25),
+        kind = kind.name,
+        push = vector(0.4, 1.0, -0.7),
+        twist = vector(0.2, -0.5, 1.0),
+    )
+}
+
+#[test]
+fn the_whole_model_turned_gives_the_same_answer() {
+    let turns = [
+        Mat3::IDENTITY,
+        Mat3::between(Vec3::new(0.0, 0.0, 1.0), Vec3::new(0.6, 0.0, 0.8)),
+        Mat3::between(Vec3::new(1.0, 0.0, 0.0), Vec3::new(-0.28, 0.96, 0.0)),
+    ];
+    let mut tested = 0;
+    for kind in elastic_types() {
+        let of = |rot: Mat3| {
+            let solution = solved(&on_elastic_joint(kind, rot, true));
+            let at = ["p.x", "p.y", "p.z"].map(|name| value(&solution, 0, name));
+            let p = rot.transpose() * Vec3::new(at[0], at[1], at[2]);
+            [p.x, p.y, p.z, value(&solution, 0, "force"), value(&solution, 0, "moment")]
+        };
+        let first = of(turns[0]);
+        let same = if kind.axis2 == Need::OnBodyJ { SAME_BUT_TILT } else { SAME };
+        let moved = (Vec3::new(first[0], first[1], first[2]) - Vec3::new(0.5, 0.1, 0.25)).norm();
+        assert!(moved > 1e-3 && first[3] > 1.0, "{}: {first:?}", kind.name);
+        for rot in &turns[1..] {
+            let found = of(*rot);
+            for (a, b) in first.iter().zip(found) {
+                assert!((a - b).abs() <= same * (1.0 + a.abs()), "{}: {first:?} {found:?}", kind.name);
+            }
+        }
+        tested += 1;
+    }
+    assert!(tested >= 10, "{tested}");
+}
+
+#[test]
+fn axes_that_differ_need_their_directions() {
+    for kind in elastic_types() {
+        let text = on_elastic_joint(kind, Mat3::IDENTITY, false);
+        let found = faults(&text);
+        let is_free = [Need::Optional, Need::Orienting].contains(&kind.axis2);
+        assert_eq!(found.contains("the x and y axes of `soft` differ"), is_free, "{}: {found}", kind.name);
+        let even = text.replace("y = 4000", "y = 1000").replace("about_y = 150", "about_y = 100");
+        assert_eq!(faults(&even), "none", "{}", kind.name);
+    }
+    let fixed = elastic_types().find(|kind| kind.name == "revolute").unwrap();
+    let even = on_elastic_joint(fixed, Mat3::IDENTITY, false)
+        .replace("y = 4000", "y = 1000")
+        .replace("about_y = 150", "about_y = 100")
+        .replace("[hardpoints]", "[parameters]\nk = 1000\n[hardpoints]");
+    for change in [
+        // The same number in this design, but not in others.
+        ("x = 1000", "x = \"k\""),
+        ("x = 1000", "x = 1000, cubic_x = 5, cubic_y = 5"),
+        ("x = 1000", "x = 1000, preload_x = 5"),
+        ("x = 1000", "x = 1000, curve_y = [[-1, -5], [1, 5]]"),
+    ] {
+        let found = faults(&even.replace(change.0, change.1));
+        assert!(found.contains("the x and y axes of `soft` differ"), "{change:?}: {found}");
+    }
+    // Bushings at a distance along z: the same for every direction of x, until one entry has the other sign.
+    let matrix = "[[0, 0, 0, 0, 90, 0], [0, 0, 0, -90, 0, 0], [0, 0, 0, 0, 0, 0], [0, -90, 0, 9, 0, 0], \
+                  [90, 0, 0, 0, 9, 0], [0, 0, 0, 0, 0, 0]]";
+    let round = even.replace("x = 1000", &format!("matrix = {matrix}, x = 1000"));
+    assert_eq!(faults(&round), "none");
+    let turned = round.replace("-90", "90");
+    assert!(faults(&turned).contains("the x and y axes of `soft` differ"));
+}
+
+/// A body on an elastic joint with these stiffnesses.
+fn held(kind: &str, keys: &str) -> String {
+    format!(
+        r#"
+name = "held"
+units = {{ length = "m", angle = "rad" }}
+[hardpoints]
+o = [0, 0, 0]
+[bodies]
+b = {{}}
+[joints]
+j = {{ type = "{kind}", bodies = ["ground", "b"], at = "o" }}
+[points]
+o = {{ body = "b", at = "o" }}
+[forces]
+soft = {{ type = "elastic_joint", joint = "j", {keys} }}
+f = {{ type = "force", at = "o", force = 100, along = "x" }}
+[equilibrium]
+[time]
+at = [0]
+"#
+    )
+}
+
+#[test]
+fn forces_in_rigid_directions_are_reported() {
+    let coupled = "[[100, 0, 0, 0, 3, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], \
+                   [3, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]]";
+    let texts = [
+        held("fixed", "y = 100, cubic_x = 100, preload_z = 50, preload_about_x = 3"),
+        held("fixed", &format!("matrix = {coupled}")),
+        held("fixed", "x = 0, curve_x = [[-1, -100], [1, 100]], y = 10"),
+        held("fixed", "x = 0, y = 10"),
+        held("revolute", "x = 100, y = 200")
+            .replace("at = \"o\" }\n[points]", "at = \"o\", axis = \"z\" }\n[points]"),
+        held("fixed", "x = 100").replace("at = \"o\" }\n[points]", "at = \"o\", axis2 = \"z\" }\n[points]"),
+    ];
+    let found: Vec<String> = texts.iter().map(|text| faults(text)).collect();
+    snapshot_all("elastic_axes_faults", &found);
+    // A preload about a free axis is a moment that acts.
+    let free = held("revolute", "x = 100, y = 100, about_z = 20, preload_about_z = 3")
+        .replace("at = \"o\" }\n[points]", "at = \"o\", axis = \"z\" }\n[points]");
+    assert_eq!(faults(&free), "none");
+}
+
+#[test]
+fn a_cubic_stiffness_beside_a_stiffness_has_its_closed_form() {
+    // 100 e + 100 e^3 = 100
+    let solution = solved(&held("fixed", "x = 100, cubic_x = 100"));
+    let e = value(&solution, 0, "o.x");
+    assert!((e + e * e * e - 1.0).abs() < 1e-12, "{e}");
+}
+
+/// An arm on hinges `jf` and `jr`, elastic by these keys, with a spring and a load; `jr` is left out without keys.
+fn arm([front, rear]: [&str; 2]) -> String {
+    let joints: &[&str] = if rear.is_empty() { &["jf"] } else { &["jf", "jr"] };
+    let (mut hinges, mut soft, mut measures) = (String::new(), String::new(), String::new());
+    for (joint, keys) in joints.iter().zip([front, rear]) {
+        hinges += &format!(
+            "{joint} = {{ type = \"revolute\", bodies = [\"ground\", \"arm\"], at = \"{at}\", axis = {{ through = [\"f\", \"r\"] }}, axis2 = \"z\" }}\n",
+            at = &joint[1..]
+        );
+        if !keys.is_empty() {
+            soft += &format!("e{joint} = {{ type = \"elastic_joint\", joint = \"{joint}\", {keys} }}\n");
+        }
+        for part in PARTS {
+            measures += &format!(
+                "{joint}_{part} = {{ type = \"reaction\", joint = \"{joint}\", part = \"{part}\" }}\n"
+            );
+        }
+    }
+    format!(
+        r#"
+name = "arm"
+units = {{ length = "mm", angle = "deg" }}
+[parameters]
+load = 2000
+[hardpoints]
+f = [150, 0, 0]
+r = [-150, 0, 20]
+t = [0, 350, -10]
+s = [0, 200, 0]
+u = [0, 180, 300]
+[bodies]
+arm = {{}}
+[joints]
+{hinges}[points]
+t = {{ body = "arm", at = "t" }}
+s = {{ body = "arm", at = "s" }}
+f = {{ body = "arm", at = "f" }}
+r = {{ body = "arm", at = "r" }}
+[forces]
+{soft}sp = {{ type = "spring", from = {{ body = "ground", at = "u" }}, to = "s", stiffness = 40 }}
+l = {{ type = "force", at = "t", force = "load", along = [-1, 0.8, 0.6] }}
+[equilibrium]
+[design]
+rear_y = {{ move = "r", along = "y" }}
+tip_z = {{ move = "t", along = "z" }}
+[measures]
+{measures}sp = {{ type = "spring_force", force = "sp" }}
+[time]
+at = [0]
+"#
+    )
+}
+
+#[test]
+fn reactions_of_elastic_joints_balance_the_body() {
+    // One joint gives in all its directions; the other one is rigid along its axis, and about x and y.
+    for soft in [
+        [
+            "x = 5000, y = 6000, z = 600, about_x = 900, about_y = 700, preload_z = 40, cubic_x = 3",
+            "x = 5000, y = 6000, z = 600, about_x = 900, about_y = 800",
+        ],
+        ["x = 5000, y = 6000", "x = 5000, y = 6000, z = 600, about_x = 900, about_y = 800, about_z = 3"],
+    ] {
+        let model = model_of(&arm(soft));
+        let found = solved_by(&model, Formulation::Relative);
+        let vector = |names: [String; 3]| {
+            let [x, y, z] = names.map(|name| value(&found, 0, &name));
+            Vec3::new(x, y, z)
+        };
+        let at = |name: &str| vector(["x", "y", "z"].map(|axis| format!("{name}.{axis}")));
+        let of =
+            |joint: &str, what: &str| vector(["x", "y", "z"].map(|axis| format!("{joint}_{what}_{axis}")));
+        let load = Vec3::new(-1.0, 0.8, 0.6).unit().unwrap() * 2000.0;
+        let spring = (Vec3::new(0.0, 0.18, 0.3) - at("s")).unit().unwrap() * value(&found, 0, "sp");
+        let [front, rear] = ["jf", "jr"].map(|joint| of(joint, "force"));
+        assert!(front.norm() > 500.0 && rear.norm() > 500.0, "{front:?} {rear:?}");
+        let sum = front + rear + load + spring;
+        assert!(sum.norm() <= BALANCE * 2000.0, "{sum:?}");
+        let mut about = of("jf", "moment") + of("jr", "moment");
+        for (place, force) in [(at("f"), front), (at("r"), rear), (at("t"), load), (at("s"), spring)] {
+            about += place.cross(force);
+        }
+        assert!(about.norm() <= BALANCE * 600.0, "{about:?}");
+        assert_eq!(model.variables.len(), 3);
+        verify_all(&model);
+    }
+}
+
+#[test]
+fn reactions_of_a_stiff_elastic_joint_are_those_of_a_rigid_one() {
+    let rigid = solved(&arm(["", ""]));
+    assert!(PARTS.iter().all(|part| value(&rigid, 0, &format!("jf_{part}")).abs() > 20.0));
+    for soft in [
+        "x = 1e7, y = 1.1e7, z = 1.2e7, about_x = 1e7, about_y = 1.1e7",
+        "x = 1e7, y = 1.1e7",
+        "about_x = 1e7",
+    ] {
+        let stiff = solved(&arm([soft, ""]));
+        for part in PARTS {
+            let [found, expected] = [&stiff, &rigid].map(|s| value(s, 0, &format!("jf_{part}")));
+            assert!((found - expected).abs() <= NEARLY_RIGID * 2000.0, "{soft} {part}: {found} {expected}");
+        }
+    }
+}
+
+/// The template of a K&C rig with this many steps.
+fn rig(steps: usize) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hardpoint-cli/templates/k-and-c.toml");
+    std::fs::read_to_string(path).unwrap().replace("steps = 40", &format!("steps = {steps}"))
+}
+
+#[test]
+fn slopes_of_drivers_that_move_together_are_differences_along_the_motion() {
+    let model = model_of(&rig(400));
+    let motions = model.motions();
+    let mut found = Vec::new();
+    for (case, measure) in
+        [("parallel_travel", "left_steer_in_bump"), ("opposite_travel", "left_steer_in_roll")]
+    {
+        let number = model.cases.iter().position(|c| c.name == case).unwrap();
+        let motion = Model { times: motions[number].times[195..=205].to_vec(), ..motions[number].clone() };
+        let solution = solved_by(&motion, Formulation::Relative);
+        let of = |k: usize, name: &str| value(&solution, k, name);
+        for k in 1..10 {
+            let change = |name: &str| of(k + 1, name) - of(k - 1, name);
+            let slope = change("left.toe") / change("left.wheel_travel");
+            let exact = of(k, measure);
+            assert!((exact - slope).abs() <= DIFFERENCES * slope.abs(), "{case}: {exact} {slope}");
+            // One wheel alone has another slope: the anti-roll bar couples both.
+            assert!((of(k, "left.bump_steer") - slope).abs() > 0.01 * slope.abs(), "{case}");
+            let mirrored = of(k, &measure.replace("left", "right"));
+            let sign = if case == "parallel_travel" { 1.0 } else { 0.0 };
+            assert!(
+                sign * (mirrored - exact).abs() <= SAME * exact.abs().max(1.0),
+                "{case}: {mirrored} {exact}"
+            );
+        }
+        found.push(of(5, measure));
+    }
+    assert!((found[0] - found[1]).abs() > 0.1 * found[0].abs(), "{found:?}");
+}
+
+#[test]
+fn slopes_of_drivers_that_move_together_have_exact_sensitivities() {
+    let text = rig(2);
+    let start = text.find("[cases.steer]").unwrap();
+    let end = text.find("[design]").unwrap();
+    let metrics = text.find("[metrics]").unwrap();
+    let few = format!("{}{}", &text[..start], &text[end..metrics]);
+    let model = model_of(&few);
+    for motion in model.motions() {
+        verify_all(&motion);
+    }
+    assert!(model.measures.iter().any(|m| m.name == "left_steer_in_roll"));
+}
+
+/// A point that turns and slides on a tube that swings: in the mirror the angle of a tube changes its sign, that of a
+/// hinge does not.
+const SWINGING: &str = r#"
+name = "swinging"
+units = { length = "m", angle = "rad" }
+[mirror]
+across = "y"
+names = { left = "right" }
+[hardpoints]
+left_o = [0.1, 0.5, 0.2]
+left_q = [0.4, 0.9, 0.3]
+left_p = [0.6, 1.1, 0.7]
+[bodies]
+left_a = {}
+left_b = {}
+[joints]
+left_hinge = { type = "revolute", bodies = ["ground", "left_a"], at = "left_o", axis = [0.3, 0.5, 0.8] }
+left_tube = { type = "cylindrical", bodies = ["left_a", "left_b"], at = "left_q", axis = [0.2, 0.9, 0.4] }
+[points]
+left_p = { body = "left_b", at = "left_p" }
+[drivers]
+left_swing = { joint = "left_hinge", law = "0.2" }
+left_turn = { joint = "left_tube", coordinate = "angle", law = "0.1" }
+left_slide = { joint = "left_tube", coordinate = "displacement", law = "0.05" }
+[measures]
+left_both = { type = "slope", of = "left_p.z", over = "left_p.x", driver = "left_swing", together = ["left_turn"] }
+left_against = { type = "slope", of = "left_p.z", over = "left_p.x", driver = "left_turn", opposed = ["left_swing"] }
+[time]
+at = [0]
+"#;
+
+#[test]
+fn slopes_of_several_drivers_are_mirrored() {
+    let solution = solved(SWINGING);
+    for name in ["both", "against"] {
+        let [left, right] = ["left", "right"].map(|side| value(&solution, 0, &format!("{side}_{name}")));
+        assert!(left.abs() > 1e-3 && (left - right).abs() <= SAME * left.abs(), "{name}: {left} {right}");
+    }
+    let [both, against] = ["left_both", "left_against"].map(|name| value(&solution, 0, name));
+    assert!((both - against).abs() > 1e-3, "{both} {against}");
+}
+
+#[test]
+fn slopes_report_what_cannot_move_together() {
+    let text = rig(2);
+    let with = |from: &str, to: &str| faults(&text.replacen(from, to, 1));
+    let texts = [
+        with("together = [\"right_bump\"]", "together = [\"left_bump\"]"),
+        with("together = [\"right_bump\"]", "together = [\"right_bum\"]"),
+        with(
+            "[metrics]",
+            "[metrics]\nsteer = { case = \"parallel_travel\", of = \"left.toe\", over = \"left.wheel_travel\", take = \"slope\", at = 0 }",
+        ),
+    ];
+    snapshot_all("slopes_together_faults", &texts);
+}
