@@ -346,6 +346,13 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         Self::constant(self.0[0])
     }
     #[inline(always)]
+    fn without_derivatives(self) -> Self {
+        let stays = self.is_still() && !self.0[0].value().is_nan();
+        let mut alone = if stays { self } else { Self::undefined() };
+        alone.0[0] = self.0[0].without_derivatives();
+        alone
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.root(self.0[0].sqrt())
     }

@@ -105,6 +105,13 @@ pub trait Real:
         self
     }
 
+    /// This value alone: the derivatives that it carries are unknown, except where it depends on nothing, all of them
+    /// being zero.
+    #[inline(always)]
+    fn without_derivatives(self) -> Self {
+        self
+    }
+
     /// This value to the power `exponent`.
     #[inline(always)]
     fn pow(self, exponent: Self) -> Self {
