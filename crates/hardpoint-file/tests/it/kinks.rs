@@ -33,7 +33,7 @@ const SINGULAR: [(&str, bool); 10] = [
     (r#"{ type = "angle", from = [0.3, 0.7, 0.2], to = { body = "a", axis = [0.3, 0.7, 0.2] } }"#, true),
     (r#"{ type = "angle", from = [-0.3, -0.7, -0.2], to = { body = "a", axis = [0.3, 0.7, 0.2] } }"#, true),
     (
-        r#"{ type = "angle", from = "x", to = { body = "a", axis = [0.3, 0.7, 0.2] }, about = [0.3, 0.7, 0.2] }"#,
+        r#"{ type = "angle", from = [1, 0, 0], to = { body = "a", axis = [0.3, 0.7, 0.2] }, about = [3, 7, 2] }"#,
         true,
     ),
     (
