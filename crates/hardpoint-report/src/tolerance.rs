@@ -6,8 +6,8 @@ use hardpoint::measure::Output;
 use hardpoint::model::{AllocationRule, Dimension, LimitTarget, Model, OutputSource, ToleranceSettings};
 use hardpoint_file::{Diagnostic, ModelFile, Units};
 use hardpoint_study::tolerance::{
-    Allocation, AllocationError, CurveBands, Extreme, MetricSpread, MonteCarlo, NONLINEAR, SampledCurve,
-    SampledMetric, SideChange, SpreadModel, ToleranceResult, Yield,
+    Allocation, AllocationError, BandPoint, CurveBands, Extreme, MetricSpread, MonteCarlo, NONLINEAR,
+    SampledCurve, SampledMetric, SideChange, SpreadModel, ToleranceResult, Yield,
 };
 use hardpoint_study::{EvaluationError, Motions};
 use hardpoint_table::csv::CsvWriter;
@@ -109,8 +109,17 @@ record! {
     seconds: f64 = 0.0;
 }
 
+/// Source of the worst case of a band.
+fn worst_case(band: &BandPoint) -> &'static str {
+    match (band.solved, band.second) {
+        (true, _) => "solved",
+        (false, Some(_)) => "second order",
+        (false, None) => "first order",
+    }
+}
+
 record! {
-    /// Widest band of a measure in one motion, to first order.
+    /// Widest band of a measure in one motion.
     BandFact::of(studied: &ToleranceInputs<'_>, curve: &CurveBands, k: usize, by_sigma: usize) {
         let (model, units) = (studied.model(), studied.units());
         let dimension = model.dimension(OutputSource::Measure(curve.measure));
@@ -123,7 +132,7 @@ record! {
     case: Option<String> = studied.case(curve.motion);
     /// Unit.
     unit: String = unit(units, dimension);
-    /// Greatest worst-case deviation to either side.
+    /// Greatest half width of the worst case.
     worst: f64 = shown(0.5 * (curve.bands[k].worst[1] - curve.bands[k].worst[0]));
     /// Time of it, s.
     at: f64 = curve.times[k];
@@ -476,14 +485,16 @@ impl ToleranceInputs<'_> {
             k: usize,
             dimension: Dimension,
         }
-        let shown = |r: &Row<'_>, x: f64| self.units().from_si(r.dimension, x).to_string();
+        let shown = |r: &Row<'_>, x: f64| {
+            if x.is_nan() { String::new() } else { self.units().from_si(r.dimension, x).to_string() }
+        };
         let moment = |r: &Row<'_>, k: usize| shown(r, r.curve.moments(r.k)[k]);
         let drawn = |r: &Row<'_>, list: fn(&SampledCurve) -> &Vec<f64>| {
             let sampled = self.found.sampled.as_ref();
             sampled.map_or(String::new(), |s| shown(r, list(&s.curves[r.c])[r.k]))
         };
         let loaded = |r: &Row<'_>| r.curve.bands[r.k].loaded.map_or(String::new(), |x| shown(r, x));
-        let columns: [Column<'_, Row<'_>>; 15] = [
+        let columns: [Column<'_, Row<'_>>; 16] = [
             ("measure", &|r| self.model().measures[r.curve.measure].name.clone()),
             ("case", &|r| self.case(r.curve.motion).unwrap_or_default()),
             ("unit", &|r| unit(self.units(), r.dimension)),
@@ -494,6 +505,7 @@ impl ToleranceInputs<'_> {
             ("sigma", &|r| moment(r, 1)),
             ("least", &|r| shown(r, r.curve.bands[r.k].worst[0])),
             ("greatest", &|r| shown(r, r.curve.bands[r.k].worst[1])),
+            ("worst_case", &|r| worst_case(&r.curve.bands[r.k]).to_owned()),
             ("loaded", &loaded),
             ("drawn_mean", &|r| drawn(r, |c| &c.mean)),
             ("drawn_sigma", &|r| drawn(r, |c| &c.sigma)),

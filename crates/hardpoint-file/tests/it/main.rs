@@ -21,6 +21,7 @@ mod grid_clearance;
 mod grids;
 mod includes;
 mod joint_limits;
+mod kinks;
 mod language;
 mod loads;
 mod maps;

@@ -345,3 +345,31 @@ time = { end = 1, steps = 2 }
     let again = searched_on(2, &file, &settings).optima(&file.model, &settings);
     assert_eq!(again, optima);
 }
+
+/// A goal without a target whose minimum is zero: below round-off there is nothing to improve.
+#[test]
+fn a_goal_that_vanishes_at_its_minimum_is_optimal() {
+    let text = r#"
+name = "vanishing"
+units = { length = "mm", angle = "deg" }
+hardpoints = { O = [0, 0, 0], P = ["exp(u-1.2)+exp(1.2-u)-2 + (v-u)^2", 0, 0] }
+bodies.b = {}
+joints.s = { type = "translational", bodies = ["ground", "b"], at = "O", axis = "z" }
+drivers.m = { joint = "s", law = "t" }
+points.p = { body = "b", at = "P" }
+measures.f = { type = "position", point = "p", along = "x" }
+metrics.f = { of = "f", take = "max" }
+optimize.goals.f = {}
+time = { end = 1.0, steps = 4 }
+[parameters]
+u = { value = 1, unit = "number", bounds = [-2, 3] }
+v = { value = 1, unit = "number", bounds = [-2, 3] }
+"#;
+    let file = hardpoint_file::parse(text, "vanishing.toml").unwrap_or_else(|e| panic!("{e}"));
+    let found = searched(&file, &asked(&file));
+    let search = best(&found);
+    assert_eq!(search.status, Status::Optimal);
+    assert!(search.cost.designs < 100, "{} designs", search.cost.designs);
+    let design = &search.found.as_ref().unwrap().design;
+    assert!(design.iter().all(|change| (change - 0.2).abs() < 1e-5), "{design:?}");
+}

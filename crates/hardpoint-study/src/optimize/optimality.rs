@@ -15,6 +15,10 @@ pub(crate) const BINDS: f64 = 1e-7;
 /// Misfits below this fraction of their change over the bounds of the most influential variable are round-off: motions
 /// are solved to about 1e-14.
 pub(crate) const MET: f64 = 1e-12;
+/// Goals that are not squares, of a value below [`MET`] of the gradient, vanish to round-off. Their minimum is there if
+/// the gradient is below the square root of that: a step to zero gradient changes the value by round-off,
+/// `f - f* = (grad f)^2 / 2 f''`, with a second derivative of the size of the gradient.
+const FLAT: f64 = 1e-6;
 /// Minimum scale of goals that are not squares, as a fraction of the gradient at the start, since their value may pass
 /// through zero.
 const LEAST_SCALE: f64 = 1e-6;
@@ -144,7 +148,10 @@ impl Optimality {
             (gradient[i] + balanced).abs()
         };
         let left = (0..n).map(left).fold(0.0, f64::max);
-        let (residual, left_of_start) = if met { (0.0, 0.0) } else { (left / scale, left / weight) };
+        let vanishes =
+            !point.has_only_squares() && point.goal_size() <= MET * weight && left <= FLAT * weight;
+        let (residual, left_of_start) =
+            if met || vanishes { (0.0, 0.0) } else { (left / scale, left / weight) };
         let mut binding: Vec<(ActiveConstraint, f64)> = Vec::new();
         for (constraint, multiplier) in constraints.into_iter().zip(multipliers).filter(|(_, m)| *m != 0.0) {
             let Some((what, scale)) = constraint else { continue };
@@ -172,6 +179,12 @@ impl Point {
         self.has_only_squares() && self.misfit() <= MET * self.strongest(spans)
     }
 
+    /// Sum of the magnitudes of goals that are not squares.
+    fn goal_size(&self) -> f64 {
+        let peaks = self.peaks.iter().map(Rows::greatest);
+        self.plain.values.iter().copied().chain(peaks).map(f64::abs).sum()
+    }
+
     /// Scale of the gradient: its size if no terms cancelled.
     fn gradient_scale(&self, spans: &[f64], steepest: f64) -> f64 {
         let strongest = self.strongest(spans);
@@ -179,9 +192,7 @@ impl Point {
         let others = if self.has_only_squares() {
             0.0
         } else {
-            let peaks = self.peaks.iter().map(Rows::greatest);
-            let value: f64 = self.plain.values.iter().copied().chain(peaks).map(f64::abs).sum();
-            value.clamp(LEAST_SCALE * steepest, steepest)
+            self.goal_size().clamp(LEAST_SCALE * steepest, steepest)
         };
         (squares + others).max(f64::MIN_POSITIVE)
     }

@@ -1,14 +1,20 @@
 //! Tolerance bands along whole curves, from exact first and second derivatives at every output time.
 
+use std::collections::HashMap;
+
+use hardpoint::Run;
 use hardpoint::model::OutputSource;
 
-use super::deviations::Deviations;
 use super::pins::{Pins, SideChange};
+use super::worst::{Extreme, extreme};
 use super::{SecondOrder, Study};
 
 /// Maximum size of the second derivatives for bands, in bytes; with more variables or longer motions, bands are of
 /// first order.
 const MOST_BYTES: usize = 256 << 20;
+/// Maximum number of designs that are solved for the worst cases of the curves of one motion, a few thousand as for
+/// Monte Carlo designs. Beyond, they are predicted by derivatives.
+const MOST_DESIGNS: usize = 4000;
 /// Maximum size of the second derivatives during their computation, in bytes.
 const PART_BYTES: usize = 16 << 20;
 
@@ -35,7 +41,12 @@ pub struct BandPoint {
     /// First-order standard deviation.
     pub sigma: f64,
     /// Minimum and maximum to first order.
+    pub first: [f64; 2],
+    /// Minimum and maximum over the designs that were solved for the worst cases of all output times; where there is
+    /// none, predicted to second order if that is known, else to first order.
     pub worst: [f64; 2],
+    /// True if the designs of both worst cases of this output time were solved.
+    pub solved: bool,
     /// Second-order moments, if second derivatives are known: for outputs that depend on positions alone.
     pub second: Option<SecondOrder>,
     /// First-order value where every pin with play lies on the side to which the loads press it; `None` without loads,
@@ -83,27 +94,93 @@ impl Study<'_> {
         let seconds = self.seconds(motion, &bends, more);
         let deviations = self.deviations;
         let times = self.nominal.solutions[motion].motion.times.clone();
+        // By curve and output time: the worst cases in both directions, predicted.
+        let mut predicted: Vec<Vec<[Extreme; 2]>> = Vec::new();
         let curve = |&(measure, column): &(usize, usize)| {
             let bend = bends.iter().position(|c| *c == column);
+            let mut extremes = Vec::new();
             let band = |k: usize| {
                 let nominal = measured.value(k, column)[0];
                 let g: Vec<f64> =
                     deviations.variables.iter().map(|v| measured.d(k, v.variable, column)[0]).collect();
-                let reach = reach(deviations, &g);
-                let second =
-                    bend.and_then(|m| Some(deviations.second_order(&g, &seconds.as_ref()?.at(k, m))));
+                let h = bend.and_then(|m| Some(seconds.as_ref()?.at(k, m)));
+                let both = [-1.0, 1.0].map(|sign| extreme(deviations, nominal, &g, h.as_deref(), sign));
+                let (first, second) = (both.each_ref().map(|e| e.first), both.each_ref().map(|e| e.second));
+                extremes.push(both);
                 BandPoint {
                     nominal,
                     sigma: deviations.sigma(&g),
-                    worst: [nominal - reach, nominal + reach],
-                    second,
+                    first,
+                    worst: [0, 1].map(|side| second[side].unwrap_or(first[side])),
+                    solved: false,
+                    second: h.map(|h| deviations.second_order(&g, &h)),
                     loaded: pins.and_then(|pins| Some(nominal + pins.shift(deviations, k, &g)?)),
                 }
             };
             let bands = (0..times.len()).map(band).collect();
+            predicted.push(extremes);
             CurveBands { measure, motion, column, times: times.clone(), bands }
         };
-        settings.iter().map(curve).collect()
+        let mut curves: Vec<CurveBands> = settings.iter().map(curve).collect();
+        self.solve_worst(motion, &predicted, more, &mut curves);
+        curves
+    }
+
+    /// Solves the designs of the predicted worst cases, and replaces the predictions by the extremes of all solved
+    /// designs: each of them is within the tolerances at every output time.
+    fn solve_worst(
+        &self,
+        motion: usize,
+        predicted: &[Vec<[Extreme; 2]>],
+        more: &(dyn Fn() -> bool + Sync),
+        curves: &mut [CurveBands],
+    ) {
+        // Most output times share a few designs: the corners of the tolerances.
+        let mut designs: Vec<&[f64]> = Vec::new();
+        let mut places: HashMap<Vec<u64>, usize> = HashMap::new();
+        let place_of =
+            |extreme: &Extreme| -> Vec<u64> { extreme.deviations.iter().map(|x| x.to_bits()).collect() };
+        for extreme in predicted.iter().flatten().flatten() {
+            places.entry(place_of(extreme)).or_insert_with(|| {
+                designs.push(&extreme.deviations);
+                designs.len() - 1
+            });
+        }
+        if designs.len() > MOST_DESIGNS {
+            return;
+        }
+        let analysis = &self.motions.analyses()[motion];
+        let steps = self.nominal.solutions[motion].motion.len();
+        // Number of output times that each design reaches.
+        let mut reached = Vec::with_capacity(designs.len());
+        // By curve and output time: the extremes of all designs.
+        let nominal = |curve: &CurveBands| curve.bands.iter().map(|b| [b.nominal; 2]).collect::<Vec<_>>();
+        let mut extremes: Vec<Vec<[f64; 2]>> = curves.iter().map(nominal).collect();
+        for deviations in &designs {
+            if !more() {
+                return;
+            }
+            let design = self.deviations.design(self.model.variables.len(), deviations);
+            let solution = analysis.solve(Run::new().at(&design).without_sensitivities());
+            let known = solution.motion.len().min(steps);
+            reached.push(known);
+            for (curve, extremes) in curves.iter().zip(&mut extremes) {
+                for (k, [least, greatest]) in extremes.iter_mut().enumerate().take(known) {
+                    let value = solution.measured.value(k, curve.column)[0];
+                    (*least, *greatest) = (least.min(value), greatest.max(value));
+                }
+            }
+        }
+        for ((curve, predicted), extremes) in curves.iter_mut().zip(predicted).zip(&extremes) {
+            for (k, band) in curve.bands.iter_mut().enumerate() {
+                // Without derivatives, as at a kink, the worst case is not known.
+                let is_solved =
+                    predicted[k].each_ref().map(|e| e.first.is_finite() && k < reached[places[&place_of(e)]]);
+                let sides = band.worst.iter_mut().zip(extremes[k]).zip(is_solved);
+                sides.filter(|(_, is_solved)| *is_solved).for_each(|((worst, solved), _)| *worst = solved);
+                band.solved = is_solved == [true; 2];
+            }
+        }
     }
 
     /// Exact second derivatives of some columns by all pairs of toleranced variables; `None` if they are too large, or
@@ -140,11 +217,6 @@ impl Study<'_> {
         }
         Some(Seconds { variables: n, columns: columns.len(), values })
     }
-}
-
-/// First-order worst-case deviation: the sum over the tolerances of reach times norm of the gradient.
-fn reach(of: &Deviations, g: &[f64]) -> f64 {
-    of.blocks.iter().map(|b| b.reach * g[b.range()].iter().map(|x| x * x).sum::<f64>().sqrt()).sum()
 }
 
 /// Lower triangles of second derivatives, by output time and column.

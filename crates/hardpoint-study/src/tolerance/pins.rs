@@ -110,16 +110,59 @@ fn force(loads: &Loads, place: usize, along: &[Vec3]) -> Option<Vec<f64>> {
     along.iter().map(|n| determined(n).then(|| force.dot(*n))).collect()
 }
 
-/// Times at which a force changes to the other side, interpolated between those at which it has a direction.
+/// Times at which a force changes to the other side: where it vanishes, or interpolated between those at which it has
+/// a direction. Magnitudes are interpolated, so that bodies which turn differently have the same times.
 fn reversals(times: &[f64], forces: &[Option<Vec<f64>>], directions: &[Option<Vec<f64>>]) -> Vec<f64> {
     let directed: Vec<usize> = (0..times.len()).filter(|k| directions[*k].is_some()).collect();
-    let along =
-        |k: usize, n: &[f64]| Some(forces[k].as_ref()?.iter().zip(n).map(|(f, n)| f * n).sum::<f64>());
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let at = |pair: &[usize]| {
         let [k, next] = [pair[0], pair[1]];
-        let n = directions[k].as_ref()?;
-        let (from, to) = (along(k, n)?, along(next, n)?);
-        (to < 0.0).then(|| times[k] + (times[next] - times[k]) * from / (from - to))
+        if dot(directions[k].as_ref()?, directions[next].as_ref()?) >= 0.0 {
+            return None;
+        }
+        let mut without_force = (k + 1..next).filter(|between| forces[*between].is_some());
+        if let Some(first) = without_force.next() {
+            return Some(0.5 * (times[first] + times[without_force.next_back().unwrap_or(first)]));
+        }
+        let [from, to] = [k, next].map(|k| forces[k].as_ref().map(|f| dot(f, f).sqrt()));
+        let (from, to) = (from?, to?);
+        // F = 0 between F_k and -F_next
+        Some(times[k] + (times[next] - times[k]) * from / (from + to))
     };
     directed.windows(2).filter_map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Times at which a force of this size reverses, as seen by a body that turns by this angle per unit of time.
+    fn seen(times: &[f64], force: impl Fn(f64) -> f64, turn: f64) -> Vec<f64> {
+        let forces: Vec<Option<Vec<f64>>> = times
+            .iter()
+            .map(|t| Some(vec![force(*t) * (turn * t).cos(), force(*t) * (turn * t).sin()]))
+            .collect();
+        let unit = |f: &Option<Vec<f64>>| {
+            let f = f.as_ref()?;
+            let size = f[0].hypot(f[1]);
+            (size > NO_FORCE).then(|| f.iter().map(|x| x / size).collect())
+        };
+        let directions: Vec<Option<Vec<f64>>> = forces.iter().map(unit).collect();
+        reversals(times, &forces, &directions)
+    }
+
+    #[test]
+    fn bodies_that_turn_differently_see_a_force_reverse_at_the_same_times() {
+        let times: Vec<f64> = (0..=10).map(|k| f64::from(k) * 0.1).collect();
+        // Reversal at 0.5, an output time but for round-off, and at 0.55.
+        let near = |found: &[f64], expected: f64| found.len() == 1 && (found[0] - expected).abs() < 1e-12;
+        for turn in [0.0, 1.0, -3.0] {
+            assert!(near(&seen(&times, |t| 0.5 - t, turn), 0.5), "turn {turn}");
+            assert!(near(&seen(&times, |t| t - 0.55, turn), 0.55), "turn {turn}");
+            // A force that vanishes from 0.4 to 0.6, and one that does so without changing sides.
+            let gap = |t: f64| if (t - 0.5).abs() < 0.11 { 0.0 } else { 0.5 - t };
+            assert!(near(&seen(&times, gap, turn), 0.5), "turn {turn}");
+            assert!(seen(&times, |t| gap(t).abs(), turn).is_empty(), "turn {turn}");
+        }
+    }
 }

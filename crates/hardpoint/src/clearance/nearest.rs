@@ -31,10 +31,10 @@ impl Nearest {
     /// The distance of the cores by the formula of these features, each placed and with the distance by which its core
     /// extends beyond it.
     pub fn distance_between<T: Real>(&self, [(a, less), (b, as_well)]: [(Placed<T>, T); 2]) -> T {
-        let distance = match self.sign {
-            0.0 => T::zero(),
-            sign => distance(&a, &b, self.points) * sign - less - as_well,
-        };
+        if self.sign == 0.0 {
+            return T::zero();
+        }
+        let distance = distance(&a, &b, self.points) * self.sign - less - as_well;
         if self.is_tied { distance.without_derivatives() } else { distance }
     }
 
@@ -67,7 +67,8 @@ impl Nearest {
     /// Segments that cross for a moment, on their way through each other: there is no way out within a plane that they
     /// leave.
     pub fn passing(self) -> Self {
-        Self { is_tied: true, ..self.overlapping(self.points[0]) }
+        let at = self.points[0];
+        Self { is_tied: true, ..found([Feature::Line; 2], [at; 2], 0.0) }
     }
 
     /// With the mark of a tie if the deepest point is inside another core, and could move deeper along this tangent of

@@ -75,7 +75,7 @@ impl<'a, T: Real> Instant<'a, T> {
                 self.whole_turns.get(k).map_or(wrapped, |turns| wrapped + *turns)
             }
             // abs(P_to - P_from)
-            MeasureKind::Distance { from, to } => (self.point(*to) - self.point(*from)).norm(),
+            MeasureKind::Distance { from, to } => self.length(self.point(*to) - self.point(*from)),
             MeasureKind::Coordinates { point, along } => {
                 // n . P
                 let p = self.point(*point);
@@ -87,10 +87,18 @@ impl<'a, T: Real> Instant<'a, T> {
                 // atan2(n . (a x b), a . b - (n . a) (n . b))
                 let (across, along) = (a.cross(b), a.dot(b));
                 let within = match about {
-                    None => across.norm().atan2(along),
+                    None => angle_between(across, along),
                     Some(n) => {
                         let n = n.spread();
-                        n.dot(across).atan2(along - n.dot(a) * n.dot(b))
+                        let (sin, cos) = (n.dot(across), along - n.dot(a) * n.dot(b));
+                        // A direction along n has no projection: NaN.
+                        let least = a.dot(a) * b.dot(b) * T::constant(PARALLEL * PARALLEL);
+                        let projected = sin * sin + cos * cos;
+                        if projected.exceeds(least) {
+                            sin.atan2(cos)
+                        } else {
+                            unknown().without_derivatives()
+                        }
                     }
                 };
                 self.whole_turns.get(k).map_or(within, |turns| within + *turns)
@@ -104,12 +112,21 @@ impl<'a, T: Real> Instant<'a, T> {
             }
             MeasureKind::TransmissionAngle { from, to } => {
                 let [a, b] = self.rays(k, [from, to]);
-                // atan2(abs(a x b), abs(a . b)): between lines, 0 to 90 deg
-                a.cross(b).norm().atan2(a.dot(b).abs())
+                let (across, along) = (a.cross(b), a.dot(b));
+                // atan2(abs(a x b), abs(a . b)): between lines, 0 to 90 deg, where it has a kink, too
+                let angle = angle_between(across, along.abs());
+                let least = across.dot(across) * T::constant(PARALLEL * PARALLEL);
+                if (along * along).exceeds(least) { angle } else { angle.without_derivatives() }
             }
             // n . v or abs(v),    n . omega or abs(omega),    n . a or abs(a)
-            MeasureKind::Velocity { point, along } => component(self.point(*point).map(T::rate), *along),
-            MeasureKind::AngularVelocity { body, along } => component(self.angular_velocity(*body), *along),
+            MeasureKind::Velocity { point, along } => {
+                let v = self.point(*point).map(T::rate);
+                along.map_or_else(|| speed(v, self.fixed.size), |n| n.spread().dot(v))
+            }
+            MeasureKind::AngularVelocity { body, along } => {
+                let omega = self.angular_velocity(*body);
+                along.map_or_else(|| speed(omega, 1.0), |n| n.spread().dot(omega))
+            }
             MeasureKind::Acceleration { point, along } => {
                 component(self.point(*point).map(T::rate).map(T::rate), *along)
             }
@@ -250,7 +267,7 @@ impl<'a, T: Real> Instant<'a, T> {
             // abs(P_2 - P_1)
             spring: wheel.spring.map(|ends| {
                 let [a, b] = ends.map(point);
-                (b - a).norm()
+                self.length(b - a)
             }),
         }
     }
@@ -265,7 +282,7 @@ impl<'a, T: Real> Instant<'a, T> {
     fn articulation(&self, k: usize, joint: JointId, by_axis: bool) -> T {
         let j = &self.model.joints[joint.0];
         // atan2(abs(a_i x a_j), a_i . a_j)
-        let between = |[a, b]: [Vec3<T>; 2]| a.cross(b).norm().atan2(a.dot(b));
+        let between = |[a, b]: [Vec3<T>; 2]| angle_between(a.cross(b), a.dot(b));
         if by_axis {
             return between([0, 1].map(|end| self.direction(k, end, j.bodies[end])));
         }
@@ -279,7 +296,13 @@ impl<'a, T: Real> Instant<'a, T> {
         // sum a_i x a_j = 2 sin(angle) n,   sum a_i . a_j = 1 + 2 cos(angle),   over x, y and z
         let pairs = [0, 1, 2].map(|c| (axis(0, c), axis(1, c)));
         let [x, y, z] = pairs.map(|(a, b)| (a.cross(b), a.dot(b)));
-        (x.0 + y.0 + z.0).norm().atan2(x.1 + y.1 + z.1 - T::constant(1.0))
+        angle_between(x.0 + y.0 + z.0, x.1 + y.1 + z.1 - T::constant(1.0))
+    }
+
+    /// Length of a vector; without derivatives where it is zero but for round-off.
+    fn length(&self, v: Vec3<T>) -> T {
+        let least = T::constant((MEETS * self.fixed.size).powi(2));
+        if v.dot(v).exceeds(least) { v.norm() } else { v.norm().without_derivatives() }
     }
 
     /// A joint's coordinate between its two markers, whether the joint is cut or not.
@@ -307,7 +330,7 @@ impl<'a, T: Real> Instant<'a, T> {
             | Row::Offset
             | Row::Contact
             | Row::ConstantVelocity
-            | Row::LowestPoint(_) => (origin(1) - origin(0)).norm(),
+            | Row::LowestPoint(_) => self.length(origin(1) - origin(0)),
         }
     }
 }
@@ -325,6 +348,38 @@ pub(crate) fn is_formula(model: &Model, output: usize) -> bool {
 fn component<T: Real>(v: Vec3<T>, along: Option<Vec3>) -> T {
     along.map_or_else(|| v.norm(), |along| along.spread().dot(v))
 }
+
+/// Angle in [0, pi] from the magnitude of its sine and its cosine, times any positive number. Where it is 0 or pi but
+/// for round-off, the magnitude has a kink, and the angle no derivatives; without any direction it is NaN.
+fn angle_between<T: Real>(sine: Vec3<T>, cosine: T) -> T {
+    let angle = sine.norm().atan2(cosine);
+    if sine.dot(sine).exceeds(cosine * cosine * T::constant(PARALLEL * PARALLEL)) {
+        angle
+    } else if cosine.decisive() == 0.0 {
+        T::constant(f64::NAN).without_derivatives()
+    } else {
+        angle.without_derivatives()
+    }
+}
+
+/// Magnitude of a velocity of anything of this size; without derivatives at rest.
+fn speed<T: Real>(v: Vec3<T>, size: f64) -> T {
+    let (square, a) = (v.dot(v), v.map(T::rate));
+    // v^2 <= 1e-12 abs(a) size
+    if (square * square).exceeds(a.dot(a) * T::constant((RESTS * size).powi(2))) {
+        v.norm()
+    } else {
+        v.norm().without_derivatives()
+    }
+}
+
+/// Largest angle between two directions, rad, that are parallel (or of two lines that are perpendicular) but for
+/// round-off. Their cross product has an error of some 1e-13, so that its direction is known to 1e-7 beyond. Rates of
+/// the angle are those of the cross product along it: below, they would be round-off divided by round-off.
+const PARALLEL: f64 = 1e-6;
+
+/// Distance of two points that meet, as a fraction of the mechanism's size: a thousand times the error of a position.
+const MEETS: f64 = 1e-9;
 
 /// A point that came from rest, at its acceleration, within this part of the mechanism's size rests: its speed is
 /// round-off, and its path has no curvature there.

@@ -19,6 +19,8 @@ pub struct Output {
     pub known: KnownOrders,
     /// Source of the output.
     pub source: OutputSource,
+    /// Values at which it has kinks ([`MeasureKind::kinks`](crate::model::MeasureKind::kinks)).
+    pub kinks: &'static [f64],
 }
 
 impl Output {
@@ -224,6 +226,10 @@ pub fn outputs(model: &Model) -> Vec<Output> {
         dimension: model.dimension(source),
         known: model.known(source),
         source,
+        kinks: match source {
+            OutputSource::Measure(m) => model.measures[m].kind.kinks(),
+            OutputSource::Point(..) => &[],
+        },
     };
     let measures = (0..model.measures.len()).map(OutputSource::Measure);
     let points = (0..model.points.len()).filter(|k| !model.points[*k].unnamed);

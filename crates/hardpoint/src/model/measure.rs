@@ -670,13 +670,20 @@ pub enum Ray {
 }
 
 impl MeasureKind {
-    /// Returns how far a value is from where the measure has no derivative because the vector that it is the magnitude
-    /// of is zero, or two directions are parallel or perpendicular; `None` for measures that are no magnitudes.
+    /// Returns how far a value is from where the measure has no derivative ([`kinks`](Self::kinks)); `None` without
+    /// kinks.
     pub fn distance_from_kink(&self, value: f64) -> Option<f64> {
+        self.kinks().iter().map(|kink| (value - kink).abs()).reduce(f64::min)
+    }
+
+    /// Values at which the measure has no derivative because the vector that it is the magnitude of is zero, or two
+    /// directions are parallel or perpendicular; empty for measures that are no magnitudes. The square of the distance
+    /// from such a value is smooth there.
+    pub fn kinks(&self) -> &'static [f64] {
         use std::f64::consts::{FRAC_PI_2, PI};
         match self {
-            Self::Angle { about: None, .. } | Self::Articulation { .. } => Some(value.min(PI - value)),
-            Self::TransmissionAngle { .. } => Some(value.min(FRAC_PI_2 - value)),
+            Self::Angle { about: None, .. } | Self::Articulation { .. } => &[0.0, PI],
+            Self::TransmissionAngle { .. } => &[0.0, FRAC_PI_2],
             Self::Dexterity { value: JacobianValue::InverseCondition | JacobianValue::LeastGain, .. }
             | Self::Distance { .. }
             | Self::SpringForce { .. }
@@ -685,15 +692,15 @@ impl MeasureKind {
             | Self::Acceleration { along: None, .. }
             | Self::Curvature { about: None, .. }
             | Self::ShakingForce { along: None }
-            | Self::ShakingMoment { along: None, .. } => Some(value.abs()),
+            | Self::ShakingMoment { along: None, .. } => &[0.0],
             Self::Reaction { part, .. } => match part {
                 ReactionPart::Force | ReactionPart::Radial | ReactionPart::Moment | ReactionPart::Bending => {
-                    Some(value.abs())
+                    &[0.0]
                 }
                 ReactionPart::ForceAlong(_)
                 | ReactionPart::Axial
                 | ReactionPart::MomentAbout(_)
-                | ReactionPart::Torque => None,
+                | ReactionPart::Torque => &[],
             },
             Self::Coordinate { .. }
             | Self::Coordinates { .. }
@@ -717,7 +724,7 @@ impl MeasureKind {
             | Self::ShakingMoment { along: Some(_), .. }
             | Self::Compliance { .. }
             | Self::Wheel { .. }
-            | Self::Axle { .. } => None,
+            | Self::Axle { .. } => &[],
         }
     }
 

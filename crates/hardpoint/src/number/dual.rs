@@ -139,10 +139,6 @@ impl<T: Real> Real for Dual<T> {
         Self { v: self.v.abs(), d: self.d * self.v.sign() }
     }
     #[inline(always)]
-    fn without_derivatives(self) -> Self {
-        Self { v: self.v.without_derivatives(), d: T::constant(f64::NAN) }
-    }
-    #[inline(always)]
     fn sign_or(self, next: Self) -> Self {
         Self::constant(self.v.sign_or(next.v))
     }
@@ -177,6 +173,12 @@ impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn held(self) -> Self {
         Self { v: self.v.held(), d: self.d.held() }
+    }
+    #[inline(always)]
+    fn without_derivatives(self) -> Self {
+        let stays = self.d.is_zero() && !self.v.value().is_nan();
+        let d = if stays { self.d } else { T::constant(f64::NAN).without_derivatives() };
+        Self { v: self.v.without_derivatives(), d }
     }
     fn pow(self, exponent: Self) -> Self {
         // d xᵖ = p x^(p-1) dx + xᵖ ln x dp; a zero factor takes precedence over an infinite one.

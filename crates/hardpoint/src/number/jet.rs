@@ -346,18 +346,19 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         Self::constant(self.0[0])
     }
     #[inline(always)]
+    fn without_derivatives(self) -> Self {
+        let stays = self.is_still() && !self.0[0].value().is_nan();
+        let mut alone = if stays { self } else { Self::undefined() };
+        alone.0[0] = self.0[0].without_derivatives();
+        alone
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.root(self.0[0].sqrt())
     }
     #[inline(always)]
     fn abs(self) -> Self {
         self.times(self.sign().0[0])
-    }
-    #[inline(always)]
-    fn without_derivatives(self) -> Self {
-        let mut orders = [T::constant(f64::NAN); N];
-        orders[0] = self.0[0].without_derivatives();
-        Self(orders)
     }
     #[inline(always)]
     fn sign_or(self, next: Self) -> Self {

@@ -105,7 +105,8 @@ pub trait Real:
         self
     }
 
-    /// This value with unknown derivatives, which are NaN, where it has a kink.
+    /// This value alone: the derivatives that it carries are unknown, except where it depends on nothing, all of them
+    /// being zero.
     #[inline(always)]
     fn without_derivatives(self) -> Self {
         self

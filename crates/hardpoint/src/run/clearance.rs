@@ -616,6 +616,8 @@ impl<'m> Curves<'m> {
         let curve = SampledCurve {
             times,
             orders: if rates_known { 3 } else { 1 },
+            // Those where features change are located.
+            kinks: &[],
             values: samples.iter().map(|s| s.distance).collect(),
         };
         if rates_known {

@@ -7,6 +7,8 @@ use crate::number::Real;
 pub(super) struct SampledCurve<'t, T> {
     pub(super) times: &'t [f64],
     pub(super) orders: usize,
+    /// Values at which it has kinks, since it is a magnitude that vanishes there.
+    pub(super) kinks: &'static [f64],
     pub(super) values: Vec<[T; 3]>,
 }
 
@@ -16,6 +18,46 @@ pub(super) struct Polynomial<T> {
     length: f64,
     /// Coefficients in the fraction of the interval.
     c: [T; 6],
+    /// The kink whose squared distance it is, if any.
+    fold: Option<Fold>,
+}
+
+/// A kink near an interval of a curve. The curve is a magnitude there, `y = kink + side abs(v)`, and the nearer the
+/// vector v is to zero, the more sharply it bends. The square
+/// `(y - kink)^2 = v . v` is smooth, and interpolated instead.
+#[derive(Clone, Copy)]
+pub(super) struct Fold {
+    kink: f64,
+    /// 1 for values above the kink, -1 for those below it.
+    side: f64,
+}
+
+/// Distance of a kink, in lengths of the interval, within which squares are interpolated: beyond, both are as good.
+const FOLD_REACH: f64 = 4.0;
+
+impl Fold {
+    /// Square of the distance from the kink with its first two rates, from those of the curve.
+    fn square<T: Real>(self, [y, rate, acceleration]: [T; 3]) -> [T; 3] {
+        let (d, two) = (y - T::constant(self.kink), T::constant(2.0));
+        if !rate.value().is_finite() {
+            // At the kink:  v = 0,  (v . v). = 2 v . v. = 0
+            let zero = T::constant(0.0 * d.value());
+            return [zero, zero, T::constant(f64::NAN)];
+        }
+        // 2 d y.,  2 (y.^2 + d y..)
+        [d * d, two * d * rate, two * (rate * rate + d * acceleration)]
+    }
+
+    /// Value and rate of the curve from those of the square.
+    fn root<T: Real>(self, [square, rate]: [T; 2]) -> [T; 2] {
+        if square.value() <= 0.0 {
+            // At the kink, where the interpolation of a square may be negative. It is the end of the curve's range.
+            return [T::constant(self.kink), T::constant(f64::NAN)];
+        }
+        let (d, side) = (square.sqrt(), T::constant(self.side));
+        // y = kink + side d,  y. = side d. = side (d^2). / (2 d)
+        [T::constant(self.kink) + side * d, side * rate / (d + d)]
+    }
 }
 
 impl<T: Real> Polynomial<T> {
@@ -26,14 +68,49 @@ impl<T: Real> Polynomial<T> {
         let [c0, c1, c2, c3, c4, c5] = self.c;
         let value = c0 + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5))));
         let slope = c1 + s * (c(2.0) * c2 + s * (c(3.0) * c3 + s * (c(4.0) * c4 + s * c(5.0) * c5)));
-        [value, slope / c(h)]
+        let found = [value, slope / c(h)];
+        self.fold.map_or(found, |fold| fold.root(found))
     }
 }
 
 impl<T: Real> SampledCurve<'_, T> {
     /// Number of orders that are known at a time: at a kink the value alone.
     pub(super) fn known(&self, k: usize) -> usize {
-        self.values[k][..self.orders].iter().take_while(|x| x.value().is_finite()).count()
+        self.known_of(&self.values[k])
+    }
+
+    /// The kink within reach of interval k, if there is one.
+    pub(super) fn fold(&self, k: usize) -> Option<Fold> {
+        if self.kinks.is_empty() || self.orders == 1 {
+            return None;
+        }
+        let ends = [k, k + 1].map(|end| self.values[end].map(|x| x.value()));
+        if !ends.iter().all(|[y, ..]| y.is_finite()) {
+            return None;
+        }
+        let h = self.times[k + 1] - self.times[k];
+        let far = |kink: f64| ends.map(|[y, ..]| y - kink);
+        let nearest = |kink: &&f64| far(**kink).map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+        let kink = *self.kinks.iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b)))?;
+        let is_near = |[y, rate, acceleration]: &[f64; 3]| {
+            let d = (y - kink).abs();
+            // From d^2 = v . v:  v. . v. = d.^2 + d d.. - v . v..,  where the last is small near the kink
+            let bend = if acceleration.is_finite() { d * acceleration.abs() } else { 0.0 };
+            rate.is_nan() || d <= FOLD_REACH * h * (rate * rate + bend).sqrt()
+        };
+        let [a, b] = far(kink);
+        let side = if a.abs() > b.abs() { a } else { b };
+        ends.iter().any(is_near).then_some(Fold { kink, side: side.signum() })
+    }
+
+    /// Value, rate and acceleration at a time, or those of the square of the distance from a kink.
+    fn numbers(&self, k: usize, fold: Option<Fold>) -> [T; 3] {
+        fold.map_or(self.values[k], |fold| fold.square(self.values[k]))
+    }
+
+    /// Number of these that are known.
+    fn known_of(&self, numbers: &[T; 3]) -> usize {
+        numbers[..self.orders].iter().take_while(|x| x.value().is_finite()).count()
     }
 
     /// Interval of a time.
@@ -50,12 +127,14 @@ impl<T: Real> SampledCurve<'_, T> {
     /// Polynomial of interval k with at most this number of orders.
     pub(super) fn polynomial_of(&self, k: usize, orders: usize) -> Polynomial<T> {
         let length = self.times[k + 1] - self.times[k];
-        let known = [k, k + 1].map(|end| self.known(end).min(orders));
-        Polynomial { from: self.times[k], length, c: self.coefficients(k, length, known) }
+        let fold = self.fold(k);
+        let ends = [k, k + 1].map(|end| self.numbers(end, fold));
+        let known = ends.each_ref().map(|end| self.known_of(end).min(orders));
+        Polynomial { from: self.times[k], length, c: Self::coefficients(&ends, length, known), fold }
     }
 
-    fn coefficients(&self, k: usize, h: f64, known: [usize; 2]) -> [T; 6] {
-        let ([a, b], c) = ([&self.values[k], &self.values[k + 1]], T::constant);
+    fn coefficients([a, b]: &[[T; 3]; 2], h: f64, known: [usize; 2]) -> [T; 6] {
+        let c = T::constant;
         // p(s) = c0 + c1 s + ... + c5 s^5,  s = (t - t_k) / h,  with y, h y., h^2 y.. at s = 0 and s = 1
         let zero = c(0.0);
         // Newton's form on [0, 0, 0, 1, 1, 1], or with fewer ends of each.
@@ -71,7 +150,18 @@ impl<T: Real> SampledCurve<'_, T> {
                 let c4 = c(-15.0) * p + c(7.0) * q - c(2.0) * r;
                 [a0, a1, a2, c3, c4, c(6.0) * p - c(3.0) * q + r]
             }
-            [2 | 3, 2 | 3] => {
+            [2, 3] => {
+                // Remainders at s = 1:  c2 + c3 + c4 = p,  2 c2 + 3 c3 + 4 c4 = q,  c2 + 3 c3 + 6 c4 = b2
+                let (p, q) = (b0 - a0 - a1, b1 - a1);
+                let c3 = c(5.0) * q - c(8.0) * p - c(2.0) * b2;
+                [a0, a1, c(6.0) * p - c(3.0) * q + b2, c3, c(3.0) * p - c(2.0) * q + b2, zero]
+            }
+            [3, 2] => {
+                // c3 + c4 = p,  3 c3 + 4 c4 = q
+                let (p, q) = (b0 - a0 - a1 - a2, b1 - a1 - c(2.0) * a2);
+                [a0, a1, a2, c(4.0) * p - q, q - c(3.0) * p, zero]
+            }
+            [2, 2] => {
                 let rise = b0 - a0;
                 [a0, a1, c(3.0) * rise - c(2.0) * a1 - b1, a1 + b1 - c(2.0) * rise, zero, zero]
             }
@@ -114,7 +204,8 @@ impl<T: Real> SampledCurve<'_, T> {
         if coefficients.is_some_and(|b| b.is_sorted() || b.iter().rev().is_sorted()) {
             return Vec::new();
         }
-        let Polynomial { from, length, c } = self.polynomial(k);
+        // A square turns where its root does.
+        let Polynomial { from, length, c, .. } = self.polynomial(k);
         let c = c.map(|c| c.value());
         let rate = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5]];
         roots(&rate).into_iter().map(|s| from + s * length).collect()
@@ -124,15 +215,19 @@ impl<T: Real> SampledCurve<'_, T> {
     pub(super) fn bound(&self, k: usize, sign: f64) -> f64 {
         // There is no bound next to a kink or a gap.
         let Some(coefficients) = self.bernstein(k) else { return f64::INFINITY };
-        coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c))
+        let fold = self.fold(k);
+        let value = |c: f64| fold.map_or(c, |fold| fold.root([c, 0.0])[0]);
+        coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * value(c)))
     }
 
     /// Bernstein coefficients of the polynomial of interval k, the inner ones of a cubic twice; `None` next to a kink
-    /// or a gap.
+    /// or a gap. Near a kink those of the square of the distance from it.
     fn bernstein(&self, k: usize) -> Option<[f64; 6]> {
         let h = self.times[k + 1] - self.times[k];
-        let [a, b] = [k, k + 1].map(|k| self.values[k].map(|x| x.value()));
-        Some(match [self.known(k), self.known(k + 1)] {
+        let fold = self.fold(k);
+        let ends = [k, k + 1].map(|k| self.numbers(k, fold));
+        let [a, b] = ends.map(|end| end.map(|x| x.value()));
+        Some(match ends.each_ref().map(|end| self.known_of(end)) {
             [1, 1] => [a[0], a[0], a[0], b[0], b[0], b[0]],
             [2, 2] => {
                 let [inner, outer] = [a[0] + h * a[1] / 3.0, b[0] - h * b[1] / 3.0];
@@ -220,6 +315,8 @@ pub(super) struct WidePolynomial {
     nodes: [f64; MOST_KNOWN],
     /// Divided differences.
     c: [f64; MOST_KNOWN],
+    /// The kink whose squared distance it is, if any.
+    fold: Option<Fold>,
 }
 
 /// Value, rate and acceleration at four times.
@@ -230,8 +327,12 @@ impl WidePolynomial {
     pub(super) fn new(y: &SampledCurve<'_, f64>, k: usize) -> Option<Self> {
         let last = y.values.len() - 1;
         let h = y.times[k + 1] - y.times[k];
-        // The polynomial does not extend across a kink or a jump (a pair of times).
-        let smooth = |end: usize| y.known(end) == y.orders;
+        // Near a kink, or if it would extend across one, it is a polynomial of the square.
+        let neighbours = [k.checked_sub(1), Some(k), Some(k + 1).filter(|other| *other < last)];
+        let fold = neighbours.into_iter().flatten().find_map(|k| y.fold(k));
+        let numbers = |k: usize| y.numbers(k, fold);
+        // The polynomial does not extend across other kinks or a jump (a pair of times).
+        let smooth = |end: usize| fold.is_some() || y.known(end) == y.orders;
         let goes_on = |end: usize, other: usize| {
             smooth(end) && y.known(other) > 0 && (y.times[end] - y.times[other]).abs() > THERE * h
         };
@@ -243,28 +344,30 @@ impl WidePolynomial {
         // The interval's own ends first.
         let (mut count, mut at) = (0, [0; MOST_KNOWN]);
         for i in [k, k + 1].into_iter().chain(before).chain(after) {
-            let known = y.known(i);
+            let known = y.known_of(&numbers(i));
             at[count..count + known].fill(i);
             count += known;
         }
-        let (nodes, mut c) = (at.map(|i| y.times[i]), at.map(|i| y.values[i][0]));
+        let (nodes, mut c) = (at.map(|i| y.times[i]), at.map(|i| numbers(i)[0]));
         for order in 1..count {
             for i in (order..count).rev() {
                 c[i] = if at[i - order] == at[i] {
                     // Half the acceleration, or the rate.
-                    y.values[at[i]][order] / order as f64
+                    numbers(at[i])[order] / order as f64
                 } else {
                     (c[i] - c[i - 1]) / (nodes[i] - nodes[i - order])
                 };
             }
         }
-        Some(Self { count, nodes, c })
+        Some(Self { count, nodes, c, fold })
     }
 
     /// Value and rate.
     pub(super) fn at(&self, t: f64) -> [f64; 2] {
         let ends = self.nodes[..self.count].iter().zip(&self.c[..self.count]).rev();
-        ends.fold([0.0; 2], |[value, rate], (node, c)| [value * (t - node) + c, rate * (t - node) + value])
+        let found = ends
+            .fold([0.0; 2], |[value, rate], (node, c)| [value * (t - node) + c, rate * (t - node) + value]);
+        self.fold.map_or(found, |fold| fold.root(found))
     }
 }
 
@@ -342,6 +445,7 @@ mod tests {
         let of = |f: fn(f64) -> [f64; 3]| SampledCurve {
             times,
             orders: 3,
+            kinks: &[],
             values: times.iter().map(|t| f(*t)).collect(),
         };
         [of(|t| [t.sin(), t.cos(), -t.sin()]), of(|t| [t.powi(5), 5.0 * t.powi(4), 20.0 * t.powi(3)])]
@@ -352,7 +456,7 @@ mod tests {
         let times = [0.0, 0.3, 1.1, 1.4];
         for curve in curves(&times) {
             for orders in [2, 3] {
-                let curve = SampledCurve { orders, times: &times, values: curve.values.clone() };
+                let curve = SampledCurve { orders, times: &times, kinks: &[], values: curve.values.clone() };
                 for k in 0..3 {
                     for sign in [1.0, -1.0] {
                         let h = times[k + 1] - times[k];
@@ -369,6 +473,18 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_polynomial_of_degree_four_is_its_own_interpolation_without_one_acceleration() {
+        let times = [0.3, 1.1];
+        for unknown in [0, 1] {
+            let mut values = times.map(|t: f64| [t.powi(4), 4.0 * t.powi(3), 12.0 * t * t]).to_vec();
+            values[unknown][2] = f64::NAN;
+            let curve = SampledCurve { times: &times, orders: 3, kinks: &[], values };
+            let [value, rate] = curve.at(0, 0.7_f64);
+            assert!((value - 0.7_f64.powi(4)).abs() < 1e-14 && (rate - 4.0 * 0.7_f64.powi(3)).abs() < 1e-13);
         }
     }
 

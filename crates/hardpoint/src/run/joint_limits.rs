@@ -3,6 +3,7 @@
 //! Times are found on motions that are solved anew at them, like those of clearances; the polynomials between solved
 //! times only predict them.
 
+use crate::measure::Output;
 use crate::model::{JointLimit, LimitEnd, Model, OutputSource, VariableId};
 use crate::motion::{Stop, StopKind};
 
@@ -228,8 +229,9 @@ fn curve_of<'s>(limit: &JointLimit, solution: &'s Solution) -> Option<SampledCur
     let measured = &solution.measured;
     let m = measured.outputs.iter().position(|o| o.source == OutputSource::Measure(limit.measure))?;
     let values: Vec<[f64; 3]> = (0..measured.len()).map(|k| measured.value(k, m)).collect();
-    let orders = measured.outputs[m].known.orders;
-    (!values.is_empty()).then_some(SampledCurve { times: &solution.motion.times, orders, values })
+    let Output { known, kinks, .. } = measured.outputs[m];
+    let curve = SampledCurve { times: &solution.motion.times, orders: known.orders, kinks, values };
+    (!curve.values.is_empty()).then_some(curve)
 }
 
 /// Crossings of an end of a range that are located, each with true if the value leaves the range there; times at which

@@ -6,7 +6,7 @@
 use super::curve::{SampledCurve, THERE, WidePolynomial, abscissa_at, along, apart, crossings};
 use super::quadrature::{PathIntegral, coarse_middles, path_error, path_nodes, travel};
 use super::solution::Solution;
-use crate::measure::MeasureResults;
+use crate::measure::{MeasureResults, Output};
 use crate::model::{Metric, Model, OutputSource, Reduction, VariableId, on_target};
 use crate::number::{Dual, Real};
 
@@ -259,9 +259,9 @@ fn curves<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>
 fn curves_at<'s>(solution: &'s Solution, metric: &Metric) -> Option<Curves<'s, f64>> {
     let (measured, times) = (&solution.measured, &solution.motion.times[..]);
     let now = |output: OutputSource| {
-        let (m, orders) = column(measured, output)?;
+        let (m, orders, kinks) = column(measured, output)?;
         let values = (0..measured.len()).map(|k| measured.value(k, m)).collect();
-        Some(SampledCurve { times, orders, values })
+        Some(SampledCurve { times, orders, kinks, values })
     };
     Some((now(metric.of)?, abscissa(metric, now)?))
 }
@@ -278,13 +278,13 @@ fn varied_curves<'s>(
     }
     sensitivities.at(0, variable.0)?;
     let varied = |output: OutputSource| {
-        let (m, orders) = column(measured, output)?;
+        let (m, orders, kinks) = column(measured, output)?;
         let number = |k: usize| {
             let (x, d) = (measured.value(k, m), measured.d(k, variable, m));
             [0, 1, 2].map(|order| Dual { v: x[order], d: d[order] })
         };
         let values = (0..measured.len()).map(number).collect();
-        Some(SampledCurve { times: &motion.times[..], orders, values })
+        Some(SampledCurve { times: &motion.times[..], orders, kinks, values })
     };
     Some((varied(metric.of)?, abscissa(metric, varied)?))
 }
@@ -396,10 +396,11 @@ pub fn peaks(model: &Model, solution: &Solution, metric: &Metric, sign: f64) -> 
     )
 }
 
-/// Column of an output, and the number of its known orders.
-fn column(measured: &MeasureResults, output: OutputSource) -> Option<(usize, usize)> {
+/// Column of an output, the number of its known orders, and the values at which it has kinks.
+fn column(measured: &MeasureResults, output: OutputSource) -> Option<(usize, usize, &'static [f64])> {
     let m = measured.outputs.iter().position(|o| o.source == output)?;
-    Some((m, measured.outputs[m].known.orders))
+    let Output { known, kinks, .. } = measured.outputs[m];
+    Some((m, known.orders, kinks))
 }
 
 /// Abscissa of a metric; `Some(None)` is time.
@@ -410,12 +411,12 @@ fn abscissa<C>(metric: &Metric, curve: impl Fn(OutputSource) -> Option<C>) -> Op
 /// Estimate of the error of the value at a time of interval k that follows from the abscissa: an error of the abscissa
 /// changes the time, and so the value.
 fn time_error(y: &SampledCurve<'_, f64>, x: &Option<SampledCurve<'_, f64>>, k: usize, t: f64) -> Option<f64> {
-    let late = match x {
-        Some(x) => (apart(x, k, t)?[0] / x.at(k, t)[1]).abs(),
-        None => 0.0,
-    };
+    let early = apart(y, k, t)?[0].abs();
     // abs(dy) + abs(dx / x.) abs(y.)
-    Some(apart(y, k, t)?[0].abs() + late * y.at(k, t)[1].abs())
+    Some(match x {
+        Some(x) => early + (apart(x, k, t)?[0] / x.at(k, t)[1]).abs() * y.at(k, t)[1].abs(),
+        None => early,
+    })
 }
 
 /// Estimates the interpolation error of the metric between output times. The reference curve consists of polynomials

@@ -183,6 +183,10 @@ pub(super) fn path_stretches<T: Real>(
             // The integrand is continuous at a corner: a change of its time has no effect.
             let corner = |p: &[f64; 2]| Some(crossing(x, k, part, p[0])?.value());
             let mut cuts: Vec<f64> = corners.iter().filter_map(corner).collect();
+            // The same at a kink, where a magnitude turns.
+            if y.fold(k).is_some() {
+                cuts.extend(y.turns(k));
+            }
             cuts.retain(|t| from.value() < *t && *t < to.value());
             cuts.sort_by(f64::total_cmp);
             let mut begins = from;
