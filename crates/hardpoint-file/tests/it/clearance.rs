@@ -497,8 +497,7 @@ fn rod_in(solid: &str, [p, q]: [[f64; 3]; 2], steps: usize) -> String {
 
 #[test]
 fn the_deepest_point_between_two_faces_of_a_solid_has_a_depth_without_rates() {
-    // Depths of a rod whose deepest point is between two faces, at t = 0.05 s and for the drum at 0, mm: the greatest of
-    // the least distances of points of the rod from all faces.
+    // Rods whose deepest point is between two faces.
     let cases = [
         ("box = [60, 40, 100]", [[-60.0, 10.0, 3.0], [60.0, -30.0, -4.0]]),
         ("cylinder = [[0, 0, -30], [0, 0, 30]], radius = 30", [[-60.0, 10.0, 23.0], [60.0, -5.0, 4.0]]),

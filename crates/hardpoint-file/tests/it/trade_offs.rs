@@ -277,14 +277,15 @@ limits.box = { hardpoint = "P", x = [50, 100], y = [0, 100] }"#;
 }
 
 #[test]
-fn a_front_ends_beside_an_optimum_without_gradient() {
+fn a_front_reaches_an_optimum_without_gradient() {
     // B is in the plane of the plate: the distance from it has a kink where it vanishes.
     let text = PLATE.replace("B = [100, 0, 20]", "B = [100, 0, 0]");
     let found = traded(&file(&format!("{text}[optimize]\ngoals = {{ to_a = {{}}, to_b = {{}} }}\n")), None);
     check(&found);
     let end = found.points.last().unwrap();
     let loss = end.values[1] / found.points[0].values[1];
-    assert!(end.anchor == Some(1) && (5e-4..2e-3).contains(&loss), "{loss}");
+    // Zero to round-off is recognised as the least value of a distance.
+    assert!(end.anchor == Some(1) && loss < 1e-9, "{loss}");
 }
 
 #[test]

@@ -35,7 +35,11 @@ impl Nearest {
             return T::zero();
         }
         let distance = distance(&a, &b, self.points) * self.sign - less - as_well;
-        if self.is_tied { distance.without_derivatives() } else { distance }
+        if self.is_tied {
+            // The formula of one of the features is stationary elsewhere.
+            return distance.without_derivatives() + T::constant(self.distance - distance.value());
+        }
+        distance
     }
 
     /// With the sign by which the formula gives this distance: a formula between points or lines is never negative,

@@ -98,6 +98,8 @@ pub struct PairClearance {
     pub contacts: Vec<Contact>,
     /// True if the distance is the same at all times.
     pub is_constant: bool,
+    /// The last time that was solved, s: the end of the motion, or where it stops.
+    pub end: f64,
 }
 
 impl PairClearance {
@@ -112,7 +114,7 @@ impl PairClearance {
     /// Intervals in which the shapes touch, s; one that begins before the motion or ends after it has its first or last
     /// time.
     pub fn intervals(&self) -> Vec<[f64; 2]> {
-        let (Some(first), Some(last)) = (self.curve.first(), self.curve.last()) else { return Vec::new() };
+        let Some(first) = self.curve.first() else { return Vec::new() };
         let mut from = (first.distance[0] < 0.0).then_some(first.time);
         let mut found = Vec::new();
         for contact in &self.contacts {
@@ -122,7 +124,7 @@ impl PairClearance {
                 found.push([from, contact.at.time]);
             }
         }
-        found.extend(from.map(|from| [from, last.time]));
+        found.extend(from.map(|from| [from, self.end]));
         found
     }
 }
@@ -310,6 +312,7 @@ impl Analysis<'_> {
                 minima,
                 contacts,
                 is_constant: located.constant[p],
+                end: curves.times.last().copied().unwrap_or(f64::NAN),
             }
         };
         let pairs = curves.pairs.iter().enumerate().map(pair_of).collect();
@@ -440,6 +443,8 @@ struct Curves<'m> {
     pairs: &'m [[ShapeId; 2]],
     /// Size of the mechanism, m.
     size: f64,
+    /// True at an equilibrium, where nothing has a rate.
+    at_rest: bool,
     times: Vec<f64>,
     /// Per pair and time.
     samples: Vec<Vec<ShapeDistance>>,
@@ -460,7 +465,8 @@ impl<'m> Curves<'m> {
     fn new(model: &'m Model, pairs: &'m [[ShapeId; 2]]) -> Self {
         let none = vec![Vec::new(); pairs.len()];
         let reaches = vec![Vec::new(); pairs.len()];
-        Self { pairs, size: model.size(), times: Vec::new(), samples: none, reaches }
+        let at_rest = model.equilibrium.is_some();
+        Self { pairs, size: model.size(), at_rest, times: Vec::new(), samples: none, reaches }
     }
 
     /// Adds the times of a motion of the design that are not known yet.
@@ -677,6 +683,14 @@ impl<'m> Curves<'m> {
                 if value(before) < value(first) || value(after) < value(end) {
                     continue;
                 }
+                // Searches for the deepest point leave small dips.
+                let rise = f64::min(
+                    rise_to_lower((0..first).rev().map(value), value(first)),
+                    rise_to_lower((after..=last).map(value), value(end)),
+                );
+                if !self.at_rest && rise <= SEARCHED * self.size {
+                    continue;
+                }
                 let is_narrow = times[after] - times[before] <= AT_REST * span;
                 match run.len() {
                     1 if !is_narrow => {
@@ -745,6 +759,18 @@ impl<'m> Curves<'m> {
     }
 }
 
+/// Rise of values above a first one until one of them is lower; infinite if none is.
+fn rise_to_lower(values: impl Iterator<Item = f64>, from: f64) -> f64 {
+    let mut most = from;
+    for value in values {
+        if value < from {
+            return most - from;
+        }
+        most = most.max(value);
+    }
+    f64::INFINITY
+}
+
 fn sort_times(times: &mut Vec<f64>) {
     times.sort_by(f64::total_cmp);
     times.dedup();
@@ -792,6 +818,9 @@ struct Plateau {
     is_inside: bool,
 }
 
+/// Rise of a distance without rates between two minima, as a fraction of the mechanism's size, below which the higher
+/// one is a dip: searches along both cores find the deepest point of solids in each other to less than this.
+const SEARCHED: f64 = 1e-6;
 /// Interval in which the minimum of a curve without rates is located, as a fraction of the motion: the value is then
 /// known to round-off.
 const AT_REST: f64 = 1e-6;

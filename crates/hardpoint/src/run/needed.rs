@@ -15,7 +15,7 @@ use super::solution::Solution;
 pub enum MetricUse {
     /// Not used.
     Unused,
-    /// Its value and derivative, and its misfits.
+    /// The value and the derivative, and the misfits of the metric.
     Derivative,
     /// These, and, of a maximum, minimum or range, all candidates ([`peaks`](super::peaks)).
     Candidates,

@@ -93,9 +93,10 @@ impl<'r> Run<'r> {
         Self { scope: Scope { sensitivities: false, ..self.scope }, ..self }
     }
 
-    /// Requests the metrics with these uses; those without an entry are used with their derivative. With equilibrium the
-    /// run leaves out measures and sensitivities that they do not depend on, which are NaN; [metrics](super::metrics),
-    /// [misfits](super::misfits) and, of those whose candidates are used, [peaks](super::peaks) are the same.
+    /// Requests the metrics with these uses; those without an entry are used with their derivative. With equilibrium
+    /// the run leaves out measures and sensitivities that they do not depend on, which are NaN;
+    /// [metrics](super::metrics), [misfits](super::misfits) and, of those whose candidates are used,
+    /// [peaks](super::peaks) are the same.
     pub fn for_metrics(self, uses: &'r [MetricUse]) -> Self {
         Self { metrics: Some(uses), ..self }
     }
