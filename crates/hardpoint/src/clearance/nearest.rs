@@ -34,12 +34,7 @@ impl Nearest {
         if self.sign == 0.0 {
             return T::zero();
         }
-        let distance = distance(&a, &b, self.points) * self.sign - less - as_well;
-        if self.is_tied {
-            // The formula of one of the features is stationary elsewhere.
-            return distance.without_derivatives() + T::constant(self.distance - distance.value());
-        }
-        distance
+        distance(&a, &b, self.points) * self.sign - less - as_well
     }
 
     /// With the sign by which the formula gives this distance: a formula between points or lines is never negative,

@@ -168,7 +168,13 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         if !near.distance.is_finite() {
             return T::constant(f64::NAN);
         }
-        near.distance_between(self.features(shapes, near)) - self.rounds(shapes)
+        let of_cores = near.distance_between(self.features(shapes, near));
+        if near.is_tied {
+            // The formula of one of the features is stationary elsewhere.
+            let distance = of_cores.without_derivatives() - self.rounds(shapes);
+            return distance + T::constant(near.distance - distance.value());
+        }
+        of_cores - self.rounds(shapes)
     }
 
     /// Unit vector from the nearest point of the first core to that of the second: `D' = n . (Q' - P')`. `None` where
