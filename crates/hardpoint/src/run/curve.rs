@@ -200,7 +200,7 @@ impl<T: Real> SampledCurve<'_, T> {
     /// Times of the extrema inside interval k.
     pub(super) fn turns(&self, k: usize) -> Vec<f64> {
         // If the Bernstein coefficients are monotone, so is the polynomial.
-        let coefficients = self.bernstein(k);
+        let coefficients = self.bernstein(k, self.fold(k));
         if coefficients.is_some_and(|b| b.is_sorted() || b.iter().rev().is_sorted()) {
             return Vec::new();
         }
@@ -214,20 +214,26 @@ impl<T: Real> SampledCurve<'_, T> {
     /// Upper bound of the polynomial of interval k times `sign`: the largest of its Bernstein coefficients.
     pub(super) fn bound(&self, k: usize, sign: f64) -> f64 {
         // There is no bound next to a kink or a gap.
-        let Some(coefficients) = self.bernstein(k) else { return f64::INFINITY };
         let fold = self.fold(k);
-        let value = |c: f64| fold.map_or(c, |fold| fold.root([c, 0.0])[0]);
-        coefficients.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * value(c)))
+        let Some(coefficients) = self.bernstein(k, fold) else { return f64::INFINITY };
+        let most = |of: [f64; 6]| of.into_iter().fold(f64::NEG_INFINITY, |most, c| most.max(sign * c));
+        match fold {
+            None => most(coefficients),
+            Some(fold) => most(coefficients.map(|c| fold.root([c, 0.0])[0])),
+        }
     }
 
     /// Bernstein coefficients of the polynomial of interval k, the inner ones of a cubic twice; `None` next to a kink
     /// or a gap. Near a kink those of the square of the distance from it.
-    fn bernstein(&self, k: usize) -> Option<[f64; 6]> {
+    fn bernstein(&self, k: usize, fold: Option<Fold>) -> Option<[f64; 6]> {
         let h = self.times[k + 1] - self.times[k];
-        let fold = self.fold(k);
-        let ends = [k, k + 1].map(|k| self.numbers(k, fold));
-        let [a, b] = ends.map(|end| end.map(|x| x.value()));
-        Some(match ends.each_ref().map(|end| self.known_of(end)) {
+        let plain = |k: usize| self.values[k].map(|x| x.value());
+        let [a, b] = match fold {
+            None => [plain(k), plain(k + 1)],
+            Some(fold) => [fold.square(plain(k)), fold.square(plain(k + 1))],
+        };
+        let known = |end: &[f64; 3]| end[..self.orders].iter().take_while(|x| x.is_finite()).count();
+        Some(match [known(&a), known(&b)] {
             [1, 1] => [a[0], a[0], a[0], b[0], b[0], b[0]],
             [2, 2] => {
                 let [inner, outer] = [a[0] + h * a[1] / 3.0, b[0] - h * b[1] / 3.0];
