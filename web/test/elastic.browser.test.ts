@@ -30,13 +30,13 @@ describe('a mechanism with elastic joints', () => {
     expect(await table.locator('tbody tr').count()).toBe(48)
   })
 
-  test('has a table of its metrics with rigid values and the most influential variables', async () => {
+  test('has a table of its metrics with rigid values, signs and the most influential variables', async () => {
     const page = await open(elastic)
     await page.getByRole('tab', { name: 'Metrics' }).click()
     const table = page.getByTestId('metrics')
-    expect(await table.locator('thead').innerText()).toMatch(/metric\s+value\s+rigid.*most influential/s)
+    expect(await table.locator('thead').innerText()).toMatch(/metric\s+value\s+rigid\s+positive.*most influential/s)
     const row = table.locator('tr').filter({ hasText: 'bump_steer' })
-    expect(await row.innerText()).toMatch(/deg\/mm\s+[\d.]+ deg\/mm\s/)
+    expect(await row.innerText()).toMatch(/deg\/mm\s+[\d.]+ deg\/mm\s+toe-in in bump/)
   })
 
   test('has the metrics of the rigid one in a column of their own, and changes to it in the plots', async () => {

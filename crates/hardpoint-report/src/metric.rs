@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use hardpoint::Solution;
-use hardpoint::model::{DesignVariable, Dimension, Metric, Model, OutputSource, Reduction};
+use hardpoint::model::{DesignVariable, Dimension, Metric, Model, Reduction};
 use hardpoint::run::{MetricValue, metrics, metrics_beside};
 use hardpoint_file::Units;
 use hardpoint_study::whatif::WhatIf;
@@ -37,7 +37,7 @@ record! {
     /// Unit.
     unit: String = unit(units, dimension);
     /// Direction in which the value is positive, in words; empty for a size, and if the measure has no fixed one.
-    positive: &'static str = positive(model, metric);
+    positive: String = positive(model, metric);
     /// Value for the rigid mechanism: elastic joints closed, the same motion of the drivers; `null` without
     /// equilibrium, and where no driver moves.
     rigid: Option<f64> = rigid.map(|x| units.from_si(dimension, x));
@@ -138,7 +138,7 @@ impl MetricFact {
             ("definition", &|(_, m)| if definitions { m.what.clone() } else { String::new() }),
             ("value", &|(_, m)| m.value.map_or("not reached".into(), |x| with_unit(x, &m.unit))),
             ("rigid", &|(_, m)| m.rigid.map_or(String::new(), |x| with_unit(x, &m.unit))),
-            ("positive", &|(_, m)| if definitions { String::new() } else { m.positive.into() }),
+            ("positive", &|(_, m)| if definitions { String::new() } else { m.positive.clone() }),
             ("at t", &|(_, m)| m.time.map_or(String::new(), |t| format!("{} s", number(t)))),
             ("estimated error", &|(_, m)| error(m)),
             ("most influential variables", &|(_, m)| m.most_influential(variables)),
@@ -252,22 +252,16 @@ impl MetricChange {
 }
 
 /// Direction in which a metric is positive; of a slope that of its measure, and none of a size.
-fn positive(model: &Model, metric: &Metric) -> &'static str {
+fn positive(model: &Model, metric: &Metric) -> String {
     match metric.take {
-        Reduction::Range | Reduction::Rms(_) | Reduction::RmsAtPoints(_) => return "",
+        Reduction::Range | Reduction::Rms(_) | Reduction::RmsAtPoints(_) => String::new(),
         Reduction::Least
         | Reduction::Greatest
         | Reduction::Change
         | Reduction::Mean
         | Reduction::Integral
         | Reduction::Value(_)
-        | Reduction::Slope(_) => {}
-    }
-    match metric.of {
-        OutputSource::Measure(k) => model.measures[k].kind.positive(),
-        // A model with wheels has vehicle axes, those of ISO 8855.
-        OutputSource::Point(_, axis) if model.wheels.is_empty() => ["along +x", "along +y", "along +z"][axis],
-        OutputSource::Point(_, axis) => ["forward", "to the left", "up"][axis],
+        | Reduction::Slope(_) => model.positive(metric.of),
     }
 }
 

@@ -330,7 +330,7 @@ fn segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Nearest {
 /// within that plane is no depth of the surface.
 pub(super) fn segment_and_edge(segment: [Vec3; 2], edge: [Vec3; 2]) -> Nearest {
     let near = segments(segment, edge);
-    if near.sign < 0.0 {
+    if near.is_way_out_in_plane() {
         let [p, q] = near.points;
         return found([Feature::Line; 2], near.points, (q - p).norm());
     }

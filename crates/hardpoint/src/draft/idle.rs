@@ -42,7 +42,7 @@ impl Model {
             let is_ball = |j: &JointId| self.joints[j.0].kind.is_ball();
             let Some(ball) = joints.iter().copied().find(is_ball) else { continue };
             let Some(axis) = self.spin(&bodies, &joints, ball, &prescribed, size) else { continue };
-            if self.equilibrium.is_some() && self.is_turned_by_forces(&bodies, ball, axis) {
+            if self.equilibrium.is_some() && self.is_turned_by_forces(&bodies, ball, axis, size) {
                 continue;
             }
             let z = axis.any_perpendicular();
@@ -55,8 +55,7 @@ impl Model {
 
     /// Returns true if a force may turn these bodies about an axis through this joint, so that their rotation is one of
     /// equilibrium. Weights are left out: a rod whose centre of mass is beside its axis need not hang down.
-    fn is_turned_by_forces(&self, bodies: &[BodyId], ball: JointId, axis: Vec3) -> bool {
-        let size = self.size();
+    fn is_turned_by_forces(&self, bodies: &[BodyId], ball: JointId, axis: Vec3, size: f64) -> bool {
         let centre = self.position(self.joints[ball.0].at[0]);
         let is_beside = |p: PointId| {
             let point = &self.points[p.0];

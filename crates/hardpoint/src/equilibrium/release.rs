@@ -57,9 +57,9 @@ pub(crate) fn release(
         }
     };
     drive_all(&mut open, &elastic_joints);
-    // Bodies that springs alone hold are placed by openings from ground.
     // The rows of some joints do not belong to single directions, so that they are no cut ones.
     let uncut: Vec<JointId> = elastic_joints.iter().filter(|j| !j.2).map(|j| j.0).collect();
+    // Bodies that springs alone hold are placed by openings from ground.
     let OpenTree { floating, .. } = open_tree(&open, &uncut);
     for body in floating {
         float(&mut open, body);

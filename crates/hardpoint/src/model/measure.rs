@@ -728,13 +728,21 @@ impl MeasureKind {
         }
     }
 
-    /// Direction in which it is positive, in words; empty if there is no fixed one.
-    pub fn positive(&self) -> &'static str {
-        match self {
+    /// Direction in which it is positive, in words; empty if there is no fixed one. A slope over wheel travel has that
+    /// of its measure in bump.
+    pub fn positive(&self, model: &Model) -> String {
+        let words = match self {
             Self::Wheel { what, .. } => what.positive(),
             Self::Axle { what, .. } => what.positive(),
             Self::Toe { .. } => WheelMeasure::Toe.positive(),
             Self::Camber { .. } => WheelMeasure::Camber.positive(),
+            Self::Slope { of, over, .. } => {
+                let (direction, travel) = (model.positive(*of), WheelMeasure::WheelTravel);
+                if direction.is_empty() || model.type_of(*over) != travel.name() {
+                    return String::new();
+                }
+                return format!("{direction} in {}", travel.positive());
+            }
             Self::Coordinate { .. }
             | Self::Distance { .. }
             | Self::Coordinates { .. }
@@ -749,11 +757,11 @@ impl MeasureKind {
             | Self::Combination { .. }
             | Self::Clearance { .. }
             | Self::Articulation { .. }
-            | Self::Slope { .. }
             | Self::Dexterity { .. }
             | Self::Compliance { .. }
             | loads!() => "",
-        }
+        };
+        words.to_owned()
     }
 
     /// Joint whose coordinate or articulation it is.
@@ -1148,6 +1156,18 @@ impl Model {
         match output {
             OutputSource::Measure(k) => self.measures[k].name.clone(),
             OutputSource::Point(p, axis) => format!("{}.{}", self.points[p.0].name, ["x", "y", "z"][axis]),
+        }
+    }
+
+    /// Direction in which an output is positive, in words; empty if there is no fixed one.
+    pub fn positive(&self, output: OutputSource) -> String {
+        match output {
+            OutputSource::Measure(k) => self.measures[k].kind.positive(self),
+            // A model with wheels has vehicle axes, those of ISO 8855.
+            OutputSource::Point(_, axis) if self.wheels.is_empty() => {
+                format!("along +{}", ["x", "y", "z"][axis])
+            }
+            OutputSource::Point(_, axis) => ["forward", "to the left", "up"][axis].to_owned(),
         }
     }
 

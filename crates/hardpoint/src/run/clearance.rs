@@ -463,10 +463,14 @@ struct Reach {
 
 impl<'m> Curves<'m> {
     fn new(model: &'m Model, pairs: &'m [[ShapeId; 2]]) -> Self {
-        let none = vec![Vec::new(); pairs.len()];
-        let reaches = vec![Vec::new(); pairs.len()];
-        let at_rest = model.equilibrium.is_some();
-        Self { pairs, size: model.size(), at_rest, times: Vec::new(), samples: none, reaches }
+        Self {
+            pairs,
+            size: model.size(),
+            at_rest: model.equilibrium.is_some(),
+            times: Vec::new(),
+            samples: vec![Vec::new(); pairs.len()],
+            reaches: vec![Vec::new(); pairs.len()],
+        }
     }
 
     /// Adds the times of a motion of the design that are not known yet.
@@ -684,11 +688,10 @@ impl<'m> Curves<'m> {
                     continue;
                 }
                 // Searches for the deepest point leave small dips.
-                let rise = f64::min(
-                    rise_to_lower((0..first).rev().map(value), value(first)),
-                    rise_to_lower((after..=last).map(value), value(end)),
-                );
-                if !self.at_rest && rise <= SEARCHED * self.size {
+                let is_dip = |beside: &mut dyn Iterator<Item = usize>| {
+                    rise_to_lower(beside.map(value), value(first)) <= SEARCHED * self.size
+                };
+                if !self.at_rest && (is_dip(&mut (0..first).rev()) || is_dip(&mut (after..=last))) {
                     continue;
                 }
                 let is_narrow = times[after] - times[before] <= AT_REST * span;
@@ -747,10 +750,12 @@ impl<'m> Curves<'m> {
         let at_minimum = |event: &Event| index_of(times, event.time).map_or(f64::INFINITY, value);
         let least = minima.map(at_minimum).fold(f64::INFINITY, f64::min);
         if value(lowest) < least - FLAT * self.size {
-            let place = match lowest {
-                0 => MinimumPlace::Start,
-                k if k == last => MinimumPlace::End,
-                _ => MinimumPlace::Inside,
+            let place = if lowest == 0 {
+                MinimumPlace::Start
+            } else if lowest == last {
+                MinimumPlace::End
+            } else {
+                MinimumPlace::Inside
             };
             events.push(Event { pair: p, time: times[lowest], kink: None, kind: EventKind::Minimum(place) });
         }

@@ -51,13 +51,11 @@ impl Analysis<'_> {
         let mut stop = None;
         for (k, &t) in model.times.iter().enumerate() {
             let moved = if k == 0 { advance::start(&mut one, t) } else { advance::advance(&mut one, t) };
-            let mut is_end = false;
             if let Err(reason) = moved {
                 // The last time that was reached is an output of the proof.
-                let reached = reason.last_time.filter(|end| k > 0 && model.times[k - 1] < *end);
-                is_end = reached.is_some_and(|end| advance::advance(&mut one, end).is_ok());
+                let end = reason.last_time.filter(|end| k > 0 && model.times[k - 1] < *end);
                 stop = Some(*reason);
-                if !is_end {
+                if end.is_none_or(|end| advance::advance(&mut one, end).is_err()) {
                     break;
                 }
             }
@@ -66,7 +64,7 @@ impl Analysis<'_> {
                 plans.push(one.mechanism.topology.clone());
             }
             outputs.push(OutputPosition { at: one.mechanism.saved.clone(), plan: plans.len() - 1 });
-            if is_end {
+            if stop.is_some() {
                 break;
             }
         }
