@@ -56,7 +56,7 @@ describe.each(['slider_crank', 'macpherson'])('a reader of %s', (name) => {
   let page: Page
 
   beforeAll(async () => {
-    visited = await visit(browser, models[name], { engine: false })
+    visited = await visit(browser, models[name], { engine: false, viewport: { width: 1400, height: 900 } })
     page = visited.page
     await page.getByTestId('plot-0').getByTestId('over').selectOption('')
   })

@@ -20,6 +20,10 @@ const FILLED = 0.35
 /** Folder for the documents' pictures, if the tests are to make them anew: `UPDATE_DOCS=1 npm test`. */
 const IMAGES = process.env.UPDATE_DOCS && join(import.meta.dirname, '../../docs/images')
 
+/** Size of the window for these pictures, and for checks: three quarters of a check's time are drawn pixels. */
+const LARGE = { width: 1440, height: 900 }
+const SMALL = { width: 1000, height: 640 }
+
 /** Largest less smallest value, as a share of the largest size. */
 const spread = (values: number[]) => (Math.max(...values) - Math.min(...values)) / Math.max(...values.map(Math.abs))
 /** A quantity that changes by less than this share of its size is as good as constant. */
@@ -51,7 +55,7 @@ describe('every model', () => {
     Object.entries(models).map(([name, url], k) => ({ name, url, order: k % 2 ? SCHEMES : SCHEMES.toReversed() })),
   )('$name is drawn whole in both schemes and says nothing on the console', async ({ name, url, order }) => {
     const { page, complaints } = await visit(browser, url, {
-      viewport: { width: 1440, height: 900 },
+      viewport: IMAGES ? LARGE : SMALL,
       colorScheme: order[0],
     })
     for (const scheme of order) {
@@ -87,7 +91,7 @@ describe('every model', () => {
   })
 
   test.skipIf(!IMAGES)("the strut's page is the README's picture", async () => {
-    const { page } = await visit(browser, models.macpherson, { viewport: { width: 1440, height: 900 } })
+    const { page } = await visit(browser, models.macpherson, { viewport: LARGE })
     // Not a moment at which everything is in the design configuration.
     await scrub(page, 120)
     await drawn(page)
