@@ -446,7 +446,8 @@ The envelope is the union of a shape of `[shapes]` at all positions of the motio
 and of all grids of two drivers, unless `--case` names one: a tyre over travel and steer, for the
 wheel house. Positions between output times are added until they change the surface by less than
 half of the permitted error; triangles deviate from it by less than the other half. Both figures
-are stated, with the volume. Lengths are in the unit of the model file, like the surface.
+are stated, with the volume. Lengths are in the unit of the model file, like the surface, unless
+another one is given: `0.5` or `0.02in`.
 
 The exit code is 1 if the permitted error is not reached.
 
@@ -470,10 +471,10 @@ pub struct Envelope {
     pub relative_to: Option<String>,
     /// Permitted error, a length [default: 1/200 of the shape's extent]
     #[arg(long, value_name = "LENGTH")]
-    pub error: Option<f64>,
+    pub error: Option<String>,
     /// Distance to add around the shape [default: 0]
     #[arg(long, value_name = "LENGTH")]
-    pub margin: Option<f64>,
+    pub margin: Option<String>,
     /// The file to write [default: SHAPE_envelope.stl]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

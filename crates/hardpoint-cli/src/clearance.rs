@@ -19,7 +19,10 @@ pub fn run(options: &Clearance) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, case: Option<&str>| clearance_in(&session, options, &file, case);
     let mut each_grid = |file: &ModelFile, grid: &Grid| clearance_over(&session, options, file, grid);
-    let of = |file| session.for_cases_of(file, &options.motions, each, Some(&mut each_grid));
+    let of = |file: ModelFile| {
+        session.tell(&file, &file.remarks);
+        session.for_cases_of(file, &options.motions, each, Some(&mut each_grid))
+    };
     session.read(&options.common.model).and_then(of).unwrap_or_else(|outcome| outcome)
 }
 

@@ -17,6 +17,7 @@ use crate::folder::write_alone;
 use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::text;
+use crate::whatif::in_si;
 
 /// Computes the space that a shape sweeps, and writes its surface.
 pub fn run(options: &args::Envelope) -> Outcome {
@@ -29,14 +30,18 @@ fn envelope_of(session: &Session, options: &args::Envelope) -> Result<Outcome, O
         options.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}_envelope.stl", options.shape)));
     session.may_save(&options.common.model, Some(&to))?;
     let file = session.read(&options.common.model)?;
-    let length = |x: f64| file.units.to_si(Quantity::Length, x);
+    let length = |option: &str, text: &Option<String>| {
+        let given = text.as_ref().map(|text| in_si(text, Quantity::Length, file.units));
+        given.transpose().map_err(|why| session.misunderstood(&format!("`--{option}`: {why}")))
+    };
     let overrides = Overrides {
         shape: options.shape.clone(),
         relative_to: options.relative_to.clone(),
         case: options.motions.case.clone(),
-        error: options.error.map(length),
-        margin: options.margin.map(length),
+        error: length("error", &options.error)?,
+        margin: length("margin", &options.margin)?,
     };
+    session.tell(&file, &file.remarks);
     let request = Request::of(&file.model, overrides).map_err(|e| session.refused(&file, &e))?;
     // The mechanism can be driven, or the reasons are given.
     session.plan(&file, options.common.formulation())?;

@@ -923,6 +923,9 @@ impl Reader<'_> {
             "UNITS",
         ];
         const HOLD: [&str; 8] = ["PTCV", "CVCV", "PTSF", "CURVE", "UCON", "GCON", "SURFACE", "NFORCE"];
+        // A motion that drivers prescribe does not depend on them; equilibria and loads do.
+        const FORCES: [&str; 8] =
+            ["VFORCE", "GFORCE", "VTORQUE", "MFORCE", "NFORCE", "BEAM", "FIELD", "CBUSHING"];
         // Statements without effect on prescribed motions.
         const IRRELEVANT: &[&str] = &[
             "ACCGRAV",
@@ -938,15 +941,8 @@ impl Reader<'_> {
             "VARIABLE",
             "SPLINE",
             "SFORCE",
-            "VFORCE",
-            "GFORCE",
-            "VTORQUE",
-            "MFORCE",
-            "NFORCE",
             "SPRINGDAMPER",
             "BUSHING",
-            "BEAM",
-            "FIELD",
             "FRICTION",
             "CONTACT",
             "DIFF",
@@ -983,7 +979,6 @@ impl Reader<'_> {
             "END",
             "SAVE",
             "MATERIAL",
-            "CBUSHING",
             "FE_LOAD",
             "COMMAND",
         ];
@@ -996,6 +991,10 @@ impl Reader<'_> {
         for s in statements.iter().filter(|s| !is_read(s)) {
             if s.name == "FE_PART" {
                 let why = "elastic parts are not supported, nor are joints on them";
+                self.notes.refused(&s.name, &s.label, Some(s.at), why);
+            } else if FORCES.contains(&s.name.as_str()) {
+                let why = "the force has no equivalent: motions in which drivers prescribe all positions are the same without it, \
+                           but not loads and equilibria";
                 self.notes.refused(&s.name, &s.label, Some(s.at), why);
             } else if HOLD[..6].contains(&s.name.as_str()) && s.name != "CURVE" {
                 self.notes.refused(

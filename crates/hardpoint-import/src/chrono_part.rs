@@ -86,6 +86,11 @@ pub fn bushing(
             notes.not_understood(key, &name, Some(*at), "unknown key of a bushing");
         }
     }
+    for (key, at, _) in data.get("DOF").into_iter().flat_map(Tree::entries) {
+        if !["Stiffness Rotational", "Damping Rotational", "Damping Linear"].contains(&key.as_str()) {
+            notes.not_understood(key, &name, Some(*at), "unknown key of the `DOF` of a bushing");
+        }
+    }
     let per_angle = m.per_angle();
     let turns = free.map(|is_free| if is_free { free_turn } else { turn } * per_angle);
     let stiffness = [slide, slide, slide, turns[0], turns[1], turns[2]];

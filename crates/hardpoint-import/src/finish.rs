@@ -9,7 +9,7 @@ use hardpoint::space::Vec3;
 use hardpoint::topology::TopologyError;
 use hardpoint::{Analysis, Run};
 
-use crate::mechanism::{Coordinate, Drives, GROUND, Joint, Law, Mechanism};
+use crate::mechanism::{Coordinate, Drives, ForceOn, GROUND, Joint, Law, Mechanism};
 use hardpoint_file::Diagnostic;
 
 use crate::report::ImportLog;
@@ -255,7 +255,17 @@ fn ground(m: &mut Mechanism, notes: &mut ImportLog) {
         let first = m.joints.iter().find(|j| j.bodies.contains(&b)).and_then(|j| j.at.first().copied());
         let at = body.pose.map(|p| p.r).or(first).unwrap_or_else(|| Vec3::from([0.0; 3]));
         let name = body.name.clone();
-        let why = "nothing connects it to ground in the source: it is fixed to ground";
+        let mut held = |(body, _): &(usize, Vec3)| find(&mut root, *body) == b;
+        let mut by_forces = m.forces.iter().filter_map(|force| match &force.on {
+            ForceOn::Points(ends) | ForceOn::Bushing(ends, _) => Some(ends),
+            ForceOn::Coordinate(_) | ForceOn::Joint(..) => None,
+        });
+        let why = if by_forces.any(|ends| ends.iter().any(&mut held)) {
+            "only forces hold it in the source: it is fixed to ground; without this joint, and with `[equilibrium]`, they \
+             place it"
+        } else {
+            "nothing connects it to ground in the source: it is fixed to ground"
+        };
         m.joint(Joint::new(&format!("{name}_fixed"), why.into(), "fixed", [GROUND, b], at));
         notes.approximated("body", &name, None, why);
     }

@@ -40,9 +40,10 @@ record! {
     permitted: f64 = in_units(1, found.error);
     /// Largest distance between the triangles and the envelope, at their centres and the middles of their edges.
     deviation: f64 = in_units(1, found.surface.deviation);
-    /// Distance by which the poses between half of them reach beyond the envelope of that half.
-    between_poses: f64 = in_units(1, found.between_poses);
-    /// True if both are within half of the permitted error.
+    /// Distance by which positions between these reach beyond the envelope: a quarter of that by which the others reach
+    /// beyond the envelope of every second one.
+    between_poses: f64 = in_units(1, 0.25 * found.between_poses);
+    /// True if both are within the permitted error.
     within_error: bool = found.is_within_error;
     /// Number of positions of the shape.
     poses: usize = found.poses;
@@ -72,7 +73,7 @@ impl EnvelopeFact {
             format!(
                 "  error: triangles within {} of the envelope; positions between these reach beyond it by about {}",
                 length(self.deviation),
-                length(0.25 * self.between_poses)
+                length(self.between_poses)
             ),
         ];
         if self.margin > 0.0 {

@@ -10,10 +10,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use hardpoint::model::{OpenSurface, Solid};
-use hardpoint::space::Vec3;
+use hardpoint::space::{Vec3, open_edges};
 
 use crate::values::{
-    DataError, Field, Fields, Folder, NUMBER, Reader, Shape, Table, Wanted, bytes_of, closest, shown, table,
+    DataError, Field, Fields, Folder, NUMBER, Reader, Severity, Shape, Table, Wanted, bytes_of, closest,
+    shown, table,
 };
 
 use super::drawing::{MESH_FRAMES, Mesh, MeshFrame};
@@ -254,7 +255,29 @@ pub(super) fn surface(
     if cfg!(target_family = "wasm") || matches!(r.folder, Folder::Given(_)) {
         return Some((Vec::new(), Vec::new(), true));
     }
-    let Mesh { vertices, triangles, frame, .. } = drawn(r, &said)?;
+    let Mesh { vertices, triangles, frame, file } = drawn(r, &said)?;
+    let open = open_edges(&triangles);
+    if let Some([a, b]) = open.first().map(|edge| edge.map(|k| vertices[k as usize])) {
+        // Six decimals of the model's unit: corners of STL files have no more digits.
+        let place = |p: Vec3| {
+            let [x, y, z] = p.map(|x| (1e6 * x / r.units.length.metres(1.0)).round() / 1e6).to_array();
+            format!("({x}, {y}, {z})")
+        };
+        let edges = if open.len() == 1 { "1 edge".into() } else { format!("{} edges", open.len()) };
+        let note = format!(
+            "at {edges} of `{}` triangles have no neighbour with the same orientation; one runs from {} to {}",
+            shown(&file),
+            place(a),
+            place(b)
+        );
+        let message = format!("{} is an open surface", shape.what);
+        let d = r.remark(Severity::Note, "HP0119", f.value.span(), message);
+        d.notes.push(note);
+        d.notes.push(
+            "it has no inside: a shape within it is as far from it as from its nearest triangle".into(),
+        );
+        d.help = Some("if it should be a solid, export it again with all edges closed".into());
+    }
     Some((vertices, triangles, frame == MeshFrame::Body))
 }
 

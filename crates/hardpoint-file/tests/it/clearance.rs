@@ -484,6 +484,87 @@ fn what_pierces_a_shape_overlaps_it() {
     }
 }
 
+/// A sheet of two triangles in the plane z = 0, turned up or down, and round shapes that a slider pushes through it.
+const SHEET: &str = "v -50 -50 0\nv 50 -50 0\nv 50 50 0\nv -50 50 0\n";
+const ROUND: &str = r#"
+name = "sheet"
+units = { length = "mm", angle = "deg" }
+bodies = { slider = {} }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = [0, 0, 0], axis = "z" }
+drivers.push = { joint = "slide", law = "-30 + 60*t" }
+time = { end = 1.0, steps = 10 }
+[shapes]
+sheet = { body = "ground", mesh = "sheet.obj" }
+ring = { body = "slider", ring = [1, 2, 0], axis = "x", radius = 10, round = 1 }
+drum = { body = "slider", cylinder = [[1, 2, -2], [5, 4, 2]], radius = 5, round = 1 }
+[clearances.all]
+between = ["sheet", ["ring", "drum"]]
+"#;
+
+#[test]
+fn a_ring_and_a_drum_are_as_near_to_a_sheet_from_either_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sheet.toml");
+    // Half of what the cores extend along z. That of the drum is smaller by its rounding all around, and its axis has a
+    // cosine of 2/3 with z.
+    let extent = |shape: &str| match shape {
+        "ring" => 10.0,
+        _ => (3.0 - 1.0) * 2.0 / 3.0 + (5.0 - 1.0) * 5.0_f64.sqrt() / 3.0,
+    };
+    for (faces, steps) in [("f 1 2 3\nf 1 3 4\n", 10), ("f 1 3 2\nf 1 4 3\n", 10), ("f 1 2 3\nf 1 3 4\n", 11)]
+    {
+        std::fs::write(folder.path().join("sheet.obj"), format!("{SHEET}{faces}")).unwrap();
+        std::fs::write(&path, ROUND.replace("steps = 10", &format!("steps = {steps}"))).unwrap();
+        let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        for pair in &found.pairs {
+            let name = model.shapes[pair.shapes[1].0].name.as_str();
+            let what = format!("{name}, {steps} steps, {faces}");
+            let reach = extent(name) + 1.0;
+            let touches = [0.5 - reach / 60.0, 0.5 + reach / 60.0];
+            for at in &pair.curve {
+                let z = 60.0 * at.time - 30.0;
+                let expected = if z.abs() > reach - 1.0 { z.abs() - reach } else { -1.0 };
+                assert_near(at.distance[0] * 1e3, expected, &format!("{what}, at {}", at.time));
+            }
+            let [[from, to]] = pair.intervals()[..] else { panic!("{what}: {:?}", pair.intervals()) };
+            assert_near(from, touches[0], &what);
+            assert_near(to, touches[1], &what);
+            assert_near(pair.least().unwrap().at.distance[0] * 1e3, -1.0, &what);
+        }
+    }
+}
+
+#[test]
+fn a_cube_with_a_triangle_twice_has_an_inside_and_one_with_a_hole_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cube.toml");
+    let text = PIERCING.replace("plate.obj", "cube.obj").replace(
+        "between = [[\"rod\", \"bar\", \"block\"], [\"triangle\", \"plate\", \"box\", \"disc\"]]",
+        "between = [\"rod\", \"plate\"]",
+    );
+    std::fs::write(folder.path().join("triangle.obj"), TRIANGLE).unwrap();
+    std::fs::write(&path, text).unwrap();
+    let of = |surface: &str| {
+        std::fs::write(folder.path().join("cube.obj"), surface).unwrap();
+        let file = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}"));
+        let open = |name: &str| {
+            let mut notes = file.remarks.iter().filter(|d| d.code == "HP0119");
+            notes.find(|d| d.message.contains(name)).map(|d| d.notes[0].clone())
+        };
+        let least =
+            Analysis::new(&file.model).unwrap().clearances(&[]).pairs[0].least().unwrap().at.distance[0];
+        (least, open("`plate`"), open("`triangle`"))
+    };
+    let (depth, none, sheet) = of(PLATE);
+    assert!(none.is_none() && sheet.unwrap().starts_with("at 3 edges of `triangle.obj`"));
+    let (twice, none, _) = of(&format!("{PLATE}f 4 3 1\n"));
+    assert!(none.is_none(), "{none:?}");
+    assert_eq!(twice, depth);
+    let (_, note, _) = of(&PLATE.replace("f 2 3 7 6\n", ""));
+    assert!(note.as_ref().unwrap().starts_with("at 4 edges of `cube.obj`"), "{note:?}");
+}
+
 /// A rod that turns within a solid at rest.
 fn rod_in(solid: &str, [p, q]: [[f64; 3]; 2], steps: usize) -> String {
     format!(
@@ -578,5 +659,28 @@ fn a_motion_that_ends_early_has_the_same_clearances_up_to_its_end_at_any_output_
         for (a, b) in contacts.iter().zip(times) {
             assert!((a - *b).abs() < 1e-8, "{steps} steps: {contacts:?}");
         }
+    }
+}
+
+#[test]
+fn a_motion_that_a_limit_stops_has_the_clearances_up_to_the_limit_at_any_output_times() {
+    let text = |steps: usize| {
+        format!(
+            "name = \"c\"\nunits = {{ length = \"mm\", angle = \"deg\" }}\ntime = {{ end = 1.0, steps = {steps} }}\n             bodies = {{ slider = {{}} }}\n             joints.s = {{ type = \"translational\", bodies = [\"ground\", \"slider\"], at = [0, 0, 0], axis = \"x\", limits.displacement = {{ max = 12.34, stop = true }} }}\n             drivers.d = {{ joint = \"s\", law = \"100*t\" }}\n[shapes]\n             ball = {{ body = \"slider\", sphere = [0, 0, 0], radius = 3 }}\n             stud = {{ body = \"ground\", sphere = [20, 0, 0], radius = 2 }}\n             [clearances.c]\nbetween = [\"ball\", \"stud\"]\n"
+        )
+    };
+    for steps in [1, 3, 10, 100] {
+        let model = model_of(&text(steps));
+        let analysis = Analysis::new(&model).unwrap();
+        let found = analysis.clearances(&[]);
+        let pair = pair(&model, &found, "c");
+        let least = pair.least().unwrap().at;
+        assert_near(least.distance[0] * 1e3, 20.0 - 12.34 - 5.0, "least distance");
+        assert_near(least.time, 0.1234, "its time");
+        assert_near(found.stop.as_ref().and_then(|stop| stop.last_time).unwrap(), 0.1234, "the end");
+        let mut prover = analysis.clearance_prover(&[]).unwrap();
+        let mut claim = |above: f64| prover.prove(pair.shapes, least.distance[0] + above);
+        assert!(matches!(claim(-1e-10), ClearanceProof::Proved { .. }), "{steps} steps: {:?}", claim(-1e-10));
+        assert!(matches!(claim(1e-9), ClearanceProof::NotProved { .. }), "{steps} steps");
     }
 }

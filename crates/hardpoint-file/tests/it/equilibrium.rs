@@ -888,6 +888,14 @@ fn an_equilibrium_becomes_unstable_at_its_time_whatever_the_law() {
         // 2 m * 5000 N t^2 = k
         near(stop.failed_time, (spring / 10000.0).sqrt(), TIME_OF_LIMIT, times);
     }
+    // The stiffness vanishes at an output time: the direction was held before.
+    for times in ["at = [0, 1]", "end = 1\nsteps = 2", "end = 1\nsteps = 7"] {
+        let law = format!("{}*t", 0.5 * spring);
+        let solution = Analysis::new(&file(&upright(&law, 0.0, times, 1.0)).model).unwrap().run();
+        let stop = solution.stop.unwrap();
+        assert!(matches!(stop.kind, StopKind::Unstable { .. }), "{stop:?}");
+        near(stop.failed_time, 1.0, TIME_OF_LIMIT, times);
+    }
 }
 
 /// Two pendulums that stand upright on torsion springs of this stiffness: 1 kg at 1 m each.

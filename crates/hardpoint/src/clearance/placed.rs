@@ -52,8 +52,9 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         a + b
     }
 
-    /// A feature of a shape, and the distance by which the core extends beyond it.
-    fn feature(&self, shape: ShapeId, feature: Feature) -> (Placed<T>, T) {
+    /// A feature of a shape, and the distance by which the core extends beyond it. A facet of an open surface, which
+    /// has no inside, is seen from this point.
+    fn feature(&self, shape: ShapeId, feature: Feature, seen_from: Vec3) -> (Placed<T>, T) {
         let vertex = |k: u32| match &self.model.shapes[shape.0].kind {
             ShapeKind::Hull { points, .. } => self.point(points[k as usize]),
             ShapeKind::Mesh { body, surface } => {
@@ -67,7 +68,9 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
             Feature::Facet(corners) => {
                 let [a, b, c] = corners.map(vertex);
                 let normal = (b - a).cross(c - a);
-                Placed::Face { point: a, normal: normal * (T::one() / normal.norm()) }
+                let is_behind = normal.value().dot(seen_from - a.value()) < 0.0;
+                let sense = if is_behind && !self.has_inside(shape) { -1.0 } else { 1.0 };
+                Placed::Face { point: a, normal: normal * (T::constant(sense) / normal.norm()) }
             }
             Feature::Point(_) | Feature::Line | Feature::Circle(_) | Feature::Face(_) => {
                 let core = self.core(shape).expect("a surface has vertices, edges and facets");
@@ -148,7 +151,7 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
         };
         let near = Nearest { points: near.points.map(|p| frame.point(p)), ..near };
         let plain = |k: usize| {
-            let (placed, less) = self.feature(shapes[k], near.features[k]);
+            let (placed, less) = self.feature(shapes[k], near.features[k], near.points[1 - k]);
             (placed.value(), less.value())
         };
         near.signed([plain(0), plain(1)])
@@ -190,7 +193,15 @@ impl<T: Real, B: Bodies<T> + ?Sized> PlacedShapes<'_, T, B> {
 
     /// The features that hold the nearest points.
     pub(super) fn features(&self, shapes: [ShapeId; 2], near: &Nearest) -> [(Placed<T>, T); 2] {
-        [0, 1].map(|k| self.feature(shapes[k], near.features[k]))
+        [0, 1].map(|k| self.feature(shapes[k], near.features[k], near.points[1 - k]))
+    }
+
+    /// False for the surface of an open mesh.
+    fn has_inside(&self, shape: ShapeId) -> bool {
+        match &self.model.shapes[shape.0].kind {
+            ShapeKind::Mesh { surface, .. } => surface.is_closed(),
+            ShapeKind::Hull { .. } | with_core!() => true,
+        }
     }
 
     /// The pair of a clearance whose shapes are nearest, and where they are; `None` if it has no pairs.

@@ -157,14 +157,16 @@ pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
     match core {
         Core::Point(p) => view.nearest_to(*p),
         Core::Segment(ends) => segment_and_surface(*ends, view),
-        Core::Circle(circle) => along_circle(circle, Feature::Circle(0.0), |p| view.nearest_to(p)),
+        Core::Circle(circle) => circle_and_surface(circle, Feature::Circle(0.0), view),
         Core::Cylinder { middle, half_width } => {
             let rims = [-1.0, 1.0].map(|side| {
-                let rim = middle.moved(half_width * side);
-                along_circle(&rim, Feature::Circle(side), |p| view.nearest_to(p))
+                circle_and_surface(&middle.moved(half_width * side), Feature::Circle(side), view)
             });
             let drum = around_drum(middle, *half_width);
             let mut best = nearer(rims);
+            if best.sign == 0.0 {
+                return best;
+            }
             view.search(best.distance, &|q| drum.distance(q), &mut |t| {
                 let near = view.edges(t, |edge| segment_and_cylinder(edge, &drum).reversed());
                 if near.distance < best.distance {
@@ -191,6 +193,39 @@ pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
             }
         }
     }
+}
+
+/// The nearest points of a circle, which is this feature of its shape, and a surface. One that goes through an open
+/// surface overlaps with it.
+fn circle_and_surface(circle: &Circle, itself: Feature, view: View<'_>) -> Nearest {
+    let near = along_circle(circle, itself, |p| view.nearest_to(p));
+    if view.is_closed() || !near.distance.is_finite() {
+        return near;
+    }
+    let reach = Core::Circle(*circle);
+    let mut through = None;
+    view.search(near.distance, &|q| reach.distance_from(q), &mut |t| {
+        through = through.or_else(|| crossing(circle, view.triangle(t).0));
+        if through.is_some() { 0.0 } else { near.distance }
+    });
+    through.map_or(near, |at| near.overlapping(at))
+}
+
+/// Point at which a circle goes through a triangle.
+fn crossing(circle: &Circle, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
+    let across = (b - a).cross(c - a);
+    let normal = across * (1.0 / across.norm());
+    let Circle { centre, axis, radius } = *circle;
+    // The height of the circle's points over the plane is h + R w cos(angle), the angle counted from `up`.
+    let (h, steepest) = (normal.dot(centre - a), normal - axis * axis.dot(normal));
+    let (up, w) = (steepest.unit()?, steepest.norm());
+    let cos = -h / (radius * w);
+    let sin = (1.0 - cos * cos).sqrt();
+    let inside =
+        |p: &Vec3| [[a, b], [b, c], [c, a]].iter().all(|[u, v]| normal.dot((*v - *u).cross(*p - *u)) >= 0.0);
+    // NaN where the circle is above or below the plane, or the triangle has no area.
+    let places = [sin, -sin].map(|sin| centre + (up * cos + axis.cross(up) * sin) * radius);
+    places.into_iter().find(inside)
 }
 
 /// The nearest points of a segment and a surface; of one that is partly inside, its deepest point.

@@ -202,7 +202,7 @@ impl<'a> EquilibriumSolver<'a> {
                 Err(_) if is_predicted => {}
                 Err(rejection) => {
                     part *= 0.5;
-                    if part < SHORTEST || matches!(rejection, Rejection::NothingHolds(_)) {
+                    if part < SHORTEST {
                         return Err(self.stop(one, t, done, rejection));
                     }
                 }
@@ -683,12 +683,13 @@ impl<'a> EquilibriumSolver<'a> {
         let drivers = at_output.map_or(&self.last.drivers, |passed| &passed.drivers).clone();
         let kind = match (rejection, last_time) {
             (Rejection::Locked(rejection), _) => advance::stop_at_rest(one, t, rejection).kind,
-            (Rejection::NothingHolds(k), _) => {
+            (Rejection::NothingHolds(k), None) if done == 0.0 => {
                 StopKind::NothingHolds { direction: self.direction(self.openings[k]) }
             }
             (Rejection::NoConvergence, None) => StopKind::LimitLoad { part: done },
             (Rejection::NoConvergence, Some(_)) => StopKind::NoEquilibrium,
-            (Rejection::Unstable, _) => {
+            // A stiffness that vanishes on the way has held all directions before.
+            (Rejection::NothingHolds(_) | Rejection::Unstable, _) => {
                 // The direction in which the stiffness vanishes.
                 if advance::move_at_rest(one, &self.last.drivers).is_ok() {
                     self.prepare(one);

@@ -1,9 +1,7 @@
 //! Volume, centre and moments of closed surfaces, and moments about other points.
 
-use std::collections::BTreeMap;
-
 use crate::number::Real;
-use crate::space::Vec3;
+use crate::space::{Vec3, distinct, open_edges};
 
 /// Mass properties of a homogeneous body, per unit of density.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,23 +35,18 @@ impl Solid {
     /// # Errors
     /// Reason why it encloses no volume.
     pub fn of(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, OpenSurface> {
-        let mut edges: BTreeMap<[u32; 2], i64> = BTreeMap::new();
-        for [a, b, c] in triangles.iter().copied() {
-            for [from, to] in [[a, b], [b, c], [c, a]] {
-                *edges.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
-            }
-        }
-        let mut open = edges.iter().filter(|(_, way)| **way != 0).map(|(edge, _)| edge);
-        if let Some(first) = open.next() {
+        let open = open_edges(triangles);
+        if let Some(first) = open.first() {
             let ends = first.map(|k| vertices[k as usize]);
-            return Err(OpenSurface::Edges(1 + open.count(), ends));
+            return Err(OpenSurface::Edges(open.len(), ends));
         }
+        let triangles = distinct(triangles.to_vec());
         let Some(origin) = triangles.first().map(|t| vertices[t[0] as usize]) else {
             return Err(OpenSurface::Flat);
         };
         let (mut volume, mut first, mut second) = (0.0, Vec3::ZERO, [0.0; 6]);
         let mut extent = 0.0_f64;
-        for corners in triangles {
+        for corners in &triangles {
             // Relative to a corner of the surface, to keep the digits of small solids.
             let [a, b, c] = corners.map(|k| vertices[k as usize] - origin);
             // A tetrahedron with the origin: V = a . (b x c) / 6,  sum V (a + b + c) / 4,

@@ -306,6 +306,7 @@ impl Analysis<'_> {
                     }
                 }
             }
+            minima.sort_by(|a, b| a.at.time.total_cmp(&b.at.time));
             PairClearance {
                 shapes: *shapes,
                 curve: samples.iter().filter(|s| is_output(s.time)).copied().collect(),
@@ -694,15 +695,26 @@ impl<'m> Curves<'m> {
                 if !self.at_rest && (is_dip(&mut (0..first).rev()) || is_dip(&mut (after..=last))) {
                     continue;
                 }
-                let is_narrow = times[after] - times[before] <= AT_REST * span;
+                let is_narrow = times[after] - times[before] <= LOCATED * span;
                 match run.len() {
                     1 if !is_narrow => {
                         add.extend(pieces(times[before], times[first]));
                         add.extend(pieces(times[first], times[after]));
                     }
-                    // On both sides of a minimum, or at the ends of a part in which the distance does not change.
+                    // On both sides of a minimum, or at the ends of a part in which the distance does not change: a
+                    // smooth minimum ends like this long before its interval is narrow, one at a kink does not.
                     2 if !is_narrow => add.push(0.5 * (times[first] + times[end])),
-                    _ => event(times[first], EventKind::Minimum(MinimumPlace::Inside)),
+                    _ => {
+                        let lower = |a: usize, b: usize| if value(b) < value(a) { b } else { a };
+                        let lowest = (first..=end).reduce(lower).unwrap_or(first);
+                        let [left, right] = [lowest - 1, lowest + 1].map(|k| times[k]);
+                        let is_kink = times[end] - times[first] < OF_KINK * span;
+                        if is_kink && right - left > LOCATED * span {
+                            add.extend([left, right].map(|t| 0.5 * (t + times[lowest])));
+                        } else {
+                            event(times[lowest], EventKind::Minimum(MinimumPlace::Inside));
+                        }
+                    }
                 }
             }
         }
@@ -823,12 +835,12 @@ struct Plateau {
     is_inside: bool,
 }
 
+/// Interval, as a fraction of the motion, in which a distance with a smooth minimum is the same up to round-off: if it
+/// is shorter, the minimum is a kink, and nearer to one side of it.
+const OF_KINK: f64 = 3e-8;
 /// Rise of a distance without rates between two minima, as a fraction of the mechanism's size, below which the higher
 /// one is a dip: searches along both cores find the deepest point of solids in each other to less than this.
 const SEARCHED: f64 = 1e-6;
-/// Interval in which the minimum of a curve without rates is located, as a fraction of the motion: the value is then
-/// known to round-off.
-const AT_REST: f64 = 1e-6;
 
 /// Events of a motion, and times at which it must be solved to locate others.
 #[derive(Default)]

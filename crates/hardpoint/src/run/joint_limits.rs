@@ -158,9 +158,10 @@ impl Analysis<'_> {
         let (failed_time, kind) = self.crossings(&design.values, |limit| limit.stop)?.stop(model)?;
         let begins_beyond = matches!(kind, StopKind::JointLimit { begins_beyond: true, .. });
         let span = model.times.last().zip(model.times.first()).map_or(0.0, |(last, first)| last - first);
-        // An output time at which the limit is reached belongs to the motion.
-        let solved = |t: &&f64| !begins_beyond && **t <= failed_time + LOCATED * span;
-        let last_time = model.times.iter().take_while(solved).last().copied();
+        // The motion is that up to the limit; an output time at which it is reached belongs to it.
+        let reached = |t: &&f64| **t <= failed_time + LOCATED * span;
+        let last_output = model.times.iter().take_while(reached).last().copied();
+        let last_time = last_output.filter(|_| !begins_beyond).map(|t| t.max(failed_time));
         let at = last_time.unwrap_or(failed_time);
         Some(Stop {
             kind,

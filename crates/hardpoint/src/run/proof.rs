@@ -44,16 +44,23 @@ impl Analysis<'_> {
         if self.openings().is_some() {
             return None;
         }
-        let (model, PreparedDesign { geometry, laws, .. }) = (self.solved_model(), self.design(design));
+        let (model, prepared) = (self.solved_model(), self.design(design));
+        let at_limit = self.stop_at_limit(&prepared);
+        let PreparedDesign { geometry, laws, .. } = prepared;
         let parts = PlanGeometry::same(model, self.topology(), &geometry, &laws);
         let mut one = Stepper::new(model, self.topology(), parts);
         let (mut outputs, mut plans, mut selections) = (Vec::new(), Vec::new(), None);
         let mut stop = None;
-        for (k, &t) in model.times.iter().enumerate() {
+        // A motion that ends at the limit of a joint is proved up to there.
+        let last_time = at_limit.as_ref().map_or(Some(f64::INFINITY), |stop| stop.last_time);
+        let is_before = |t: &f64| last_time.is_some_and(|last| *t < last);
+        let of_limit = last_time.filter(|last| last.is_finite());
+        let times: Vec<f64> = model.times.iter().copied().take_while(is_before).chain(of_limit).collect();
+        for (k, &t) in times.iter().enumerate() {
             let moved = if k == 0 { advance::start(&mut one, t) } else { advance::advance(&mut one, t) };
             if let Err(reason) = moved {
                 // The last time that was reached is an output of the proof.
-                let end = reason.last_time.filter(|end| k > 0 && model.times[k - 1] < *end);
+                let end = reason.last_time.filter(|end| k > 0 && times[k - 1] < *end);
                 stop = Some(*reason);
                 if end.is_none_or(|end| advance::advance(&mut one, end).is_err()) {
                     break;
@@ -68,7 +75,7 @@ impl Analysis<'_> {
                 break;
             }
         }
-        Some((ProvenMotion::new(one.mechanism, outputs, plans), stop))
+        Some((ProvenMotion::new(one.mechanism, outputs, plans), stop.or(at_limit)))
     }
 }
 

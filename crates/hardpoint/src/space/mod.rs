@@ -15,7 +15,8 @@ pub use euler::{Angles, euler_313_from_rotation, euler_rates, rotation_from_eule
 pub use mat3::Mat3;
 pub use pose::Pose;
 pub use quat::Quat;
-pub use surface::{Surface, TrianglePart, hull, nearest_of_triangle};
+pub(crate) use surface::distinct;
+pub use surface::{Surface, TrianglePart, hull, nearest_of_triangle, open_edges};
 pub use twist::{Twist, Wrench};
 pub use vec3::Vec3;
 

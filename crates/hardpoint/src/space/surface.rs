@@ -1,6 +1,6 @@
 //! Surfaces of triangles, with a tree of balls for distances.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Vec3;
 
@@ -45,9 +45,10 @@ pub enum TrianglePart {
 
 impl Surface {
     /// Surface of triangles between vertices. It is closed if the triangles at every edge are the same number in both
-    /// directions; then its triangles are turned outward.
-    pub fn new(vertices: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Self {
-        let is_closed = !triangles.is_empty() && closed(&triangles);
+    /// directions; then its triangles are turned outward. Repeated triangles count once.
+    pub fn new(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
+        let mut triangles = distinct(triangles);
+        let is_closed = !triangles.is_empty() && open_edges(&triangles).is_empty();
         if is_closed && volume(&vertices, &triangles) < 0.0 {
             triangles.iter_mut().for_each(|t| t.swap(1, 2));
         }
@@ -195,15 +196,26 @@ impl Surface {
     }
 }
 
-/// True if the triangles at every edge are the same number in both directions.
-fn closed(triangles: &[[u32; 3]]) -> bool {
+/// Triangles without repetitions: programs export some twice.
+pub(crate) fn distinct(mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
+    let mut known = BTreeSet::new();
+    triangles.retain(|[a, b, c]| {
+        let turns = [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]];
+        known.insert(turns.into_iter().fold(turns[0], Ord::min))
+    });
+    triangles
+}
+
+/// Edges at which the triangles are not the same number in both directions, of which the surface of a solid has none.
+/// Repeated triangles count once.
+pub fn open_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
-    for [a, b, c] in triangles.iter().copied() {
+    for [a, b, c] in distinct(triangles.to_vec()) {
         for [from, to] in [[a, b], [b, c], [c, a]] {
             *edges.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
         }
     }
-    edges.values().all(|way| *way == 0)
+    edges.into_iter().filter(|(_, way)| *way != 0).map(|(edge, _)| edge).collect()
 }
 
 fn volume(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
