@@ -407,6 +407,11 @@ impl Edit<'_> {
             let name = old.name.replace(']', "").replace('[', ".");
             let steps: Vec<Step<'_>> = name.split('.').map(|s| s.parse().map_or(Key(s), At)).collect();
             let start = [Key("drivers"), Key(&driver.name)];
+            // Values of a table are the second numbers of its `points`.
+            let steps = match &steps[..] {
+                [Key("f"), At(k)] => vec![Key("points"), At(*k), At(1)],
+                _ => steps,
+            };
             let ways = [[&start[..], &steps].concat(), [&start[..], &[Key("law")], &steps].concat()];
             let written = ways.iter().any(|way| self.write(way, quantity, old.value, new.value));
             let by = self.of(|c| matches!(c, Change::Law(c) if c.driver.0 == d && c.parameter == p));
@@ -656,6 +661,7 @@ fn value_at<'d>(document: &'d mut DocumentMut, way: &[Step<'_>]) -> Option<&'d m
                 let value = item.as_array_mut()?.get_mut(*n)?;
                 return match way.get(k + 1..)? {
                     [] => Some(value),
+                    [At(m)] => value.as_array_mut()?.get_mut(*m),
                     [Key(key)] => value.as_inline_table_mut()?.get_mut(key),
                     [Key(key), At(m)] => {
                         value.as_inline_table_mut()?.get_mut(key)?.as_array_mut()?.get_mut(*m)

@@ -179,6 +179,17 @@ fn numbers_are_those_that_a_person_would_write() {
 }
 
 #[test]
+fn a_value_of_a_table_law_is_saved_in_its_points() {
+    let harmonic = "law = { type = \"harmonic\", amplitude = 10, frequency = 1 } }";
+    let table = "law = { type = \"table\", points = [[0, 0], [0.5, 4], [1, 9]], ends = \"natural\" } }";
+    let text = ROD.replace(harmonic, table).replace("parameter = \"amplitude\"", "parameter = \"f[1]\"");
+    let file = parse(&text, "rod.toml").unwrap_or_else(|e| panic!("{e}"));
+    let design = of(&file, &[("swing", 0.5_f64.to_radians())]);
+    let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(saved, text.replace("[0.5, 4]", "[0.5, 4.5]"));
+}
+
+#[test]
 fn a_rod_that_is_not_made_anew_is_given_its_length() {
     let file = parse(ROD, "rod.toml").unwrap();
     let design = of(&file, &[("B_kept", 0.004)]);

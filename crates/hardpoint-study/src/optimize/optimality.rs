@@ -138,7 +138,7 @@ impl Optimality {
                 constraints.push(None);
             }
         }
-        let met = point.is_met(&spans);
+        let met = point.is_met(&spans, steepest);
         let scale = point.gradient_scale(&spans, steepest);
         // The weights of the peaks of a group sum to one.
         let right: Vec<f64> = gradient.iter().map(|g| -g).chain(point.peaks.iter().map(|_| weight)).collect();
@@ -174,9 +174,13 @@ impl Point {
         spans.iter().enumerate().map(column).fold(0.0, f64::max)
     }
 
-    /// True if all goals are squares that vanish to round-off.
-    pub(super) fn is_met(&self, spans: &[f64]) -> bool {
-        self.has_only_squares() && self.misfit() <= MET * self.strongest(spans)
+    /// True if all goals are squares that vanish to round-off. Near a singular position derivatives have no bound, and
+    /// say nothing of round-off: the gradient at the start limits the squares as well, unless it is zero.
+    pub(super) fn is_met(&self, spans: &[f64], steepest: f64) -> bool {
+        let misfit = self.misfit();
+        self.has_only_squares()
+            && misfit <= MET * self.strongest(spans)
+            && (steepest == 0.0 || misfit * misfit <= FLAT * steepest)
     }
 
     /// Sum of the magnitudes of goals that are not squares.
