@@ -51,7 +51,7 @@ export async function visit(
   url: string,
   { engine = true, ...options }: BrowserContextOptions & { engine?: boolean } = {},
 ): Promise<Visit> {
-  const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options })
+  const page = await browser.newPage({ viewport: { width: 1200, height: 760 }, ...options })
   if (!engine) await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'WebAssembly'))
   page.setDefaultTimeout(WAIT)
   const complaints: string[] = []
