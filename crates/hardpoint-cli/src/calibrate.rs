@@ -22,7 +22,7 @@ use crate::text;
 /// Fits the design, writes the results and prints a summary.
 pub fn run(options: &Calibrate) -> Outcome {
     let session = Session::begin(options.common.json);
-    calibrate_in(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(calibrate_in(&session, options))
 }
 
 /// Result files; the summary is written last and marks them as complete.
@@ -129,7 +129,8 @@ fn prior(session: &Session, file: &ModelFile, text: &str) -> Result<(VariableId,
             .misunderstood(&format!("`--prior {text}`: write it as `NAME=SIGMA`, like `--prior rod=0.5`")));
     };
     let variable = variable(&file.model, name.trim()).map_err(|error| session.refused(file, &error))?;
-    let Ok(sigma) = sigma.trim().parse::<f64>() else {
+    let number = sigma.trim().parse::<f64>().ok().filter(|sigma| sigma.is_finite());
+    let Some(sigma) = number else {
         return Err(session.misunderstood(&format!(
             "`--prior {text}`: the standard deviation is a number without a unit, in that of the variable"
         )));

@@ -19,7 +19,7 @@ use crate::text;
 pub fn check(options: &Check) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, _: Option<&str>| check_in(&session, options, &file);
-    session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
+    session.end(session.for_motions(&options.common.model, &options.motions, each))
 }
 
 pub fn check_in(session: &Session, options: &Check, file: &ModelFile) -> Result<Outcome, Outcome> {

@@ -23,7 +23,7 @@ pub fn run(options: &Clearance) -> Outcome {
         session.tell(&file, &file.remarks);
         session.for_cases_of(file, &options.motions, each, Some(&mut each_grid))
     };
-    session.read(&options.common.model).and_then(of).unwrap_or_else(|outcome| outcome)
+    session.end(session.read(&options.common.model).and_then(of))
 }
 
 fn clearance_over(

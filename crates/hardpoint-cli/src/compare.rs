@@ -25,7 +25,7 @@ const FILES: [&str; 3] = ["compare.html", "compare.csv", "compare.json"];
 pub fn compare(options: &Compare) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, case: Option<&str>| compare_in(&session, options, file, case);
-    session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
+    session.end(session.for_motions(&options.common.model, &options.motions, each))
 }
 
 /// Second model of the comparison: the first one with a design of its `[designs]`, or another file.

@@ -22,7 +22,7 @@ use crate::whatif::in_si;
 /// Computes the space that a shape sweeps, and writes its surface.
 pub fn run(options: &args::Envelope) -> Outcome {
     let session = Session::begin(options.common.json);
-    envelope_of(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(envelope_of(&session, options))
 }
 
 fn envelope_of(session: &Session, options: &args::Envelope) -> Result<Outcome, Outcome> {

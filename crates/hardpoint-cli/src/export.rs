@@ -29,7 +29,7 @@ pub fn export(options: &Export) -> Outcome {
     }
     // Both are required unless the formats are listed.
     let (Some(model), Some(to)) = (&options.model, &options.output) else { return Outcome::Misunderstood };
-    export_to(&session, options, model, to).unwrap_or_else(|outcome| outcome)
+    session.end(export_to(&session, options, model, to))
 }
 
 fn export_to(session: &Session, options: &Export, model: &Path, to: &Path) -> Result<Outcome, Outcome> {

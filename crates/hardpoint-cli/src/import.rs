@@ -27,7 +27,7 @@ pub fn import(options: &Import) -> Outcome {
     }
     // Both are required unless the formats are listed.
     let (Some(source), Some(to)) = (&options.source, &options.output) else { return Outcome::Misunderstood };
-    import_to(&session, options, source, to).unwrap_or_else(|outcome| outcome)
+    session.end(import_to(&session, options, source, to))
 }
 
 fn list(session: &Session) {

@@ -42,7 +42,7 @@ impl Format {
 /// Builds a table of measures over drivers, and writes it.
 pub fn run(options: &args::Map) -> Outcome {
     let session = Session::begin(options.common.json);
-    map_of(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(map_of(&session, options))
 }
 
 fn map_of(session: &Session, options: &args::Map) -> Result<Outcome, Outcome> {

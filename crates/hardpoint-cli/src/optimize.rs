@@ -25,7 +25,7 @@ use crate::text;
 /// Optimises the design, writes the results and prints a summary.
 pub fn run(options: &Optimize) -> Outcome {
     let session = Session::begin(options.common.json);
-    optimize_in(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(optimize_in(&session, options))
 }
 
 pub fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Outcome> {

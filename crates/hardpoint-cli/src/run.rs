@@ -125,7 +125,7 @@ pub fn run(options: &Run) -> Outcome {
         outcome
     };
     let several = !file.model.cases.is_empty() && options.motions.case.is_none();
-    let outcome = session.for_motions_of(file, &options.motions, each).unwrap_or_else(|outcome| outcome);
+    let outcome = session.end(session.for_motions_of(file, &options.motions, each));
     if !several {
         return outcome;
     }

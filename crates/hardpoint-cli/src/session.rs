@@ -49,6 +49,8 @@ pub struct Session {
     cases: Mutex<Option<Vec<serde_json::Value>>>,
     /// Current case.
     case: Mutex<Option<String>>,
+    /// True if a JSON document was printed.
+    has_answered: AtomicBool,
 }
 
 /// Handler of a case that is a grid, with the whole file.
@@ -110,6 +112,7 @@ impl Session {
             patient,
             cases: Mutex::new(None),
             case: Mutex::new(None),
+            has_answered: AtomicBool::new(false),
         }
     }
 
@@ -653,8 +656,19 @@ impl Session {
         }
     }
 
+    /// Outcome of a command. A program that asked for a document gets one as well if the command was interrupted before
+    /// it had anything to report.
+    pub fn end(&self, found: Result<Outcome, Outcome>) -> Outcome {
+        let outcome = found.unwrap_or_else(|outcome| outcome);
+        if outcome == Outcome::Interrupted && self.is_json() && !self.has_answered.load(Ordering::SeqCst) {
+            self.print_error(&[]);
+        }
+        outcome
+    }
+
     /// Prints a JSON document.
     pub fn print_json(&self, document: &impl serde::Serialize) {
+        self.has_answered.store(true, Ordering::SeqCst);
         if let Some(cases) = self.documents().as_mut() {
             cases.push(serde_json::to_value(document).expect("results are plain data"));
             return;

@@ -24,7 +24,7 @@ const INDEX: &str = "index.html";
 /// Writes the site; models that cannot be shown are left out and reported.
 pub fn run(options: &Site) -> Outcome {
     let session = Session::begin(false);
-    site_in(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(site_in(&session, options))
 }
 
 fn site_in(session: &Session, options: &Site) -> Result<Outcome, Outcome> {

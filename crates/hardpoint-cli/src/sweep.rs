@@ -31,7 +31,7 @@ const FILES: [&str; 5] = ["designs.csv", "designs.parquet", "curves.csv", "curve
 /// Sweeps over designs, writes the results and prints a summary.
 pub fn run(options: &Sweep) -> Outcome {
     let session = Session::begin(options.common.json);
-    sweep_in(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(sweep_in(&session, options))
 }
 
 pub fn sweep_in(session: &Session, options: &Sweep) -> Result<Outcome, Outcome> {

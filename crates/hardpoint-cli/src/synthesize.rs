@@ -28,7 +28,7 @@ const MOST: usize = 100;
 /// Finds linkages for a task, and writes the models and pages of the answers.
 pub fn run(options: &Synthesize) -> Outcome {
     let session = Session::begin(options.json);
-    synthesize_in(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(synthesize_in(&session, options))
 }
 
 pub fn synthesize_in(session: &Session, options: &Synthesize) -> Result<Outcome, Outcome> {

@@ -20,7 +20,7 @@ use crate::text;
 /// Studies the tolerances of a model, writes the results, and prints a summary.
 pub fn run(options: &Tolerance) -> Outcome {
     let session = Session::begin(options.common.json);
-    tolerance_in(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(tolerance_in(&session, options))
 }
 
 pub fn tolerance_in(session: &Session, options: &Tolerance) -> Result<Outcome, Outcome> {

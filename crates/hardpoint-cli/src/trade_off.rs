@@ -27,7 +27,7 @@ const SAME: f64 = 1e-6;
 /// Computes the front, writes the results and prints a summary.
 pub fn run(options: &TradeOff) -> Outcome {
     let session = Session::begin(options.common.json);
-    trade_off_in(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(trade_off_in(&session, options))
 }
 
 fn trade_off_in(session: &Session, options: &TradeOff) -> Result<Outcome, Outcome> {

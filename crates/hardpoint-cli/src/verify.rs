@@ -20,7 +20,7 @@ use crate::text;
 pub fn verify(options: &Verify) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, case: Option<&str>| verify_in(&session, options, file, case);
-    session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
+    session.end(session.for_motions(&options.common.model, &options.motions, each))
 }
 
 fn verify_in(

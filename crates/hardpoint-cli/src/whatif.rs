@@ -37,7 +37,7 @@ const NEARER: f64 = 1e3;
 pub fn whatif(options: &Whatif) -> Outcome {
     let session = Session::begin(options.common.json);
     let each = |file: ModelFile, case: Option<&str>| whatif_in(&session, options, file, case);
-    session.for_motions(&options.common.model, &options.motions, each).unwrap_or_else(|outcome| outcome)
+    session.end(session.for_motions(&options.common.model, &options.motions, each))
 }
 
 pub fn whatif_in(

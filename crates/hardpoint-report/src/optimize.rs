@@ -22,6 +22,8 @@ use crate::study::{BeforeAfter, Evaluations, MovedHardpoint, case_name, titled};
 /// Multiplier, as a fraction of the objective per range of a variable, below which an active constraint is not
 /// reported.
 const SLIGHT: f64 = 1e-9;
+/// A design whose margin is within this factor of the least allowed one is at that border.
+const AT_MARGIN: f64 = 1.01;
 /// Maximum number of failed designs that are reported.
 const REFUSED: usize = 20;
 
@@ -532,7 +534,7 @@ impl OptimizeFacts {
         let search = Search { file, asked, found };
         let mut facts = Self::without_message(search);
         let status = search.status();
-        facts.message = facts.sentence(&file.model, status, found);
+        facts.message = facts.sentence(&file.model, status, search);
         let begun = found.searches.iter().filter(|s| s.status != Status::Interrupted).count();
         if begun < found.searches.len() && status != Status::Interrupted {
             let all = found.searches.len();
@@ -545,8 +547,14 @@ impl OptimizeFacts {
         facts
     }
 
+    /// True if the design is as near to a singular position as `min_margin` allows.
+    fn is_at_margin(&self, asked: &OptimizationSettings) -> bool {
+        asked.margin.zip(self.margin.after).is_some_and(|(limit, margin)| margin < AT_MARGIN * limit)
+    }
+
     /// Sentence about the end of a search, with an instruction.
-    fn sentence(&self, model: &Model, status: Status, found: &Optimization) -> String {
+    fn sentence(&self, model: &Model, status: Status, search: Search<'_>) -> String {
+        let Search { asked, found, .. } = search;
         let exceeded = || {
             let missed = |l: &&LimitFact| l.missed().is_some();
             let lines: Vec<String> = self.limits.iter().filter(missed).map(LimitFact::line).collect();
@@ -564,6 +572,9 @@ impl OptimizeFacts {
                 "optimum found; {} are at their bounds, and wider bounds would improve it",
                 some_of(&binding, ", ")
             ),
+            Status::Stuck if self.is_at_margin(asked) => "no step makes progress: the design is at `min_margin`, along which no \
+                search moves; limit a metric that measures the same, such as a transmission angle, or try more `starts`"
+                .into(),
             Status::Stuck => "no step makes progress, although it is not quite an optimum: try more `starts`, or more output times \
                 where a metric jumps"
                 .into(),

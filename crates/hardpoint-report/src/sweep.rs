@@ -32,6 +32,9 @@ record! {
                 "no design reaches the end of its motion: narrow the ranges; the reasons are listed below"
                     .to_owned(),
             )
+        } else if tally.failed > 0 {
+            let solved = tally.designs - tally.failed;
+            ("complete", format!("{solved} of {} were solved", count(tally.designs, "design")))
         } else {
             ("complete", format!("all {} were solved", count(tally.designs, "design")))
         };

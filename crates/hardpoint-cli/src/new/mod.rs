@@ -68,7 +68,7 @@ pub fn run(options: &New) -> Outcome {
         text::print(&list());
         return Outcome::Done;
     }
-    begun(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(begun(&session, options))
 }
 
 fn list() -> String {

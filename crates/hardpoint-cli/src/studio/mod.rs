@@ -49,7 +49,7 @@ struct Studio {
 /// Serves until the user stops it.
 pub fn run(options: &args::Studio) -> Outcome {
     let session = Session::begin(false);
-    studio_in(&session, options).unwrap_or_else(|outcome| outcome)
+    session.end(studio_in(&session, options))
 }
 
 fn studio_in(session: &Session, options: &args::Studio) -> Result<Outcome, Outcome> {

@@ -157,6 +157,7 @@ fn designs_that_fail_keep_their_rows_and_their_reasons() {
     let bench = bench();
     bench.put("designs.csv", "tie_rod_outer_z [mm], lca_front_z\n0, 0\n0, 5000\n-2, 1\n");
     let text = done(&bench, &["--designs", "designs.csv", "--curves", "camber", "-o", "out"]);
+    assert!(text.contains("2 of 3 designs were solved"), "{text}");
     assert!(text.contains("1 do not reach the end of the motion"), "{text}");
     let table = bench.text("out/designs.csv");
     let rows: Vec<&str> = table.lines().collect();

@@ -107,6 +107,10 @@ impl ModelFile {
             }
             found.lines.push(*line);
         }
+        if found.measurements.readings.is_empty() {
+            let help = "write numbers below the names of measures and points";
+            return Err(DataError::content(format!("`{file}` has no readings"), help));
+        }
         self.can_be_compared(&found, file)?;
         Ok(found)
     }

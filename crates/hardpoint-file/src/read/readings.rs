@@ -48,10 +48,12 @@ pub(crate) fn readings_at(path: &Path) -> Result<Readings, DataError> {
     let mut is_first = true;
     while reader.read_record(&mut record).map_err(no_csv)? {
         let line = record.position().map_or(0, csv::Position::line);
-        if record.len() > names.len() {
+        if record.len() != names.len() {
+            let cells = if record.len() == 1 { "cell" } else { "cells" };
             let message =
-                format!("`{name}`, line {line} has {} cells for {} columns", record.len(), names.len());
-            return Err(DataError::content(message, "give one cell for each name of the first line"));
+                format!("`{name}`, line {line} has {} {cells} for {} columns", record.len(), names.len());
+            let help = "give one cell for each name of the first line; that of a missing reading is empty";
+            return Err(DataError::content(message, help));
         }
         // Units may be on a line of their own, below the names.
         if std::mem::take(&mut is_first) && is_units(&record) {

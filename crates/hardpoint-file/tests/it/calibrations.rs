@@ -412,6 +412,8 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ("words", "spring_strut,toe\n0,much\n", "HP0112", &["line 2, column 2 (`toe`)", "much"]),
     ("comma", "spring_strut;toe\n0;0,5\n", "HP0112", &["line 2, column 2 (`toe`)", "decimal point"]),
     ("too many cells", "spring_strut,toe\n0,1,2\n", "HP0112", &["line 2 has 3 cells for 2 columns"]),
+    ("too few cells", "spring_strut,toe\n0,1\n5\n", "HP0112", &["line 3 has 1 cell for 2 columns"]),
+    ("empty cells", "spring_strut,toe\n0,\n5,\n", "HP0112", &["has no readings"]),
     (
         "misspelt",
         "spring_strut,tow\n0,1\n",

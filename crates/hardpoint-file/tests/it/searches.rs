@@ -189,6 +189,26 @@ fn multipliers_of_active_constraints_are_the_gain_of_relaxing_them() {
     assert!((gained / worth - 1.0).abs() < AGREES, "{gained} and {worth}");
 }
 
+/// The second limit says the same as the first: together they were once called contradictory.
+#[test]
+fn limits_that_repeat_one_another_are_kept() {
+    let file = crate::trade_offs::plate(
+        r#"
+goals = { x = {}, y = { weight = 3 } }
+[optimize.limits]
+near = { between = ["O", "P"], equal = 50 }
+again = { between = ["P", "O"], equal = 50 }
+"#,
+    );
+    let found = searched(&file, &asked(&file));
+    let search = best(&found);
+    assert_eq!(search.status, Status::Optimal);
+    // Against the direction (1, 3), at 50 mm from the origin.
+    let p = file.model.hardpoint_places(&search.found.as_ref().unwrap().design)[1];
+    let expected = [-0.05 / 10.0_f64.sqrt(), -0.15 / 10.0_f64.sqrt()];
+    assert!((p.x - expected[0]).hypot(p.y - expected[1]) < 1e-7, "{p:?}");
+}
+
 #[test]
 fn contradictory_limits_and_designs_that_lock_are_reported() {
     let file = model("studies/strut_toe.toml");

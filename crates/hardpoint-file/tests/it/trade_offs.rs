@@ -62,7 +62,7 @@ fn traded(file: &ModelFile, points: Option<usize>) -> TradeOff {
     trade_off(&file.model, &motions, &request, control)
 }
 
-fn plate(optimize: &str) -> ModelFile {
+pub(crate) fn plate(optimize: &str) -> ModelFile {
     file(&format!("{PLATE}[optimize]\n{optimize}\n"))
 }
 
@@ -301,6 +301,36 @@ fn an_interrupted_study_keeps_its_points() {
     let control = Control { threads: NonZero::<usize>::MIN, progress: &mut progress, more: &|| true };
     let found = trade_off(&file.model, &motions, &request, control);
     assert_eq!((found.outcome, found.points.len()), (Outcome::Interrupted, 5));
+}
+
+/// A root at the end of its domain has an infinite slope, which says nothing about the range of the goal: the goals
+/// once did "not conflict" because of it.
+#[test]
+fn a_goal_with_an_infinite_slope_at_an_end_of_the_front_has_its_range() {
+    let text = r#"
+name = "root"
+units = { length = "mm", angle = "rad" }
+parameters.u = { value = 0.5, bounds = [0, 1] }
+parameters.v = { value = 0.5, bounds = [0, 1] }
+hardpoints = { O = [0, 0, 0], F = ["u + v", "(1 + 9*v)*(1 - sqrt(u/(1 + 9*v)))", 0] }
+bodies = { plate = {} }
+joints.pivot = { type = "revolute", bodies = ["ground", "plate"], at = "O", axis = "z" }
+drivers.motor = { joint = "pivot", law = "0.001*t" }
+points.F = { body = "plate", at = "F" }
+metrics.first = { of = "F.x", take = "value", at = 0 }
+metrics.second = { of = "F.y", take = "value", at = 0 }
+time = { end = 1, steps = 2 }
+[optimize]
+goals = { first = {}, second = {} }
+"#;
+    let found = traded(&file(text), None);
+    check(&found);
+    assert_eq!(found.points.len(), Request::POINTS_OF_TWO);
+    for p in &found.points {
+        // v = 0: the second goal is one less the root of the first, mm.
+        let [first, second] = [p.values[0] * 1e3, p.values[1] * 1e3];
+        assert!((second - (1.0 - first.max(0.0).sqrt())).abs() < 1e3 * EXACT, "{first} {second}");
+    }
 }
 
 #[test]

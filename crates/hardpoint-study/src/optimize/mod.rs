@@ -463,12 +463,20 @@ impl<'p> Descent<'p> {
         point.violation(|k| self.scales[k])
     }
 
+    /// Objective of a design that keeps its limits, without what it gains by exceeding them within [`KEPT`]: a design
+    /// far from the optimum by the root of that may otherwise have the lower objective.
+    fn objective_within_limits(&self, point: &Point) -> f64 {
+        let violation = self.violation(point);
+        let gain = if violation > 0.0 { self.optimality(point).price * violation } else { 0.0 };
+        point.objective() + gain
+    }
+
     /// True if one design is better than another: it satisfies the limits, or has the lower objective.
     fn is_better(&self, one: &Point, other: &Point) -> bool {
         let [a, b] = [one, other].map(|p| self.violation(p));
         match [a <= KEPT, b <= KEPT] {
             [true, true] => {
-                let [a, b] = [one, other].map(Point::objective);
+                let [a, b] = [one, other].map(|p| self.objective_within_limits(p));
                 if (a - b).abs() <= THE_SAME * b.abs() {
                     self.optimality(one).residual < self.optimality(other).residual
                 } else {

@@ -54,6 +54,8 @@ pub struct Optimality {
     /// Active constraints, each with the decrease of the objective if it were relaxed by one SI unit (its Lagrange
     /// multiplier).
     pub binding: Vec<(ActiveConstraint, f64)>,
+    /// Increase of the objective, SI, that a violation of all active limits by their scales is worth.
+    pub price: f64,
 }
 
 impl Rows {
@@ -152,16 +154,20 @@ impl Optimality {
             !point.has_only_squares() && point.goal_size() <= MET * weight && left <= FLAT * weight;
         let (residual, left_of_start) =
             if met || vanishes { (0.0, 0.0) } else { (left / scale, left / weight) };
-        let mut binding: Vec<(ActiveConstraint, f64)> = Vec::new();
+        let (mut binding, mut price) = (Vec::<(ActiveConstraint, f64)>::new(), 0.0);
         for (constraint, multiplier) in constraints.into_iter().zip(multipliers).filter(|(_, m)| *m != 0.0) {
             let Some((what, scale)) = constraint else { continue };
+            price += match what {
+                ActiveConstraint::Least(..) | ActiveConstraint::Most(..) => multiplier.abs(),
+                ActiveConstraint::Lower(_) | ActiveConstraint::Upper(_) => 0.0,
+            };
             // One limit may be active at several times of a curve at once.
             match binding.iter_mut().find(|(known, _)| *known == what) {
                 Some((_, worth)) => *worth += multiplier / scale,
                 None => binding.push((what, multiplier / scale)),
             }
         }
-        Self { residual, left_of_start, met, binding }
+        Self { residual, left_of_start, met, binding, price }
     }
 }
 

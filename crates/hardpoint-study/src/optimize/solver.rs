@@ -7,12 +7,14 @@ use std::cell::RefCell;
 use crate::evaluation::StudyCost;
 use crate::recent::Recent;
 use hardpoint::linalg::folded_rows;
-use hardpoint_search::{LeastSquares, Program, Sequential};
+use hardpoint_search::{LeastSquares, Program, Sequential, dot, norm};
 
 use super::problem::{LimitRow, Point, Problem, Refusal, Rows};
 
 /// Minimum curvature assumed in any direction, as a fraction of the largest.
 pub(super) const FLAT: f64 = 1e-4;
+/// Equalities whose derivatives have less than this part independent of those before them are dependent.
+const DEPENDENT: f64 = 1e-9;
 /// Length of a first step without known curvature, as a fraction of the bounds.
 const FIRST_STEP: f64 = 0.1;
 
@@ -135,11 +137,13 @@ pub(super) struct Programming<'p> {
     /// Factors of the objective and of every limit.
     scale: f64,
     limit_scales: Vec<f64>,
-    /// Number of groups of peaks and of limited ranges, and number of rows of each kind; equal for all designs.
+    /// Number of groups of peaks and of limited ranges, and number of inequalities; equal for all designs.
     peaks: usize,
     spreads: usize,
-    equal: usize,
     inequal: usize,
+    /// Per equality: true if its derivatives are independent of those before it. The solver cannot take others; most of
+    /// them repeat what those before them require. Where one does not, the next run from there takes it.
+    independent: Vec<bool>,
 }
 
 impl Programming<'_> {
@@ -174,6 +178,12 @@ impl Programming<'_> {
         self.searched() + self.peaks + 2 * spread
     }
 
+    /// Equalities that are independent of those before them.
+    fn equal_rows<'a>(&'a self, point: &'a Point) -> impl Iterator<Item = &'a LimitRow> {
+        let rows = point.limits.iter().filter(|row| row.equal).zip(&self.independent);
+        rows.filter(|(_, independent)| **independent).map(|(row, _)| row)
+    }
+
     /// The inequalities `c <= 0`, in order: lower bounds, upper bounds, limits, peaks, limited ranges.
     fn inequalities_at(&self, y: &[f64], point: &Point) -> Vec<f64> {
         let n = self.searched();
@@ -198,7 +208,7 @@ impl Programming<'_> {
 
 impl Program for Programming<'_> {
     fn equal(&self) -> usize {
-        self.equal
+        self.independent.iter().filter(|is| **is).count()
     }
 
     fn inequal(&self) -> usize {
@@ -234,10 +244,10 @@ impl Program for Programming<'_> {
     fn equalities(&self, y: &[f64]) -> Vec<f64> {
         self.memory.at(&self.x(y), |found| match found {
             Ok(point) => {
-                let rows = point.limits.iter().filter(|row| row.equal);
+                let rows = self.equal_rows(point);
                 rows.map(|row| self.limit_scales[row.of] * row.exceeds).collect()
             }
-            Err(_) => vec![f64::NAN; self.equal],
+            Err(_) => vec![f64::NAN; self.equal()],
         })
     }
 
@@ -252,14 +262,14 @@ impl Program for Programming<'_> {
         let n = self.searched();
         self.memory.at(&self.x(y), |found| {
             let Ok(point) = found else {
-                return vec![vec![f64::NAN; y.len()]; self.equal + self.inequal];
+                return vec![vec![f64::NAN; y.len()]; self.equal() + self.inequal];
             };
             let limit = |row: &LimitRow| {
                 let scale = self.limit_scales[row.of];
                 let d: Vec<f64> = self.by_parts(&row.d).iter().map(|d| scale * d).collect();
                 self.by_z(&d)
             };
-            let mut rows: Vec<Vec<f64>> = point.limits.iter().filter(|r| r.equal).map(limit).collect();
+            let mut rows: Vec<Vec<f64>> = self.equal_rows(point).map(limit).collect();
             for sign in [-1.0, 1.0] {
                 for i in 0..n {
                     let by_z = (0..n).map(|j| sign * self.t[j][i]);
@@ -326,11 +336,22 @@ impl<'p> ScaledSequential<'p> {
         for spread in &point.spreads {
             y.extend(spread.ends.iter().map(|rows| limit_scales[spread.of] * rows.greatest()));
         }
-        let equal = point.limits.iter().filter(|row| row.equal).count();
+        let equal = point.limits.iter().filter(|row| row.equal);
+        let equal: Vec<Vec<f64>> = equal.map(|row| by_parts(&row.d)).collect();
         let (x0, t_too) = (start.to_vec(), t.clone());
         let (peaks, spreads) = (point.peaks.len(), point.spreads.len());
-        let mut problem =
-            Programming { memory, spans, x0, t, scale, limit_scales, peaks, spreads, equal, inequal: 0 };
+        let mut problem = Programming {
+            memory,
+            spans: spans.clone(),
+            x0,
+            t,
+            scale,
+            limit_scales,
+            peaks,
+            spreads,
+            inequal: 0,
+            independent: independent(equal),
+        };
         problem.inequal = problem.inequalities_at(&y, point).len();
         let solver = Sequential::new(Box::new(problem), y)?;
         Some(Self { solver, x0: start.to_vec(), t: t_too })
@@ -344,6 +365,28 @@ impl Solver for ScaledSequential<'_> {
         let along = |i: usize| (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
         Some((0..n).map(|i| (self.x0[i] + along(i)).clamp(0.0, 1.0)).collect())
     }
+}
+
+/// Returns which of some rows are independent of those before them, by orthogonalisation.
+fn independent(rows: Vec<Vec<f64>>) -> Vec<bool> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let is_new = |mut row: Vec<f64>| {
+        let length = norm(&row);
+        // Once more against round-off of the first pass.
+        for _ in 0..2 {
+            for unit in &basis {
+                let along = dot(unit, &row);
+                row.iter_mut().zip(unit).for_each(|(x, u)| *x -= along * u);
+            }
+        }
+        let rest = norm(&row);
+        let is_new = rest > DEPENDENT * length;
+        if is_new {
+            basis.push(row.iter().map(|x| x / rest).collect());
+        }
+        is_new
+    };
+    rows.into_iter().map(is_new).collect()
 }
 
 /// The columns of `L^-T` for a positive definite matrix `L L^T`.

@@ -83,7 +83,7 @@ pub(super) struct Front<'p> {
 
 impl<'p> Front<'p> {
     /// Front between the optima of the goals, given as fractions of the bounds; `None` if they cannot be evaluated. The
-    /// derivatives at the nominal design are examples of steep ones.
+    /// derivatives at the nominal design say by how much the goals change over the bounds, or else those at the optima.
     pub fn new(memory: &'p Memory<'p>, anchors: Vec<Vec<f64>>, nominal: Option<&State>) -> Option<Self> {
         let problem = memory.problem;
         let points = anchors.iter().map(|x| memory.at(x, |found| found.as_ref().ok().cloned()));
@@ -102,9 +102,13 @@ impl<'p> Front<'p> {
             })
         };
         let states: Vec<State> = (0..count).map(|goal| states[best(goal)].clone()).collect();
-        let examples: Vec<&State> = states.iter().chain(nominal).collect();
-        let steepest: Vec<f64> =
-            (0..count).map(|k| examples.iter().map(|s| s.steepest()[k]).fold(0.0, f64::max)).collect();
+        // Those at an end of the front may be infinite, like that of a root at the end of its domain.
+        let steepest_at = |state: &State, k: usize| state.steepest()[k];
+        let steepest = |k: usize| {
+            let nominal = nominal.map_or(0.0, |state| steepest_at(state, k));
+            if nominal > 0.0 { nominal } else { states.iter().map(|s| steepest_at(s, k)).fold(0.0, f64::max) }
+        };
+        let steepest: Vec<f64> = (0..count).map(steepest).collect();
         let scale = scale_of(&states, &steepest);
         let node = |(goal, state): (usize, State)| {
             let mut weights = vec![0.0; count];

@@ -92,6 +92,7 @@ pub(crate) enum Spread<T> {
 
 impl<T: Real> Spread<T> {
     /// I w.
+    #[inline(always)]
     pub fn on(&self, w: Vec3<T>) -> Vec3<T> {
         match self {
             Self::Matrix(axes, matrix) => *axes * (*matrix * axes.transpose_mul(w)),
