@@ -50,7 +50,7 @@ pub struct Session {
     /// Current case.
     case: Mutex<Option<String>>,
     /// True if a JSON document was printed.
-    has_answered: AtomicBool,
+    has_printed: AtomicBool,
 }
 
 /// Handler of a case that is a grid, with the whole file.
@@ -112,7 +112,7 @@ impl Session {
             patient,
             cases: Mutex::new(None),
             case: Mutex::new(None),
-            has_answered: AtomicBool::new(false),
+            has_printed: AtomicBool::new(false),
         }
     }
 
@@ -656,11 +656,11 @@ impl Session {
         }
     }
 
-    /// Outcome of a command. A program that asked for a document gets one as well if the command was interrupted before
-    /// it had anything to report.
+    /// Outcome of a command. With `--json` a document is also printed if the command was interrupted before it had a
+    /// result.
     pub fn end(&self, found: Result<Outcome, Outcome>) -> Outcome {
         let outcome = found.unwrap_or_else(|outcome| outcome);
-        if outcome == Outcome::Interrupted && self.is_json() && !self.has_answered.load(Ordering::SeqCst) {
+        if outcome == Outcome::Interrupted && self.is_json() && !self.has_printed.load(Ordering::SeqCst) {
             self.print_error(&[]);
         }
         outcome
@@ -668,7 +668,7 @@ impl Session {
 
     /// Prints a JSON document.
     pub fn print_json(&self, document: &impl serde::Serialize) {
-        self.has_answered.store(true, Ordering::SeqCst);
+        self.has_printed.store(true, Ordering::SeqCst);
         if let Some(cases) = self.documents().as_mut() {
             cases.push(serde_json::to_value(document).expect("results are plain data"));
             return;

@@ -282,6 +282,10 @@ impl TradeOffFacts {
         };
         let designs = count(self.points.len(), "design");
         match inputs.found.outcome {
+            Outcome::Front if self.points.len() < 2 && self.failed == 0 => format!(
+                "no compromise between {between} was found: the searches for their optima end in one design; where the \
+                 optimum of a goal is not unique, others are hidden: change the nominal design, or limit a goal"
+            ),
             Outcome::Front if self.points.len() < 2 => format!(
                 "no compromise between {between} was found: {} could not be found to a residual of {ON_FRONT:e}; a goal \
                  that is not smooth, like a distance that vanishes, has none",
@@ -350,7 +354,7 @@ impl TradeOffFacts {
         if !self.jumps.is_empty() {
             let jump = |[a, b]: &[usize; 2]| format!("{a} and {b}");
             let jumps: Vec<String> = self.jumps.iter().map(jump).collect();
-            rows.push(("jumps", format!("no compromise exists between points {}", some_of(&jumps, "; "))));
+            rows.push(("jumps", format!("no compromise was found between points {}", some_of(&jumps, "; "))));
         }
         if self.failed > 0 && self.points.len() > 1 {
             let failed = count(self.failed, "point");

@@ -223,6 +223,7 @@ impl<T: Real> AppliedLoads<'_, T> {
     }
 
     /// Position of a point: r + A s.
+    #[inline(always)]
     pub fn point(&self, point: PointId) -> Vec3<T> {
         self.bodies[self.body(point)].pose.point(self.geometry.points[point.0])
     }
