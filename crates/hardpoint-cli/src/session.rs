@@ -85,7 +85,7 @@ impl Session {
             if again || !waits.load(Ordering::SeqCst) {
                 folder::abandon();
                 if json {
-                    text::print(&json_text(&error_document(&[])));
+                    text::print(&json_text(&document_of("interrupted", &[])));
                 }
                 std::process::exit(Outcome::Interrupted as i32);
             }
@@ -661,7 +661,7 @@ impl Session {
     pub fn end(&self, found: Result<Outcome, Outcome>) -> Outcome {
         let outcome = found.unwrap_or_else(|outcome| outcome);
         if outcome == Outcome::Interrupted && self.is_json() && !self.has_printed.load(Ordering::SeqCst) {
-            self.print_error(&[]);
+            self.print_json(&document_of("interrupted", &[]));
         }
         outcome
     }
@@ -681,13 +681,13 @@ impl Session {
     }
 
     fn print_error(&self, diagnostics: &[Diagnostic]) {
-        self.print_json(&error_document(diagnostics));
+        self.print_json(&document_of("error", diagnostics));
     }
 }
 
-/// JSON document of a failed command.
-fn error_document(diagnostics: &[Diagnostic]) -> serde_json::Value {
-    json!({ "generator": GENERATOR, "status": "error", "diagnostics": diagnostics })
+/// JSON document of a command without a result.
+fn document_of(status: &str, diagnostics: &[Diagnostic]) -> serde_json::Value {
+    json!({ "generator": GENERATOR, "status": status, "diagnostics": diagnostics })
 }
 
 /// Formats a JSON document for printing and writing.
