@@ -92,7 +92,7 @@ pub(crate) enum Spread<T> {
 
 impl<T: Real> Spread<T> {
     /// I w.
-    #[inline(always)]
+    #[inline]
     pub fn on(&self, w: Vec3<T>) -> Vec3<T> {
         match self {
             Self::Matrix(axes, matrix) => *axes * (*matrix * axes.transpose_mul(w)),
@@ -223,7 +223,7 @@ impl<T: Real> AppliedLoads<'_, T> {
     }
 
     /// Position of a point: r + A s.
-    #[inline(always)]
+    #[inline]
     pub fn point(&self, point: PointId) -> Vec3<T> {
         self.bodies[self.body(point)].pose.point(self.geometry.points[point.0])
     }

@@ -321,7 +321,7 @@ fn joint_site(topology: &Topology, joint: JointId) -> JointSite {
 }
 
 /// Reaction wrench of a joint on body j, with the wrenches `l` of the rows.
-#[inline(always)]
+#[inline]
 fn joint_wrench<T: Real>(
     site: &JointSite,
     topology: &Topology,
