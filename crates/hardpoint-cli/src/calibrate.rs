@@ -129,8 +129,7 @@ fn prior(session: &Session, file: &ModelFile, text: &str) -> Result<(VariableId,
             .misunderstood(&format!("`--prior {text}`: write it as `NAME=SIGMA`, like `--prior rod=0.5`")));
     };
     let variable = variable(&file.model, name.trim()).map_err(|error| session.refused(file, &error))?;
-    let number = sigma.trim().parse::<f64>().ok().filter(|sigma| sigma.is_finite());
-    let Some(sigma) = number else {
+    let Some(sigma) = sigma.trim().parse().ok().filter(|sigma: &f64| sigma.is_finite()) else {
         return Err(session.misunderstood(&format!(
             "`--prior {text}`: the standard deviation is a number without a unit, in that of the variable"
         )));

@@ -534,7 +534,7 @@ impl OptimizeFacts {
         let search = Search { file, asked, found };
         let mut facts = Self::without_message(search);
         let status = search.status();
-        facts.message = facts.sentence(&file.model, status, search);
+        facts.message = facts.sentence(search);
         let begun = found.searches.iter().filter(|s| s.status != Status::Interrupted).count();
         if begun < found.searches.len() && status != Status::Interrupted {
             let all = found.searches.len();
@@ -553,7 +553,7 @@ impl OptimizeFacts {
     }
 
     /// Sentence about the end of a search, with an instruction.
-    fn sentence(&self, model: &Model, status: Status, search: Search<'_>) -> String {
+    fn sentence(&self, search: Search<'_>) -> String {
         let Search { asked, found, .. } = search;
         let exceeded = || {
             let missed = |l: &&LimitFact| l.missed().is_some();
@@ -562,7 +562,7 @@ impl OptimizeFacts {
         };
         let binding: Vec<&str> =
             self.variables.iter().filter(|v| v.binds.is_some()).map(|v| v.name.as_str()).collect();
-        match status {
+        match search.status() {
             Status::Optimal if best_is_met(found) => "all goals are met: no improvement is possible".into(),
             Status::Optimal if binding.is_empty() => "an optimum: to first order, no small change of the design is better".into(),
             Status::Optimal if binding.len() == 1 => {
@@ -589,7 +589,7 @@ impl OptimizeFacts {
             Status::Interrupted => "interrupted: the best design so far".into(),
             Status::NoStart => {
                 let drawn = found.nominal_failure.as_ref();
-                let case = drawn.and_then(|r| case_name(model, r.motion?));
+                let case = drawn.and_then(|r| case_name(search.model(), r.motion?));
                 let case = case.map_or(String::new(), |case| format!("case `{case}`: "));
                 let why = drawn.map_or("", |r| r.why.as_str());
                 format!("no design could be evaluated, not even the nominal one: {case}{why}")

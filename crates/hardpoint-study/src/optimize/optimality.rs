@@ -54,7 +54,7 @@ pub struct Optimality {
     /// Active constraints, each with the decrease of the objective if it were relaxed by one SI unit (its Lagrange
     /// multiplier).
     pub binding: Vec<(ActiveConstraint, f64)>,
-    /// Increase of the objective, SI, that a violation of all active limits by their scales is worth.
+    /// Decrease of the objective, SI, by exceeding all active limits by their scales.
     pub price: f64,
 }
 

@@ -103,10 +103,9 @@ impl<'p> Front<'p> {
         };
         let states: Vec<State> = (0..count).map(|goal| states[best(goal)].clone()).collect();
         // Those at an end of the front may be infinite, like that of a root at the end of its domain.
-        let steepest_at = |state: &State, k: usize| state.steepest()[k];
         let steepest = |k: usize| {
-            let nominal = nominal.map_or(0.0, |state| steepest_at(state, k));
-            if nominal > 0.0 { nominal } else { states.iter().map(|s| steepest_at(s, k)).fold(0.0, f64::max) }
+            let nominal = nominal.map_or(0.0, |state| state.steepest()[k]);
+            if nominal > 0.0 { nominal } else { states.iter().map(|s| s.steepest()[k]).fold(0.0, f64::max) }
         };
         let steepest: Vec<f64> = (0..count).map(steepest).collect();
         let scale = scale_of(&states, &steepest);
