@@ -5,8 +5,8 @@ import type * as wire from './payload'
 export type Decode = (curve: wire.Curve) => Curve
 
 /** Contents of the report's file: packed by `encoding.rs` of `hardpoint-report`, tracks by `hardpoint-table`. */
-export async function unpack(base64: string): Promise<{ payload: wire.Payload; decode: Decode }> {
-  const block = await inflated(base64)
+export async function unpack(text: string): Promise<{ payload: wire.Payload; decode: Decode }> {
+  const block = await inflatedOf85(text.trim())
   const [json, tracks, gaps, residuals] = new Uint32Array(block.buffer, 0, COUNTS)
   const start = COUNTS * 4 + json
   const payload: wire.Payload = JSON.parse(new TextDecoder().decode(block.subarray(COUNTS * 4, start)))
@@ -17,7 +17,7 @@ export async function unpack(base64: string): Promise<{ payload: wire.Payload; d
 /** The bytes that were deflated and written in base64. */
 export const inflated = (base64: string): Promise<Uint8Array<ArrayBuffer>> => inflate(bytesOf(base64))
 
-/** The bytes that were deflated and written in base 85, as `crates/hardpoint-report/build.rs` does. */
+/** The bytes that were deflated and written in base 85, as `base85.rs` of `hardpoint-report` does. */
 export const inflatedOf85 = (text: string): Promise<Uint8Array<ArrayBuffer>> => inflate(bytesOf85(text))
 
 /** A text, deflated and written in base64. */

@@ -62,7 +62,7 @@ pub fn optimize_in(session: &Session, options: &Optimize) -> Result<Outcome, Out
                     let wanted = model.optimization.as_ref().unwrap_or(&request.settings);
                     judge(model, motions, wanted, &[])
                 });
-                search.facts.check_saved(&to.display().to_string(), judged, request.settings.margin);
+                search.facts.check_saved(&to.display().to_string(), judged, &request.settings);
                 saved = Ok(Some(to));
             }
             Err((diagnostics, why, outcome)) => {

@@ -1,15 +1,15 @@
-//! Encoding of a page's data: JSON and all curves as one deflated block in base64.
+//! Encoding of a page's data: JSON and all curves as one deflated block in base 85.
 //!
 //! The curves are packed as [`tracks`](hardpoint_table::tracks): those that the page computes with at full precision,
 //! those that it only draws and ranks within a small error.
 
 use std::io::Write;
 
-use base64::{Engine, prelude::BASE64_STANDARD};
 use flate2::{Compression, write::DeflateEncoder};
 use hardpoint_table::tracks::{Precision, Tracks};
 use serde::Serialize;
 
+use crate::base85;
 use crate::page::{Curve, Design, PairTrack, Payload, ShapeMark};
 
 /// Packs the payload: encodes and deflates it.
@@ -22,12 +22,7 @@ pub(crate) fn packed(payload: &Payload) -> Result<Vec<u8>, serde_json::Error> {
 
 /// Number of bytes of the page a packed payload takes.
 pub(crate) fn size_in_page(packed: &[u8]) -> usize {
-    packed.len().div_ceil(3) * 4
-}
-
-/// Base64 text of bytes, as in the page.
-pub(crate) fn base64(bytes: &[u8]) -> String {
-    BASE64_STANDARD.encode(bytes)
+    base85::length(packed.len())
 }
 
 /// A page is 0.6 % larger than at the default level 6, and is packed in less than half the time.
@@ -208,10 +203,10 @@ mod tests {
         let expected = block(&sample()).unwrap();
         let written = fs::read_to_string(&path).unwrap_or_default();
         let mut found = Vec::new();
-        let bytes = BASE64_STANDARD.decode(written.trim()).unwrap_or_default();
+        let bytes = base85::decode(written.trim()).unwrap_or_default();
         let read = DeflateDecoder::new(&bytes[..]).read_to_end(&mut found);
         if read.is_err() || found != expected {
-            fs::write(&path, base64(&deflated(&expected)) + "\n").unwrap();
+            fs::write(&path, base85::encode(&deflated(&expected)) + "\n").unwrap();
             panic!("web/test/packed.txt was out of date and has been rewritten: commit it");
         }
     }

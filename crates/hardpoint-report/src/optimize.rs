@@ -22,8 +22,6 @@ use crate::study::{BeforeAfter, Evaluations, MovedHardpoint, case_name, titled};
 /// Multiplier, as a fraction of the objective per range of a variable, below which an active constraint is not
 /// reported.
 const SLIGHT: f64 = 1e-9;
-/// A design whose margin is within this factor of the least allowed one is at that border.
-const AT_MARGIN: f64 = 1.01;
 /// Maximum number of failed designs that are reported.
 const REFUSED: usize = 20;
 
@@ -193,6 +191,7 @@ record! {
                 (Dimension::LENGTH, format!("distance of `{}` and `{}`", hardpoint(a), hardpoint(b)))
             }
             LimitTarget::Length(j) => (Dimension::LENGTH, format!("length of `{}`", model.joints[j.0].name)),
+            LimitTarget::Margin => (Dimension::NUMBER, "margin to a singular position".into()),
         };
         let shown = |x: f64| units.from_si(dimension, x);
         let binding = search.best().into_iter().flat_map(|b| &b.optimality.binding);
@@ -547,14 +546,9 @@ impl OptimizeFacts {
         facts
     }
 
-    /// True if the design is as near to a singular position as `min_margin` allows.
-    fn is_at_margin(&self, asked: &OptimizationSettings) -> bool {
-        asked.margin.zip(self.margin.after).is_some_and(|(limit, margin)| margin < AT_MARGIN * limit)
-    }
-
     /// Sentence about the end of a search, with an instruction.
     fn sentence(&self, search: Search<'_>) -> String {
-        let Search { asked, found, .. } = search;
+        let Search { found, .. } = search;
         let exceeded = || {
             let missed = |l: &&LimitFact| l.missed().is_some();
             let lines: Vec<String> = self.limits.iter().filter(missed).map(LimitFact::line).collect();
@@ -572,9 +566,6 @@ impl OptimizeFacts {
                 "optimum found; {} are at their bounds, and wider bounds would improve it",
                 some_of(&binding, ", ")
             ),
-            Status::Stuck if self.is_at_margin(asked) => "no step makes progress: the design is at `min_margin`, along which no \
-                search moves; limit a metric that measures the same, such as a transmission angle, or try more `starts`"
-                .into(),
             Status::Stuck => "no step makes progress, although it is not quite an optimum: try more `starts`, or more output times \
                 where a metric jumps"
                 .into(),
@@ -954,8 +945,13 @@ impl SearchedVariable {
 
 impl OptimizeFacts {
     /// Enters the result of solving the saved file again. A design that does not reproduce the optimum gets another
-    /// status. `margin` is the minimum margin of the search.
-    pub fn check_saved(&mut self, to: &str, judged: Result<DesignAssessment, String>, margin: Option<f64>) {
+    /// status.
+    pub fn check_saved(
+        &mut self,
+        to: &str,
+        judged: Result<DesignAssessment, String>,
+        asked: &OptimizationSettings,
+    ) {
         let mut saved = SavedFact { file: to.into(), ..SavedFact::default() };
         match judged {
             Ok(judged) => {
@@ -969,9 +965,10 @@ impl OptimizeFacts {
             Err(why) => saved.why = Some(why),
         }
         if let Some(why) = &saved.why {
-            let advice = match margin {
-                None => "; if it is too near to a singular position, set `min_margin` in `[optimize]`",
-                Some(_) => "",
+            let has_margin = asked.limits.iter().any(|limit| limit.of == LimitTarget::Margin);
+            let advice = match has_margin {
+                false => "; if it is too near to a singular position, set `min_margin` in `[optimize]`",
+                true => "",
             };
             self.fall_short(
                 "not_reproduced",

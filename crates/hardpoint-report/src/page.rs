@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
 
-use crate::encoding::{base64, packed};
+use crate::base85;
+use crate::encoding::packed;
 
 #[cfg(test)]
 use ts_rs::TS;
@@ -962,7 +963,7 @@ pub fn sharing(page: &str, models: &str) -> String {
 pub(crate) fn file(title: &str, packed: &[u8]) -> String {
     fill(include_str!("../page/report.html"), |slot| match slot {
         "title" => escape_text(title),
-        "payload" => base64(packed),
+        "payload" => base85::encode(packed),
         "engine" => ENGINE.to_owned(),
         "code" => CODE.to_owned(),
         _ => panic!("the report template names an unknown slot `{slot}`"),

@@ -79,6 +79,7 @@ fn sentence(model: &Model, units: Units, limit: &Limit) -> String {
             (Dimension::LENGTH, format!("distance between {a} and {b}"))
         }
         LimitTarget::Length(j) => (Dimension::LENGTH, format!("length of {}", model.joints[j.0].name)),
+        LimitTarget::Margin => (Dimension::NUMBER, "margin to a singular position".into()),
     };
     let unit = order_unit(units, dimension, 0);
     let shown = |x: f64| with_unit(units.from_si(dimension, x), &unit);

@@ -25,6 +25,7 @@ mod kinks;
 mod language;
 mod loads;
 mod maps;
+mod margins;
 mod measures;
 mod meshes;
 mod metamorphic;

@@ -48,7 +48,7 @@ fn goals_and_limits_are_read_in_si() {
     let names: Vec<&str> = o.variables.iter().map(|v| model.variables[v.0].name.as_str()).collect();
     // All that have bounds, in the order of the file's variables.
     assert_eq!(names, ["reach", "A_x", "A_y", "A_z"]);
-    assert_eq!((o.starts, o.iterations, o.margin), (5, 100, Some(0.03)));
+    assert_eq!((o.starts, o.iterations), (5, 100));
     let degree = 1_f64.to_radians();
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
     // 10 per mm is 10000 per m; 2 mm per deg is 2e-3/degree m per rad, and 3 per (mm per deg) 3e3*degree.
@@ -61,13 +61,14 @@ fn goals_and_limits_are_read_in_si() {
     let id = |name: &str| {
         hardpoint::model::HardpointId(model.hardpoints.iter().position(|h| h.name == name).unwrap())
     };
-    let expected: [(&str, LimitTarget, Option<f64>, Option<f64>); 6] = [
+    let expected: [(&str, LimitTarget, Option<f64>, Option<f64>); 7] = [
         ("angle", LimitTarget::Metric(2), Some(45.0 * degree), Some(45.0 * degree)),
         ("room.x", LimitTarget::Coordinate(id("A"), 0), Some(0.095), Some(0.105)),
         ("room.z", LimitTarget::Coordinate(id("A"), 2), None, Some(0.005)),
         ("apart", LimitTarget::Distance(id("O"), id("A")), Some(0.08), Some(0.12)),
         ("rod", LimitTarget::Length(hardpoint::model::JointId(2)), Some(0.15), None),
         ("top.z", LimitTarget::Coordinate(id("B"), 2), Some(0.02), Some(0.04)),
+        ("min_margin", LimitTarget::Margin, Some(0.03), None),
     ];
     assert_eq!(o.limits.len(), expected.len());
     for (Limit { name, of, least, most }, (named, put_on, low, high)) in o.limits.iter().zip(expected) {

@@ -20,6 +20,8 @@ const BEYOND: f64 = 1e-13;
 const NEGATIVE: f64 = 1e-12;
 /// Maximum number of releases of one constraint, to break cycles.
 const RELEASES: usize = 3;
+/// Number of times of a curve at which its limit is expected to be active at once.
+const ACTIVE_TIMES: usize = 4;
 
 /// Step with its predicted effect.
 pub(super) struct GaussNewton {
@@ -30,7 +32,7 @@ pub(super) struct GaussNewton {
 }
 
 /// A constraint of the step.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 enum Constraint {
     /// Bound of a variable, by its index.
     Bound(usize),
@@ -57,7 +59,7 @@ impl GaussNewton {
         // Steps of variables at a bound, and rows of the active limits.
         let mut fixed: Vec<Option<f64>> = vec![None; n];
         let mut active: Vec<usize> = (0..point.limits.len()).filter(|k| point.limits[*k].equal).collect();
-        let mut released: Vec<Constraint> = Vec::new();
+        let (mut releases_of_bounds, mut releases_of_limits) = (vec![0; n], vec![0; point.limits.len()]);
         // Shortest step for the active constraints.
         let solve = |fixed: &[Option<f64>], active: &[usize]| -> Vec<f64> {
             let mut x: Vec<f64> = fixed.iter().map(|x| x.unwrap_or(0.0)).collect();
@@ -87,13 +89,27 @@ impl GaussNewton {
         };
         let mut step = solve(&fixed, &active);
         // Every constraint may be added once, and again after each release.
-        for _ in 0..(RELEASES + 1) * (2 * n + point.limits.len() + 1) {
+        for _ in 0..(RELEASES + 1) * (2 * n + ACTIVE_TIMES * problem.limits.len() + 1) {
             let is_beyond =
                 |v: &usize| fixed[*v].is_none() && !(-BEYOND..=1.0 + BEYOND).contains(&(at[*v] + step[*v]));
             let beyond: Vec<usize> = (0..n).filter(is_beyond).collect();
             let is_exceeded =
                 |k: &usize| !active.contains(k) && exceeds_after(&point.limits[*k], &step) > EXCEEDED;
-            let exceeded: Vec<usize> = (0..point.limits.len()).filter(is_exceeded).collect();
+            // One number of each limit, the one that exceeds it most: its neighbours in time often follow.
+            let mut exceeded: Vec<(usize, f64)> = Vec::new();
+            for k in (0..point.limits.len()).filter(is_exceeded) {
+                let row = &point.limits[k];
+                let by = exceeds_after(row, &step);
+                let is_same = |(known, _): &&mut (usize, f64)| {
+                    let known = &point.limits[*known];
+                    (known.of, known.upper) == (row.of, row.upper)
+                };
+                match exceeded.iter_mut().find(is_same) {
+                    Some(known) if by > known.1 => *known = (k, by),
+                    Some(_) => {}
+                    None => exceeded.push((k, by)),
+                }
+            }
             if beyond.is_empty() && exceeded.is_empty() {
                 // J^T (r + J x) + mu x + N l = 0,   N: the outward normals of the active constraints
                 let after = misfits_after(&step);
@@ -121,24 +137,32 @@ impl GaussNewton {
                 let multipliers = least_squares([n, all.len()], normal, &[gradient]).swap_remove(0);
                 let least = -NEGATIVE * strongest * point.misfit();
                 let is_free = |c: &usize| {
-                    let equal = matches!(all[*c], Constraint::Limit(k) if point.limits[k].equal);
-                    let times = released.iter().filter(|known| **known == all[*c]).count();
-                    !equal && times < RELEASES && multipliers[*c] < least
+                    let releases = match all[*c] {
+                        Constraint::Bound(v) => releases_of_bounds[v],
+                        Constraint::Limit(k) if point.limits[k].equal => RELEASES,
+                        Constraint::Limit(k) => releases_of_limits[k],
+                    };
+                    releases < RELEASES && multipliers[*c] < least
                 };
                 let free = (0..all.len()).filter(is_free);
                 let Some(most) = free.min_by(|a, b| multipliers[*a].total_cmp(&multipliers[*b])) else {
                     break;
                 };
-                released.push(all[most]);
                 match all[most] {
-                    Constraint::Bound(v) => fixed[v] = None,
-                    Constraint::Limit(k) => active.retain(|known| *known != k),
+                    Constraint::Bound(v) => {
+                        fixed[v] = None;
+                        releases_of_bounds[v] += 1;
+                    }
+                    Constraint::Limit(k) => {
+                        active.retain(|known| *known != k);
+                        releases_of_limits[k] += 1;
+                    }
                 }
             }
             for v in beyond {
                 fixed[v] = Some((at[v] + step[v]).clamp(0.0, 1.0) - at[v]);
             }
-            active.extend(exceeded);
+            active.extend(exceeded.into_iter().map(|(k, _)| k));
             step = solve(&fixed, &active);
         }
         let before = point.misfit().powi(2);

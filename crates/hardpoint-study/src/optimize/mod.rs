@@ -36,6 +36,7 @@ use super::progress::{Control, Progress, Step};
 use gauss_newton::GaussNewton;
 pub use optimality::{ActiveConstraint, Optimality};
 pub(crate) use optimality::{BINDS, MET};
+use problem::Limited;
 pub(crate) use problem::{Point, Problem, Refusal};
 pub use request::{Overrides, Request, Selection};
 pub(crate) use solver::Memory;
@@ -280,8 +281,8 @@ pub fn optimize(
 /// Evaluates the goals and limits of one design, given by the values of all variables of the model.
 ///
 /// # Errors
-/// A [`FailedDesign`] if a motion stops, comes closer to a singular position than the required margin, or a goal has no
-/// value.
+/// A [`FailedDesign`] if a motion stops or comes closer to a singular position than the limit on its margin, or if a
+/// goal has no value.
 pub fn judge(
     model: &Model,
     motions: &Motions<'_>,
@@ -290,11 +291,17 @@ pub fn judge(
 ) -> Result<DesignAssessment, FailedDesign> {
     let problem = Problem::new(model, motions, settings);
     let design = design.iter().copied().chain(std::iter::repeat(0.0)).take(model.variables.len()).collect();
-    let judged_at = |point: Point| assess(&problem, &point, &limit_scales(&problem, &point));
-    match problem.at(design, &mut StudyCost::default(), &|| true) {
-        Ok(point) => Ok(judged_at(point)),
-        Err(refusal) => Err(failed_design(Vec::new(), refusal)),
+    let point = problem.at(design, &mut StudyCost::default(), &|| true);
+    let point = point.map_err(|refusal| failed_design(Vec::new(), refusal))?;
+    for ((limit, of), value) in problem.limits.iter().zip(&point.limit_values) {
+        if let (Limited::Margin(motion), Some(least)) = (of, settings.limits[*limit].least)
+            && *value < least - KEPT
+        {
+            let why = format!("its margin to a singular position falls to {value:.3}, less than {least}");
+            return Err(FailedDesign { design: Vec::new(), motion: Some(*motion), why });
+        }
     }
+    Ok(assess(&problem, &point, &limit_scales(&problem, &point)))
 }
 
 /// Start k, as fractions of the bounds: the nominal design, then low-discrepancy points.
@@ -356,7 +363,7 @@ pub(crate) fn assess(problem: &Problem<'_>, point: &Point, scales: &[f64]) -> De
         violation: point.violation(|k| scales[k]),
         margin: point.margin,
         goals: goals.collect(),
-        limits: limits.map(|((limit, taken), v)| (*limit, taken.map(|t| t.motion), *v)).collect(),
+        limits: limits.map(|((limit, of), v)| (*limit, of.motion(), *v)).collect(),
     }
 }
 

@@ -106,8 +106,8 @@ impl Optimality {
         for row in &point.limits {
             let scale = limit_scales[row.of];
             if row.equal || row.exceeds > -BINDS * scale {
-                let (limit, taken) = problem.limits[row.of];
-                let motion = taken.map(|t| t.motion);
+                let (limit, of) = problem.limits[row.of];
+                let motion = of.motion();
                 let binding = if row.upper {
                     ActiveConstraint::Most(limit, motion)
                 } else {

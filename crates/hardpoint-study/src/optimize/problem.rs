@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use crate::evaluation::{DesignEvaluation, Motions, StudyCost};
 use hardpoint::model::{Limit, LimitTarget, Model, OptimizationSettings, Reduction, VariableId};
-use hardpoint::motion::Margin;
+use hardpoint::motion::StopKind;
 use hardpoint::number::Dual;
-use hardpoint::run::{MetricParts, MetricUse, misfits, peaks};
+use hardpoint::run::{MarginDerivatives, MetricParts, MetricUse, misfits, peaks};
 
 /// Goals and limits of an optimisation, and the motions that they are evaluated in.
 #[derive(Clone, Debug)]
@@ -19,8 +19,8 @@ pub(crate) struct Problem<'m> {
     pub bounds: Vec<[f64; 2]>,
     /// Goals in each motion.
     pub goals: Vec<MotionMetric>,
-    /// Index and metric of each limit; no metric for a limit on the design itself.
-    pub limits: Vec<(usize, Option<MotionMetric>)>,
+    /// Index of each limit, and what it applies to.
+    pub limits: Vec<(usize, Limited)>,
     /// Uses of the metrics of each motion.
     pub uses: Vec<Vec<MetricUse>>,
 }
@@ -34,6 +34,29 @@ pub(crate) struct MotionMetric {
     /// Index among the metrics of that motion.
     pub metric: usize,
 }
+
+/// Subject of a limit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Limited {
+    /// The design itself.
+    Design,
+    Metric(MotionMetric),
+    /// The margin of this motion to a singular position.
+    Margin(usize),
+}
+
+impl Limited {
+    pub fn motion(self) -> Option<usize> {
+        match self {
+            Self::Design => None,
+            Self::Metric(metric) => Some(metric.motion),
+            Self::Margin(motion) => Some(motion),
+        }
+    }
+}
+
+/// A margin has derivatives if it is not more than this above its limit; elsewhere the limit is out of reach of a step.
+const NEAR_LIMIT: f64 = 0.1;
 
 /// Numbers with their derivatives by the searched variables, SI and per unit of each.
 #[derive(Clone, Debug, Default)]
@@ -183,11 +206,15 @@ impl<'m> Problem<'m> {
         let goals: Vec<MotionMetric> =
             settings.goals.iter().enumerate().flat_map(|(k, goal)| entry(k, goal.metric)).collect();
         let limit = |(k, limit): (usize, &Limit)| match limit.of {
-            LimitTarget::Metric(metric) => entry(k, metric).map(|t| (k, Some(t))).collect::<Vec<_>>(),
-            _ => vec![(k, None)],
+            LimitTarget::Metric(metric) => {
+                entry(k, metric).map(|t| (k, Limited::Metric(t))).collect::<Vec<_>>()
+            }
+            LimitTarget::Margin => (0..motions.len()).map(|motion| (k, Limited::Margin(motion))).collect(),
+            LimitTarget::Coordinate(..) | LimitTarget::Distance(..) | LimitTarget::Length(_) => {
+                vec![(k, Limited::Design)]
+            }
         };
-        let limits: Vec<(usize, Option<MotionMetric>)> =
-            settings.limits.iter().enumerate().flat_map(limit).collect();
+        let limits: Vec<(usize, Limited)> = settings.limits.iter().enumerate().flat_map(limit).collect();
         let unused = |motion: usize| vec![MetricUse::Unused; motions.model(motion).metrics.len()];
         let mut uses: Vec<Vec<MetricUse>> = (0..motions.len()).map(unused).collect();
         let to_target = goals.iter().filter(|entry| settings.goals[entry.of].target.is_some());
@@ -195,7 +222,11 @@ impl<'m> Problem<'m> {
         for entry in to_target {
             uses[entry.motion][entry.metric] = MetricUse::Derivative;
         }
-        for entry in free.chain(limits.iter().flat_map(|(_, entry)| entry)) {
+        let limited = limits.iter().filter_map(|(_, of)| match of {
+            Limited::Metric(entry) => Some(entry),
+            Limited::Design | Limited::Margin(_) => None,
+        });
+        for entry in free.chain(limited) {
             uses[entry.motion][entry.metric] = MetricUse::Candidates;
         }
         let bounds = |v: &VariableId| model.variables[v.0].bounds.unwrap_or([0.0; 2]);
@@ -239,7 +270,7 @@ impl<'m> Problem<'m> {
                     (places[a.0] - places[b.0]).norm()
                 }
                 LimitTarget::Length(joint) => map.geometry(&values).kept[joint.0].distance,
-                LimitTarget::Metric(_) => unreachable!("it is taken of a motion"),
+                LimitTarget::Metric(_) | LimitTarget::Margin => unreachable!("it is taken of a motion"),
             }
         };
         let found: Vec<Dual> = self.settings.variables.iter().map(|v| derivative(*v)).collect();
@@ -256,7 +287,6 @@ impl<'m> Problem<'m> {
         let found = self.motions.evaluate_metrics(&design, &self.uses, cost, more).map_err(|rejected| {
             Refusal { motion: Some(rejected.motion), interrupted: rejected.interrupted(), why: rejected.why }
         })?;
-        self.margins(&found)?;
         let margins = found.solutions.iter().filter_map(|s| Some(s.motion.least_margin()?.1.value));
         let mut point = Point { design, margin: margins.reduce(f64::min), ..Point::default() };
         for entry in &self.goals {
@@ -267,25 +297,46 @@ impl<'m> Problem<'m> {
             let [misfits, plain, peaks] = [0, 1, 2].map(|k| before[k]..after[k]);
             point.shares.push(GoalShare { misfits, plain, peaks });
         }
-        for (place, (limit, entry)) in self.limits.iter().enumerate() {
-            self.add_limit(place, *limit, *entry, &found, &mut point)?;
+        for (place, (limit, of)) in self.limits.iter().enumerate() {
+            match *of {
+                Limited::Design => self.add_limit(place, *limit, None, &found, &mut point)?,
+                Limited::Metric(entry) => self.add_limit(place, *limit, Some(entry), &found, &mut point)?,
+                Limited::Margin(motion) => self.add_margins(place, *limit, motion, &found, &mut point)?,
+            }
         }
         Ok(point)
     }
 
-    /// Checks the margins of all motions to singular positions.
-    fn margins(&self, found: &DesignEvaluation) -> Result<(), Refusal> {
-        let Some(limit) = self.settings.margin else { return Ok(()) };
-        for (motion, solution) in found.solutions.iter().enumerate() {
-            let Some((k, Margin { value, .. })) = solution.motion.least_margin() else { continue };
-            if !(value >= limit) {
-                let t = solution.motion.times[k];
-                let why = format!(
-                    "at t = {t:.6} s its margin to a singular position is {value:.3}, less than {limit}"
-                );
-                return Err(Refusal { motion: Some(motion), why, interrupted: false });
-            }
+    /// Adds the margin of a motion to a singular position at every output time.
+    fn add_margins(
+        &self,
+        place: usize,
+        limit: usize,
+        motion: usize,
+        found: &DesignEvaluation,
+        point: &mut Point,
+    ) -> Result<(), Refusal> {
+        let least = self.settings.limits[limit].least.unwrap_or(0.0);
+        let of_motion = &found.solutions[motion].motion.margins;
+        let below = least + NEAR_LIMIT;
+        let mut derived = MarginDerivatives::default();
+        if of_motion.iter().any(|margin| !(margin.value >= below)) {
+            let analysis = &self.motions.analyses()[motion];
+            derived = analysis.margin_derivatives(&point.design, &self.settings.variables, below);
         }
+        if let Some(stop) = &derived.stop {
+            let why = stop.headline(self.motions.model(motion));
+            let interrupted = matches!(stop.kind, StopKind::Interrupted);
+            return Err(Refusal { motion: Some(motion), why, interrupted });
+        }
+        let margins = if derived.margins.is_empty() { of_motion } else { &derived.margins };
+        for (k, margin) in margins.iter().enumerate() {
+            let d = derived.d.get(k).filter(|d| !d.is_empty());
+            let d = d.map_or(vec![0.0; self.bounds.len()], |d| d.iter().map(|d| -d).collect());
+            let exceeds = least - margin.value;
+            point.limits.push(LimitRow { of: place, exceeds, d, equal: false, upper: false, spread: false });
+        }
+        point.limit_values.push(margins.iter().map(|m| m.value).fold(1.0, f64::min));
         Ok(())
     }
 
@@ -510,7 +561,6 @@ mod tests {
                     limit(LimitTarget::Length(JointId(2)), 0.4, 0.4),
                 ])
                 .collect(),
-            margin: None,
             starts: 1,
             other_assemblies: false,
             both_senses: false,

@@ -13,10 +13,10 @@ use crate::design::{BodyFixed, DesignMap, DesignVelocity};
 use crate::law::Law;
 use crate::linalg::Elimination;
 use crate::load::{GivenLoads, OpeningLoads};
-use crate::model::{Contact, DriverId, MeasureKind, Model, UnitForce};
-use crate::motion::kinematics::State;
+use crate::model::{DriverId, MeasureKind, Model, UnitForce};
 use crate::motion::mechanism::Mechanism;
 use crate::motion::parts::PlanGeometry;
+use crate::motion::state_along::StateAlong;
 use crate::number::Dual;
 use crate::sensitivity::{DirectDifferentiation, PlanVelocity, along, laws_beside};
 use crate::space::{Pose, Twist};
@@ -50,10 +50,7 @@ pub(crate) enum Along {
 pub(crate) struct Curvatures<'a> {
     model: &'a Model,
     openings: &'a [DriverId],
-    parts: PlanGeometry<Dual>,
-    state: State<Dual>,
-    /// Number of selections of rows that the state was made for.
-    selections: usize,
+    along: StateAlong,
     loads: OpeningLoads<'a, Dual>,
     /// Laws at a small step along the direction, forward and back, if the design changes along it.
     laws: Option<[Vec<Law>; 2]>,
@@ -105,9 +102,7 @@ impl<'a> Curvatures<'a> {
         Self {
             model,
             openings,
-            parts: PlanGeometry::of(model, topology, &design_map.geometry(&values)),
-            state: State::new(model, topology),
-            selections: 0,
+            along: StateAlong::new(model, topology, &design_map.geometry(&values)),
             loads: OpeningLoads::new(
                 design_map,
                 topology,
@@ -151,22 +146,8 @@ impl<'a> Curvatures<'a> {
             Along::Force(force) => Some((*force, Dual { v: 0.0, d: 1.0 })),
             Along::Driver(_) | Along::Design(_) => None,
         };
-        let speeds = &direct.flow.speeds[0];
-        if std::mem::replace(&mut self.selections, mechanism.selections) != mechanism.selections {
-            self.state = State::new(self.model, topology);
-        }
-        let (state, from) = (&mut self.state, &mechanism.state);
-        for ((q, x), d) in state.q.iter_mut().zip(&from.q).zip(speeds) {
-            *q = Dual { v: *x, d: *d };
-        }
-        state.balls.iter_mut().zip(&from.balls).for_each(|(to, ball)| *to = ball.spread());
-        state.turn_balls(topology, topology.link_ids());
-        state.contacts.clear();
-        let contacts = self.parts.curves.iter().zip(&from.contacts);
-        state.contacts.extend(contacts.map(|(curve, contact)| Contact::at(curve, Dual::constant(contact.u))));
-        state.near.iter_mut().zip(&from.near).for_each(|(to, near)| *to = Dual::constant(*near));
-        let drivers = vec![[Dual::constant(0.0); 3]; self.model.drivers.len()];
-        state.stand_with_factors(topology, &self.parts, &drivers);
+        self.along.set(self.model, mechanism, &direct.flow.speeds[0]);
+        let state = &mut self.along.state;
         self.loads.set_further(further);
         self.loads.forces((topology, state), at.near, at.loads, |_, _| ());
         self.loads.prepare(topology, state);
@@ -176,7 +157,7 @@ impl<'a> Curvatures<'a> {
     /// Sets the twists of the bodies by every variable: `K p_b = -r_b`, `W = W_b + sum W_a p_b,a` (55).
     fn set_twists(&mut self, topology: &Topology, parts: &PlanGeometry<f64>, at: &SolvedEquilibrium<'_>) {
         let n = self.openings.len();
-        let Self { state, loads, laws, stiffness, twists, .. } = self;
+        let Self { along: StateAlong { state, .. }, loads, laws, stiffness, twists, .. } = self;
         loads.stiffness(|a, b, slope| {
             stiffness.row_mut(a)[b] = slope * Dual::constant(at.units[a] * at.units[b]);
         });
@@ -215,7 +196,11 @@ impl<'a> Curvatures<'a> {
     /// Poses of the bodies with their derivatives: outer by a variable, inner along the direction.
     pub fn poses(&self, variable: usize) -> Vec<Pose<Dual<Dual>>> {
         let of = |b: usize| {
-            if b == 0 { Pose::IDENTITY.spread() } else { self.state.pose[b].along(self.twists[variable][b]) }
+            if b == 0 {
+                Pose::IDENTITY.spread()
+            } else {
+                self.along.state.pose[b].along(self.twists[variable][b])
+            }
         };
         (0..self.model.bodies.len()).map(of).collect()
     }

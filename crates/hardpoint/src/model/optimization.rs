@@ -11,8 +11,6 @@ pub struct OptimizationSettings {
     pub goals: Vec<Goal>,
     /// Conditions that the design must satisfy.
     pub limits: Vec<Limit>,
-    /// No motion may come nearer to a singular position than this [`Margin`](crate::motion::Margin).
-    pub margin: Option<f64>,
     /// From how many designs the search starts: the one in the design configuration, and others spread within the
     /// bounds.
     pub starts: usize,
@@ -38,7 +36,6 @@ impl Default for OptimizationSettings {
             variables: Vec::new(),
             goals: Vec::new(),
             limits: Vec::new(),
-            margin: None,
             starts: 1,
             other_assemblies: false,
             both_senses: false,
@@ -88,4 +85,6 @@ pub enum LimitTarget {
     Distance(HardpointId, HardpointId),
     /// The length of a rod.
     Length(JointId),
+    /// The minimum [`Margin`](crate::motion::Margin) of each motion to a singular position at its output times.
+    Margin,
 }

@@ -3,6 +3,7 @@
 use crate::constraint::{MarkerPair, Row};
 use crate::joint::Freedom;
 use crate::linalg::{Elimination, MOST_GROWTH};
+use crate::number::Dual;
 use crate::space::{Real, Twist, Vec3, Wrench};
 use crate::topology::{BlockId, ClosureColumn, LoopLink, RowId, RowTerm, Topology};
 
@@ -158,6 +159,16 @@ impl<T: Real> Margins<T> {
     }
 }
 
+impl Margins<Dual> {
+    /// Derivative of the margin of a block along the direction of a state; `None` for the pivot ratio of a large block,
+    /// which has none, and where it is not known.
+    pub fn derivative(&mut self, topology: &Topology, state: &State<Dual>, b: BlockId) -> Option<f64> {
+        let small = topology[b].unknowns.len() <= MOST_UNKNOWNS;
+        let found = small.then(|| self.of_block(topology, state, b, &mut |_| ()).d);
+        found.filter(|d| d.is_finite())
+    }
+}
+
 /// Sets all numbers to zero.
 #[inline(always)]
 fn clear<T: Real>(row: &mut [T]) {
@@ -245,7 +256,8 @@ fn most_moment<T: Real>(l: &Wrench<T>, point: Vec3<T>, turn: &Twist<T>) -> T {
     // the axis
     let between = point - turn.w.cross(turn.v);
     let arm = between - turn.w * turn.w.dot(between);
-    // l = [P x f + couple; f];  most = sqrt((abs(f) abs(arm))^2 + abs(couple)^2)
-    let (moment, couple) = (l.f.norm() * arm.norm(), l.m - point.cross(l.f));
-    (moment * moment + couple.dot(couple)).sqrt()
+    // l = [P x f + couple; f];  most = sqrt((abs(f) abs(arm))^2 + abs(couple)^2); the norms alone have no derivative at
+    // zero
+    let couple = l.m - point.cross(l.f);
+    (l.f.dot(l.f) * arm.dot(arm) + couple.dot(couple)).sqrt()
 }

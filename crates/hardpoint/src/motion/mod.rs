@@ -28,6 +28,7 @@ mod path_step;
 mod predictor;
 mod singularity;
 pub(crate) mod start;
+pub(crate) mod state_along;
 mod step;
 pub(crate) mod step_program;
 pub(crate) mod stepper;

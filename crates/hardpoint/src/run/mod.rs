@@ -13,6 +13,7 @@ mod gradient;
 mod jerk;
 mod joint_limits;
 mod loads;
+mod margins;
 mod metric;
 mod nearest;
 mod needed;
@@ -36,6 +37,7 @@ pub use driver_rates::DriverRates;
 pub use gradient::{GradientMethod, Gradients};
 pub use jerk::Jerks;
 pub use joint_limits::{LimitCrossing, LimitExtremum, LimitRange};
+pub use margins::MarginDerivatives;
 pub use metric::{
     MetricParts, MetricValue, metric_number, metric_numbers, metrics, metrics_beside, misfits, peaks,
     place_of,

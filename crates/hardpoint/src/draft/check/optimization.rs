@@ -61,13 +61,15 @@ impl Checker<'_> {
         if sound {
             self.check_ineffective_limits(&variables, &limits);
         }
-        let limits = limits.into_iter().map(|(_, limit)| limit).collect();
+        let margin =
+            Limit { name: "min_margin".into(), of: LimitTarget::Margin, least: o.margin, most: None };
+        let limits = limits.into_iter().map(|(_, limit)| limit);
+        let limits = limits.chain(o.margin.map(|_| margin)).collect();
         let goals = goals.into_iter().flatten().collect();
         self.model.optimization = Some(OptimizationSettings {
             variables,
             goals,
             limits,
-            margin: o.margin,
             starts: o.starts,
             other_assemblies: o.other_assemblies,
             both_senses: o.both_senses,
@@ -275,6 +277,7 @@ impl Checker<'_> {
             LimitTarget::Coordinate(..) | LimitTarget::Distance(..) | LimitTarget::Length(_) => {
                 Dimension::LENGTH
             }
+            LimitTarget::Margin => Dimension::NUMBER,
         };
         let unit = per_si(dimension, l.per_metre, l.per_radian);
         let [least, most] = [l.least, l.most].map(|bound| bound.map(|x| x / unit));
@@ -411,6 +414,7 @@ fn key(of: LimitTarget) -> Key {
         LimitTarget::Coordinate(h, axis) => (1, h.0, axis),
         LimitTarget::Distance(a, b) => (2, a.0.min(b.0), a.0.max(b.0)),
         LimitTarget::Length(j) => (3, j.0, 0),
+        LimitTarget::Margin => (4, 0, 0),
     }
 }
 

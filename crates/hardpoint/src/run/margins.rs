@@ -1,0 +1,97 @@
+//! Margins of a motion to singular positions, with their derivatives by the design.
+
+use std::ops::ControlFlow;
+
+use super::sink::NullSink;
+use super::walk::{Scope, SolvedSteps};
+use super::{Analysis, Walk};
+use crate::model::VariableId;
+use crate::motion::margin::Margins;
+use crate::motion::state_along::StateAlong;
+use crate::motion::{Margin, Stop};
+use crate::number::Dual;
+use crate::sensitivity::{DirectDifferentiation, PlanVelocity};
+
+/// Margins at the output times of a motion, with derivatives.
+#[derive(Clone, Debug, Default)]
+pub struct MarginDerivatives {
+    /// Per output time: margin.
+    pub margins: Vec<Margin>,
+    /// Per output time: derivatives by the requested variables, per unit of each; empty where they are not requested.
+    pub d: Vec<Vec<f64>>,
+    /// Reason why the run ended before the last output time, if it did.
+    pub stop: Option<Stop>,
+}
+
+/// Direction along one variable.
+struct Direction {
+    field: PlanVelocity<f64>,
+    /// Workspace of this variable alone: coordinates that it does not reach keep a rate of zero.
+    direct: DirectDifferentiation<f64>,
+    along: StateAlong,
+}
+
+impl Analysis<'_> {
+    /// Margins at the design with variable k at `design[k]`, with derivatives by these variables where they are below a
+    /// value.
+    ///
+    /// The derivative is that of the block of equations with the minimum margin: one-sided where two margins are equal.
+    /// It is 0 for large blocks, whose margin is a ratio of pivots.
+    pub fn margin_derivatives(
+        &self,
+        design: &[f64],
+        variables: &[VariableId],
+        below: f64,
+    ) -> MarginDerivatives {
+        let design = self.prepare(design, Scope::of_one(true, false));
+        let (model, topology, design_map) = (self.solved_model(), self.topology(), self.design_map());
+        let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
+        let direction = |v: &VariableId| {
+            let mut field = design.fields[v.0].clone();
+            field.shifts.extend(openings.iter().map(|d| (*d, 1.0)));
+            let mut values: Vec<Dual> = design.values.iter().map(|b| Dual::constant(*b)).collect();
+            values[v.0] = Dual::variable(design.values[v.0]);
+            Direction {
+                field: PlanVelocity::new(topology, &field),
+                direct: DirectDifferentiation::new(model, topology),
+                along: StateAlong::new(model, topology, &design_map.geometry(&values)),
+            }
+        };
+        let mut directions: Vec<Direction> = variables.iter().map(direction).collect();
+        let (mut values, mut derivatives) = (Margins::<f64>::new(topology), Margins::<Dual>::new(topology));
+        let mut found = MarginDerivatives::default();
+        // Sensitivities are solved where derivatives are requested only.
+        let only_position = super::PreparedDesign {
+            fields: if openings.is_empty() { Vec::new() } else { design.fields.clone() },
+            ..design
+        };
+        let mut walk = Walk::new(self, &only_position, vec![false; model.bodies.len()]);
+        let times = &self.model().times;
+        found.stop = walk.all(&mut NullSink, &mut |_| ControlFlow::Continue(()), |_, solved, _, _| {
+            let SolvedSteps::One(one, _, equilibrium) = solved else { return };
+            let t = times[found.margins.len()];
+            let margin = values.at(&one.mechanism.topology, &one.mechanism.state);
+            found.margins.push(margin);
+            if !(margin.value < below) {
+                found.d.push(Vec::new());
+                return;
+            }
+            let mut rates_of_openings = Vec::new();
+            if let Some(equilibrium) = equilibrium {
+                equilibrium.differentiate(one, t, |_, rates| rates_of_openings.push(rates.to_vec()));
+            }
+            let derivative = |(v, Direction { field, direct, along }): (&VariableId, &mut Direction)| {
+                let mechanism = &mut one.mechanism;
+                if let Some(rates) = rates_of_openings.get(v.0) {
+                    field.set_last_shifts(rates);
+                }
+                field.set_time(|d| mechanism.parts.law_of(d.0), t);
+                direct.solve_position(&mechanism.topology, &mut mechanism.state, field);
+                along.set(model, mechanism, &direct.flow.speeds[0]);
+                derivatives.derivative(&mechanism.topology, &along.state, margin.block).unwrap_or(0.0)
+            };
+            found.d.push(variables.iter().zip(&mut directions).map(derivative).collect());
+        });
+        found
+    }
+}
