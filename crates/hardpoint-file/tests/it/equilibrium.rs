@@ -559,7 +559,7 @@ fn sensitivities_are_verified() {
 
 /// The double wishbone with axes of its arms through hardpoints; as joints, or with bushings in the place of those that
 /// close loops.
-fn wishbone_on_axes_through_hardpoints(bushings: bool) -> String {
+pub(crate) fn wishbone_on_axes_through_hardpoints(bushings: bool) -> String {
     let at = State { bump: 0.03, road: [1500.0, -900.0], align: 30.0, rack: 0.002 };
     let axes = [
         ("lca", "[0.98430677050583, 0.0, 0.1764658084060003]"),

@@ -7,6 +7,8 @@ use hardpoint::sensitivity::Admissibility;
 use hardpoint::{Analysis, Run};
 use hardpoint_file::read;
 
+use crate::equilibrium::wishbone_on_axes_through_hardpoints;
+
 /// Step of the differences, in SI; that of parameters in parts of their value.
 const STEP: f64 = 1e-6;
 /// Distance of the design from the nominal one, in SI.
@@ -43,6 +45,15 @@ fn margins_have_the_derivatives_of_differences() {
     }
     assert!(models > 30 && checked > 1500, "{checked} derivatives of {models} models");
     assert!(corners as f64 <= CORNERS * checked as f64, "{corners} of {checked} derivatives are at corners");
+}
+
+/// With loads, elastic joints open differently in each design.
+#[test]
+fn margins_at_equilibria_have_the_derivatives_of_differences() {
+    let text = wishbone_on_axes_through_hardpoints(true);
+    let model = hardpoint_file::parse(&text, "wishbone.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    let [count, at_corners] = compare("wishbone", &model);
+    assert!(count >= 10 && at_corners == 0, "{at_corners} of {count} derivatives are at corners");
 }
 
 /// Compares the derivatives of a model with differences. Returns how many were compared, and how many are at corners.
