@@ -22,7 +22,8 @@ pub(crate) const OPTIMIZE: Table = table! {
     may "trade_off": Shape::some(&Shape::Name("a goal")), "[\"bump_steer\", \"camber\"]";
     /// Conditions that the design must satisfy.
     may "limits": Shape::Entries("a metric", &Shape::Kinds(&LIMIT)), "{ rod = { length = \"tie_rod\", max = 300 } }";
-    /// Minimum margin of all motions from singular positions, between 0 and 1: a limit. Default: none.
+    /// Minimum margin of all motions from singular positions at their output times, between 0 and 1: a limit. Default:
+    /// none.
     may "min_margin": NUMBER, "0.02";
     /// Number of designs from which the search starts: the nominal design, and others within the bounds.
     or("1") "starts": Shape::Count(OptimizationSettings::MOST), "8";
