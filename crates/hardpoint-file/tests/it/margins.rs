@@ -9,7 +9,7 @@ use hardpoint_file::read;
 
 use crate::equilibrium::wishbone_on_axes_through_hardpoints;
 
-/// Step of the differences, in SI; that of parameters in parts of their value.
+/// Step of the differences, in SI.
 const STEP: f64 = 1e-6;
 /// Distance of the design from the nominal one, in SI.
 const BESIDE: f64 = 1e-4;

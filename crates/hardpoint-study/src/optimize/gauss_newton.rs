@@ -88,7 +88,7 @@ impl GaussNewton {
             x
         };
         let mut step = solve(&fixed, &active);
-        // Every constraint may be added once, and again after each release.
+        // Every bound, and every limit at some times, may be added once, and again after each release.
         for _ in 0..(RELEASES + 1) * (2 * n + ACTIVE_TIMES * problem.limits.len() + 1) {
             let is_beyond =
                 |v: &usize| fixed[*v].is_none() && !(-BEYOND..=1.0 + BEYOND).contains(&(at[*v] + step[*v]));

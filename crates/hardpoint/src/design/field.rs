@@ -69,6 +69,12 @@ impl<T: Real> DesignVelocity<T> {
 }
 
 impl DesignVelocity {
+    /// This velocity with openings that follow it, as its last shifts: an equilibrium sets their rates.
+    pub(crate) fn with_openings(mut self, openings: &[DriverId]) -> Self {
+        self.shifts.extend(openings.iter().map(|d| (*d, 1.0)));
+        self
+    }
+
     /// Merges equal parameters of laws, and sorts them by driver and parameter.
     pub(crate) fn with_laws_in_order(mut self) -> Self {
         self.laws.sort_by_key(|(driver, parameter, _)| (*driver, *parameter));

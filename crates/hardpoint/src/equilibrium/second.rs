@@ -90,13 +90,12 @@ impl<'a> Curvatures<'a> {
         };
         let plain: Vec<f64> = values.iter().map(|x| x.v).collect();
         let velocity = |direction: Along| {
-            let mut field = match &direction {
+            let field = match &direction {
                 Along::Force(_) => DesignVelocity::default(),
                 Along::Driver(driver) => DesignVelocity::of_driver(*driver),
                 Along::Design(rates) => design_map.field_along(&along(rates), &plain).with_laws_in_order(),
             };
-            field.shifts.extend(openings.iter().map(|d| (*d, 1.0)));
-            let field = PlanVelocity::new(topology, &field);
+            let field = PlanVelocity::new(topology, &field.with_openings(openings));
             (direction, Velocity { field, direct: DirectDifferentiation::new(model, topology) })
         };
         Self {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::sink::NullSink;
 use super::walk::{Scope, SolvedSteps};
-use super::{Analysis, Walk};
+use super::{Analysis, PreparedDesign, Walk};
 use crate::model::VariableId;
 use crate::motion::margin::Margins;
 use crate::motion::state_along::StateAlong;
@@ -47,8 +47,7 @@ impl Analysis<'_> {
         let (model, topology, design_map) = (self.solved_model(), self.topology(), self.design_map());
         let openings = self.openings().map_or(&[][..], |(openings, _)| openings);
         let direction = |v: &VariableId| {
-            let mut field = design.fields[v.0].clone();
-            field.shifts.extend(openings.iter().map(|d| (*d, 1.0)));
+            let field = design.fields[v.0].clone().with_openings(openings);
             let mut values: Vec<Dual> = design.values.iter().map(|b| Dual::constant(*b)).collect();
             values[v.0] = Dual::variable(design.values[v.0]);
             Direction {
@@ -61,7 +60,7 @@ impl Analysis<'_> {
         let (mut values, mut derivatives) = (Margins::<f64>::new(topology), Margins::<Dual>::new(topology));
         let mut found = MarginDerivatives::default();
         // Sensitivities are solved where derivatives are requested only.
-        let only_position = super::PreparedDesign {
+        let only_position = PreparedDesign {
             fields: if openings.is_empty() { Vec::new() } else { design.fields.clone() },
             ..design
         };

@@ -107,12 +107,7 @@ impl<'a> Walk<'a> {
         });
         // The openings follow the design as far as the equilibrium asks for it.
         let followed = openings.map(|(openings, _)| {
-            let shifts = || openings.iter().map(|d| (*d, 1.0));
-            let with_openings = |field: &DesignVelocity| DesignVelocity {
-                shifts: field.shifts.iter().copied().chain(shifts()).collect(),
-                ..field.clone()
-            };
-            fields.iter().map(with_openings).collect::<Vec<_>>()
+            fields.iter().map(|field| field.clone().with_openings(openings)).collect::<Vec<_>>()
         });
         let fields = followed.as_ref().unwrap_or(fields);
         let mut one = Stepper::new(model, topology, PlanGeometry::same(model, topology, geometry, laws));

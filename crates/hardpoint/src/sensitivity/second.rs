@@ -183,11 +183,8 @@ impl Seconds {
         (directions, openings): (&[PairDirection], &[DriverId]),
         pairs: &[[usize; 2]],
     ) -> Self {
-        let field = |d: &PairDirection| {
-            let mut field = d.field(design_map, values).with_laws_in_order();
-            field.shifts.extend(openings.iter().map(|d| (*d, 1.0)));
-            field
-        };
+        let field =
+            |d: &PairDirection| d.field(design_map, values).with_laws_in_order().with_openings(openings);
         let fields: Vec<DesignVelocity> = directions.iter().map(field).collect();
         let pair = |&[u, w]: &[usize; 2]| {
             // b + eps w with eps^2 = 0: e_u + eps de_u/dw, L_u + eps L_uw, and the same of the laws' parameters
