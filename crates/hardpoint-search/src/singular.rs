@@ -36,8 +36,8 @@ pub fn singular(rows: &[Vec<f64>], n: usize) -> Singular {
                 }
                 turned = true;
                 let zeta = (b - a) / (2.0 * c);
-                let t = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                let cos = 1.0 / t.hypot(1.0);
+                let t = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
+                let cos = 1.0 / (1.0 + t * t).sqrt();
                 rotate(&mut columns, [p, q], cos, cos * t);
                 rotate(&mut v, [p, q], cos, cos * t);
             }

@@ -109,6 +109,9 @@ fn all_positions_of_a_shape_are_within_its_envelope_and_its_error() {
     let analysis = Analysis::with(&moved, Formulation::Relative).unwrap();
     let solution = analysis.solve(Run::new());
     let arm = model.bodies.iter().position(|b| b.name == "arm").unwrap();
+    let triangles: Vec<[Vec3; 3]> = found.surface.corners().collect();
+    let longest = |[a, b, c]: &[Vec3; 3]| f64::max((*b - *a).norm(), (*c - *a).norm());
+    let reach = triangles.iter().map(longest).fold(0.0, f64::max);
     let mut beyond = 0.0_f64;
     for k in 0..solution.motion.len() {
         let state = solution.motion.at(k).body(arm);
@@ -116,8 +119,12 @@ fn all_positions_of_a_shape_are_within_its_envelope_and_its_error() {
             // Middle line of the stick.
             let s = f64::from(n) / 10.0;
             let p = state.r + state.rotation * Vec3::new(0.01 + 0.04 * s, 0.02 - 0.02 * s, 0.06);
-            let near =
-                found.surface.corners().map(|c| distance_from_triangle(p, c)).fold(f64::INFINITY, f64::min);
+            // No triangle is nearer to a point than its first corner by more than its longest side.
+            let corner = |t: &&[Vec3; 3]| (p - t[0]).dot(p - t[0]);
+            let nearest = triangles.iter().map(|t| corner(&t)).fold(f64::INFINITY, f64::min).sqrt();
+            let far = (nearest + reach) * (nearest + reach);
+            let candidates = triangles.iter().filter(|t| corner(t) <= far);
+            let near = candidates.map(|t| distance_from_triangle(p, *t)).fold(f64::INFINITY, f64::min);
             // The surface is at least its radius away.
             beyond = beyond.max(0.005 - near);
         }

@@ -28,6 +28,13 @@ const ROUND_OFF: f64 = 1e-9;
 const SETTLED: f64 = 1e-12;
 /// Median absolute value of normal residuals, as a fraction of their standard deviation.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
+/// A step that decreases the squares by less than this fraction cannot be judged by them: readings in units of their
+/// standard deviation are less accurate than others, and the positions were solved to a tolerance.
+const NEAR: f64 = 1e-8;
+/// Number of undamped steps from there.
+const MOST_LAST_STEPS: usize = 10;
+/// An undamped step counts if the decrease that remains is below this fraction of the one before.
+const CLOSER: f64 = 0.25;
 /// Damping of a step within bounds that does not improve the fit: first value, as a fraction of the largest column, and
 /// factor of the next ones (Levenberg and Marquardt).
 const DAMPING: [f64; 2] = [1e-4, 10.0];
@@ -58,6 +65,8 @@ pub(super) struct FitWorkspace<'b> {
     /// True if all readings have standard deviations.
     pub has_sigmas: bool,
     nominal: Vec<Option<ReachedPosture>>,
+    /// Sum of squares that is zero in comparison with that of the nominal design.
+    vanished: f64,
     pub cost: RefCell<StudyCost>,
 }
 
@@ -113,6 +122,7 @@ impl<'b> FitWorkspace<'b> {
             compared: Vec::new(),
             has_sigmas: request.measured.readings.iter().all(|r| r.sigma.is_some()),
             nominal: Vec::new(),
+            vanished: 0.0,
             cost: RefCell::new(StudyCost { designs: 1, ..StudyCost::default() }),
         }
     }
@@ -166,6 +176,8 @@ impl<'b> FitWorkspace<'b> {
                 "give standard deviations (`sigma`), fit fewer variables, or measure more",
             ));
         }
+        let at_nominal = self.rows(&self.nominal, &vec![0.0; variables]);
+        self.vanished = SETTLED * SETTLED * at_nominal.r.iter().map(|r| r * r).sum::<f64>();
         Ok(())
     }
 
@@ -374,6 +386,60 @@ impl<'b> FitWorkspace<'b> {
         directions.iter().map(|(v, s)| information(at, weights, v) / (s * s)).sum()
     }
 
+    /// Components of the residuals along determined directions: `u . r`, with `u = J v / s`. Their squares add up to the
+    /// decrease of the squares by an undamped step, which is the sum of `-v (u . r) / s`.
+    fn components(&self, at: &Rows, weights: &[f64], scale: f64, directions: &[(Vec<f64>, f64)]) -> Vec<f64> {
+        let component = |(v, s): &(Vec<f64>, f64)| {
+            let of_readings = at.d.iter().zip(&at.r).zip(weights).map(|((row, r), w)| w * r * dot(row, v));
+            let of_priors = self.priors.a.iter().zip(&at.priors).map(|(a, r)| scale * scale * r * dot(a, v));
+            (of_readings.sum::<f64>() + of_priors.sum::<f64>()) / s
+        };
+        directions.iter().map(component).collect()
+    }
+
+    /// Decrease of the squares by an undamped step, as a fraction of them; 0 where they have vanished.
+    fn decrease(&self, at: &Rows, weights: &[f64], scale: f64, directions: &[(Vec<f64>, f64)]) -> f64 {
+        let squares = Self::squares(at, weights, scale);
+        if squares <= self.vanished {
+            return 0.0;
+        }
+        self.components(at, weights, scale, directions).iter().map(|c| c * c).sum::<f64>() / squares
+    }
+
+    /// Undamped steps from a point whose squares are too inaccurate to be compared with those of its neighbours: the
+    /// derivatives determine the steps, and the decrease that they leave is what is compared. True if they end at the
+    /// optimum.
+    fn last_steps(
+        &self,
+        (x, at): (&mut Vec<f64>, &mut Rows),
+        weights: &[f64],
+        scale: f64,
+        more: &dyn Fn() -> bool,
+    ) -> bool {
+        let all: Vec<usize> = (0..x.len()).collect();
+        let mut directions = self.determined(at, weights, scale, &all).directions;
+        let mut left = self.decrease(at, weights, scale, &directions);
+        for _ in 0..MOST_LAST_STEPS {
+            // Components are sums of numbers as large as the residuals.
+            if left <= SETTLED * SETTLED {
+                break;
+            }
+            let mut next = x.clone();
+            let components = self.components(at, weights, scale, &directions);
+            for ((v, s), c) in directions.iter().zip(components) {
+                next.iter_mut().zip(v).for_each(|(x, v)| *x -= v * c / s);
+            }
+            let Some(rows) = self.rows_at(&next, more) else { break };
+            directions = self.determined(&rows, weights, scale, &all).directions;
+            let still = self.decrease(&rows, weights, scale, &directions);
+            if still > CLOSER * left {
+                break;
+            }
+            (*x, *at, left) = (next, rows, still);
+        }
+        left <= SETTLED
+    }
+
     /// Sum of weighted squares of readings and priors, in squares of the scale.
     fn squares(at: &Rows, weights: &[f64], scale: f64) -> f64 {
         let readings = at.r.iter().zip(weights).map(|(r, w)| w * r * r).sum::<f64>();
@@ -390,16 +456,30 @@ impl<'b> FitWorkspace<'b> {
         let mut weights = self.weights(&at.r, scale);
         let mut status = Status::IterationLimit;
         let mut iterations = Vec::new();
+        // Weights of a robust loss follow each step, and bounds limit it.
+        let mut near = if self.request.loss == Loss::Squares && !self.is_bounded() { NEAR } else { 0.0 };
         let first = at.clone();
         progress(0, Self::squares(&at, &weights, scale) / (scale * scale));
         while iterations.len() < self.request.iterations {
             let before = Self::squares(&at, &weights, scale);
             let found = self.determined(&at, &weights, scale, &all).directions;
+            let decrease = self.decrease(&at, &weights, scale, &found);
+            if decrease <= near {
+                if self.last_steps((&mut x, &mut at), &weights, scale, more) {
+                    status = Status::Found;
+                    break;
+                }
+                // Undamped steps do not lead there.
+                near = 0.0;
+            } else if decrease <= SETTLED {
+                status = Status::Found;
+                break;
+            }
             let step = if self.is_bounded() {
                 self.bounded_step(&x, &at, &weights, scale, more)
             } else {
                 let directions: Vec<Vec<f64>> = found.iter().map(|(v, _)| v.clone()).collect();
-                self.step(&x, &at, &weights, scale, &directions, more)
+                self.step(&x, &at, (&weights, scale, near), &directions, more)
             };
             if !more() {
                 status = Status::Interrupted;
@@ -501,13 +581,13 @@ impl<'b> FitWorkspace<'b> {
         None
     }
 
-    /// Best fit with fixed weights over some directions, starting at x; `None` if there is none.
+    /// Best fit with fixed weights over some directions, starting at x, or a point whose undamped step decreases the
+    /// squares by no more than the fraction `near`; `None` if there is none.
     fn step(
         &self,
         x: &[f64],
         at: &Rows,
-        weights: &[f64],
-        prior_scale: f64,
+        (weights, prior_scale, near): (&[f64], f64, f64),
         directions: &[Vec<f64>],
         more: &dyn Fn() -> bool,
     ) -> Option<(Vec<f64>, Rows)> {
@@ -564,7 +644,21 @@ impl<'b> FitWorkspace<'b> {
         let mut solver = LeastSquares::new(none.clone(), bounds, Box::new(residuals), Box::new(derivatives))?;
         // A robust loss needs new weights after every iteration; squares keep theirs.
         let most = if self.request.loss == Loss::Squares { self.request.iterations } else { 1 };
-        let z = (0..most).map_while(|_| solver.step()).last().unwrap_or(none);
+        let all: Vec<usize> = (0..x.len()).collect();
+        let mut z = none;
+        for _ in 0..most {
+            let Some(next) = solver.step() else { break };
+            z = next;
+            let is_near = |rows: &Option<Rows>| {
+                rows.as_ref().is_none_or(|rows| {
+                    let found = self.determined(rows, weights, prior_scale, &all).directions;
+                    self.decrease(rows, weights, prior_scale, &found) <= near
+                })
+            };
+            if recent.at(&z, || find(&z), is_near) {
+                break;
+            }
+        }
         let rows = recent.at(&z, || find(&z), Option::clone)?;
         Some((place(&z), rows))
     }
