@@ -28,8 +28,8 @@ const ROUND_OFF: f64 = 1e-9;
 const SETTLED: f64 = 1e-12;
 /// Median absolute value of normal residuals, as a fraction of their standard deviation.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
-/// A step that decreases the squares by less than this fraction cannot be judged by them: readings in units of their
-/// standard deviation are less accurate than others, and the positions were solved to a tolerance.
+/// Two designs whose squares differ by less than this fraction cannot be compared by them: the error of the solved
+/// positions counts in standard deviations of the readings, which may be small.
 const NEAR: f64 = 1e-8;
 /// Number of undamped steps from there.
 const MOST_LAST_STEPS: usize = 10;
@@ -386,8 +386,8 @@ impl<'b> FitWorkspace<'b> {
         directions.iter().map(|(v, s)| information(at, weights, v) / (s * s)).sum()
     }
 
-    /// Components of the residuals along determined directions: `u . r`, with `u = J v / s`. Their squares add up to the
-    /// decrease of the squares by an undamped step, which is the sum of `-v (u . r) / s`.
+    /// Components of the residuals along determined directions: `u . r`, with `u = J v / s`. An undamped step, the
+    /// sum of `-v (u . r) / s`, decreases the squares by the sum of their squares.
     fn components(&self, at: &Rows, weights: &[f64], scale: f64, directions: &[(Vec<f64>, f64)]) -> Vec<f64> {
         let component = |(v, s): &(Vec<f64>, f64)| {
             let of_readings = at.d.iter().zip(&at.r).zip(weights).map(|((row, r), w)| w * r * dot(row, v));
