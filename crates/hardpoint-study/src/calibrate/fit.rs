@@ -466,6 +466,7 @@ impl<'b> FitWorkspace<'b> {
             let decrease = self.decrease(&at, &weights, scale, &found);
             if decrease <= near {
                 if self.last_steps((&mut x, &mut at), &weights, scale, more) {
+                    scale = self.scale_of(&at.r, self.effective(&at, &weights, &found));
                     status = Status::Found;
                     break;
                 }
