@@ -51,7 +51,7 @@ pip 'maturin>=1.16,<2'
 wheel=$(echo "$work"/wheel/*.whl)
 # Python compiles what the tests import, which is a small part of what is installed.
 PATH="$PWD/$work/bin:/usr/bin:/bin" pip --no-compile "$PWD/$wheel[test]"
-PATH="$PWD/$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/release/hardpoint" "$python" -m pytest -q -n 2 --dist loadfile -p no:cacheprovider python/tests
+PATH="$PWD/$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/release/hardpoint" "$python" -m pytest -q -p no:cacheprovider python/tests
 
 phase "the page"
 cd web
