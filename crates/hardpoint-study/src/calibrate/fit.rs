@@ -105,6 +105,16 @@ pub(super) struct Determined {
     pub nothing: Vec<Vec<f64>>,
 }
 
+/// Step to the optimum of the linearised problem: the sum of `-v (u . r) / s` over the determined directions v, with
+/// the residuals r and `u = J v / s`.
+struct UndampedStep {
+    directions: Vec<(Vec<f64>, f64)>,
+    /// `u . r`
+    components: Vec<f64>,
+    /// Decrease of the squares by the step, as a fraction of them; 0 where they have vanished.
+    decrease: f64,
+}
+
 impl<'b> FitWorkspace<'b> {
     pub fn new(model: &'b Model, analyses: &'b [Analysis<'b>], request: &'b Request<'b>) -> Self {
         Self {
@@ -386,24 +396,19 @@ impl<'b> FitWorkspace<'b> {
         directions.iter().map(|(v, s)| information(at, weights, v) / (s * s)).sum()
     }
 
-    /// Components of the residuals along determined directions: `u . r`, with `u = J v / s`. An undamped step, the
-    /// sum of `-v (u . r) / s`, decreases the squares by the sum of their squares.
-    fn components(&self, at: &Rows, weights: &[f64], scale: f64, directions: &[(Vec<f64>, f64)]) -> Vec<f64> {
+    /// Undamped step of all parameters at a point.
+    fn undamped_step(&self, at: &Rows, weights: &[f64], scale: f64) -> UndampedStep {
+        let all: Vec<usize> = (0..self.parameters.len()).collect();
+        let directions = self.determined(at, weights, scale, &all).directions;
         let component = |(v, s): &(Vec<f64>, f64)| {
             let of_readings = at.d.iter().zip(&at.r).zip(weights).map(|((row, r), w)| w * r * dot(row, v));
             let of_priors = self.priors.a.iter().zip(&at.priors).map(|(a, r)| scale * scale * r * dot(a, v));
             (of_readings.sum::<f64>() + of_priors.sum::<f64>()) / s
         };
-        directions.iter().map(component).collect()
-    }
-
-    /// Decrease of the squares by an undamped step, as a fraction of them; 0 where they have vanished.
-    fn decrease(&self, at: &Rows, weights: &[f64], scale: f64, directions: &[(Vec<f64>, f64)]) -> f64 {
+        let components: Vec<f64> = directions.iter().map(component).collect();
         let squares = Self::squares(at, weights, scale);
-        if squares <= self.vanished {
-            return 0.0;
-        }
-        self.components(at, weights, scale, directions).iter().map(|c| c * c).sum::<f64>() / squares
+        let decrease = if squares <= self.vanished { 0.0 } else { dot(&components, &components) / squares };
+        UndampedStep { directions, components, decrease }
     }
 
     /// Undamped steps from a point whose squares are too inaccurate to be compared with those of its neighbours: the
@@ -411,33 +416,26 @@ impl<'b> FitWorkspace<'b> {
     /// optimum.
     fn last_steps(
         &self,
-        (x, at): (&mut Vec<f64>, &mut Rows),
+        (x, at, step): (&mut Vec<f64>, &mut Rows, &mut UndampedStep),
         weights: &[f64],
         scale: f64,
         more: &dyn Fn() -> bool,
     ) -> bool {
-        let all: Vec<usize> = (0..x.len()).collect();
-        let mut directions = self.determined(at, weights, scale, &all).directions;
-        let mut left = self.decrease(at, weights, scale, &directions);
         for _ in 0..MOST_LAST_STEPS {
             // Components are sums of numbers as large as the residuals.
-            if left <= SETTLED * SETTLED {
+            if step.decrease <= SETTLED * SETTLED {
                 break;
             }
-            let mut next = x.clone();
-            let components = self.components(at, weights, scale, &directions);
-            for ((v, s), c) in directions.iter().zip(components) {
-                next.iter_mut().zip(v).for_each(|(x, v)| *x -= v * c / s);
-            }
+            let lengths = step.components.iter().zip(&step.directions).map(|(c, (_, s))| -c / s);
+            let next = along(x, &step.directions, &lengths.collect::<Vec<f64>>());
             let Some(rows) = self.rows_at(&next, more) else { break };
-            directions = self.determined(&rows, weights, scale, &all).directions;
-            let still = self.decrease(&rows, weights, scale, &directions);
-            if still > CLOSER * left {
+            let after = self.undamped_step(&rows, weights, scale);
+            if after.decrease > CLOSER * step.decrease {
                 break;
             }
-            (*x, *at, left) = (next, rows, still);
+            (*x, *at, *step) = (next, rows, after);
         }
-        left <= SETTLED
+        step.decrease <= SETTLED
     }
 
     /// Sum of weighted squares of readings and priors, in squares of the scale.
@@ -449,7 +447,6 @@ impl<'b> FitWorkspace<'b> {
     /// Fits from the nominal design until no small change improves the fit.
     pub fn search(&self, progress: &mut dyn FnMut(usize, f64), more: &dyn Fn() -> bool) -> SearchResult {
         let n = self.parameters.len();
-        let all: Vec<usize> = (0..n).collect();
         let mut x = vec![0.0; n];
         let mut at = self.rows(&self.nominal, &x);
         let mut scale = self.scale_of(&at.r, n as f64);
@@ -462,25 +459,23 @@ impl<'b> FitWorkspace<'b> {
         progress(0, Self::squares(&at, &weights, scale) / (scale * scale));
         while iterations.len() < self.request.iterations {
             let before = Self::squares(&at, &weights, scale);
-            let found = self.determined(&at, &weights, scale, &all).directions;
-            let decrease = self.decrease(&at, &weights, scale, &found);
-            if decrease <= near {
-                if self.last_steps((&mut x, &mut at), &weights, scale, more) {
-                    scale = self.scale_of(&at.r, self.effective(&at, &weights, &found));
+            let mut undamped = self.undamped_step(&at, &weights, scale);
+            if undamped.decrease <= near {
+                if self.last_steps((&mut x, &mut at, &mut undamped), &weights, scale, more) {
+                    scale = self.scale_of(&at.r, self.effective(&at, &weights, &undamped.directions));
                     status = Status::Found;
                     break;
                 }
                 // Undamped steps do not lead there.
                 near = 0.0;
-            } else if decrease <= SETTLED {
+            } else if undamped.decrease <= SETTLED {
                 status = Status::Found;
                 break;
             }
             let step = if self.is_bounded() {
                 self.bounded_step(&x, &at, &weights, scale, more)
             } else {
-                let directions: Vec<Vec<f64>> = found.iter().map(|(v, _)| v.clone()).collect();
-                self.step(&x, &at, (&weights, scale, near), &directions, more)
+                self.step(&x, &at, (&weights, scale, near), &undamped.directions, more)
             };
             if !more() {
                 status = Status::Interrupted;
@@ -494,7 +489,7 @@ impl<'b> FitWorkspace<'b> {
             let after = Self::squares(&rows, &weights, scale);
             (x, at) = (next, rows);
             let scaled_before = scale;
-            scale = self.scale_of(&at.r, self.effective(&at, &weights, &found));
+            scale = self.scale_of(&at.r, self.effective(&at, &weights, &undamped.directions));
             let old = std::mem::replace(&mut weights, self.weights(&at.r, scale));
             let settled = weights.iter().zip(&old).all(|(a, b)| (a - b).abs() <= SETTLED.sqrt());
             iterations.push(Self::squares(&at, &weights, scale) / (scale * scale));
@@ -589,7 +584,7 @@ impl<'b> FitWorkspace<'b> {
         x: &[f64],
         at: &Rows,
         (weights, prior_scale, near): (&[f64], f64, f64),
-        directions: &[Vec<f64>],
+        directions: &[(Vec<f64>, f64)],
         more: &dyn Fn() -> bool,
     ) -> Option<(Vec<f64>, Rows)> {
         if directions.is_empty() {
@@ -627,11 +622,9 @@ impl<'b> FitWorkspace<'b> {
                 |rows| {
                     let entry = |i: usize, j: usize| {
                         if i >= readings {
-                            return scale * prior_scale * dot(&self.priors.a[i - readings], &directions[j]);
+                            return scale * prior_scale * dot(&self.priors.a[i - readings], &directions[j].0);
                         }
-                        let by = |rows: &Rows| {
-                            rows.d[i].iter().zip(&directions[j]).map(|(d, v)| d * v).sum::<f64>()
-                        };
+                        let by = |rows: &Rows| dot(&rows.d[i], &directions[j].0);
                         rows.as_ref().map_or(f64::NAN, |rows| scale * roots[i] * by(rows))
                     };
                     let row = |i: usize| (0..n).map(|j| entry(i, j)).collect();
@@ -645,18 +638,14 @@ impl<'b> FitWorkspace<'b> {
         let mut solver = LeastSquares::new(none.clone(), bounds, Box::new(residuals), Box::new(derivatives))?;
         // A robust loss needs new weights after every iteration; squares keep theirs.
         let most = if self.request.loss == Loss::Squares { self.request.iterations } else { 1 };
-        let all: Vec<usize> = (0..x.len()).collect();
+        let is_near = |rows: &Option<Rows>| {
+            rows.as_ref().is_none_or(|rows| self.undamped_step(rows, weights, prior_scale).decrease <= near)
+        };
         let mut z = none;
-        for _ in 0..most {
+        for iteration in 1..=most {
             let Some(next) = solver.step() else { break };
             z = next;
-            let is_near = |rows: &Option<Rows>| {
-                rows.as_ref().is_none_or(|rows| {
-                    let found = self.determined(rows, weights, prior_scale, &all).directions;
-                    self.decrease(rows, weights, prior_scale, &found) <= near
-                })
-            };
-            if recent.at(&z, || find(&z), is_near) {
+            if iteration == most || recent.at(&z, || find(&z), is_near) {
                 break;
             }
         }
@@ -718,7 +707,7 @@ fn parameters_of_request(model: &Model, request: &Request<'_>) -> Vec<FittedPara
     variables.chain(parameters_of(model, &request.prior.offsets)).collect()
 }
 
-fn along(x: &[f64], directions: &[Vec<f64>], z: &[f64]) -> Vec<f64> {
-    let by = |k: usize| directions.iter().zip(z).map(|(v, z)| v[k] * z).sum::<f64>();
+fn along(x: &[f64], directions: &[(Vec<f64>, f64)], z: &[f64]) -> Vec<f64> {
+    let by = |k: usize| directions.iter().zip(z).map(|((v, _), z)| v[k] * z).sum::<f64>();
     x.iter().enumerate().map(|(k, x)| x + by(k)).collect()
 }
