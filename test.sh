@@ -5,33 +5,66 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 
-install() { # Debian package
-    local sudo=""
-    [ "$(id -u)" = 0 ] || sudo=sudo
-    echo "installing $1 ..."
-    $sudo apt-get update -qq
-    $sudo apt-get install -y -qq --no-install-recommends "$1" >/dev/null
-}
-need() { # command, Debian package
-    command -v "$1" >/dev/null || install "$2"
-}
-need node nodejs
-need npm npm
-command -v chromium-headless-shell >/dev/null || install chromium-headless-shell || need chromium chromium
-need valgrind valgrind
-need clang clang
-need python3 python3
-python3 -c 'import ensurepip' 2>/dev/null || install python3-venv
-
 phase() { # name
     echo "== $1 (after $((SECONDS / 60)) min $((SECONDS % 60)) s)"
 }
+has() { # command
+    command -v "$1" >/dev/null
+}
+as_root() {
+    if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
+}
+install() { # Debian packages
+    echo "installing $* ..."
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+}
+work=$PWD/target/python
+python=$work/bin/python
+pip() { "$python" -m pip install --quiet --disable-pip-version-check "$@"; }
+
+# Installs what comes from registries.
+prepare() {
+    local packages=()
+    has node || packages+=(nodejs)
+    has npm || packages+=(npm)
+    has valgrind || packages+=(valgrind)
+    has clang || packages+=(clang)
+    python3 -c 'import ensurepip' 2>/dev/null || packages+=(python3 python3-venv)
+    if [ ${#packages[@]} -gt 0 ] || ! has chromium-headless-shell; then
+        as_root apt-get update -qq
+        [ ${#packages[@]} = 0 ] || install "${packages[@]}"
+        has chromium-headless-shell || install chromium-headless-shell || has chromium || install chromium
+    fi
+    rm -rf "$work"
+    python3 -m venv "$work"
+    # What the wheel's tests import, before there is a wheel; compiled when it is imported, which is a small part of it.
+    "$python" - > "$work/requirements.txt" <<'END'
+try:
+    import tomllib
+except ImportError:
+    from pip._vendor import tomli as tomllib
+with open("python/pyproject.toml", "rb") as file:
+    project = tomllib.load(file)["project"]
+print(*project["dependencies"], *project["optional-dependencies"]["test"], sep="\n")
+END
+    pip --no-compile 'maturin>=1.16,<2' -r "$work/requirements.txt"
+    (cd web && npm ci --silent --no-audit --no-fund)
+}
+
+# While Rust compiles, since installing is waiting for the most part.
+mkdir -p target
+prepare > target/prepare.log 2>&1 &
+prepared=$!
+trap 'kill $prepared 2>/dev/null || true' EXIT
 
 phase "format and lints"
 cargo fmt --all --check
 cargo clippy --release --workspace --all-targets --quiet -- -D warnings
-cargo fmt --manifest-path web/engine/Cargo.toml -p hardpoint-wasm -p web-time --check
-cargo clippy --manifest-path web/engine/Cargo.toml --workspace --locked --target-dir target/engine --quiet -- -D warnings
+
+if ! wait $prepared; then
+    cat target/prepare.log >&2
+    exit 1
+fi
 
 phase "Rust tests"
 .ci/rust-tests --release --workspace
@@ -40,20 +73,12 @@ phase "instruction counts"
 bench/instructions
 
 phase "Python"
-work=target/python
-rm -rf "$work"
-python3 -m venv "$work"
-python="$PWD/$work/bin/python"
-pip() { "$python" -m pip install --quiet --disable-pip-version-check "$@"; }
-pip 'maturin>=1.16,<2'
 "$work/bin/maturin" build --quiet --release --features shared --manifest-path python/Cargo.toml --out "$work/wheel"
 # The wheel alone: nothing of the sources is beside it, and no toolchain is at hand.
 wheel=$(echo "$work"/wheel/*.whl)
-# Python compiles what the tests import, which is a small part of what is installed.
-PATH="$PWD/$work/bin:/usr/bin:/bin" pip --no-compile "$PWD/$wheel[test]"
-PATH="$PWD/$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/release/hardpoint" "$python" -m pytest -q -p no:cacheprovider python/tests
+PATH="$work/bin:/usr/bin:/bin" pip "$wheel[test]"
+PATH="$work/bin:/usr/bin:/bin" HARDPOINT="$PWD/target/release/hardpoint" "$python" -m pytest -q -p no:cacheprovider python/tests
 
 phase "the page"
 cd web
-npm ci --silent --no-audit --no-fund
 npm test

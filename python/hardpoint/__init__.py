@@ -14,6 +14,7 @@ from .designs import Designs
 from .errors import (
     CannotFollow,
     Diagnostic,
+    FileError,
     HardpointError,
     HardpointWarning,
     ModelError,
@@ -48,6 +49,7 @@ __all__ = [
     "Diagnostic",
     "DriverLoad",
     "DriverTable",
+    "FileError",
     "Function",
     "HardpointError",
     "HardpointWarning",

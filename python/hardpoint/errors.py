@@ -109,6 +109,15 @@ class UsageError(HardpointError, ValueError):
     """Invalid request: a name that does not exist, an array of the wrong shape."""
 
 
+class FileError(HardpointError, OSError):
+    """A file cannot be written or read: its folder does not exist, or permits neither. The reason is Python's `OSError`."""
+
+    @classmethod
+    def of_system(cls, job: str, path: object, error: OSError):
+        """Error of the operating system about the user's file."""
+        return cls.saying(f"`{path}` cannot be {job}: {error.strerror or error}")
+
+
 class HardpointWarning(UserWarning):
     """Warnings and notes of the engine."""
 

@@ -2,8 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from pathlib import Path
+
+from .errors import FileError, UsageError
+
+
+def where(path: str | os.PathLike) -> str:
+    """A path as a text."""
+    try:
+        return os.fsdecode(path)
+    except TypeError:
+        raise UsageError.saying(f"a path is a text or a `pathlib.Path`, not {path!r}") from None
 
 
 def write(path: str | os.PathLike, text: str) -> None:
@@ -13,11 +24,14 @@ def write(path: str | os.PathLike, text: str) -> None:
 
 def write_bytes(path: str | os.PathLike, contents: bytes) -> None:
     """Writes a file atomically."""
-    path = Path(path)
+    path = Path(where(path))
     beside = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
         with open(beside, "wb") as out:
             out.write(contents)
         os.replace(beside, path)
+    except OSError as error:
+        raise FileError.of_system("written", path, error) from error
     finally:
-        beside.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            beside.unlink()

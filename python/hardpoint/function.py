@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .arguments import checked, count
+from .arguments import checked, count, listed, numbers
 from .errors import CannotFollow, StudyError, UsageError, unknown
 from .model import Model
 
@@ -67,19 +67,20 @@ class Function:
         self.stopped: float | None = None if stopped is None else float(stopped)
         """Value of designs that do not move to their end; `None` if they raise an exception."""
         self._workers = count("workers", workers)
-        chosen = [v.name for v in model.variables.values() if v.bounds] if variables is None else list(variables)
+        chosen = [v.name for v in model.variables.values() if v.bounds] if variables is None else listed("variables", variables)
         if not chosen:
-            raise UsageError.saying("the model has no design variables with bounds; name the variables")
+            what = "the model has no design variables with bounds" if variables is None else "`variables` is empty"
+            raise UsageError.saying(f"{what}; name the variables")
         self.variables: tuple[str, ...] = tuple(chosen)
         self._columns = [model._variable(name) for name in chosen]
         cases = [model._case or 0] if model._case is not None or not model.cases else list(range(len(model.cases)))
         self._names = {k: model.cases[k] if model.cases else None for k in cases}
         metrics = {k: model.metrics(self._names[k]) for k in cases}
-        wanted = [m for k in cases for m in self._known(k, metrics[k])] if of is None else [of] if isinstance(of, str) else list(of)
+        wanted = [m for k in cases for m in self._known(k, metrics[k])] if of is None else listed("of", of)
         self.parts: tuple[Part, ...] = tuple(self._parts(wanted, cases, metrics))
         self.size: int = self.parts[-1].place.stop if self.parts else 0
         if not self.parts:
-            raise UsageError.saying("the model has no metrics; name measures")
+            raise UsageError.saying(f"{'the model has no metrics' if of is None else '`of` is empty'}; name measures")
         self._last: tuple[bytes, bool, np.ndarray, np.ndarray | None] | None = None
 
     def _known(self, case: int, metrics: dict[str, str]) -> list[str]:
@@ -89,7 +90,7 @@ class Function:
         return f"{self._names[case]}.{name}" if self._names[case] is not None and len(self._names) > 1 else name
 
     def _parts(self, wanted, cases, metrics):
-        first = 0
+        first, taken = 0, set()
         known = [self._title(k, name) for k in cases for name in [*metrics[k], *self.model.outputs]]
         for asked in wanted:
             found = False
@@ -97,6 +98,10 @@ class Function:
                 for name, unit in [*metrics[k].items(), *((o.name, o.units[0]) for o in self.model.outputs.values())]:
                     if asked not in (name, self._title(k, name)):
                         continue
+                    # A name alone may be that of a case's output, which is also named with its case.
+                    if (k, name) in taken:
+                        raise UsageError.saying(f"`of` has `{self._title(k, name)}` twice; name it once")
+                    taken.add((k, name))
                     is_metric = name in metrics[k]
                     size = 1 if is_metric else len(self.model._info["motions"][k]["times"])
                     yield Part(self._title(k, name), k, name, is_metric, unit, slice(first, first + size))
@@ -127,7 +132,7 @@ class Function:
 
     def design(self, x) -> dict[str, float]:
         """Design with these values."""
-        return dict(zip(self.variables, np.asarray(x, dtype=float).ravel()))
+        return dict(zip(self.variables, numbers("design", x).ravel()))
 
     def __call__(self, x) -> np.ndarray:
         """Values of all outputs, `[size]`."""
@@ -174,7 +179,7 @@ class Function:
         raise unknown("part", name, [part.name for part in self.parts])
 
     def _solved(self, x, derivatives: bool) -> tuple[np.ndarray, np.ndarray | None]:
-        x = np.ascontiguousarray(x, dtype=float).ravel()
+        x = np.ascontiguousarray(numbers("design", x)).ravel()
         key = x.tobytes()
         if self._last and self._last[0] == key and (self._last[1] or not derivatives):
             return self._last[2], self._last[3]
@@ -183,7 +188,7 @@ class Function:
         return self._last[2], self._last[3]
 
     def _batch(self, designs, derivatives: bool, workers: int | None = None) -> tuple[np.ndarray, np.ndarray | None]:
-        rows = np.asarray(designs, dtype=float)
+        rows = numbers("designs", designs)
         if rows.ndim != 2 or rows.shape[1] != len(self.variables) or not np.isfinite(rows).all():
             given = rows.shape[1:] if len(rows) == 1 else rows.shape
             raise UsageError.saying(

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import jax
 import numpy as np
 
+from .errors import UsageError
 from .function import Function
 
 
@@ -16,7 +17,7 @@ def function(of: Function) -> Callable[[jax.Array], jax.Array]:
     needed, since single precision is not enough for a mechanism.
     """
     if not jax.config.jax_enable_x64:
-        raise RuntimeError('JAX computes in single precision; say jax.config.update("jax_enable_x64", True) first')
+        raise UsageError.saying('JAX computes in single precision; say `jax.config.update("jax_enable_x64", True)` first')
     shape = jax.ShapeDtypeStruct((of.size,), np.float64)
     slopes = jax.ShapeDtypeStruct((of.size, len(of.variables)), np.float64)
 

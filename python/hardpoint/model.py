@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _native, display, files, tools
-from .arguments import checked, count
+from .arguments import by_name, checked, count, listed, number, numbers, together
 from .arrays import frozen
 from .designs import Designs
 from .errors import Diagnostic, HardpointWarning, MotionStopped, UsageError, unknown
@@ -209,7 +209,7 @@ class Model:
         Raises `ModelError` with all errors of the changed file. Changed design variables go with `run(design)` instead, which does not
         read a file.
         """
-        return self._changed({**(changes or {}), **sections})
+        return self._changed(together(by_name("changes", changes), sections))
 
     def _changed(self, changes: Mapping[str, Any]) -> Model:
         text = self._native.merged(written(changes))
@@ -282,9 +282,10 @@ class Model:
         position cannot be reached; with `partial` its values are NaN, and `stops` has the reason. Names that are not Python's go into
         a mapping: `model.at({"rack drive": 5})`.
         """
-        key = tuple(sorted((forces or {}).items()))
+        given = {name: number(f"force `{name}`", value) for name, value in by_name("forces", forces).items()}
+        key = tuple(sorted(given.items()))
         if key not in self._solvers:
-            self._solvers[key] = Solver(self, forces or {})
+            self._solvers[key] = Solver(self, given)
         return self._solvers[key].solve(names(drivers, values), design, sensitivities, partial, count("workers", workers), progress)
 
     # Motions
@@ -324,6 +325,8 @@ class Model:
 
     def runs(self, design: Design = None, **options) -> dict[str, Run]:
         """Runs every case."""
+        if "case" in options:
+            raise UsageError.saying("`model.runs()` runs every case; for a single one, `model.run(case=...)`")
         return {case: self.run(design, case=case, **options) for case in self.cases}
 
     def designs(
@@ -349,14 +352,13 @@ class Model:
         """
         index = self._index(case)
         rows = self._rows(designs, variables)
-        names = [outputs] if isinstance(outputs, str) else list(outputs)
+        names = listed("outputs", outputs)
         order = self._order(order, names)
-        numbers = np.arange(len(self._info["motions"][index]["times"]))
-        numbers = numbers if at is None else np.atleast_1d(numbers[at])
+        stored = _places(at, len(self._info["motions"][index]["times"]))
         found = self._native.designs(
-            index, rows, [self._output(name) for name in names], order, numbers.tolist(), sensitivities, metrics, count("workers", workers), listener(progress)
+            index, rows, [self._output(name) for name in names], order, stored.tolist(), sensitivities, metrics, count("workers", workers), listener(progress)
         )
-        found = Designs(self, index, rows, names, order, numbers, found, sensitivities)
+        found = Designs(self, index, rows, names, order, stored, found, sensitivities)
         if found.stops and not partial:
             number, why = next(iter(found.stops.items()))
             error = MotionStopped((why,))
@@ -369,7 +371,7 @@ class Model:
     ) -> np.ndarray:
         """Derivatives of some outputs by all design variables, `[time, output, variable]`: by direct differentiation, the adjoint method,
         or (`auto`) the cheaper of both. NaN for inadmissible variables."""
-        names = [outputs] if isinstance(outputs, str) else list(outputs)
+        names = listed("outputs", outputs)
         order = self._order(order, names)
         found = self._native.gradients(self._index(case), self._values(design), [self._output(name) for name in names], method)
         followed = np.array(found["followed"], dtype=bool)
@@ -379,8 +381,8 @@ class Model:
         self, outputs: str | Iterable[str], variables: str | Iterable[str] | None = None, design: Design = None, *, case: str | None = None
     ) -> np.ndarray:
         """Second derivatives of the values of some outputs by some design variables (all): `[time, output, variable, variable]`."""
-        names = [outputs] if isinstance(outputs, str) else list(outputs)
-        chosen = list(self.variables) if variables is None else [variables] if isinstance(variables, str) else list(variables)
+        names = listed("outputs", outputs)
+        chosen = list(self.variables) if variables is None else listed("variables", variables)
         for name in names:
             if not self._declared(name).by_position:
                 raise UsageError.saying(f"`{name}` does not depend on the position only: it has no second derivatives")
@@ -446,7 +448,7 @@ class Model:
 
         `facts["points"]` lists the front; the study's design is that of `point`, by default the balanced compromise.
         """
-        named = list(goals)
+        named = listed("goals", goals)
         text, design, exact = self._native.trade_off(
             named,
             count("points", points, 0),
@@ -497,13 +499,13 @@ class Model:
         with contextlib.ExitStack() as stack:
             text, design = self._native.calibrate(
                 _table(measured, stack),
-                list((sigma or {}).items()),
-                list(variables),
+                [(name, number(f"sigma of `{name}`", value)) for name, value in by_name("sigma", sigma).items()],
+                listed("variables", variables),
                 loss,
                 count("iterations", iterations, 0),
-                list((prior or {}).items()),
+                [(name, number(f"prior of `{name}`", value)) for name, value in by_name("prior", prior).items()],
                 priors,
-                list(offsets),
+                listed("offsets", offsets),
                 None if validate is None else _table(validate, stack),
                 listener(progress),
             )
@@ -522,8 +524,10 @@ class Model:
             if isinstance(asked.get(name), (int, float, np.generic)):
                 asked[name] = count(name, asked[name], 0)
         if "designs" in asked:
-            asked["designs"] = os.fspath(asked["designs"])
-        asked["ranges"] = {name: [float(a), float(b)] for name, (a, b) in dict(asked.get("ranges") or {}).items()}
+            asked["designs"] = files.where(asked["designs"])
+        if asked.get("curves") is not None:
+            asked["curves"] = listed("curves", asked["curves"])
+        asked["ranges"] = {name: list(ends(name, both)) for name, both in by_name("ranges", asked.get("ranges")).items()}
         if self._case is not None and self.cases:
             asked["cases"] = [self._case]
         return self._native.sweep(json.dumps({key: value for key, value in asked.items() if value is not None}))
@@ -586,9 +590,10 @@ class Model:
         if isinstance(design, Mapping):
             values = np.full(len(self.variables), np.nan)
             for name, value in design.items():
-                values[self._variable(name)] = value
+                # None is nominal.
+                values[self._variable(name)] = np.nan if value is None else number(f"design variable `{name}`", value)
             return values.tolist()
-        values = np.asarray(design, dtype=float)
+        values = numbers("design", design)
         if values.shape != (len(self.variables),):
             raise UsageError.saying(
                 f"a design has one value for each of the {len(self.variables)} design variables, or is a dictionary; the shape given is {values.shape}"
@@ -596,11 +601,11 @@ class Model:
         return values.tolist()
 
     def _rows(self, designs, variables: Sequence[str] | None) -> np.ndarray:
-        designs = list(designs) if not hasattr(designs, "shape") else designs
+        designs = list(designs) if not hasattr(designs, "shape") and hasattr(designs, "__iter__") else designs
         if isinstance(designs, list) and designs and isinstance(designs[0], Mapping):
             return np.array([self._values(design) for design in designs])
-        given = np.atleast_2d(np.asarray(designs, dtype=float))
-        chosen = range(len(self.variables)) if variables is None else [self._variable(name) for name in variables]
+        given = np.atleast_2d(numbers("designs", designs))
+        chosen = range(len(self.variables)) if variables is None else [self._variable(name) for name in listed("variables", variables)]
         if given.ndim != 2 or given.shape[1] != len(chosen):
             raise UsageError.saying(f"designs have a column for each of {len(chosen)} variables; the shape given is {given.shape}")
         rows = np.full((len(given), len(self.variables)), np.nan)
@@ -662,12 +667,15 @@ def _opened(native: _native.Model, folder: str | None = None, stacklevel: int = 
 
 def read(path: str | os.PathLike) -> Model:
     """Reads a model file. Raises `ModelError` with all its errors, and `TopologyError` if it cannot be driven."""
-    return _opened(_native.read(os.fspath(path)), os.path.dirname(os.path.abspath(path)))
+    file = files.where(path)
+    return _opened(_native.read(file), os.path.dirname(os.path.abspath(file)))
 
 
 def parse(text: str, name: str = "model.toml", folder: str | os.PathLike | None = None) -> Model:
     """Reads a model from a text; files that it names are in `folder`."""
-    where = None if folder is None else os.fspath(folder)
+    if not isinstance(text, str):
+        raise UsageError.saying(f"the text of a model is a `str`, not {type(text).__name__}")
+    where = None if folder is None else files.where(folder)
     return _opened(_native.parse(text, name, folder=where), where)
 
 
@@ -693,17 +701,37 @@ def _instead(old: Any, new: Any) -> Any:
 
 def _increasing(times: Any) -> np.ndarray:
     """Output times."""
-    at = np.atleast_1d(np.asarray(times, dtype=float))
+    at = np.atleast_1d(numbers("output times", times))
     if at.ndim != 1 or not np.isfinite(at).all() or not (np.diff(at) > 0).all():
         raise UsageError.saying("output times are a list of increasing numbers, s, or a table such as `{'end': 2, 'steps': 100}`")
     return at
+
+
+def _places(at: Any, count: int) -> np.ndarray:
+    """Indices of stored output times."""
+    every = np.arange(count)
+    try:
+        found = every if at is None else np.atleast_1d(every[at])
+    except (IndexError, TypeError, ValueError):
+        found = None
+    if found is None or found.ndim != 1 or isinstance(at, bool):
+        raise UsageError.saying(f"`at` has indices of output times, of which there are {count} (0 to {count - 1}), or a slice of them, not {at!r}")
+    return found
+
+
+def ends(name: str, both: Any) -> tuple[float, float]:
+    """Both ends of a range."""
+    found = numbers(f"range of `{name}`", both)
+    if found.shape != (2,):
+        raise UsageError.saying(f"the range of `{name}` is both of its ends, not {both!r}")
+    return float(found[0]), float(found[1])
 
 
 def _law(name: str, law: Any, times: np.ndarray) -> Any:
     """A law as the file has it; an array of values at the output times becomes a table."""
     if isinstance(law, (str, bool, Mapping)) or np.ndim(law) == 0:
         return law
-    values = np.asarray(law, dtype=float)
+    values = numbers(f"law of `{name}`", law)
     if values.shape != times.shape:
         raise UsageError.saying(f"the law of `{name}` has a value for each of the {len(times)} output times; the shape given is {values.shape}")
     return {"type": "table", "points": np.column_stack([times, values]).tolist()}
@@ -732,6 +760,8 @@ def _table(data: Any, stack: contextlib.ExitStack) -> str:
     """Path of a CSV file: a given one, or a temporary one of a table of pandas."""
     if isinstance(data, (str, os.PathLike)):
         return os.fspath(data)
+    if not hasattr(data, "to_csv"):
+        raise UsageError.saying(f"measured data are the path of a CSV file, or a table of pandas, not {data!r}")
     handle, path = tempfile.mkstemp(suffix=".csv")
     stack.callback(os.unlink, path)
     with os.fdopen(handle, "w", encoding="utf-8", newline="") as out:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .arguments import named
+from .arguments import listed, named
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -52,9 +52,10 @@ def plot(
     """
     labelled = _labelled(runs)
     model = next(iter(labelled.values())).model
-    quantities = [names] if isinstance(names, str) else list(names) if names is not None else list(model.measures)
+    quantities = list(model.measures) if names is None else listed("names", names)
     if not quantities:
-        raise UsageError.saying("the model has no measures; name coordinates of points")
+        what = "the model has no measures" if names is None else "`names` is empty"
+        raise UsageError.saying(f"{what}; name measures or coordinates of points")
     if ax is None:
         pyplot = _matplotlib()
         size = (WIDTH, HEIGHT * len(quantities) + 1)
@@ -93,7 +94,11 @@ def _labelled(runs: Any) -> dict[str, Run]:
 
     if isinstance(runs, Run):
         return {runs.case or runs.model.name: runs}
-    found = dict(runs) if isinstance(runs, Mapping) else {f"{k + 1}: {run.case or run.model.name}": run for k, run in enumerate(runs)}
+    given = list(runs.values()) if isinstance(runs, Mapping) else list(runs) if hasattr(runs, "__iter__") else [runs]
+    strange = [one for one in given if not isinstance(one, Run)]
+    if strange:
+        raise UsageError.saying(f"`runs` is a run, a list of runs, or runs by their labels; {strange[0]!r} is not a run")
+    found = dict(runs) if isinstance(runs, Mapping) else {f"{k + 1}: {run.case or run.model.name}": run for k, run in enumerate(given)}
     if not found:
         raise UsageError.saying("there are no runs to plot")
     return found

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _native
+from . import _native, arguments
 from .arrays import frozen
 from .errors import CannotFollow, Diagnostic, MotionStopped, UsageError, diagnostics, unknown
 
@@ -120,7 +120,7 @@ class Solver:
 
     def __init__(self, model: Model, forces: Mapping[str, float]):
         self.model = model
-        self.native = model._native.positioned([(name, float(number(name, value, "force"))) for name, value in forces.items()])
+        self.native = model._native.positioned(list(forces.items()))
         self.nominal = {driver["name"]: float(driver["nominal"]) for driver in model.drivers}
         self.units = {driver["name"]: driver["unit"] for driver in model.drivers}
 
@@ -177,10 +177,7 @@ class Solver:
 
 def number(name: str, value: Any, what: str = "driver") -> np.ndarray:
     """Values of a driver or force."""
-    try:
-        values = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise UsageError.saying(f"{what} `{name}` takes a number or an array of numbers, not {value!r}") from None
+    values = arguments.numbers(f"{what} `{name}`", value)
     if not np.isfinite(values).all():
         raise UsageError.saying(f"{what} `{name}` takes finite numbers, not {value!r}")
     return values
@@ -190,6 +187,6 @@ def names(values: Mapping[str, Any] | None, more: Mapping[str, Any]) -> dict[str
     """All given drivers, by name."""
     if values is not None and not isinstance(values, Mapping):
         raise UsageError.saying(f"drivers are named: `model.at(travel=12)` or `model.at({{'travel': 12}})`, not {values!r}")
-    return {**(values or {}), **more}
+    return arguments.together(values or {}, more)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _native, display, plots, stored
-from .arguments import checked
+from .arguments import by_name, checked, listed, together
 from .arrays import frozen
 from .errors import CannotFollow, Diagnostic, UsageError, diagnostics, unknown
 
@@ -195,7 +195,7 @@ class Run:
     def sensitivities(self, name: str | None = None, variables: Iterable[str] | None = None, order: int | str = 0) -> np.ndarray:
         """Derivatives of one output, `[variable, time]`, or of all outputs, `[output, variable, time]`, by some design variables; by
         default, by all in `followed`."""
-        chosen = list(self.followed) if variables is None else list(variables)
+        chosen = list(self.followed) if variables is None else listed("variables", variables)
         by = [self._follow(variable) for variable in chosen]
         order = self.model._order(order, [name] if name else [])
         found = self._derivatives(order)
@@ -304,7 +304,7 @@ class Run:
         plotted. `others` are further runs by their labels. Returns the axes, an array of them for several quantities; `hardpoint.plot`
         plots any runs.
         """
-        runs = {"this run": self, **others} if others else self
+        runs = together({"this run": self}, by_name("others", others)) if others else self
         return plots.plot(runs, names, over=over, order=order, by=by, ax=ax, **style)
 
     def animate(self, *, seconds: float = 4.0, frames: int = 60, size: float = 5.0) -> Any:

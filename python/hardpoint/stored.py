@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import json
 import os
+import zipfile
+import zlib
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,13 +14,17 @@ import numpy as np
 
 from . import _native, files
 from .arrays import frozen
-from .errors import UsageError
+from .errors import FileError, UsageError
 
 if TYPE_CHECKING:
     from .run import Run
 
 FORMAT = 1
 """Version of the file."""
+ARRAYS = ("times", "values", "design", "metrics", "metrics_d")
+"""Arrays of every run."""
+ABOUT = ("sensitivities", "followed", "stop", "stopped_at", "diagnostics", "summary")
+"""Further facts of a run, besides its model."""
 
 
 def save(run: Run, path: str | os.PathLike) -> None:
@@ -62,19 +68,31 @@ def load(path: str | os.PathLike) -> Run:
     from .model import Model, _restored
     from .run import Run
 
-    refused = UsageError.saying(f"`{os.fspath(path)}` is not a run of this package; `run.save(path)` writes one")
+    name = files.where(path)
+    refused = UsageError.saying(f"`{name}` is not a run of this package, or is damaged; `run.save(path)` writes one")
     try:
-        with np.load(path, allow_pickle=False) as found:
-            arrays = {name: frozen(found[name]) for name in found.files}
-        about = json.loads(bytes(arrays.pop("about")))
+        with open(name, "rb") as contents:
+            whole = contents.read()
+    except FileNotFoundError:
+        raise UsageError.saying(f"there is no file `{name}`") from None
     except OSError as error:
-        if isinstance(error, FileNotFoundError):
-            raise UsageError.saying(f"there is no file `{os.fspath(path)}`") from None
+        raise FileError.of_system("read", name, error) from error
+    try:
+        if not zipfile.is_zipfile(io.BytesIO(whole)):
+            raise refused
+        with np.load(io.BytesIO(whole), allow_pickle=False) as found:
+            arrays = {key: frozen(found[key]) for key in found.files}
+        about = json.loads(bytes(arrays.pop("about")))
+        if about["format"] != FORMAT:
+            raise UsageError.saying(f"`{name}` has format {about['format']}, of another version of the package ({about['hardpoint']})")
+        missing = {"text", "file", "files", "added", "case", *ABOUT} - set(about) or set(ARRAYS) - set(arrays)
+    except UsageError:
+        raise
+    # All that the readers of zip files, arrays and JSON raise for damaged contents.
+    except (OSError, ValueError, KeyError, EOFError, TypeError, NotImplementedError, zipfile.BadZipFile, zlib.error) as error:
         raise refused from error
-    except (ValueError, KeyError, EOFError) as error:
-        raise refused from error
-    if about["format"] != FORMAT:
-        raise UsageError.saying(f"`{os.fspath(path)}` has format {about['format']}, of another version of the package ({about['hardpoint']})")
+    if missing:
+        raise refused
     added = (bool(about["added"][0]), bool(about["added"][1]))
     native = _restored(about["text"], about["file"], tuple(sorted(about["files"].items())), added, None)._native
     model = Model(native, None, added)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import display
+from .arguments import numbers
 from .errors import UsageError, unknown
 
 if TYPE_CHECKING:
@@ -143,14 +144,14 @@ class DriverTable(dict):
 
     def __call__(self, output: str, /, **at: Any) -> np.ndarray:
         """Values of an output at positions of all drivers; outside of the table's ranges, an error."""
-        numbers = self._of(output)["numbers"]
+        terms = self._of(output)["numbers"]
         axes = self.drivers
         for name in at:
             if name not in axes:
                 raise unknown("driver of this table", name, tuple(axes))
         if missing := [name for name in axes if name not in at]:
             raise UsageError.saying(f"the table is over {', '.join(f'`{name}`' for name in axes)}: give `{missing[0]}` too")
-        places = np.broadcast_arrays(*(np.asarray(at[name], dtype=float) for name in axes))
+        places = np.broadcast_arrays(*(numbers(f"driver `{name}`", at[name]) for name in axes))
         cells, weights = [], []
         for (name, knots), x in zip(axes.items(), places):
             if not np.all((knots[0] <= x) & (x <= knots[-1])):
@@ -160,7 +161,7 @@ class DriverTable(dict):
             cells.append(cell)
             weights.append(_weights((x - knots[cell]) / width, width, self["interpolation"] == "hermite"))
         total = np.zeros(places[0].shape)
-        for one in numbers:
+        for one in terms:
             values = np.reshape(one["values"], [len(knots) for knots in axes.values()])
             orders = [int(name in one["by"]) for name in axes]
             for corner in np.ndindex(*(2,) * len(axes)):
@@ -176,9 +177,9 @@ class DriverTable(dict):
         shape = [len(knots) for knots in self.drivers.values()]
         data = {}
         for one in self["outputs"]:
-            for numbers in one["numbers"]:
-                name = " by ".join([one["name"], *numbers["by"]])
-                data[name] = (axes, np.reshape(numbers["values"], shape), {"units": numbers["unit"]})
+            for term in one["numbers"]:
+                name = " by ".join([one["name"], *term["by"]])
+                data[name] = (axes, np.reshape(term["values"], shape), {"units": term["unit"]})
         coordinates = {axis["name"]: (axis["name"], np.array(axis["knots"], dtype=float), {"units": axis["unit"]}) for axis in self["drivers"]}
         return xarray.Dataset(data, coordinates, {"model": self["model"], "interpolation": self["interpolation"]})
 

@@ -9,6 +9,7 @@ import contextlib
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -16,8 +17,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import _native
-from .arguments import count, named
+import numpy as np
+
+from . import _native, files
+from .arguments import by_name, count, listed, named, number, numbers
 from .errors import Diagnostic, HardpointError, ModelError, MotionStopped, StudyError, TopologyError, UsageError
 from .studies import DriverTable, Study
 
@@ -54,8 +57,17 @@ def facts(*arguments: Any) -> dict[str, Any]:
 def _error(done: subprocess.CompletedProcess[str], found: list[dict]) -> HardpointError:
     of = CODES.get(done.returncode, StudyError)
     if not found:
-        return of.saying(done.stderr.removeprefix("error: ").strip() or f"the command ended with code {done.returncode}")
+        return of((_diagnostic(done.stderr.strip() or f"error: the command ended with code {done.returncode}"),))
     return of(tuple(Diagnostic.of({**one, "rendered": _rendered(one)}) for one in found))
+
+
+def _diagnostic(rendered: str) -> Diagnostic:
+    """Diagnostic of a text as on the command line."""
+    found = re.match(r"error(?:\[(\w+)\])?: (.*)", rendered)
+    code, message = found.groups() if found else (None, rendered)
+    help = re.search(r"^ *= help: (.*)", rendered, re.MULTILINE)
+    facts = {"severity": "error", "code": code, "message": message, "notes": (), "help": help and help[1]}
+    return Diagnostic.of({**dict.fromkeys(("file", "line", "column", "length", "label")), **facts, "rendered": rendered})
 
 
 def _rendered(one: dict) -> str:
@@ -96,7 +108,7 @@ def _study(model: Model, found: dict[str, Any]) -> Study:
 
 def export(model: Model, path: str | os.PathLike, format: str | None) -> dict[str, Any]:
     with saved(model) as file:
-        return facts("export", file, "-o", os.path.abspath(path), *([] if format is None else ["--format", format]))
+        return facts("export", file, "-o", os.path.abspath(files.where(path)), *([] if format is None else ["--format", format]))
 
 
 def clearance(model: Model, case: str | None, proof: bool) -> Study:
@@ -113,11 +125,11 @@ def envelope(
     error: float | None,
     margin: float | None,
 ) -> Study:
-    options: list[Any] = []
-    for name, value in (("--relative-to", relative_to), ("--error", error), ("--margin", margin)):
-        options += [] if value is None else [f"{name}={value}"]
+    options = [] if relative_to is None else [f"--relative-to={relative_to}"]
+    for name, value in (("error", error), ("margin", margin)):
+        options += [] if value is None else [f"--{name}={number(f'`{name}`', value)}"]
     with saved(model) as file:
-        return _study(model, facts("envelope", file, shape, *_case(model, case), *options, "-o", os.path.abspath(path)))
+        return _study(model, facts("envelope", file, shape, *_case(model, case), *options, "-o", os.path.abspath(files.where(path))))
 
 
 def table(
@@ -128,25 +140,38 @@ def table(
     interpolation: str | None,
     path: str | os.PathLike | None,
 ) -> DriverTable:
-    errors = [f"{name}={value}" for name, value in error.items()] if isinstance(error, Mapping) else [error]
-    options = [f"--error={one}" for one in errors]
-    for name, ends in over.items():
+    if isinstance(error, Mapping):
+        options = [f"--error={name}={_permitted(value)}" for name, value in error.items()]
+    else:
+        options = [f"--error={_permitted(error)}"]
+    for name, ends in by_name("over", over).items():
         try:
             first, last = ends
         except (TypeError, ValueError):
             raise UsageError.saying(f"the range of `{name}` is both of its ends, not {ends!r}") from None
         options.append(f"--over={name}={first}..{last}")
-    options += [f"--of={name}" for name in ([of] if isinstance(of, str) else of)]
+    options += [f"--of={name}" for name in listed("of", of)]
     options += [] if interpolation is None else [f"--interpolation={interpolation}"]
     with saved(model) as file, tempfile.TemporaryDirectory() as folder:
-        to = Path(folder, "table.json") if path is None else os.path.abspath(path)
+        to = Path(folder, "table.json") if path is None else os.path.abspath(files.where(path))
         return DriverTable(facts("map", file, *options, "-o", to)["map"])
+
+
+def _permitted(error: Any) -> str:
+    """A permitted error: a number, or a text with a unit."""
+    if isinstance(error, str):
+        return error
+    if np.ndim(error) or isinstance(error, (bool, bytes)):
+        raise UsageError.saying(
+            f"`error` is a number, a text such as `\"0.001deg\"`, or one of them for each output by its name, not {error!r}"
+        )
+    return str(number("`error`", error))
 
 
 @named
 def compare(model: Model, other: Model, case: str | None = None, measures: Iterable[str] = ()) -> Study:
     """Compares the motions of two models: hardpoints, measures, metrics, as `hardpoint compare` does."""
-    chosen = [f"--measure={name}" for name in ([measures] if isinstance(measures, str) else measures)]
+    chosen = [f"--measure={name}" for name in listed("measures", measures)]
     with saved(model) as first, saved(other) as second:
         return _study(model, facts("compare", first, second, *_case(model, case), *chosen))
 
@@ -158,7 +183,7 @@ def synthesize(task: str | os.PathLike | Mapping[str, Any], *, answers: int | No
     from .model import written
 
     options = [] if answers is None else [f"--answers={count('answers', answers)}"]
-    options += [] if folder is None else ["-o", os.path.abspath(folder)]
+    options += [] if folder is None else ["-o", os.path.abspath(files.where(folder))]
     with tempfile.TemporaryDirectory() as place:
         if isinstance(task, Mapping):
             path = Path(place, "task.toml")
@@ -211,7 +236,7 @@ def new(
     """
     from .model import read
 
-    path = Path(path)
+    path = Path(files.where(path))
     target = path if path.suffix == ".toml" else path.with_name(path.name + ".toml")
     with tempfile.TemporaryDirectory() as folder:
         options = ["--template", template]
@@ -220,16 +245,23 @@ def new(
             with open(table, "w", newline="", encoding="utf-8") as out:
                 rows = csv.writer(out, lineterminator="\n")
                 rows.writerow(["name", "x", "y", "z"])
-                rows.writerows([name, *map(float, place)] for name, place in hardpoints.items())
+                rows.writerows([name, *_place(name, place)] for name, place in hardpoints.items())
             options += ["--hardpoints", os.fspath(table)]
         elif hardpoints is not None:
-            options += ["--hardpoints", os.path.abspath(hardpoints)]
+            options += ["--hardpoints", os.path.abspath(files.where(hardpoints))]
         for name, value in (("--units", units), ("--axes", axes)):
             options += [] if value is None else [name, value]
         done = command("new", os.path.abspath(target), *options)
     if done.returncode:
         raise _error(done, [])
     return read(target)
+
+
+def _place(name: str, place: Any) -> list[float]:
+    found = numbers(f"hardpoint `{name}`", place)
+    if found.shape not in ((2,), (3,)):
+        raise UsageError.saying(f"hardpoint `{name}` has coordinates x, y and z, not {place!r}")
+    return found.tolist()
 
 
 @named
@@ -241,8 +273,8 @@ def import_model(
     from .model import read
 
     options = [] if format is None else ["--format", format]
-    closings = [close] if isinstance(close, str) else list(close)
-    found = facts("import", os.path.abspath(source), "-o", os.path.abspath(path), *options, *(f"--close={one}" for one in closings))
+    closings = listed("close", close)
+    found = facts("import", os.path.abspath(files.where(source)), "-o", os.path.abspath(files.where(path)), *options, *(f"--close={one}" for one in closings))
     return read(path), found
 
 

@@ -69,12 +69,116 @@ def test_designs_that_lock_raise_or_are_listed(strut):
         (lambda m: m.sweep(colour="red"), "unknown field"),
         (lambda m: hardpoint.Function(m, ["ball_joint_z"], ["nothing"]), "no metric or measure"),
         (lambda m: hardpoint.build(name="x", units={1, 2}), "consists of numbers"),
+        (lambda m: m.run(times="abc"), "output times: 'abc' is not a number"),
+        (lambda m: m.run({"ball_joint_z": np.array([1.0, 2.0])}), "design variable `ball_joint_z`: .* is not a single number"),
+        (lambda m: m.run({"ball_joint_z": "1"}), "design variable `ball_joint_z`: '1' is not a number"),
+        (lambda m: m.run(["a"] * 14), "design: .* is not a number"),
+        (lambda m: m.designs([["a"] * 14]), "designs: .* is not a number"),
+        (lambda m: m.designs(np.zeros((1, 14)), "toe", at=[0, 5000]), r"`at` has indices of output times, of which there are 501 \(0 to 500\)"),
+        (lambda m: m.designs(np.zeros((1, 14)), "toe", at=True), "`at` has indices"),
+        (lambda m: m.designs(5), "14 variables"),
+        (lambda m: m.run().plot(5), "`names` is a name or a list of names, not 5"),
+        (lambda m: m.run().plot([]), "`names` is empty"),
+        (lambda m: hardpoint.plot([m], "toe"), "is not a run"),
+        (lambda m: hardpoint.Function(m, of=[], variables=["ball_joint_z"]), "`of` is empty"),
+        (lambda m: hardpoint.Function(m, of="toe", variables=[]), "`variables` is empty"),
+        (lambda m: hardpoint.Function(m, of="toe", variables=["ball_joint_z"])("a"), "is not a number"),
+        (lambda m: m.table({"strut_drive": (-1, 1)}, of="toe", error=["0.01deg"]), "`error` is a number, a text"),
+        (lambda m: m.at(forces=5), "`forces` has values by name"),
+        (lambda m: m.calibrate("measured.csv", sigma=1.0), "`sigma` has values by name"),
+        (lambda m: m.calibrate(5), "measured data are"),
+        (lambda m: m.calibrate("measured.csv", loss=5), "`calibrate`: .*'loss'"),
+        (lambda m: m.sweep(ranges={"ball_joint_z": 1}), "both of its ends"),
+        (lambda m: hardpoint.read(None), "a path is a text"),
+        (lambda m: hardpoint.parse(b"name"), "the text of a model is a `str`"),
+        (lambda m: hardpoint.new("x.toml", "four-bar", hardpoints={"A": 5}), "hardpoint `A` has coordinates"),
     ],
 )
 def test_invalid_requests_are_reported(strut, ask, says):
     with pytest.raises(hardpoint.UsageError, match=says) as raised:
         ask(strut)
     assert isinstance(raised.value, ValueError)
+
+
+TWO = ["ball_joint_z", "ball_joint_z"]
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda m: hardpoint.Function(m, TWO, "toe"),
+        lambda m: hardpoint.Function(m, of=["toe", "camber", "toe"], variables=["ball_joint_z"]),
+        lambda m: m.designs([[0.1, 0.2]], "toe", variables=TWO),
+        lambda m: m.designs([[0.0] * 14], ["toe", "toe"]),
+        lambda m: m.run().sensitivities("toe", TWO),
+        lambda m: m.second_derivatives("toe", TWO),
+        lambda m: m.gradients(["toe", "toe"]),
+        lambda m: m.run().plot(["toe", "toe"]),
+        lambda m: m.trade_off(goals=["one", "one"]),
+        lambda m: m.calibrate("measured.csv", variables=TWO),
+        lambda m: m.calibrate("measured.csv", offsets=["toe", "toe"]),
+        lambda m: m.sweep(samples=2, curves=["toe", "toe"]),
+        lambda m: m.table({"strut_drive": (-1, 1)}, of=["toe", "toe"], error="0.01deg"),
+        lambda m: hardpoint.compare(m, m, measures=["toe", "toe"]),
+        lambda m: m.at({"strut_drive": 1.0}, strut_drive=2.0),
+        lambda m: m.with_({"time": {"steps": 4}}, time={"steps": 5}),
+        lambda m: m.run().plot("toe", others={"this run": m.run()}),
+    ],
+)
+def test_a_name_that_is_given_twice_is_refused(strut, ask):
+    with pytest.raises(hardpoint.UsageError, match="(has `.+` twice; name|is given twice, .*; give) it once"):
+        ask(strut)
+
+
+def test_an_output_of_a_case_has_one_name_in_a_function(toe):
+    with pytest.raises(hardpoint.UsageError, match="`of` has `bump.toe` twice"):
+        hardpoint.Function(toe, of=["toe", "bump.toe"], variables=["outer_z"])
+    with pytest.raises(hardpoint.UsageError, match="runs every case"):
+        toe.runs(case="bump")
+
+
+def test_a_single_name_needs_no_list(strut):
+    found = strut.designs([[0.1]], "toe", variables="ball_joint_z")
+    assert (found.values == strut.designs([[0.1]], ["toe"], variables=["ball_joint_z"]).values).all()
+    assert hardpoint.Function(strut, "ball_joint_z", "toe").variables == ("ball_joint_z",)
+
+
+def test_errors_of_files_name_the_file_of_the_user(strut, tmp_path):
+    path = tmp_path / "none" / "strut.npz"
+    run = strut.run(times=[0.0, 0.1])
+    for write in (run.save, strut.save, run.page().save):
+        with pytest.raises(hardpoint.FileError) as raised:
+            write(path)
+        assert str(raised.value) == f"error: `{path}` cannot be written: No such file or directory"
+        assert isinstance(raised.value, OSError) and isinstance(raised.value, hardpoint.HardpointError)
+        assert type(pickle.loads(pickle.dumps(raised.value))) is hardpoint.FileError
+    with pytest.raises(hardpoint.FileError, match="cannot be read: Is a directory"):
+        hardpoint.load_run(tmp_path)
+    with pytest.raises(hardpoint.UsageError, match="a path is a text"):
+        run.save(5)
+
+
+def test_a_damaged_run_is_refused(strut, tmp_path):
+    path = tmp_path / "strut.npz"
+    strut.run(times=[0.0, 0.1]).save(path)
+    whole = path.read_bytes()
+    middle = len(whole) // 2
+    with np.load(path) as found:
+        arrays = {name: found[name] for name in found.files}
+    np.savez(tmp_path / "part.npz", **{name: arrays[name] for name in arrays if name != "values"})
+    damaged = [b"PK\x03\x04junk", whole[:middle], whole[:middle] + bytes(64) + whole[middle + 64 :], (tmp_path / "part.npz").read_bytes(), b""]
+    for contents in damaged:
+        path.write_bytes(contents)
+        with pytest.raises(hardpoint.UsageError, match="is not a run of this package, or is damaged"):
+            hardpoint.load_run(path)
+
+
+def test_an_error_of_the_command_has_its_code_and_help(tmp_path):
+    with pytest.raises(hardpoint.UsageError) as raised:
+        hardpoint.new(tmp_path / "x.toml", "nope")
+    error = raised.value
+    assert error.code == "HP0605" and error.message == "there is no template `nope`" and error.help
+    assert str(error).startswith("error[HP0605]: there is no template `nope`")
 
 
 def test_impossible_studies_report_what_is_missing(strut):

@@ -48,6 +48,19 @@ def test_a_position_is_that_of_a_run_through_it(name, drivers):
         assert position.position(body) == pytest.approx(run.body(body).position[-1], rel=SAME, abs=SAME * 100)
 
 
+def test_a_reversed_driver_counts_like_its_laws(tmp_path):
+    plain, path = MODELS / "four_bar.toml", tmp_path / "reversed.toml"
+    path.write_text(plain.read_text().replace('law = "', 'reversed = true, law = "'))
+    plain, model = hardpoint.read(plain), hardpoint.read(path)
+    there, back = model.at(motor=10), plain.at(motor=-10)
+    run = model.run(times=[0, 1], laws={"motor": "10*t"})
+    table = model.table({"motor": (0, 10)}, of=["rocker_angle"], error="0.01deg")
+    assert there["crank_angle"] == pytest.approx(-10, rel=SAME) and there.derivative("crank_angle", "motor") == pytest.approx(-1, rel=SAME)
+    assert there["rocker_angle"] == pytest.approx(back["rocker_angle"], rel=SAME)
+    assert there["rocker_angle"] == pytest.approx(run.values("rocker_angle")[-1], rel=SAME)
+    assert table("rocker_angle", motor=10) == pytest.approx(there["rocker_angle"], abs=0.01)
+
+
 def test_derivatives_by_drivers_are_differences(strut):
     at, by = {"rack_drive": 5.0, "strut_drive": 10.0}, 1e-3
     position = strut.at(at)
@@ -93,7 +106,7 @@ def test_what_cannot_be_reached_is_reported_in_terms_of_the_drivers(strut):
     ("ask", "says"),
     [
         (lambda m: m.at(rack_drve=1), "did you mean `rack_drive`"),
-        (lambda m: m.at({"rack_drive": "far"}), "takes a number"),
+        (lambda m: m.at({"rack_drive": "far"}), "driver `rack_drive`: .far. is not a number"),
         (lambda m: m.at(rack_drive=float("nan")), "finite"),
         (lambda m: m.at(rack_drive=[1, 2], strut_drive=[1, 2, 3]), "different shapes"),
         (lambda m: m.at(3), "drivers are named"),

@@ -1,6 +1,6 @@
 /** Lengths in metres and angles in radians of the units that the command's `--set` knows. */
-const LENGTHS: Readonly<Record<string, number>> = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254 }
-const ANGLES: Readonly<Record<string, number>> = { deg: Math.PI / 180, '°': Math.PI / 180, rad: 1 }
+export const LENGTHS: Readonly<Record<string, number>> = { mm: 1e-3, cm: 1e-2, m: 1, in: 0.0254 }
+export const ANGLES: Readonly<Record<string, number>> = { deg: Math.PI / 180, '°': Math.PI / 180, rad: 1 }
 const KNOWN = 'mm, cm, m, in, deg or rad'
 
 /** `12`, `2,5`, `.5e-3`, `1/2`, `1 1/2`; then a unit. */

@@ -1,5 +1,5 @@
 import type { Interval } from './clearance'
-import { type Curve, firstIndex } from './curve'
+import { type Course, type Curve, firstIndex } from './curve'
 import { type Part, seenRange } from './zoom'
 
 /** A curve of a plot. */
@@ -9,6 +9,8 @@ export interface Line {
   curve: Curve
   /** Abscissa of this curve, if it is another than that of the content. */
   over?: Curve
+  /** Values and abscissa with their rates, if they are known; abscissa only if it is not time. */
+  course?: () => { y: Course; x?: Course }
   /** True if its points are not those of the output times, as in a file that was read. */
   free?: boolean
   /** Thinned values drawn as circles instead of a line. */
@@ -31,7 +33,7 @@ export interface Content {
   logarithmic?: boolean
   /** Abscissa of the curves instead of time. */
   over?: { label: string; unit: string; curve: Curve }
-  /** True if the motion goes back and forth along one line, drawn once: dashes would fill each other's gaps. */
+  /** True if lines that the motion goes along again are drawn once: dashes would fill each other's gaps. */
   once?: boolean
   /** True if a length is as long along both axes. */
   equal?: boolean
@@ -57,7 +59,36 @@ export function abscissaOf(line: Line, { over }: Content, times: Curve): Curve {
   return line.over ?? over?.curve ?? times
 }
 
-/** First and last step of a line that are drawn: from end to end of the abscissa where that is enough. */
+/** Values of the way back agree with the way there up to this part of their range, besides the bend between steps. */
+const RETRACED = 1e-3
+
+/** True if the steps beyond a stretch with ascending or descending abscissas have the values of the stretch. */
+function isRetraced(xs: Curve, ys: ArrayLike<number | null>, first: number, last: number): boolean {
+  const y = (k: number) => ys[Math.min(Math.max(k, first), last)] ?? NaN
+  const bend = (k: number) => Math.abs(y(k - 1) - 2 * y(k) + y(k + 1))
+  let [low, high] = [Infinity, -Infinity]
+  for (let k = first; k <= last; k++) [low, high] = [Math.min(low, y(k)), Math.max(high, y(k))]
+  const sign = xs[first] < xs[last] ? 1 : -1
+  for (let k = 0; k < xs.length; k++) {
+    const value = ys[k] ?? NaN
+    if ((k >= first && k <= last) || Number.isNaN(value)) continue
+    let [a, b] = [first, last]
+    while (b - a > 1) {
+      const middle = (a + b) >> 1
+      if (sign * (xs[middle] - xs[k]) <= 0) a = middle
+      else b = middle
+    }
+    const part = xs[b] === xs[a] ? 0 : (xs[k] - xs[a]) / (xs[b] - xs[a])
+    const between = y(a) + part * (y(b) - y(a))
+    if (!(Math.abs(value - between) <= RETRACED * (high - low) + bend(a) + bend(b))) return false
+  }
+  return true
+}
+
+/**
+ * First and last step of a line that are drawn: from end to end of the abscissa where that is enough, because the other
+ * steps go along the same line again.
+ */
 export function drawnSteps(line: Line, content: Content, times: Curve): [first: number, last: number] {
   const xs = abscissaOf(line, content, times)
   const all: [number, number] = [0, xs.length - 1]
@@ -66,7 +97,7 @@ export function drawnSteps(line: Line, content: Content, times: Curve): [first: 
   const [first, last] = low < high ? [low, high] : [high, low]
   const sign = low < high ? 1 : -1
   for (let k = first; k < last; k++) if (!(sign * (xs[k + 1] - xs[k]) >= 0)) return all
-  return [first, last]
+  return isRetraced(xs, line.curve, first, last) ? [first, last] : all
 }
 
 /** Least and largest drawn value within the visible part of the abscissa; of all where none is visible. */

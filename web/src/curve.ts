@@ -145,6 +145,65 @@ export function valueAt(curve: Curve, step: number): number {
   return step === k ? curve[k] : curve[k] + (curve[next] - curve[k]) * (step - k)
 }
 
+/** A quantity over time: its values, then its rates and accelerations as far as they are known. */
+export type Course = readonly Curve[]
+
+/**
+ * Value of a course between step `k` and the next one, a time `h` later: the polynomial with the values, rates and
+ * accelerations of both steps, as metrics are evaluated between output times. `s` goes from 0 to 1.
+ */
+export function hermite([y, v, a]: Course, k: number, h: number, s: number): number {
+  if (!v?.length || Number.isNaN(v[k] + v[k + 1])) return y[k] + (y[k + 1] - y[k]) * s
+  const [first, rate] = [y[k], h * v[k]]
+  if (!a?.length || Number.isNaN(a[k] + a[k + 1])) {
+    const [rise, turn] = [y[k + 1] - first - rate, h * v[k + 1] - rate]
+    return first + s * (rate + s * (3 * rise - turn + s * (turn - 2 * rise)))
+  }
+  const bend = (h * h * a[k]) / 2
+  const rise = y[k + 1] - first - rate - bend
+  const turn = h * v[k + 1] - rate - 2 * bend
+  const left = (h * h * a[k + 1]) / 2 - bend
+  const [cubic, quartic, quintic] = [
+    10 * rise - 4 * turn + left,
+    7 * turn - 15 * rise - 2 * left,
+    6 * rise - 3 * turn + left,
+  ]
+  return first + s * (rate + s * (bend + s * (cubic + s * (quartic + s * quintic))))
+}
+
+/** Bisections that leave less than single precision of an interval. */
+const BISECTIONS = 30
+
+/** Abscissas in single precision count as the same within this part. */
+const NEAR = 1e-6
+
+/** Values of a course wherever its abscissa is `x`, from step `first` to step `last`, in the order of the motion. */
+export function crossings(
+  xs: Course,
+  ys: Course,
+  times: Curve,
+  x: number,
+  [first, last]: readonly [number, number],
+): number[] {
+  const found: number[] = []
+  const near = Math.max(1, Math.abs(x)) * NEAR
+  const away = (k: number) => (Math.abs(xs[0][k] - x) <= near ? 0 : xs[0][k] - x)
+  for (let k = first; k <= last; k++) {
+    if (away(k) === 0) found.push(ys[0][k])
+    else if (k < last && away(k) * away(k + 1) < 0) {
+      const h = times[k + 1] - times[k]
+      let [low, high] = [0, 1]
+      for (let n = 0; n < BISECTIONS; n++) {
+        const middle = (low + high) / 2
+        if ((hermite(xs, k, h, middle) - x) * away(k) > 0) low = middle
+        else high = middle
+      }
+      found.push(hermite(ys, k, h, (low + high) / 2))
+    }
+  }
+  return found.filter((value) => !Number.isNaN(value))
+}
+
 /** The fractional step at which ascending `times` reach `time`. */
 export function stepAt(times: Curve, time: number): number {
   const last = times.length - 1

@@ -31,6 +31,9 @@ export interface Choice {
   overlays?: readonly number[]
 }
 
+/** Heading over what is of the design as loaded. */
+export const ORIGINAL = 'Original design'
+
 /** Choices by names, which hold for another text of the model. */
 export interface ChoiceMemory {
   quantity?: string
@@ -75,6 +78,10 @@ export class State {
   bound = ''
   /** Reason why the design is not the requested one. */
   refusal = ''
+  /** Case that is shown, if the model has several and they are known. */
+  case?: string
+  /** Reason why the sensitivities of the present design are not computed; empty if there is none. */
+  unsolved = ''
   /** Designs that were kept to be compared with. */
   readonly comparisons: Design[] = []
   /** Fractional index into the times. */
@@ -107,6 +114,8 @@ export class State {
 
   /** Plots that the page opens with. */
   readonly sheet: Sheet
+  /** Changes of the design that the page was made of; its records, such as the front of a study, are of this design. */
+  recorded: readonly VariableSetting[]
 
   constructor(readonly report: Report) {
     const sheet = sheetOf(report)
@@ -117,6 +126,7 @@ export class State {
       0
     const exact = report.designs.find(({ kind }) => kind === 'exact')
     this.changes = report.variables.map((_, index) => exact?.change[index] ?? 0)
+    this.recorded = this.settings
     this.sheet = sheet
     this.choice = {
       quantity,
@@ -190,7 +200,7 @@ export class State {
    */
   get outdated(): string | undefined {
     if (this.hasCurrentSensitivities) return undefined
-    return this.#sensitivities ? 'Design before the last change' : 'Original design'
+    return this.#sensitivities ? 'Design before the last change' : ORIGINAL
   }
 
   /** Step under the pointer in some plot; all plots read it. */
@@ -259,6 +269,11 @@ export class State {
   /** True if any variable is changed from the model as loaded. */
   get changed(): boolean {
     return this.moves.size > 0 || this.changes.some((by) => by !== 0)
+  }
+
+  /** True if the present design is the one that the page was made of. */
+  get isRecorded(): boolean {
+    return JSON.stringify(this.settings) === JSON.stringify(this.recorded)
   }
 
   /** True if the present design is predicted to first order instead of solved. */

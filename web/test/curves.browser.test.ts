@@ -1,8 +1,10 @@
+import { readFileSync } from 'node:fs'
 import type { Page } from 'playwright-core'
 import { describe, expect, inject, test } from 'vitest'
 import { NO_3D } from './browser'
 import { pages, ready } from './pages'
 import { curve, drawn, slide } from './person'
+import { motionBeside } from './table'
 
 const { models } = inject('samples')
 
@@ -148,6 +150,83 @@ describe('the sheet', () => {
     expect(await plot(0).locator('.caption').first().innerText()).toBe('Change to: original.')
     const differences = (await rows()).map((row) => numberOf(row.split('\t')[1]))
     expect(Math.max(...differences.map(Math.abs))).toBeGreaterThan(0.1)
+  })
+
+  test('of a crank that turns has both branches over another measure, with all values in the table', async () => {
+    await open('four_bar')
+    await plot(0).getByTestId('quantity').selectOption({ label: 'rocker_angle' })
+    await plot(0).getByTestId('over').selectOption({ label: 'over midpoint_x' })
+    await plot(0).getByTestId('values-at').click()
+    const list = plot(0).getByTestId('abscissas')
+    const enter = async (text: string) => {
+      await list.fill(text)
+      await list.press('Enter')
+    }
+    const rows = async () =>
+      (await plot(0).getByTestId('value-table').locator('tbody tr').allInnerTexts()).map((row) => row.split('\t'))
+    // The command's values at two of its output times, and at the times with the same abscissa on the other branch.
+    const motion = motionBeside(models.four_bar)
+    const [x, y] = ['midpoint_x', 'rocker_angle'].map((name) => motion.get(name)!)
+    const [low, high] = [Math.min(...x), Math.max(...x)]
+    const k = x.findIndex((value, k) => k > 20 && value > (low + high) / 2 + 3)
+    await enter(`${x[k]}`)
+    const [[, both]] = await rows()
+    const values = both.split('; ').map(numberOf)
+    expect(values).toHaveLength(2)
+    expect(Math.min(...values.map((value) => Math.abs(value - y[k])))).toBeLessThan(1e-3 * Math.abs(y[k]))
+    expect(await plot(0).getByTestId('values-note').innerText()).toBe('Several values: in the order of the motion.')
+    // An inch is entered as in every field of a length, and what is none is named.
+    await enter('8 in; 9 1/2 in')
+    expect((await rows()).map(([at]) => at)).toEqual(['203.2', '241.3'])
+    await enter('203.2 1/8s')
+    expect(await plot(0).getByTestId('abscissas-wrong').innerText()).toContain('There is no unit s')
+    expect(await list.inputValue()).toBe('203.2 1/8s')
+    // The curve is drawn from the first step to the last.
+    const [picture] = await Promise.all([
+      page.waitForEvent('download'),
+      page
+        .getByTestId('export')
+        .click()
+        .then(() => page.getByTestId('export-plot-svg').first().click()),
+    ])
+    const svg = readFileSync(await picture.path(), 'utf8')
+    const longest = Math.max(
+      ...[...svg.matchAll(/(?:points|d)="([^"]*)"/g)].map(([, path]) => path.split(/[ ML]+/).length),
+    )
+    expect(longest).toBeGreaterThan(x.length - 2)
+  })
+
+  test('draws a measured file only where it has what is plotted', async () => {
+    await open('four_bar')
+    const file = 'time [ms],midpoint_x [in],crank_angle [rad]\n0,8,0\n500,9,3.14159\n'
+    const read = (name: string, text: string) =>
+      plot(0)
+        .getByTestId('measured-file')
+        .setInputFiles({ name, mimeType: 'text/csv', buffer: Buffer.from(text) })
+    const legend = () => plot(0).locator('.legend .label').allInnerTexts()
+    const missed = () => plot(0).locator('.caption.missed').first().innerText()
+    await plot(0).getByTestId('quantity').selectOption({ label: 'midpoint_x' })
+    await plot(0).getByTestId('over').selectOption('')
+    await read('rig.csv', file)
+    await expect.poll(legend).toEqual(['midpoint_x', 'midpoint_x, rig.csv'])
+    await read('wrong.csv', 'time,midpoint_x [furlong]\n0,1\n')
+    await expect.poll(missed).toBe('midpoint_x [furlong] of wrong.csv: the page has no unit furlong')
+    // The columns of what is shown then.
+    await plot(0).getByTestId('quantity').selectOption({ label: 'crank_angle' })
+    await expect.poll(legend).toEqual(['crank_angle', 'crank_angle, rig.csv'])
+    await plot(0).getByTestId('quantity').selectOption({ label: 'rocker_angle' })
+    await expect.poll(missed).toContain('rig.csv has no column rocker_angle')
+    expect(await legend()).toEqual(['rocker_angle'])
+    await plot(0).getByTestId('quantity').selectOption({ label: 'midpoint_x' })
+    await plot(0).getByTestId('over').selectOption({ label: 'over rocker_angle' })
+    await expect.poll(missed).toContain('rig.csv has no column rocker_angle')
+    expect(await legend()).toEqual(['midpoint_x'])
+    // Values are no changes.
+    await plot(0).getByTestId('over').selectOption('')
+    await expect.poll(legend).toEqual(['midpoint_x', 'midpoint_x, rig.csv'])
+    await plot(0).getByTestId('difference').click()
+    await expect.poll(() => plot(0).locator('.caption').first().innerText()).toContain('not shown among changes')
+    expect(await legend()).toEqual(['midpoint_x'])
   })
 
   test('is maximised and restored, and zooms along the ordinate', async () => {

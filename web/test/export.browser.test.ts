@@ -4,6 +4,7 @@ import type { Browser, Page } from 'playwright-core'
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
 import { afterAll, beforeAll, describe, expect, inject, test, vi } from 'vitest'
 import { launch, visit, type Visit } from './browser'
+import { ready, settled } from './pages'
 import { VIEW } from './person'
 import { motionBeside, table } from './table'
 
@@ -121,6 +122,35 @@ describe('what a reader takes away', () => {
     expect(await wordsOf(await taken('export-plot-svg'))).not.toEqual(words)
     await page.getByTestId('plot-0').getByTestId('whole').click()
     expect(table((await taken('export-csv')).toString()).get('time [s]')!.length).toBe(rows)
+  })
+
+  test('each design has its own abscissa in the CSV', async () => {
+    const { page } = await visit(browser, models.four_bar)
+    await ready(page)
+    await page.getByTestId('plot-0').getByTestId('quantity').selectOption({ label: 'rocker_angle' })
+    await page.getByTestId('plot-0').getByTestId('over').selectOption({ label: 'over midpoint_x' })
+    await page.getByTestId('tab-variables').click()
+    const field = page.getByTestId('variable-C_x').getByTestId('change-value')
+    await field.fill('20')
+    await field.press('Enter')
+    await settled(page)
+    const columns = table((await taken('export-csv', page)).toString())
+    const names = [...columns.keys()]
+    const at = names.indexOf('midpoint_x [mm]')
+    expect(names.slice(at, at + 4)).toEqual([
+      'midpoint_x [mm]',
+      'rocker_angle: current [deg]',
+      'midpoint_x of rocker_angle: original [mm]',
+      'rocker_angle: original [deg]',
+    ])
+    // The command's own for the original, and others for the changed one.
+    const x = motionBeside(models.four_bar).get('midpoint_x')!
+    const original = columns.get('midpoint_x of rocker_angle: original [mm]')!
+    const present = columns.get('midpoint_x [mm]')!
+    const scale = Math.max(...x.map(Math.abs))
+    expect(Math.max(...x.map((value, k) => Math.abs(value - original[k])))).toBeLessThanOrEqual(SINGLE * scale)
+    expect(Math.max(...x.map((value, k) => Math.abs(value - present[k])))).toBeGreaterThan(0.01 * scale)
+    await page.context().close()
   })
 
   test('the picture of the tutorial is a curve as SVG', async () => {

@@ -62,6 +62,24 @@ describe('a goal', () => {
   })
 })
 
+describe('a right click on a value', () => {
+  test('proposes a goal for it, wherever it hits the card and while the design is another one', async () => {
+    await open('macpherson')
+    await page.getByTestId('tab-variables').click()
+    const field = page.getByTestId('variable-tie_rod_outer_z').getByTestId('change-value')
+    await field.fill('5')
+    await field.press('Enter')
+    const card = page.getByTestId('card-camber')
+    await card.getByTestId('card-motion').click({ button: 'right' })
+    await page.getByTestId('goal-of').waitFor()
+    await settled(page)
+    await expect.poll(() => page.getByTestId('optimise-again').isVisible()).toBe(false)
+    expect(await page.getByTestId('goal-of').inputValue()).toBe('of camber')
+    await page.getByTestId('card-half_track').getByTestId('card-value').click({ button: 'right' })
+    await expect.poll(() => page.getByTestId('goal-of').inputValue()).toBe('of half_track')
+  })
+})
+
 describe('a variable', () => {
   test('gets bounds and a tolerance in its row, and keeps its change', async () => {
     await open('four_bar')

@@ -257,7 +257,7 @@ test('one side of a mirrored axle cannot be a design of its text: it is refused,
   await page.getByTestId('grip-z').fill('+=2')
   await page.getByTestId('grip-z').press('Enter')
   // The text cannot follow this design.
-  await page.getByText('cannot be saved').waitFor()
+  await page.getByTestId('studio-status').getByText('cannot be saved').waitFor()
   await keep()
   await expect.poll(() => page.getByTestId('snapshot-done').innerText()).toContain('mirror image')
   await page.keyboard.press('Escape')

@@ -1,9 +1,8 @@
 import { describe, expect, test } from 'vitest'
 import { type Content, drawnRange, drawnSteps, type Line } from '../src/content'
-import { changeFrom } from '../src/curve'
+import { changeFrom, crossings } from '../src/curve'
 import { ticks } from '../src/export/axis'
 import { measuredOf } from '../src/page/measured'
-import { crossing } from '../src/page/value_table'
 
 const curve = (...values: number[]) => Float32Array.from(values)
 const line = (values: Float32Array, over?: Float32Array): Line => ({ label: 'toe', color: '#000', curve: values, over })
@@ -29,6 +28,15 @@ describe('a plot over a quantity that goes back and forth along one line', () =>
   test('is drawn once, from end to end', () => {
     expect(drawnSteps(line(x), { ...content, once: true }, x)).toEqual([2, 6])
     expect(drawnSteps(line(x), content, x)).toEqual([0, 8])
+    // A way back with other values, as of a crank that turns, is drawn as well. The bend between steps is no
+    // difference.
+    const loop = curve(0, 1, 2, 3, 4, 5, 6, 7, 8)
+    expect(drawnSteps(line(loop), { ...content, once: true }, x)).toEqual([0, 8])
+    const bent = x.map((value) => Math.sin(value / 2))
+    const late = x.map((value, k) => (k < 3 ? value : value - 0.3))
+    const sine = late.map((value) => Math.sin(value / 2))
+    expect(drawnSteps(line(bent), { ...content, once: true }, x)).toEqual([2, 6])
+    expect(drawnSteps(line(sine, late), { ...content, once: true }, x)).toEqual([2, 6])
     // Measured points are all drawn.
     expect(drawnSteps({ ...line(x), free: true }, { ...content, once: true }, x)).toEqual([0, 8])
   })
@@ -40,11 +48,27 @@ describe('a plot over a quantity that goes back and forth along one line', () =>
   })
 })
 
-test('values at an abscissa are those where the curve first reaches it', () => {
-  const [x, y] = [curve(0, 10, 20, 10, 0), curve(0, 1, 4, 7, 9)]
-  expect(crossing(x, y, 10)).toBe(1)
-  expect(crossing(x, y, 15)).toBe(2.5)
-  expect(crossing(x, y, 30)).toBeNaN()
+describe('values at an abscissa', () => {
+  test('are those wherever a curve reaches it, in the order of the motion', () => {
+    const [x, y] = [curve(0, 10, 20, 10, 0), curve(0, 1, 4, 7, 9)]
+    const at = (value: number) => crossings([x], [y], x, value, [0, 4])
+    expect(at(10)).toEqual([1, 7])
+    expect(at(15).map((found) => Number(found.toFixed(6)))).toEqual([2.5, 5.5])
+    expect(at(30)).toEqual([])
+    expect(crossings([x], [y], x, 10, [0, 2])).toEqual([1])
+  })
+
+  test('are interpolated by polynomials of the fifth degree where rates are known', () => {
+    // y = sin(t) over x = t², whose values are known in closed form.
+    const times = curve(1, 1.5, 2)
+    const of = (f: (t: number) => number) => times.map(f)
+    const y = [of(Math.sin), of(Math.cos), of((t) => -Math.sin(t))]
+    const x = [of((t) => t * t), of((t) => 2 * t), of(() => 2)]
+    expect(crossings(x, y, times, 3, [0, 2])[0]).toBeCloseTo(Math.sin(Math.sqrt(3)), 6)
+    expect(crossings([times], y, times, 1.7, [0, 2])[0]).toBeCloseTo(Math.sin(1.7), 6)
+    expect(crossings([times], y.slice(0, 2), times, 1.7, [0, 2])[0]).toBeCloseTo(Math.sin(1.7), 3)
+    expect(Math.abs(crossings([times], y.slice(0, 1), times, 1.7, [0, 2])[0] - Math.sin(1.7))).toBeGreaterThan(0.01)
+  })
 })
 
 describe('measured data', () => {
@@ -70,6 +94,41 @@ describe('measured data', () => {
     expect([...measuredOf('left_side,toe (front)\n1,2\n', 'rig.csv', loaded)[0].y]).toEqual([2])
     const wrong = () => measuredOf('left_side [mm],toe [deg]\n1,2\n', 'rig.csv', loaded)
     expect(wrong).toThrow('`left_side [mm]` of `rig.csv` is no N, as left_side is')
+  })
+
+  test('are converted from units that are made of others, and refused where the page has no such unit', () => {
+    const speed = { quantities: [{ name: 'speed', unit: 'deg/s' }], over: { name: 'time', unit: 's' } }
+    const read = (text: string, subject: Parameters<typeof measuredOf>[2] = speed) =>
+      measuredOf(text, 'rig.csv', subject)[0]
+    const rig = read('time [min],speed [rad/s]\n0.5,1\n')
+    expect([rig.x[0], rig.y[0]]).toEqual([30, Math.fround(180 / Math.PI)])
+    expect(read('time [ms],speed [rpm]\n500,1\n').y[0]).toBeCloseTo(6, 5)
+    const stiff = { quantities: [{ name: 'rate', unit: 'N*mm/deg' }], over: { name: 'a', unit: 'mm/s^2' } }
+    const both = read('a [m/s²],rate [N m/rad]\n2,180\n', stiff)
+    expect([both.x[0], both.y[0]]).toEqual([2000, Math.fround(180_000 * (Math.PI / 180))])
+    expect(() => read('time [s],speed [furlong/s]\n0,1\n')).toThrow('the page has no unit `furlong/s`')
+    expect(() => read('time [s],speed (ft/lap)\n0,1\n')).toThrow('the page has no unit `ft/lap`')
+    expect(() => read('time [s],speed [rad]\n0,1\n')).toThrow('is no deg/s, as speed is')
+  })
+
+  test('of another measure or over another one are no data of this plot', () => {
+    const known = ['time', 'toe', 'camber', 'wheel_travel']
+    const read =
+      (text: string, isForUnnamed = true) =>
+      () =>
+        measuredOf(text, 'rig.csv', { ...subject, known, isForUnnamed })
+    expect(read('time [s],toe [deg]\n0,1\n')).toThrow(
+      '`rig.csv` has no column `wheel_travel`: it has time [s], toe [deg]',
+    )
+    expect(read('wheel_travel,time\n0,1\n')).toThrow('`rig.csv` has no column `toe`')
+    expect(read('Travel,Toe at rig\n0,1\n')()[0].y[0]).toBe(1)
+    expect(read('Travel,Toe at rig\n0,1\n', false)).toThrow('`rig.csv` has no column `wheel_travel`')
+    // A rate has its own name, or says by its unit that it is one.
+    const velocity = { name: 'toe velocity', unit: 'deg/s', rateOf: 'toe' }
+    const rate = (text: string) => () =>
+      measuredOf(text, 'rig.csv', { quantities: [velocity], over: subject.over, known })
+    expect(rate('wheel_travel,toe [rad/s]\n0,1\n')()[0].y[0]).toBeCloseTo(180 / Math.PI, 4)
+    expect(rate('wheel_travel,toe [deg]\n0,1\n')).toThrow('`rig.csv` has no column `toe velocity`')
   })
 
   test('that are none are refused by name', () => {

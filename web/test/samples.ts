@@ -21,6 +21,10 @@ export interface Samples {
   map: string
   /** The strut with tolerances: a page with bands. */
   tolerance: string
+  /** A strut with two cases, their metrics, a map, and a tilt that its text cannot have. */
+  cases: string
+  /** The strut, fitted to measured data. */
+  fitted: string
   /** A front axle on bushings, in equilibrium over wheel travel. */
   elastic: string
   /** A four-bar whose rods pass screws: shapes, one of which hits another. */
@@ -66,6 +70,13 @@ export default async function setup(project: TestProject): Promise<() => void> {
   writeFileSync(ride, ridden(readFileSync(join(MODELS, 'macpherson.toml'), 'utf8')))
   const large = join(folder, 'rockers.toml')
   const axle = join(folder, 'axle.toml')
+  const cases = join(folder, 'cases.toml')
+  const tilt = 'lca_tilt = { tilt = "lca_pivot", about = "y", bounds = [-2, 2] }'
+  const toe = readFileSync(join(MODELS, 'studies', 'strut_toe.toml'), 'utf8')
+  const ends = '{ from = -20, to = 20, steps = 4 }'
+  const grid = `[cases.both]\ngrid = { strut_drive = ${ends}, rack_drive = ${ends} }`
+  writeFileSync(cases, toe.replace('[design]\n', `${grid}\n\n[design]\n${tilt}\n`))
+  const measured = ['strut_calibrate.toml', 'strut_measured.csv'].map((file) => join(MODELS, 'studies', file))
   const change = ['--set', 'tie_rod_outer.z=+6mm', '-o', join(folder, 'changed')]
   const higher = [
     '--set',
@@ -101,6 +112,8 @@ export default async function setup(project: TestProject): Promise<() => void> {
         join(folder, 'tolerance'),
       ]),
     () => command(hardpoint, ['run', join(MODELS, 'studies', 'knee.toml'), '-o', join(folder, 'knee')]),
+    () => command(hardpoint, ['run', cases, '-o', join(folder, 'cases')]),
+    () => command(hardpoint, ['calibrate', ...measured, '-o', join(folder, 'fitted')]),
     ...files.map(
       (file) => () => command(hardpoint, ['run', join(MODELS, file), '-o', join(folder, basename(file, '.toml'))]),
     ),
@@ -114,6 +127,8 @@ export default async function setup(project: TestProject): Promise<() => void> {
     tutorial: page('tutorial', 'whatif.html'),
     map: page('map', 'ride', 'report.html'),
     tolerance: page('tolerance', 'report-bump.html'),
+    cases: page('cases', 'report.html'),
+    fitted: page('fitted', 'report.html'),
     elastic: page('elastic', 'report.html'),
     knee: page('knee', 'report.html'),
     large: page('large', 'report.html'),

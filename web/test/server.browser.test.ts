@@ -156,6 +156,34 @@ test('a kept design is written to the file, with comments and layout, and the no
   expect(compared).toContain(name)
 })
 
+test('a change that the text cannot have is not saved, and the page says why until it is undone', async () => {
+  const tilt = '[design]\nlca_tilt = { tilt = "lca_pivot", about = "y", bounds = [-2, 2] }\n'
+  text = text.replace('[design]\n', tilt)
+  writeFileSync(file, text)
+  const page = await open(await start())
+  await page.waitForFunction(() => document.getElementById('page')!.dataset.engine === 'ready')
+  await page.getByTestId('tab-variables').click()
+  const field = page.getByTestId('variable-lca_tilt').getByTestId('change-value')
+  await field.fill('1')
+  await field.press('Enter')
+  await page.locator('[data-testid=save]:enabled').waitFor()
+  const note = page.getByTestId('note-unwritten')
+  for (const save of [() => page.keyboard.press('Control+s'), () => page.getByTestId('save').click()]) {
+    await save()
+    await note.waitFor()
+    expect(await note.innerText()).toContain('Not saved: the change of lca_tilt cannot be saved')
+  }
+  await page.getByTestId('server-menu').click()
+  await page.getByTestId('study-optimize').click()
+  const failure = page.getByTestId('server').locator('.failure')
+  expect(await failure.innerText()).toContain('the change of `lca_tilt` cannot be saved')
+  await page.getByTestId('undo').click()
+  await note.waitFor({ state: 'detached' })
+  expect(await failure.isVisible()).toBe(false)
+  expect(await page.getByTestId('save').isDisabled()).toBe(true)
+  expect(readFileSync(file, 'utf8')).toBe(text)
+})
+
 test('points that are clicked on the picture become a task, whose answers are listed with their pages', async () => {
   copyFileSync(join(MODELS, 'jansen.toml'), join(folder, 'jansen.toml'))
   const page = await open(await start(0, 'jansen.toml'))

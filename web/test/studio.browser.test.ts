@@ -234,6 +234,55 @@ describe('a study', () => {
     await page.getByTestId('optimise-run').waitFor()
   })
 
+  test('is refused for a design that has no text, with the reason', async () => {
+    const unwritten = (why: string) =>
+      page.evaluate((why) => {
+        window.unwritten = why
+        window.refresh()
+      }, why)
+    const why = (name: string) => page.getByTestId(`${name}-why`).innerText()
+    await unwritten('`A.x` is an expression')
+    for (const name of ['optimise', 'tolerance']) {
+      expect(await page.getByTestId(`${name}-run`).isDisabled()).toBe(true)
+      expect(await why(name)).toBe('A.x is an expression')
+    }
+    await unwritten('')
+    expect([await why('optimise'), await page.getByTestId('optimise-run').isEnabled()]).toEqual(['', true])
+    // The design has changed, and the page does not know yet whether it has a text.
+    await page.evaluate(() => (window.unwritten = '`A.y` is an expression'))
+    await page.getByTestId('optimise-run').click()
+    await expect.poll(() => page.getByTestId('optimise-refused').innerText()).toBe('A.y is an expression')
+    expect(await page.evaluate(() => window.studies.length)).toBe(0)
+  })
+
+  test('has a form for goals whose entries outlive the text, so that a proposal is not lost', async () => {
+    const [of, form] = [page.getByTestId('goal-of'), page.getByTestId('goal-form')]
+    const change = (text: string) =>
+      page.evaluate((text) => {
+        window.model = text
+        window.refresh()
+      }, text)
+    await page.evaluate(() => window.propose('travel'))
+    expect(await of.inputValue()).toBe('of travel')
+    const former = await form.elementHandle()
+    await change('name = "other"')
+    await page.waitForFunction((former) => !former!.isConnected, former)
+    expect(await of.inputValue()).toBe('of travel')
+    // Proposed while the form of another text is on its way.
+    await page.evaluate(() => {
+      window.model = 'name = "third"'
+      window.refresh()
+      window.propose('toe_error')
+    })
+    await expect.poll(() => page.getByTestId('optimise-again').isVisible()).toBe(false)
+    expect(await of.inputValue()).toBe('metric toe_error')
+    await page.getByTestId('goal-aim').selectOption('keep')
+    await page.getByTestId('goal-max').fill('2')
+    await change('name = "fourth"')
+    await expect.poll(() => page.getByTestId('optimise-again').isVisible()).toBe(false)
+    expect(await page.getByTestId('goal-max').inputValue()).toBe('2')
+  })
+
   test('of tolerances asks for a seed and how many designs are drawn, and has no design to take', async () => {
     await page.getByTestId('tolerance-samples').fill('500')
     await page.getByTestId('tolerance-seed').fill('0')

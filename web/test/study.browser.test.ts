@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs'
 import { describe, expect, inject, test, vi } from 'vitest'
 import { valueContent } from '../src/page/contents'
-import { crossing } from '../src/page/value_table'
+import { crossings } from '../src/curve'
 import { State } from '../src/state'
 import { pages } from './pages'
 import { reportOf } from './payload'
@@ -40,7 +40,7 @@ describe('the page of a study', () => {
     const x = report.quantities[travel].curves[0]
     const [low, high] = ['mean - 3 sigma', 'mean + 3 sigma'].map((label) => {
       const edge = content.lines.find((line) => line.label === label)!
-      return crossing(x, edge.curve, 30)
+      return crossings([x], [edge.curve], report.times, 30, [0, x.length - 1])[0]
     })
     expect(Math.abs((high - low) / 6 / Number(fact('rss')) - 1)).toBeLessThan(INTERPOLATION)
     expect(Math.abs((high + low) / 2 - Number(fact('nominal')))).toBeLessThan(INTERPOLATION)

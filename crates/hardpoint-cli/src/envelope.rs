@@ -73,6 +73,10 @@ fn refused(session: &Session, file: &ModelFile, error: EnvelopeError) -> Outcome
     match error {
         EnvelopeError::Topology(_) => Outcome::CannotBeDriven,
         EnvelopeError::Interrupted => Outcome::Interrupted,
+        EnvelopeError::TooThin(error) => {
+            session.refused(file, &error);
+            Outcome::FellShort
+        }
         EnvelopeError::NotReached(stop) => {
             let diagnostics: Vec<_> = stop.iter().map(|stop| diagnose::stop(file, stop, 0, None)).collect();
             session.fail(file, &diagnostics);

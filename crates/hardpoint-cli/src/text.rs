@@ -99,6 +99,17 @@ pub fn shown(text: &str) -> Cow<'_, str> {
     }
 }
 
+/// One argument of a command line, in quotes if a shell would divide or change it.
+pub fn argument(text: String) -> String {
+    let is_plain =
+        |c: char| c.is_alphanumeric() || "_-./+,:@%=\\".contains(c) && (cfg!(windows) || c != '\\');
+    match text.chars().all(is_plain) && !text.is_empty() {
+        true => text,
+        false if cfg!(windows) => format!("\"{text}\""),
+        false => format!("'{}'", text.replace('\'', "'\\''")),
+    }
+}
+
 /// True if stderr shows colours.
 pub fn stderr_in_color() -> bool {
     anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never

@@ -4,6 +4,7 @@ use hardpoint::joint::Quantity;
 use hardpoint::space::Vec3;
 use hardpoint_file::{LengthUnit, ModelFile};
 
+use crate::contents::Target;
 use crate::links::{body_points, lines, rods};
 use crate::tables::hardpoints;
 use crate::{ExportedModel, Format, Writer};
@@ -17,7 +18,7 @@ pub const FORMAT: Format = Format {
     name: "dxf",
     about: "skeleton of hardpoints and bodies as DXF",
     endings: &["dxf"],
-    write: Writer::Described(write),
+    write: Writer::Described(Target::Drawing, write),
 };
 
 /// Layer of the hardpoints and their names.
@@ -62,21 +63,4 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
         drawing.add_entity(&layer, "LINE", "AcDbLine", &line([i.point(ends[0]), j.point(ends[1])]));
     }
     out.text = drawing.to_text(unit);
-    let rods = rods(model).count();
-    let joints = model.named_joints().count() - rods;
-    if joints > 0 {
-        out.report_unsupported(
-            "joints",
-            &joints.to_string(),
-            "DXF has no joints: only their points are written",
-        );
-    }
-    if model.hardpoints.iter().any(|h| h.unnamed) {
-        out.report_unsupported(
-            "points",
-            "coordinates",
-            "points without the name of a hardpoint are not written",
-        );
-    }
-    out.without_motions(file, "DXF");
 }

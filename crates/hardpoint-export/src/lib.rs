@@ -21,10 +21,12 @@
 mod animation;
 mod archive;
 mod c;
+mod contents;
 mod dxf;
 mod fmu;
 mod links;
 pub mod long_table;
+mod masses;
 mod mjcf;
 mod names;
 mod pdf;
@@ -41,6 +43,7 @@ use serde::Serialize;
 
 pub use animation::animation;
 pub use archive::{Archive, Library};
+use contents::Target;
 pub use pdf::{DesignResult, PdfContent, PdfPart};
 pub use stl::write_stl;
 pub use tables::hardpoints;
@@ -113,8 +116,8 @@ pub struct Format {
 /// Writer of a format.
 #[derive(Clone, Copy)]
 enum Writer {
-    /// A description of the model.
-    Described(fn(&ModelFile, &mut ExportedModel)),
+    /// A description of the model, with the group of its contents.
+    Described(Target, fn(&ModelFile, &mut ExportedModel)),
     /// The solved motion as formulas, in a file with this name without its extension.
     Recorded(fn(&ModelFile, &str, ExportOptions, &mut ExportedModel) -> Result<(), ExportError>),
 }
@@ -136,7 +139,7 @@ impl Format {
     /// True if the design variables can be arguments in this format.
     pub fn has_design(&self) -> bool {
         match self.write {
-            Writer::Described(_) => false,
+            Writer::Described(..) => false,
             Writer::Recorded(_) => true,
         }
     }
@@ -180,8 +183,15 @@ impl Format {
         };
         let file = renamed.as_ref().unwrap_or(file);
         match self.write {
-            Writer::Described(write) => write(file, &mut out),
-            Writer::Recorded(write) => write(file, stem, options, &mut out)?,
+            Writer::Described(target, write) => {
+                write(file, &mut out);
+                out.report_contents(file, target);
+            }
+            Writer::Recorded(write) => {
+                // An archive contains the list.
+                out.report_contents(file, Target::Motion);
+                write(file, stem, options, &mut out)?;
+            }
         }
         Ok(out)
     }
@@ -190,23 +200,6 @@ impl Format {
 impl ExportedModel {
     fn report_unsupported(&mut self, kind: &'static str, name: &str, why: impl Into<String>) {
         self.unsupported.push(UnsupportedFeature { kind, name: name.to_owned(), why: why.into() });
-    }
-
-    /// Reports the drivers, design variables, measures, wheels and meshes, which no format for mechanisms supports.
-    fn without_motions(&mut self, file: &ModelFile, format: &str) {
-        for driver in &file.model.drivers {
-            self.report_unsupported("driver", &driver.name, format!("{format} does not support motions"));
-        }
-        let rest = [
-            ("design variables", file.model.variables.len()),
-            // Those of limits are written with them, or reported.
-            ("measures", file.model.measures.len() - file.model.joint_limits.len()),
-            ("wheels", file.model.wheels.len()),
-            ("meshes", file.drawing.bodies.len()),
-        ];
-        for (kind, count) in rest.into_iter().filter(|(_, count)| *count > 0) {
-            self.report_unsupported(kind, &count.to_string(), "not written");
-        }
     }
 }
 

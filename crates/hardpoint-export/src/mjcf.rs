@@ -8,6 +8,8 @@ use hardpoint::model::{JointLimit, Model};
 use hardpoint::space::Vec3;
 use hardpoint_file::ModelFile;
 
+use crate::contents::Target;
+use crate::masses::{WrittenMass, entries, positive_masses};
 use crate::skeleton::{Carrier, Skeleton, axis, bounded, followers, is_closed, joint_points, range_of};
 use crate::{ExportedModel, Format, Writer, escaped, number, numbers};
 
@@ -16,7 +18,7 @@ pub const FORMAT: Format = Format {
     name: "mjcf",
     about: "MuJoCo model",
     endings: &["xml", "mjcf"],
-    write: Writer::Described(write),
+    write: Writer::Described(Target::Mjcf, write),
 };
 
 /// Freedoms of a tree joint that a sequence of MJCF joints has as well: turns and slides, or a single ball.
@@ -51,6 +53,9 @@ impl Closure {
 /// Distance between the two points of its axis at which a cut hinge is connected, as a fraction of the mechanism size.
 const APART: f64 = 0.1;
 
+/// Radius of gyration of a point mass, as a fraction of the mechanism size: MuJoCo requires positive moments.
+const POINT: f64 = 1e-3;
+
 /// Point of a body that an equality refers to.
 struct Site {
     name: String,
@@ -64,10 +69,17 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     let mut sites = Vec::new();
     let (equalities, tendons) = loops(&tree, &mut sites, out);
     out.text = format!(
-        "<mujoco model=\"{}\">\n  <compiler angle=\"radian\"/>\n  <worldbody>\n",
-        escaped(&model.name)
+        "<mujoco model=\"{}\">\n  <compiler angle=\"radian\"/>\n  <option gravity=\"{}\"/>\n  <worldbody>\n",
+        escaped(&model.name),
+        // MuJoCo's default is that of the earth.
+        numbers(model.gravity.to_array())
     );
-    inside(&tree, &sites, 0, 2, out);
+    let masses = positive_masses(model, POINT * model.size());
+    if !model.elements.iter().any(|e| e.kind.has_mass()) {
+        let why = "the model has none: every body has a unit mass and inertia, to be replaced";
+        out.report_unsupported("masses", &model.name, why);
+    }
+    inside(&tree, &sites, &masses, 0, 2, out);
     out.text += "  </worldbody>\n";
     if !tendons.is_empty() {
         let _ = write!(out.text, "  <tendon>\n{tendons}  </tendon>\n");
@@ -77,7 +89,6 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     }
     out.text += "</mujoco>\n";
     unsupported_limits(&tree, out);
-    out.without_motions(file, "MJCF");
 }
 
 /// Writes the constraints that close loops and couple joints, and the tendons of rods.
@@ -168,7 +179,14 @@ fn site_at(sites: &mut Vec<Site>, joint: &str, bodies: [usize; 2], at: [Vec3; 2]
 }
 
 /// Writes the sites of a body, and the bodies that it carries.
-fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: &mut ExportedModel) {
+fn inside(
+    tree: &Skeleton<'_>,
+    sites: &[Site],
+    masses: &[WrittenMass],
+    outer: usize,
+    depth: usize,
+    out: &mut ExportedModel,
+) {
     let indent = "  ".repeat(depth);
     for site in sites.iter().filter(|s| s.body == outer) {
         let at = numbers((site.at - tree.origin(outer)).to_array());
@@ -185,8 +203,18 @@ fn inside(tree: &Skeleton<'_>, sites: &[Site], outer: usize, depth: usize, out: 
             }
         }
         // MuJoCo requires a mass of every moving body.
-        let _ = writeln!(out.text, "{indent}  <inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>");
-        inside(tree, sites, body, depth + 1, out);
+        let WrittenMass { mass, change } = masses[body];
+        if let Some(why) = change {
+            out.report_unsupported("mass", &tree.model.bodies[body].name, why);
+        }
+        let _ = writeln!(
+            out.text,
+            "{indent}  <inertial pos=\"{}\" mass=\"{}\" fullinertia=\"{}\"/>",
+            numbers((mass.centre - tree.origin(body)).to_array()),
+            number(mass.mass),
+            entries(&mass.inertia).map(number).join(" ")
+        );
+        inside(tree, sites, masses, body, depth + 1, out);
         let _ = writeln!(out.text, "{indent}</body>");
     }
 }

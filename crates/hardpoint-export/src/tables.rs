@@ -6,6 +6,7 @@ use std::io;
 use hardpoint_file::{LengthUnit, ModelFile};
 use hardpoint_table::csv::CsvWriter;
 
+use crate::contents::Target;
 use crate::{ExportedModel, Format, Writer, number};
 
 /// CSV format, a table for spreadsheets.
@@ -13,7 +14,7 @@ pub const CSV: Format = Format {
     name: "csv",
     about: "hardpoints as a CSV table",
     endings: &["csv"],
-    write: Writer::Described(csv),
+    write: Writer::Described(Target::Table, csv),
 };
 
 /// TeimOrbit format, a block for Adams/Car.
@@ -21,7 +22,7 @@ pub const TEIMORBIT: Format = Format {
     name: "teimorbit",
     about: "hardpoints as a TeimOrbit block",
     endings: &["sub", "hpt"],
-    write: Writer::Described(teimorbit),
+    write: Writer::Described(Target::Table, teimorbit),
 };
 
 /// Names and positions of the hardpoints, in the unit of the file, with the fewest digits that reproduce the positions.
@@ -96,12 +97,5 @@ fn teimorbit(file: &ModelFile, out: &mut ExportedModel) {
         }
         let place = [-x, -y, z].map(number);
         let _ = writeln!(out.text, " '{short}'  '{side}'  {}", place.join("  "));
-    }
-    if file.model.hardpoints.iter().any(|h| h.unnamed) {
-        out.report_unsupported(
-            "points",
-            "coordinates",
-            "points without the name of a hardpoint are not written",
-        );
     }
 }

@@ -5,15 +5,17 @@ use std::fmt::Write;
 use hardpoint::joint::{Freedom, JointType};
 use hardpoint_file::ModelFile;
 
+use crate::contents::Target;
+use crate::masses::{WrittenMass, entries, possible_masses};
 use crate::skeleton::{Carrier, Skeleton, axis, bounded, ends, followers, joint_points, range_of};
-use crate::{ExportedModel, Format, Writer, escaped, numbers};
+use crate::{ExportedModel, Format, Writer, escaped, number, numbers};
 
 /// URDF format.
 pub const FORMAT: Format = Format {
     name: "urdf",
     about: "URDF robot description",
     endings: &["urdf"],
-    write: Writer::Described(write),
+    write: Writer::Described(Target::Urdf, write),
 };
 
 /// Joint type of URDF with the same freedoms; a `ball` can close a loop only.
@@ -40,8 +42,26 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
     );
     let name = |body: usize| if body == 0 { "world".to_owned() } else { escaped(&model.bodies[body].name) };
     let mut text = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(&model.name));
+    let masses = possible_masses(model);
     for &body in &tree.order {
-        let _ = writeln!(text, "  <link name=\"{}\"/>", name(body));
+        let Some(WrittenMass { mass, change }) = masses[body] else {
+            let _ = writeln!(text, "  <link name=\"{}\"/>", name(body));
+            continue;
+        };
+        if let Some(why) = change {
+            out.report_unsupported("mass", &model.bodies[body].name, why);
+        }
+        let centre = numbers((mass.centre - tree.origin(body)).to_array());
+        let [xx, yy, zz, xy, xz, yz] = entries(&mass.inertia).map(number);
+        let _ = writeln!(
+            text,
+            "  <link name=\"{}\">\n    <inertial>\n      <origin xyz=\"{centre}\"/>\n      \
+             <mass value=\"{}\"/>\n      \
+             <inertia ixx=\"{xx}\" ixy=\"{xy}\" ixz=\"{xz}\" iyy=\"{yy}\" iyz=\"{yz}\" izz=\"{zz}\"/>\n    \
+             </inertial>\n  </link>",
+            name(body),
+            number(mass.mass)
+        );
     }
     let (follow, mut others) = followers(&tree);
     for &body in &tree.order {
@@ -133,7 +153,6 @@ fn write(file: &ModelFile, out: &mut ExportedModel) {
         out.report_unsupported("coupler", coupler, "a mimic joint depends on one other tree joint");
     }
     out.text = text + "</robot>\n";
-    out.without_motions(file, "URDF");
 }
 
 #[cfg(test)]

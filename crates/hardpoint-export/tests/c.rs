@@ -263,6 +263,24 @@ fn the_gallery_in_c_moves_as_in_the_engine() {
     assert_eq!(partial, PARTIAL);
 }
 
+/// The inputs of a reversed driver are values of its laws, as are those of the derivatives.
+#[test]
+fn a_reversed_driver_in_c_counts_like_its_laws() {
+    let text = std::fs::read_to_string("../../models/four_bar.toml").unwrap();
+    let text = text.replace("law = \"360*t\"", "law = \"20 + 360*t^2\", reversed = true");
+    let file = hardpoint_file::parse(&text, "reversed.toml").unwrap_or_else(|e| panic!("{e}"));
+    let analysis = Analysis::new(&file.model).unwrap();
+    let solution = analysis.run();
+    let crank = solution.measured.index("crank_angle").unwrap();
+    assert!((solution.measured.value(0, crank)[0] + 20_f64.to_radians()).abs() < SAME);
+    let steps = drivers(&analysis, &solution);
+    assert!((steps[0][0][0] - 20_f64.to_radians()).abs() < SAME);
+    let c = Compiled::new(&file, "reversed", "-O0").unwrap();
+    let rows = c.run(&steps, file.model.bodies.len());
+    assert!(rows.iter().all(|row| row.result == 0));
+    compare("reversed", &c, &analysis, &solution, &rows, SAME);
+}
+
 /// A four-bar linkage turns by two radians in a single step, and by a hundred small ones: the path is divided until
 /// both lead to the same position.
 #[test]

@@ -8,7 +8,8 @@ use std::f64::consts::TAU;
 
 use hardpoint::space::{Mat3, Pose, Vec3};
 
-use crate::adams_statement::{SEAM, SHORTEST, Statement, number, statements};
+use crate::adams_keys;
+use crate::adams_statement::{SEAM, Statement, number, statements};
 use crate::law::{self, Language};
 use crate::markers::{
     Marker, MarkerJoint, carrying_joint, coordinate_sign, join, offset, relative_to_nominal,
@@ -237,7 +238,7 @@ impl Reader<'_> {
                     kind,
                     &s.label,
                     Some(s.at),
-                    "imported as a rigid body in its undeformed shape",
+                    "imported as a rigid body in its undeformed shape, without mass",
                 ),
                 "POINT_MASS" => {
                     self.notes.approximated(
@@ -370,11 +371,7 @@ impl Reader<'_> {
         if s.has("RACKPIN") {
             return;
         }
-        // Keywords may be abbreviated as long as they are unambiguous.
-        let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= SHORTEST).map(|(k, _)| k);
-        let kind =
-            written.into_iter().find_map(|k| KINDS.iter().find(|(name, _)| name.starts_with(k.as_str())));
-        let Some((name, kind)) = kind else {
+        let Some((name, kind)) = KINDS.iter().find(|(name, _)| s.has(name)) else {
             self.notes.refused("JOINT", &s.label, Some(s.at), "its type is unknown");
             return;
         };
@@ -415,10 +412,7 @@ impl Reader<'_> {
             ("PARALLEL_AXES", "parallel"),
             ("PERPENDICULAR", "dot1"),
         ];
-        let written = s.keys.iter().filter(|(k, v)| v.is_empty() && k.len() >= SHORTEST).map(|(k, _)| k);
-        let kind =
-            written.into_iter().find_map(|k| KINDS.iter().find(|(name, _)| name.starts_with(k.as_str())));
-        match kind {
+        match KINDS.iter().find(|(name, _)| s.has(name)) {
             Some((_, kind)) => {
                 if let Some(markers) = self.pair(s) {
                     join(&mut self.m, self.notes, s.source(), kind, markers);
@@ -473,6 +467,11 @@ impl Reader<'_> {
     fn motions(&mut self, statements: &[Statement]) {
         for s in statements.iter().filter(|s| s.name == "SPLINE") {
             let lists = ["X", "Y"].map(|key| s.numbers(key, self.notes).unwrap_or_default());
+            if lists[0].len() != lists[1].len() || s.keys.iter().filter(|(key, _)| key == "Y").count() > 1 {
+                let why = "only splines with one y for each x in the file are supported";
+                self.notes.refused("SPLINE", &s.label, Some(s.at), why);
+                continue;
+            }
             self.splines.insert(
                 s.id.clone(),
                 lists[0].iter().copied().zip(lists[1].iter().copied()).map(|(x, y)| [x, y]).collect(),
@@ -499,10 +498,11 @@ impl Reader<'_> {
                 "MOTION",
                 &s.label,
                 Some(s.at),
-                format!("{why}; its coordinate is fixed in the design configuration"),
+                format!("{why}; the motion is not imported"),
             );
+            reader.m.lost_motions += 1;
         };
-        let order = if s.flag("VELOCITY") { 1 } else { 2 * usize::from(s.flag("ACCELERATION")) };
+        let order = if s.has("VELOCITY") { 1 } else { 2 * usize::from(s.has("ACCELERATION")) };
         let Some(function) = s.text("FUNCTION") else { return refuse(self, "it has no FUNCTION") };
         let function = self.expand_variables(function);
         if let Some(id) = s.reference("JOINT") {
@@ -518,7 +518,7 @@ impl Reader<'_> {
                 return;
             };
             let nominal = offset(&joint.markers[0], &joint.markers[1]);
-            let turns = s.flag("ROTATIONAL") || (joint.kind == "revolute" && !s.flag("TRANSLATIONAL"));
+            let turns = s.has("ROTATIONAL") || (joint.kind == "revolute" && !s.has("TRANSLATIONAL"));
             let (name, nominal, scale) = if turns {
                 ("angle", nominal.angle, 1.0)
             } else {
@@ -771,129 +771,16 @@ impl Reader<'_> {
         self.notes.taken("GEAR", &s.label, Some(s.at));
     }
 
-    /// Reports the keys of a statement that the reader does not know. These may affect the motion.
-    fn unknown_keys(&mut self, s: &Statement) {
-        // Friction of a joint does not affect prescribed motions.
-        const FRICTION: &[&str] = &[
-            "FRICTION",
-            "MU_STATIC",
-            "MU_DYNAMIC",
-            "STICTION_TRANSITION_VELOCITY",
-            "MAX_STICTION_DEFORMATION",
-            "FRICTION_TORQUE_PRELOAD",
-            "FRICTION_FORCE_PRELOAD",
-            "PIN_RADIUS",
-            "FRICTION_ARM",
-            "BENDING_REACTION_ARM",
-            "INITIAL_OVERLAP",
-            "OVERLAP_DELTA",
-            "EFFECT",
-            "BALL_RADIUS",
-            "REACTION_ARM",
-            "INNER_RADIUS",
-            "DELTA_V",
-            "MAXIT",
-            "PD",
-            "YOKE",
-            "INACTIVE",
-            "OUTER_RADIUS",
-            "INPUTS",
-            "FORCE_PRELOAD",
-            "TORQUE_PRELOAD",
-            "SLIDING_AND_STICTION",
-            "TORSIONAL_MOMENT",
-            "BENDING_MOMENT",
-            "PRELOAD",
-            "REACTION_FORCE",
-            "X_PIN",
-            "Y_PIN",
-        ];
-        // Initial velocities belong to dynamic motions.
-        const SPEEDS: &[&str] = &["VX", "VY", "VZ", "WX", "WY", "WZ", "VM", "WM"];
-        let (known, irrelevant): (&[&str], &[&str]) = match s.name.as_str() {
-            "JOINT" => (
-                &[
-                    "I",
-                    "J",
-                    "REVOLUTE",
-                    "TRANSLATIONAL",
-                    "CYLINDRICAL",
-                    "SPHERICAL",
-                    "UNIVERSAL",
-                    "HOOKE",
-                    "PLANAR",
-                    "FIXED",
-                    "CONVEL",
-                    "SCREW",
-                    "INLINE",
-                    "RACKPIN",
-                    "PITCH",
-                    "PD",
-                ],
-                FRICTION,
-            ),
-            "JPRIM" => (
-                &["I", "J", "ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR"],
-                &["INACTIVE"],
-            ),
-            "MOTION" => (
-                &[
-                    "I",
-                    "J",
-                    "JOINT",
-                    "FUNCTION",
-                    "ROTATIONAL",
-                    "TRANSLATIONAL",
-                    "DISPLACEMENT",
-                    "VELOCITY",
-                    "ACCELERATION",
-                    "X",
-                    "Y",
-                    "Z",
-                    "B1",
-                    "B2",
-                    "B3",
-                    "ICDISP",
-                    "ICVEL",
-                ],
-                &[],
-            ),
-            "COUPLER" => (&["JOINTS", "TYPE", "SCALES", "FUNCTION", "ROUTINE"], &[]),
-            "GEAR" => (&["JOINTS", "CV"], &[]),
-            "MARKER" => (
-                &[
-                    "PART",
-                    "POINT_MASS",
-                    "FLEX_BODY",
-                    "FE_PART",
-                    "NODE_ID",
-                    "FLOATING",
-                    "QP",
-                    "REULER",
-                    "EULER",
-                    "ZP",
-                    "XP",
-                    "USEXP",
-                ],
-                SPEEDS,
-            ),
-            "PART" | "POINT_MASS" => (
-                &["GROUND", "QG", "REULER", "EULER", "ZG", "XG", "USEXP"],
-                &[
-                    "MASS", "CM", "IM", "IP", "MATERIAL", "EXACT", "VX", "VY", "VZ", "WX", "WY", "WZ", "VM",
-                    "WM", "DENSITY",
-                ],
-            ),
-            _ => return,
+    /// Reports the keys of a statement that the reader does not know. These may affect the motion. Returns true if
+    /// there are any.
+    fn unknown_keys(&mut self, s: &Statement) -> bool {
+        // The other keys of a flexible body belong to its deformation, which is not imported.
+        let Some(known) = adams_keys::of(&s.name).filter(|_| s.name != "FLEX_BODY") else {
+            return false;
         };
-        let is = |list: &[&str], key: &str| {
-            list.iter().any(|k| *k == key || (key.len() >= SHORTEST && k.starts_with(key)))
-        };
+        let mut found = false;
         for (key, value) in &s.keys {
             let key = key.trim_matches(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-            if key.is_empty() || is(known, key) || is(irrelevant, key) {
-                continue;
-            }
             let zero = value.split([',', SEAM]).all(|w| number(w.trim()) == Some(0.0));
             if ["ICTRAN", "ICROT", "IC"].contains(&key) {
                 if !zero {
@@ -903,9 +790,18 @@ impl Reader<'_> {
                 }
                 continue;
             }
-            let why = format!("`{}` has an unknown key `{key}`", s.name);
+            let is_flag = value.is_empty();
+            if key.is_empty() || known.named(key, is_flag).is_some() {
+                continue;
+            }
+            let why = match &known.meant(key, is_flag)[..] {
+                [] => format!("`{}` has an unknown key `{key}`", s.name),
+                meant => format!("the key `{key}` of `{}` is ambiguous: {}", s.name, meant.join(", ")),
+            };
             self.notes.not_understood(key, &s.label, Some(s.at), why);
+            found = true;
         }
+        found
     }
 
     /// Reports all statements that are neither part of the mechanism nor forces.
@@ -924,8 +820,10 @@ impl Reader<'_> {
         ];
         const HOLD: [&str; 8] = ["PTCV", "CVCV", "PTSF", "CURVE", "UCON", "GCON", "SURFACE", "NFORCE"];
         // A motion that drivers prescribe does not depend on them; equilibria and loads do.
-        const FORCES: [&str; 8] =
-            ["VFORCE", "GFORCE", "VTORQUE", "MFORCE", "NFORCE", "BEAM", "FIELD", "CBUSHING"];
+        const FORCES: [&str; 12] = [
+            "VFORCE", "GFORCE", "VTORQUE", "MFORCE", "NFORCE", "BEAM", "FIELD", "CBUSHING", "CONTACT",
+            "TIRE", "FRICTION", "FE_LOAD",
+        ];
         // Statements without effect on prescribed motions.
         const IRRELEVANT: &[&str] = &[
             "ACCGRAV",
@@ -943,8 +841,6 @@ impl Reader<'_> {
             "SFORCE",
             "SPRINGDAMPER",
             "BUSHING",
-            "FRICTION",
-            "CONTACT",
             "DIFF",
             "LSE",
             "GSE",
@@ -973,22 +869,18 @@ impl Reader<'_> {
             "VFO",
             "REQSAVE",
             "DYNAMICS",
-            "TIRE",
             "ROAD",
             "FEMDATA",
             "END",
             "SAVE",
             "MATERIAL",
-            "FE_LOAD",
             "COMMAND",
         ];
-        for s in statements {
-            self.unknown_keys(s);
-        }
+        let are_unknown: Vec<bool> = statements.iter().map(|s| self.unknown_keys(s)).collect();
         let is_read = |s: &Statement| {
             DONE.contains(&s.name.as_str()) || loads.contains(&(s.name.clone(), s.id.clone()))
         };
-        for s in statements.iter().filter(|s| !is_read(s)) {
+        for (s, is_unknown) in statements.iter().zip(are_unknown).filter(|(s, _)| !is_read(s)) {
             if s.name == "FE_PART" {
                 let why = "elastic parts are not supported, nor are joints on them";
                 self.notes.refused(&s.name, &s.label, Some(s.at), why);
@@ -1003,11 +895,12 @@ impl Reader<'_> {
                     Some(s.at),
                     "the constraint has no equivalent: a driver fixes the motion instead",
                 );
-            } else if IRRELEVANT
-                .iter()
-                .any(|k| *k == s.name || (s.name.len() > SHORTEST && k.starts_with(&s.name)))
-            {
-                self.notes.ignored(&s.name, Some(s.at));
+            } else if IRRELEVANT.contains(&s.name.as_str()) {
+                // Unknown keys and unsupported splines have been reported.
+                let is_refused = s.name == "SPLINE" && !self.splines.contains_key(&s.id);
+                if !is_unknown && !is_refused {
+                    self.notes.ignored(&s.name, Some(s.at));
+                }
             } else {
                 let why = "unknown statement";
                 self.notes.not_understood(&s.name, &s.label, Some(s.at), why);

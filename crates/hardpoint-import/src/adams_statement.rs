@@ -2,14 +2,9 @@
 
 use hardpoint::space::Vec3;
 
+use crate::adams_keys::{self, Keys};
 use crate::markers::ElementSource;
 use crate::report::{ImportLog, SourceSpan};
-
-/// Minimum length of an abbreviated keyword.
-pub const SHORTEST: usize = 3;
-/// Statements whose names may be abbreviated, the most frequent first.
-const NAMES: [&str; 10] =
-    ["PART", "MARKER", "JOINT", "JPRIM", "MOTION", "COUPLER", "GEAR", "UNITS", "SPLINE", "FLEX_BODY"];
 
 /// Mark at the beginning of a continuation line: a blank, or within a function possibly a comma.
 pub const SEAM: char = '\u{1}';
@@ -25,26 +20,20 @@ pub struct Statement {
     pub at: SourceSpan,
     /// Name in Adams/View, from the comment before the statement.
     pub label: String,
-    /// Keys in capital letters, with the text after the equals sign; the text of flags is empty.
+    /// Keys in capital letters, with the text after the equals sign; the text of flags is empty. Known keys are not
+    /// abbreviated.
     pub keys: Vec<(String, String)>,
 }
 
 impl Statement {
-    /// Value of a key, which may be abbreviated as far as it is unambiguous.
+    /// Value of a key.
     pub fn text(&self, key: &str) -> Option<&str> {
-        let short = |k: &str| k.len() >= SHORTEST && key.starts_with(k);
-        let found = self.keys.iter().find(|(k, _)| k == key);
-        found.or_else(|| self.keys.iter().find(|(k, v)| !v.is_empty() && short(k))).map(|(_, v)| v.as_str())
+        self.keys.iter().find(|(k, _)| k == key).map(|(_, v)| v.as_str())
     }
 
-    /// Returns true if the statement has a key.
+    /// Returns true if the statement has a key or a flag.
     pub fn has(&self, key: &str) -> bool {
         self.text(key).is_some()
-    }
-
-    /// Returns true if the statement has a flag, which may be abbreviated.
-    pub fn flag(&self, flag: &str) -> bool {
-        self.keys.iter().any(|(k, v)| v.is_empty() && k.len() >= SHORTEST && flag.starts_with(k.as_str()))
     }
 
     /// Name and position for reports.
@@ -145,10 +134,10 @@ fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
         return None;
     };
     let name = name.to_ascii_uppercase();
-    let whole = NAMES.iter().find(|n| name.len() >= SHORTEST && n.starts_with(name.as_str()));
-    let name = whole.map_or(name.clone(), |n| (*n).to_owned());
+    let name = adams_keys::statement_name(&name);
+    let known = adams_keys::of(&name);
     let mut out = Statement { name, at, ..Statement::default() };
-    for part in parts_of(rest) {
+    for part in parts_of(rest, known) {
         let part = part.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
         let keyed = part.split_once('=').filter(|(key, _)| {
             let key = key.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
@@ -156,7 +145,7 @@ fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
         });
         if let Some((key, text)) = keyed {
             let key = key.trim_matches(|c: char| c.is_whitespace() || c == SEAM);
-            out.keys.push((key.to_ascii_uppercase(), text.trim().to_owned()));
+            out.keys.push((full(key, known, false), text.trim().to_owned()));
         } else if out.keys.is_empty() && out.id.is_empty() && part.chars().all(|c| c.is_ascii_digit()) {
             out.id = part.to_owned();
         } else {
@@ -164,15 +153,13 @@ fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
             let is_value = part.chars().next().is_some_and(|c| c.is_ascii_digit() || "+-.(".contains(c));
             match out.keys.last_mut() {
                 Some((key, text))
-                    if !text.is_empty()
-                        && (is_value || "FUNCTION".starts_with(key.as_str()))
-                        && !FLAGS.contains(&part.to_ascii_uppercase().as_str()) =>
+                    if !text.is_empty() && (is_value || key == FUNCTION) && !is_flag(part, known) =>
                 {
                     text.push(',');
                     text.push_str(part);
                 }
                 _ if part.is_empty() => {}
-                _ => out.keys.push((part.to_ascii_uppercase(), String::new())),
+                _ => out.keys.push((full(part, known, true), String::new())),
             }
         }
     }
@@ -180,25 +167,31 @@ fn statement(at: SourceSpan, code: &str, label: &str) -> Option<Statement> {
     Some(out)
 }
 
-/// Flags that may follow a function.
-const FLAGS: [&str; 5] = ["ROTATIONAL", "TRANSLATIONAL", "DISPLACEMENT", "VELOCITY", "ACCELERATION"];
+/// Key of a function, which may contain commas.
+const FUNCTION: &str = "FUNCTION";
+
+/// Returns the full name of a key, in capital letters.
+fn full(written: &str, known: Option<&Keys>, is_flag: bool) -> String {
+    let upper = written.to_ascii_uppercase();
+    known.and_then(|keys| keys.named(&upper, is_flag)).map_or(upper, str::to_owned)
+}
+
+/// Returns true for a flag of the statement.
+fn is_flag(word: &str, known: Option<&Keys>) -> bool {
+    known.is_some_and(|keys| keys.flag_after_function(&word.to_ascii_uppercase()).is_some())
+}
 
 /// Splits a text at commas outside parentheses, at backslashes, and at seams before a key or flag. Within a list or a
 /// function, the comma at the beginning of a continuation line only marks the continuation.
-fn parts_of(text: &str) -> Vec<String> {
+fn parts_of(text: &str, known: Option<&Keys>) -> Vec<String> {
     let (mut out, mut depth) = (vec![String::new()], 0_i32);
     let chars: Vec<char> = text.chars().collect();
     for (k, c) in chars.iter().enumerate() {
         depth += i32::from(*c == '(') - i32::from(*c == ')');
         let is_function = || {
             out.last().is_some_and(|part| {
-                let key = part
-                    .split('=')
-                    .next()
-                    .unwrap_or_default()
-                    .trim_matches([' ', '\t', SEAM])
-                    .to_ascii_uppercase();
-                part.contains('=') && key.len() >= SHORTEST && "FUNCTION".starts_with(&key)
+                let key = part.split('=').next().unwrap_or_default().trim_matches([' ', '\t', SEAM]);
+                part.contains('=') && full(key, known, false) == FUNCTION
             })
         };
         let begins = || {
@@ -208,9 +201,9 @@ fn parts_of(text: &str) -> Vec<String> {
                 rest.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).next().unwrap_or_default();
             let behind = rest[word.len()..].trim_start_matches([' ', '\t']).chars().next();
             let ends = behind.is_none_or(|c| [',', SEAM, '\\'].contains(&c));
-            let known = FLAGS.contains(&word.to_ascii_uppercase().as_str());
+            let is_flag = is_flag(word, known);
             let is_word = word.starts_with(|c: char| c.is_ascii_alphabetic());
-            is_word && (behind == Some('=') || (ends && (known || !is_function())))
+            is_word && (behind == Some('=') || (ends && (is_flag || !is_function())))
         };
         let parts = (*c == ',' && depth <= 0) || *c == '\\' || (*c == SEAM && depth <= 0 && begins());
         match out.last_mut() {

@@ -587,8 +587,9 @@ impl Reader<'_> {
                     motion.text,
                     motion.name(),
                     Some(motion.at),
-                    format!("{why}; its coordinate is fixed in the design configuration"),
+                    format!("{why}; the motion is not imported"),
                 );
+                self.m.lost_motions += 1;
             }
         }
     }

@@ -233,8 +233,24 @@ fn account(root: &Tree, notes: &mut ImportLog) {
     ];
     const GROUPS: [&str; 7] =
         ["config", "configuration", "axle_config", "vehicle_config", "setup", "left_setup", "right_setup"];
+    const PARTS: [(&str, &[&str]); 5] = [
+        ("steering", &["type"]),
+        ("actuation", &["type", "mount"]),
+        ("wheel", &["offset", "tire", "tyre"]),
+        ("tire", TYRE),
+        ("tyre", TYRE),
+    ];
+    const TYRE: &[&str] = &["aspect_ratio", "section_width", "rim_diameter", "nominal_radius", "radius"];
     let inner = root.entries().iter().filter(|(key, ..)| GROUPS.contains(&key.as_str()));
     let all = inner.flat_map(|(.., group)| group.entries()).chain(root.entries());
+    let mut parts: Vec<_> = all.clone().collect();
+    while let Some((key, _, tree)) = parts.pop() {
+        let Some((_, known)) = PARTS.iter().find(|(part, _)| part == key) else { continue };
+        for (inner, at, _) in tree.entries().iter().filter(|(inner, ..)| !known.contains(&inner.as_str())) {
+            notes.not_understood(inner, key, Some(*at), format!("`{key}` has an unknown setting `{inner}`"));
+        }
+        parts.extend(tree.entries());
+    }
     for (key, at, tree) in all {
         let kind = tree.text_of("type").or(tree.text()).unwrap_or_default();
         match key.as_str() {

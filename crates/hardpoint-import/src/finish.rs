@@ -67,7 +67,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
         tried.insert(held.clone());
         let before = m.drivers.len();
         for (name, drives) in held.drivers(m) {
-            let why = "nothing drives it in the source: fixed in the design configuration".into();
+            let why = format!("{}: fixed in the design configuration", undriven(m));
             m.driver(&format!("{name}_held"), why, drives, Law::Fixed);
         }
         match freedom(m, notes) {
@@ -78,8 +78,7 @@ pub fn finish(m: &mut Mechanism, notes: &mut ImportLog, closed: f64) -> Option<D
             {
                 left = now;
                 for driver in m.drivers[before..].iter().filter(|_| !only_one) {
-                    let why =
-                        "nothing drives it in the source: a driver fixes it in the design configuration";
+                    let why = format!("{}: a driver fixes it in the design configuration", undriven(m));
                     notes.approximated("motion", driver.name.trim_end_matches("_held"), None, why);
                 }
             }
@@ -110,9 +109,19 @@ pub fn remark_undriven(m: &Mechanism, notes: &mut ImportLog, closes: bool) {
     };
     let motions =
         if held == 1 { "its one motion is".to_owned() } else { format!("all of its {held} motions are") };
-    notes.remark(format!(
-        "nothing in the source drives it: {motions} fixed in the design configuration{loops}"
-    ));
+    let cause = match m.lost_motions {
+        0 => "nothing in the source drives it",
+        _ => "no imported motion drives it",
+    };
+    notes.remark(format!("{cause}: {motions} fixed in the design configuration{loops}"));
+}
+
+/// Returns the reason why a motion is undriven.
+fn undriven(m: &Mechanism) -> &'static str {
+    match m.lost_motions {
+        0 => "nothing drives it in the source",
+        _ => "no imported motion drives it",
+    }
 }
 
 /// Closes open joints in the design configuration if the mechanism does not assemble, since undriven motions are fixed
@@ -258,7 +267,7 @@ fn ground(m: &mut Mechanism, notes: &mut ImportLog) {
         let mut held = |(body, _): &(usize, Vec3)| find(&mut root, *body) == b;
         let mut by_forces = m.forces.iter().filter_map(|force| match &force.on {
             ForceOn::Points(ends) | ForceOn::Bushing(ends, _) => Some(ends),
-            ForceOn::Coordinate(_) | ForceOn::Joint(..) => None,
+            ForceOn::Coordinate(_) | ForceOn::Joint(..) | ForceOn::Constant(..) => None,
         });
         let why = if by_forces.any(|ends| ends.iter().any(&mut held)) {
             "only forces hold it in the source: it is fixed to ground; without this joint, and with `[equilibrium]`, they \
@@ -463,7 +472,7 @@ pub fn moves(m: &Mechanism) -> bool {
 /// Makes the only degree of freedom the input: it oscillates as far as possible.
 fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
     let Some(driver) = m.drivers.len().checked_sub(1) else { return };
-    let name = m.drivers[driver].name.clone();
+    let (name, cause) = (m.drivers[driver].name.clone(), undriven(m));
     let (is_angle, limits) = match m.drivers[driver].drives {
         Drives::Coordinate(c) => (c.name.starts_with("angle"), m.joints[c.joint].range_of(c.name)),
         Drives::Translation { .. } => (false, None),
@@ -483,11 +492,9 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
         let text = if one_way { format!("{a}*(1 - cos(2*pi*t))/2") } else { format!("{a}*sin(2*pi*t)") };
         let d = &mut m.drivers[driver];
         d.law = Law::Text(text.clone());
-        d.note = "nothing drives it in the source: as the only degree of freedom it is the input".into();
+        d.note = format!("{cause}: as the only degree of freedom it is the input");
         if moves(m) {
-            let why = format!(
-                "nothing drives it in the source: as the only degree of freedom it is the input, law `{text}`"
-            );
+            let why = format!("{cause}: as the only degree of freedom it is the input, law `{text}`");
             notes.approximated("motion", &name, None, why);
             let short = name.strip_suffix("_held").unwrap_or(&name).to_owned();
             m.drivers[driver].name = format!("{short}_input");
@@ -495,14 +502,9 @@ fn swing(m: &mut Mechanism, notes: &mut ImportLog) {
         }
     }
     let d = &mut m.drivers[driver];
-    (d.law, d.note) =
-        (Law::Fixed, "nothing drives it in the source: fixed in the design configuration".into());
-    notes.approximated(
-        "motion",
-        &name,
-        None,
-        "nothing drives it in the source, and it cannot oscillate: a driver fixes it in the design configuration",
-    );
+    (d.law, d.note) = (Law::Fixed, format!("{cause}: fixed in the design configuration"));
+    let why = format!("{cause}, and it cannot oscillate: a driver fixes it in the design configuration");
+    notes.approximated("motion", &name, None, why);
 }
 
 /// Rounds to two digits, for readability.

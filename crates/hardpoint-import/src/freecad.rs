@@ -330,12 +330,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         for motion in motions {
             let (label, at) = (self.objects[motion].label(), self.objects[motion].at());
             if let Err(why) = self.motion(motion) {
-                self.notes.refused(
-                    "motion",
-                    label,
-                    at,
-                    format!("{why}; its coordinate is fixed in the design configuration"),
-                );
+                self.notes.refused("motion", label, at, format!("{why}; the motion is not imported"));
+                self.m.lost_motions += 1;
             }
         }
         self.times();

@@ -19,6 +19,7 @@
 //! ```
 
 mod adams;
+mod adams_keys;
 mod adams_statement;
 mod asmt;
 mod axle;

@@ -94,6 +94,9 @@ pub fn join(
     let gap = j.pose.r - i.pose.r;
     let across = gap - i.z() * i.z().dot(gap);
     let (mut open, mut awry) = (false, false);
+    // Point of body i at which the joint is assembled: displacements that the joint allows are zero in the design
+    // configuration.
+    let mut on_i = i.pose.r;
     let mut joint = Joint::new(source.name, source.note(notes), kind, [i.body, j.body], j.pose.r);
     let parallel = |a: Vec3, b: Vec3| a.cross(b).norm() <= AWRY;
     match kind {
@@ -105,11 +108,13 @@ pub fn join(
         }
         "translational" | "cylindrical" | "screw" | "inline" => {
             joint = joint.along(i.z());
+            on_i = j.pose.r - across;
             open = across.norm() > APART * reach;
             awry = kind != "inline" && !parallel(i.z(), j.z());
         }
         "planar" | "inplane" => {
             joint = joint.with_axes(i.z(), i.x());
+            on_i = i.pose.r + across;
             open = (gap - across).norm() > APART * reach;
             awry = kind == "planar" && !parallel(i.z(), j.z());
         }
@@ -144,21 +149,19 @@ pub fn join(
     // joint there.
     let turn = if awry { turn_between(kind, [&i, &j]) } else { None };
     if let Some(turn) = turn {
-        let holds_point = ["revolute", "universal"].contains(&kind);
-        let nominal = Pose { rot: j.pose.rot, r: if holds_point { i.pose.r } else { j.pose.r } };
+        // Without a common point the frame may turn about any one.
+        let r = if ["parallel", "dot1"].contains(&kind) { j.pose.r } else { on_i };
+        let nominal = Pose { rot: j.pose.rot, r };
         let note = source.note(notes);
         joint.bodies[0] = crate::robot::turned_frame(m, source.name, note, i.body, nominal, turn);
         let back = turn.transpose();
         joint.axis = joint.axis.map(|axis| back * axis);
         joint.axis2 = joint.axis2.map(|axis| back * axis);
     }
-    if open && ["revolute", "spherical", "universal", "constant_velocity"].contains(&kind) {
-        joint = joint.between(i.pose.r, j.pose.r);
+    if open {
+        joint = joint.between(on_i, j.pose.r);
         let why =
             "its markers are apart in the design configuration: the mechanism is assembled before it moves";
-        notes.approximated(source.kind, source.name, source.at, why);
-    } else if open {
-        let why = "its markers do not coincide: the joint is defined by their positions in the design configuration";
         notes.approximated(source.kind, source.name, source.at, why);
     } else if turn.is_some() {
         let why =

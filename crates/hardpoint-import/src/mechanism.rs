@@ -44,6 +44,8 @@ pub struct Mechanism {
     pub unplaced: Option<Vec<String>>,
     /// Names of the inadmissible design variables, as the writer would name them.
     pub inadmissible: Vec<String>,
+    /// Number of motions of the source that are not imported.
+    pub lost_motions: usize,
     /// Output times.
     pub times: Option<Times>,
     /// Masses of the bodies.
@@ -143,6 +145,8 @@ pub enum ForceOn {
     Bushing([(usize, Vec3); 2], Bushing),
     /// A joint, by its index, along and about its axes.
     Joint(usize, JointElasticity),
+    /// A constant force on a point of a body, in N, that does not turn with the body.
+    Constant((usize, Vec3), Vec3),
 }
 
 /// Stiffness of an elastic joint, per unit of length or angle of the mechanism, in N or N m.
@@ -400,6 +404,7 @@ impl Mechanism {
             cases: Vec::new(),
             unplaced: None,
             inadmissible: Vec::new(),
+            lost_motions: 0,
             times: None,
             masses: Vec::new(),
             forces: Vec::new(),

@@ -3,19 +3,24 @@
 
 mod defaults;
 mod equality;
+mod masses;
+mod vocabulary;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use hardpoint::space::{Mat3, Pose, Vec3};
+use hardpoint::space::{Pose, Vec3};
 use roxmltree::{Document, Node};
 
 use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Joint, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
-use crate::turn::{from_z_and_x, home};
-use crate::xml::{Vocabulary, children, exactly};
+use crate::turn::home;
+use crate::xml::{children, exactly};
 use crate::{Format, Input, robot, xml};
+
+use masses::has_volume;
+use vocabulary::{BODY, FRAME, GEOM, IRRELEVANT, JOINT, SITE};
 
 /// MJCF format.
 pub const FORMAT: Format = Format {
@@ -35,83 +40,6 @@ const CLOSED: f64 = 1e-7;
 const MOST_INCLUDED: usize = 100;
 /// Maximum number of expanded includes.
 const MOST_EXPANDED: usize = 20_000;
-/// Sections without effect on the motion of bodies and joints.
-const IRRELEVANT: [&str; 8] =
-    ["size", "visual", "statistic", "contact", "sensor", "actuator", "custom", "option"];
-/// Known content of a joint.
-const JOINT: Vocabulary = Vocabulary {
-    attributes: &[
-        "name",
-        "class",
-        "type",
-        "pos",
-        "axis",
-        "range",
-        "limited",
-        "ref",
-        "springref",
-        "stiffness",
-        "damping",
-        "frictionloss",
-        "group",
-        "armature",
-        "margin",
-        "solreflimit",
-        "solimplimit",
-        "solreffriction",
-        "solimpfriction",
-        "user",
-        "actuatorfrcrange",
-        "actuatorfrclimited",
-        "actuatorgravcomp",
-        "align",
-    ],
-    read: &[],
-    irrelevant: &[],
-};
-/// Known content of a body, besides its elements.
-const BODY: [&str; 12] = [
-    "name",
-    "childclass",
-    "pos",
-    "quat",
-    "axisangle",
-    "xyaxes",
-    "zaxis",
-    "euler",
-    "mocap",
-    "gravcomp",
-    "user",
-    "sleep",
-];
-/// Known content of an equality.
-const EQUALITY: Vocabulary = Vocabulary {
-    attributes: &[
-        "name",
-        "class",
-        "active",
-        "body1",
-        "body2",
-        "site1",
-        "site2",
-        "anchor",
-        "relpose",
-        "joint1",
-        "joint2",
-        "tendon1",
-        "tendon2",
-        "polycoef",
-        "solref",
-        "solimp",
-        "torquescale",
-    ],
-    read: &[],
-    irrelevant: &[],
-};
-/// Default gravity of MuJoCo, m/s^2.
-const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
-/// Default density of MuJoCo, kg/m^3.
-const DENSITY: f64 = 1000.0;
 
 /// Element with the index of its text.
 type Element<'d> = (usize, Node<'d, 'd>);
@@ -132,7 +60,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     let name = root.attribute("model").filter(|n| !n.is_empty()).unwrap_or(input.stem);
     let mut reader = Reader::new(Mechanism::new(name, "m", "rad"), notes, paths, &documents);
     let top = reader.contents((0, root), 0);
-    reader.settings(&top);
+    reader.settings(&top, true);
     for (text, node) in &top {
         if node.has_tag_name("worldbody") {
             let world = TreePosition { body: GROUND, pose: home(), class: None, depth: 0 };
@@ -143,14 +71,14 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
     for (text, node) in &top {
         match node.tag_name().name() {
             "equality" => reader.equalities((*text, *node)),
-            "compiler" | "default" | "asset" | "worldbody" | "tendon" => {}
+            "compiler" | "option" | "default" | "asset" | "worldbody" | "tendon" => {}
             "keyframe" => reader.keys((*text, *node)),
             other => reader.section(other, (*text, *node)),
         }
     }
     reader.join_connections();
     reader.free_bodies();
-    reader.masses(&top);
+    reader.add_masses();
     for (list, bare) in [(&reader.bodies, false), (&reader.sites, true)] {
         for (name, (body, pose)) in list {
             reader.m.frame(name, *body, *pose, bare);
@@ -181,12 +109,12 @@ pub fn extension<'d>(
     let mut reader = Reader::new(m, notes, vec![String::new(); text + 1], &[]);
     (reader.bodies, reader.joints) = (bodies.clone(), joints.clone());
     let top: Vec<Element<'d>> = blocks.iter().flat_map(|b| children(*b)).map(|n| (text, n)).collect();
-    reader.settings(&top);
+    reader.settings(&top, false);
     reader.tendons(&top);
     for (text, node) in &top {
         match node.tag_name().name() {
             "equality" => reader.equalities((*text, *node)),
-            "compiler" | "default" | "asset" | "tendon" => {}
+            "compiler" | "option" | "default" | "asset" | "tendon" => {}
             other => reader.section(other, (*text, *node)),
         }
     }
@@ -318,21 +246,9 @@ struct Reader<'d, 'n> {
     reported_includes: BTreeSet<(usize, usize)>,
     /// Number of expanded includes.
     expanded: usize,
-    /// Masses of the geoms.
-    solids: Vec<GeomMass>,
-    /// Bodies with an explicit mass.
-    with_explicit_mass: BTreeSet<usize>,
-    /// Number of meshes, whose masses are not computed.
-    meshes_without_mass: usize,
-}
-
-/// Mass of a geom.
-struct GeomMass {
-    body: usize,
-    centre: Vec3,
-    mass: f64,
-    /// Inertia matrix about the centre, along the global axes, kg m^2.
-    inertia: Mat3,
+    /// Effects that flags of `option` disable.
+    disabled: BTreeSet<String>,
+    masses: masses::Masses,
 }
 
 impl<'d, 'n> Reader<'d, 'n> {
@@ -362,9 +278,8 @@ impl<'d, 'n> Reader<'d, 'n> {
             names: BTreeSet::new(),
             reported_includes: BTreeSet::new(),
             expanded: 0,
-            solids: Vec::new(),
-            with_explicit_mass: BTreeSet::new(),
-            meshes_without_mass: 0,
+            disabled: BTreeSet::new(),
+            masses: masses::Masses::default(),
         }
     }
 
@@ -431,6 +346,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             match node.tag_name().name() {
                 "body" => self.inner_body((text, node), inside),
                 "frame" => {
+                    xml::unknown_attributes(text, node, name, FRAME, self.notes);
                     let class = node.attribute("childclass").map(str::to_owned).or_else(|| class.clone());
                     let pose = inside.pose.compose(self.pose((text, node), class.as_deref()));
                     self.body(
@@ -440,7 +356,8 @@ impl<'d, 'n> Reader<'d, 'n> {
                     );
                 }
                 "site" => {
-                    let pose = inside.pose.compose(self.pose((text, node), class.as_deref()));
+                    xml::unknown(text, node, name, SITE, self.notes);
+                    let pose = inside.pose.compose(self.site((text, node), class.as_deref()));
                     if let Some(name) = node.attribute("name") {
                         self.sites.insert(name.to_owned(), (inside.body, pose));
                     }
@@ -502,10 +419,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             // The limit is reported after reading.
             return;
         }
-        for a in node.attributes().filter(|a| !BODY.contains(&a.name())) {
-            let why = format!("`body` has an unknown attribute `{}`", a.name());
-            self.notes.not_understood(a.name(), &name, xml::attribute_at(text, node, a.name()), why);
-        }
+        xml::unknown_attributes(text, node, &name, BODY, self.notes);
         if node.attribute("mocap") == Some("true") {
             let why = "mocap bodies are moved by a program: it is fixed in the design configuration";
             self.notes.approximated("mocap", &name, at, why);
@@ -528,6 +442,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         }
         let body = if joints.is_empty() { self.m.body(&name, note.clone(), Some(pose)) } else { carrier };
         self.notes.taken("body", &name, at);
+        self.compensation(element, body, &name);
         for (joint, i, j) in done {
             self.joint(joint.element, [i, j], joint.pose, joint.class.as_deref(), &name);
         }
@@ -590,12 +505,14 @@ impl<'d, 'n> Reader<'d, 'n> {
             self.notes.problem_with("HP0803", at, message, "rename one of them");
         }
         xml::unknown(text, node, &name, JOINT, self.notes);
+        self.unsupported_of_joint(element, class, &name);
         let source = ElementSource { kind: "joint", name: &name, at };
         let (type_name, coordinate) = match kind.as_str() {
             "hinge" => ("revolute", Some("angle")),
             "slide" => ("translational", Some("displacement")),
             "ball" => ("spherical", None),
             "free" => {
+                self.spring(element, class, source, None);
                 self.free.push(FreeBody { name, at, bodies: [i, j], place: pose.r });
                 return;
             }
@@ -624,7 +541,8 @@ impl<'d, 'n> Reader<'d, 'n> {
             return;
         };
         let limited = self.attribute(element, "limited", class).map_or("auto".into(), |(l, _)| l);
-        if limited == "true" || (limited == "auto" && self.compiler.auto_limits) {
+        let is_limited = limited == "true" || (limited == "auto" && self.compiler.auto_limits);
+        if is_limited && !self.is_disabled("limit") {
             // Ranges are relative to `ref`, the value in the design configuration.
             let [zero] = self.numbers::<1>(element, "ref", class).unwrap_or_default();
             let range = self.range(element, class);
@@ -676,6 +594,10 @@ impl<'d, 'n> Reader<'d, 'n> {
         let [stiffness, damping, springref, zero, friction] =
             ["stiffness", "damping", "springref", "ref", "frictionloss"]
                 .map(|key| number(key).unwrap_or(0.0));
+        let enabled = |x: f64, effect: &str| if self.is_disabled(effect) { 0.0 } else { x };
+        let [stiffness, damping, friction] =
+            [(stiffness, "spring"), (damping, "damper"), (friction, "frictionloss")]
+                .map(|(x, effect)| enabled(x, effect));
         let turns = coordinate.is_some_and(|c| c.name == "angle");
         // Coordinates are relative to the design configuration, where the value is `ref`.
         let free = if turns { self.angle(springref - zero) } else { springref - zero };
@@ -684,92 +606,6 @@ impl<'d, 'n> Reader<'d, 'n> {
         let source = ElementSource { kind: "spring", ..source };
         robot::joint_spring(&mut self.m, self.notes, source, coordinate, [stiffness, damping, free]);
         robot::friction(self.notes, source.name, source.at, friction);
-    }
-
-    /// Adds the explicit mass of a body.
-    fn inertial(&mut self, element: Element<'d>, inside: &TreePosition, name: &str) {
-        let source = ElementSource { kind: "inertial", name, at: xml::at(element.0, element.1) };
-        let frame = inside.pose.compose(self.pose(element, None));
-        let [mass] = self.numbers::<1>(element, "mass", None).unwrap_or_default();
-        let diagonal = self.numbers::<3>(element, "diaginertia", None);
-        let full = self.numbers::<6>(element, "fullinertia", None);
-        let [xx, yy, zz, xy, xz, yz] = full.unwrap_or_else(|| {
-            let [x, y, z] = diagonal.unwrap_or_default();
-            [x, y, z, 0.0, 0.0, 0.0]
-        });
-        let matrix = Mat3 { cols: [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()] };
-        self.with_explicit_mass.insert(inside.body);
-        robot::mass(&mut self.m, self.notes, source, inside.body, frame, mass, Some(matrix));
-    }
-
-    /// Records the mass of a geom: its volume times its density, unless it is a mesh.
-    fn add_geom_mass(&mut self, element: Element<'d>, inside: &TreePosition, solid: Option<(Solid, Pose)>) {
-        let class = inside.class.as_deref();
-        let [mass] = self.numbers::<1>(element, "mass", class).map_or([f64::NAN], |m| m);
-        let [density] = self.numbers::<1>(element, "density", class).unwrap_or([DENSITY]);
-        let Some((solid, place)) = solid else {
-            self.meshes_without_mass += usize::from(mass != 0.0 && density != 0.0);
-            return;
-        };
-        let (volume, per_mass) = volume_of(solid);
-        let mass = if mass.is_nan() { density * volume } else { mass };
-        if !(mass > 0.0 && mass.is_finite()) {
-            return;
-        }
-        let rot = inside.pose.rot * place.rot;
-        let axes = [0, 1, 2].map(|k| {
-            let mut column = [0.0; 3];
-            column[k] = mass * per_mass[k];
-            column.into()
-        });
-        let inertia = rot * Mat3 { cols: axes } * rot.transpose();
-        self.solids.push(GeomMass { body: inside.body, centre: inside.pose.point(place.r), mass, inertia });
-    }
-
-    /// Adds masses from geoms for the bodies without an explicit mass, and gravity.
-    fn masses(&mut self, top: &[Element<'d>]) {
-        let mut of_body: BTreeMap<usize, Vec<GeomMass>> = BTreeMap::new();
-        for solid in std::mem::take(&mut self.solids) {
-            if solid.body != GROUND && !self.with_explicit_mass.contains(&solid.body) {
-                of_body.entry(solid.body).or_default().push(solid);
-            }
-        }
-        for (body, solids) in of_body {
-            let mass: f64 = solids.iter().map(|s| s.mass).sum();
-            let centre = solids.iter().fold(Vec3::zero(), |c, s| c + s.centre * (s.mass / mass));
-            let mut matrix = [[0.0; 3]; 3];
-            for s in &solids {
-                // I = sum of I_k + m_k (d^2 1 - d d^T)
-                let d = s.centre - centre;
-                for (c, column) in matrix.iter_mut().enumerate() {
-                    for (r, x) in column.iter_mut().enumerate() {
-                        let one = if r == c { d.dot(d) } else { 0.0 };
-                        *x += s.inertia.cols[c][r] + s.mass * (one - d[r] * d[c]);
-                    }
-                }
-            }
-            let name = self.m.bodies[body].name.clone();
-            let source = ElementSource { kind: "mass of geoms", name: &name, at: None };
-            let frame = Pose { rot: home().rot, r: centre };
-            let matrix = Mat3 { cols: matrix.map(Vec3::from) };
-            robot::mass(&mut self.m, self.notes, source, body, frame, mass, Some(matrix));
-        }
-        if self.meshes_without_mass > 0 {
-            let why =
-                format!("{} of them are meshes, whose masses are not computed", self.meshes_without_mass);
-            self.notes.refused("mass of geoms", "", None, why);
-        }
-        if self.m.masses.is_empty() {
-            return;
-        }
-        let mut gravity = GRAVITY;
-        for element in top.iter().filter(|(_, n)| n.has_tag_name("option") && n.has_attribute("gravity")) {
-            gravity = self.numbers::<3>(*element, "gravity", None).unwrap_or(gravity);
-        }
-        if gravity.iter().any(|x| *x != 0.0) {
-            self.m.gravity = Some(gravity.into());
-            self.notes.taken("gravity", "", None);
-        }
     }
 
     /// Returns the range of a joint, if it is bounded.
@@ -785,6 +621,7 @@ impl<'d, 'n> Reader<'d, 'n> {
         let class = inside.class.clone();
         let class = class.as_deref();
         let at = xml::at(element.0, element.1);
+        xml::unknown(element.0, element.1, link, GEOM, self.notes);
         let kind = self.attribute(element, "type", class).map_or("sphere".into(), |(kind, _)| kind);
         let mesh = self.attribute(element, "mesh", class).map(|(mesh, _)| mesh);
         let kind =
@@ -792,9 +629,22 @@ impl<'d, 'n> Reader<'d, 'n> {
         let size =
             self.attribute(element, "size", class).and_then(|(s, _)| xml::numbers(&s)).unwrap_or_default();
         let ends = self.numbers::<6>(element, "fromto", class);
-        if inside.body != GROUND {
+        let is_fitted = mesh.is_some() && kind != "mesh";
+        if is_fitted {
+            self.notes.refused(
+                "geom",
+                link,
+                at,
+                format!("shapes of type `{kind}` fitted to a mesh are not supported"),
+            );
+        }
+        if inside.body != GROUND && has_volume(&kind) {
             let own = if ends.is_some() { home() } else { self.pose(element, class) };
-            self.add_geom_mass(element, inside, solid_of(&kind, &size, ends, own));
+            let solid = if is_fitted { None } else { solid_of(&kind, &size, ends, own) };
+            self.add_geom_mass(element, inside, solid);
+        }
+        if is_fitted {
+            return;
         }
         // Shapes for contact only duplicate the visible ones.
         let group = self
@@ -854,18 +704,17 @@ fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -
     let by_ends = ends.is_some();
     let size = |k: usize| size.get(k).copied().unwrap_or(0.0);
     let mut half = size(1);
-    if let Some([a, b, c, d, e, f]) = ends {
-        let (from, to) = (Vec3::from([a, b, c]), Vec3::from([d, e, f]));
-        let axis = to - from;
-        half = axis.norm() / 2.0;
-        if let Some(rot) = from_z_and_x(axis, axis.any_perpendicular()) {
-            place = place.compose(Pose { rot, r: (from + to) * 0.5 });
+    if let Some(ends) = ends {
+        let (from, to) = ([ends[0], ends[1], ends[2]], [ends[3], ends[4], ends[5]]);
+        half = (Vec3::from(to) - Vec3::from(from)).norm() / 2.0;
+        if let Some(between) = defaults::between_ends(ends) {
+            place = place.compose(between);
         }
     }
     let solid = match kind {
-        // A box or ellipsoid with two ends has their distance as its length.
-        "box" if by_ends => Solid::Box([size(0), size(1), half].map(|x| 2.0 * x)),
-        "ellipsoid" if by_ends => Solid::Ball([size(0), size(1), half]),
+        // A box or ellipsoid with two ends has their distance as its length, and the first size across it.
+        "box" if by_ends => Solid::Box([size(0), size(0), half].map(|x| 2.0 * x)),
+        "ellipsoid" if by_ends => Solid::Ball([size(0), size(0), half]),
         "box" => Solid::Box([2.0 * size(0), 2.0 * size(1), 2.0 * size(2)]),
         "cylinder" => Solid::Cylinder(size(0), 2.0 * half),
         "capsule" => Solid::Capsule(size(0), 2.0 * half),
@@ -874,32 +723,4 @@ fn solid_of(kind: &str, size: &[f64], ends: Option<[f64; 6]>, mut place: Pose) -
         _ => return None,
     };
     Some((solid, place))
-}
-
-/// Returns the volume of a solid, m^3, and its moments of inertia about its own axes per unit of mass, m^2.
-fn volume_of(solid: Solid) -> (f64, [f64; 3]) {
-    use std::f64::consts::PI;
-    match solid {
-        Solid::Box([x, y, z]) => {
-            let [x2, y2, z2] = [x, y, z].map(|a| a * a);
-            (x * y * z, [(y2 + z2) / 12.0, (z2 + x2) / 12.0, (x2 + y2) / 12.0])
-        }
-        Solid::Cylinder(r, l) => {
-            let across = (3.0 * r * r + l * l) / 12.0;
-            (PI * r * r * l, [across, across, r * r / 2.0])
-        }
-        Solid::Capsule(r, l) => {
-            // A cylinder with half a ball at each end.
-            let [tube, ball] = [PI * r * r * l, 4.0 / 3.0 * PI * r * r * r];
-            let volume = tube + ball;
-            let [t, b] = [tube / volume, ball / volume];
-            let h = l / 2.0;
-            let across = t * (3.0 * r * r + l * l) / 12.0 + b * (0.4 * r * r + h * h + 0.75 * r * h);
-            (volume, [across, across, t * r * r / 2.0 + b * 0.4 * r * r])
-        }
-        Solid::Ball([a, b, c]) => {
-            let [a2, b2, c2] = [a, b, c].map(|x| x * x);
-            (4.0 / 3.0 * PI * a * b * c, [(b2 + c2) / 5.0, (c2 + a2) / 5.0, (a2 + b2) / 5.0])
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! Common parts of the robot formats: welds of separated frames, mimic joints, masses, springs, plugins. Vehicles use
 //! the masses and gravity.
 
-use hardpoint::space::{Mat3, Pose};
+use hardpoint::space::{Mat3, Pose, Vec3};
 use roxmltree::Node;
 
 use crate::markers::{ElementSource, Marker};
@@ -80,13 +80,6 @@ const IRRELEVANT_PLUGINS: &[&str] = &[
     "jointtrajectory",
     "jointvelocity",
     "velocity-control",
-    "thruster",
-    "buoyancy",
-    "hydrodynamics",
-    "lift_drag",
-    "lift-drag",
-    "windeffects",
-    "wind_plugin",
     "battery",
     "physics",
     "user-commands",
@@ -107,6 +100,12 @@ const IRRELEVANT_PLUGINS: &[&str] = &[
     "realsense",
     "template",
 ];
+
+/// Words in the names of plugins that apply forces.
+const FORCE_PLUGINS: [&str; 7] =
+    ["thruster", "buoyancy", "hydrodynamics", "lift_drag", "lift-drag", "windeffects", "wind_plugin"];
+/// Reason for inertia of rotors that is not imported.
+pub const ROTOR: &str = "rotor inertia has no equivalent: motions that drivers prescribe are the same without it, but not driver forces";
 
 /// Gravity for formats that do not define it, m/s^2.
 const STANDARD_GRAVITY: f64 = 9.80665;
@@ -217,7 +216,10 @@ pub fn plugin(text: usize, node: Node<'_, '_>, notes: &mut ImportLog) {
     let [name, file] = ["name", "filename"].map(|key| node.attribute(key).unwrap_or_default());
     let words = format!("{name} {file}").to_ascii_lowercase();
     let at = xml::at(text, node);
-    if IRRELEVANT_PLUGINS.iter().any(|known| words.contains(known)) {
+    if FORCE_PLUGINS.iter().any(|known| words.contains(known)) {
+        let why = "its forces have no equivalent: motions that drivers prescribe are the same without them, but not loads";
+        notes.refused("plugin", name, at, why);
+    } else if IRRELEVANT_PLUGINS.iter().any(|known| words.contains(known)) {
         notes.ignored("plugin", at);
     } else {
         notes.not_understood("plugin", name, at, format!("unknown plugin `{file}`"));
@@ -295,19 +297,19 @@ pub fn turned_frame(
 }
 
 /// Returns the axis of a rotation with this angle.
-fn turn_of(turn: Mat3, angle: f64) -> hardpoint::space::Vec3 {
+fn turn_of(turn: Mat3, angle: f64) -> Vec3 {
     let c = |row: usize, col: usize| turn.cols[col][row];
-    let skew = hardpoint::space::Vec3::from([c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)]);
+    let skew = Vec3::from([c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1)]);
     // Near half a turn the skew part vanishes; the columns of (R + 1) are then parallel to the axis.
     let half = std::f64::consts::PI - angle;
     if half > 1e-3 {
         return skew.unit().unwrap_or_else(|| [0.0, 0.0, 1.0].into());
     }
-    let mut best = hardpoint::space::Vec3::from([0.0; 3]);
+    let mut best = Vec3::from([0.0; 3]);
     for k in 0..3 {
         let mut e = [0.0; 3];
         e[k] = 1.0;
-        let column = turn.cols[k] + hardpoint::space::Vec3::from(e);
+        let column = turn.cols[k] + Vec3::from(e);
         if column.norm() > best.norm() {
             best = column;
         }
@@ -352,6 +354,22 @@ pub fn mass(
     }
 }
 
+/// Returns the inertia matrix of several masses about their common centre, from their masses, their positions relative
+/// to it and their own inertia matrices.
+pub fn combined(parts: impl Iterator<Item = (f64, Vec3, Mat3)>) -> Mat3 {
+    let mut matrix = [[0.0; 3]; 3];
+    for (mass, d, own) in parts {
+        // I = sum of I_k + m_k (d^2 1 - d d^T)
+        for (c, column) in matrix.iter_mut().enumerate() {
+            for (r, x) in column.iter_mut().enumerate() {
+                let one = if r == c { d.dot(d) } else { 0.0 };
+                *x += own.cols[c][r] + mass * (one - d[r] * d[c]);
+            }
+        }
+    }
+    Mat3 { cols: matrix.map(Vec3::from) }
+}
+
 /// Returns true if a body can have this inertia matrix about its centre: half its trace times 1, minus the matrix, has
 /// no negative eigenvalue.
 fn is_possible(i: Mat3) -> bool {
@@ -365,6 +383,28 @@ fn is_possible(i: Mat3) -> bool {
     let determinant = x * (y * z - e * e) - d * (d * z - e * f) + f * (d * e - y * f);
     let above = [0, 1, 2].iter().all(|k| m(*k, *k) >= 0.0);
     above && minors.iter().all(|x| *x >= 0.0) && determinant >= 0.0
+}
+
+/// Adds a force on a body that compensates this fraction of its weight.
+pub fn compensate_gravity(
+    m: &mut Mechanism,
+    notes: &mut ImportLog,
+    source: ElementSource<'_>,
+    body: usize,
+    fraction: f64,
+) {
+    let Some(gravity) = m.gravity else {
+        notes.ignored(source.kind, source.at);
+        return;
+    };
+    let Some(mass) = m.masses.iter().find(|mass| mass.body == body) else {
+        notes.refused(source.kind, source.name, source.at, "the mass of the body is not known");
+        return;
+    };
+    let on = ForceOn::Constant((body, mass.centre), gravity * (-fraction * mass.mass));
+    let name = format!("{}_without_weight", source.name);
+    m.force(Force { name, note: source.note(notes), on, spring: Spring::default() });
+    notes.taken(source.kind, source.name, source.at);
 }
 
 /// Adds standard gravity along -z if there are masses, for formats without gravity.

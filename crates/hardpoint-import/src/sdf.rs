@@ -2,6 +2,7 @@
 //! gearboxes.
 
 mod joints;
+mod masses;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -35,9 +36,8 @@ const MOST_PLACED: usize = 20_000;
 /// Known content of a link.
 const LINK: Vocabulary = Vocabulary {
     attributes: &["name", "type"],
-    read: &["visual", "pose", "inertial"],
+    read: &["visual", "pose", "inertial", "collision", "gravity", "velocity_decay", "damping", "enable_wind"],
     irrelevant: &[
-        "collision",
         "sensor",
         "light",
         "audio_source",
@@ -45,13 +45,9 @@ const LINK: Vocabulary = Vocabulary {
         "projector",
         "particle_emitter",
         "battery",
-        "gravity",
-        "enable_wind",
         "self_collide",
         "must_be_base_link",
-        "velocity_decay",
         "material",
-        "damping",
     ],
 };
 /// Elements of models and worlds without effect on the motion of links and joints.
@@ -79,8 +75,6 @@ const IRRELEVANT: [&str; 22] = [
     "name",
     "placement_frame",
 ];
-/// Default gravity of SDFormat, m/s^2.
-const GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
 /// Elements with a pose in a model or world.
 const PLACED: [&str; 5] = ["link", "frame", "joint", "model", "include"];
 
@@ -105,6 +99,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         models: Vec::new(),
         bodies: BTreeMap::new(),
         frames: BTreeMap::new(),
+        carriers: BTreeMap::new(),
         scopes: BTreeSet::new(),
         names: BTreeSet::new(),
         joints: BTreeMap::new(),
@@ -201,6 +196,14 @@ struct Frame {
     pose: Pose,
 }
 
+/// Object that carries a frame.
+#[derive(Clone)]
+enum Carrier {
+    Body(usize),
+    /// Another frame: the prefix of names in its model, and its name.
+    Frame(String, String),
+}
+
 /// Model, or the world that contains the models.
 #[derive(Clone)]
 struct Model<'d> {
@@ -248,6 +251,8 @@ struct Reader<'d, 'n> {
     bodies: BTreeMap<String, usize>,
     /// Frames by their names, likewise.
     frames: BTreeMap<String, Frame>,
+    /// Carriers of all links, frames, joints and models by their names, likewise.
+    carriers: BTreeMap<String, Carrier>,
     /// Prefixes of the names in each model.
     scopes: BTreeSet<String>,
     /// Names of all joints, likewise.
@@ -309,11 +314,16 @@ impl<'d> Reader<'d, '_> {
             }
             xml::unknown(model.text, link, &name, LINK, self.notes);
             self.poses_of(model.text, link, &name);
+            let is_auto = child(link, "inertial").is_some_and(|i| i.has_attribute("auto"));
+            for collision in named(link, "collision").filter(|_| !is_auto) {
+                self.notes.ignored("collision", xml::at(model.text, collision));
+            }
         }
         let first = named(model.node, "link").next().and_then(|l| l.attribute("name"));
         let wanted = model.node.attribute("canonical_link").filter(|l| !l.is_empty()).or(first);
         let of = wanted.and_then(|link| self.bodies.get(&format!("{}{}", model.scope, link.trim())).copied());
         model.canonical = of.or_else(|| model.inner.iter().find_map(|k| self.models[*k].canonical));
+        self.declare_carriers(&model);
         for node in children(model.node) {
             let (name, at) = (local(node), xml::at(model.text, node));
             match name {
@@ -331,6 +341,47 @@ impl<'d> Reader<'d, '_> {
         }
         self.models.push(model);
         self.models.len() - 1
+    }
+
+    /// Records the carriers of the frames of a model, of which the poses may not be known yet.
+    fn declare_carriers(&mut self, model: &Model<'d>) {
+        let scope = &model.scope;
+        let of_model = Carrier::Body(model.canonical.unwrap_or(GROUND));
+        if !model.is_merged {
+            // A model may have the same prefix as the world that contains it.
+            self.carriers.entry(format!("{scope}__model__")).or_insert(of_model.clone());
+        }
+        for link in named(model.node, "link") {
+            let full = format!("{scope}{}", link.attribute("name").unwrap_or_default().trim());
+            if let Some(body) = self.bodies.get(&full) {
+                self.carriers.insert(full, Carrier::Body(*body));
+            }
+        }
+        for node in children(model.node).filter(|n| ["frame", "joint"].contains(&n.tag_name().name())) {
+            let name = node.attribute("name").unwrap_or_default().trim();
+            let carrier = carrier_of(node);
+            let carrier = carrier
+                .map_or_else(|| of_model.clone(), |name| Carrier::Frame(scope.clone(), name.to_owned()));
+            // A joint and a link may have the same name.
+            self.carriers.entry(format!("{scope}{name}")).or_insert(carrier);
+        }
+    }
+
+    /// Returns the body that carries a frame; its pose need not be known yet.
+    fn body_of(&self, scope: &str, name: &str) -> Option<usize> {
+        let (mut scope, mut name) = (scope, name);
+        // A longer path returns to a frame that it has passed.
+        for _ in 0..=self.carriers.len() {
+            if name == "world" {
+                return Some(GROUND);
+            }
+            let own = self.carriers.get(&format!("{scope}{name}"));
+            match own.or_else(|| self.carriers.get(&format!("{scope}{name}::__model__")))? {
+                Carrier::Body(body) => return Some(*body),
+                Carrier::Frame(of, next) => (scope, name) = (of, next),
+            }
+        }
+        None
     }
 
     /// Creates a nested model.
@@ -484,20 +535,18 @@ impl<'d> Reader<'d, '_> {
         let name = node.attribute("name").unwrap_or_default().trim();
         let written = child(node, "pose");
         let kind = node.tag_name().name();
-        let on = match kind {
-            "joint" => Some(child(node, "child").and_then(|c| c.text()).unwrap_or_default().trim()),
-            "frame" => node.attribute("attached_to").map(str::trim).filter(|a| !a.is_empty()),
-            _ => None,
-        };
-        let on = match on {
-            Some(other) => self.frame(scope, other),
+        let carrier = carrier_of(node);
+        // A pose relative to a named frame does not depend on the pose of the carrier.
+        let base = match written.and_then(relative_to).or(carrier) {
+            Some(name) => self.frame(scope, name),
             None => Some(of_model),
         };
-        let base = match written.and_then(relative_to) {
-            Some(relative) => self.frame(scope, relative),
-            None => on,
+        let Some(base) = base else { return false };
+        let on = match carrier {
+            Some(name) => self.body_of(scope, name),
+            None => Some(of_model.body),
         };
-        let (Some(on), Some(base)) = (on, base) else { return false };
+        let Some(on) = on else { return false };
         let pose = base.pose.compose(written.map_or_else(home, |p| self.written_pose(text, p)));
         let full = format!("{scope}{name}");
         match kind {
@@ -511,9 +560,9 @@ impl<'d> Reader<'d, '_> {
             "joint" => {
                 // A joint and a link may have the same name.
                 if !self.bodies.contains_key(&full) {
-                    self.frames.insert(full, Frame { body: on.body, pose });
+                    self.frames.insert(full, Frame { body: on, pose });
                 }
-                self.frames.insert(format!("{scope}joint {name}"), Frame { body: on.body, pose });
+                self.frames.insert(format!("{scope}joint {name}"), Frame { body: on, pose });
             }
             _ => {
                 if self.bodies.contains_key(&full) {
@@ -521,7 +570,7 @@ impl<'d> Reader<'d, '_> {
                     self.notes.problem_with("HP0803", xml::at(text, node), message, "rename one of them");
                 }
                 self.bare.insert(full.clone());
-                self.frames.insert(full, Frame { body: on.body, pose });
+                self.frames.insert(full, Frame { body: on, pose });
             }
         }
         true
@@ -611,62 +660,6 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Adds the masses of links, and gravity.
-    fn masses(&mut self, outer: &[Node<'d, 'd>]) {
-        for model in self.models.clone() {
-            for link in named(model.node, "link") {
-                let name = link.attribute("name").unwrap_or_default().trim();
-                let found = self.frame(&model.scope, name);
-                let (Some(inertial), Some(Frame { body, pose })) = (child(link, "inertial"), found) else {
-                    continue;
-                };
-                let written = child(inertial, "pose");
-                let base = written.and_then(relative_to).and_then(|frame| self.frame(&model.scope, frame));
-                let base = base.map_or(pose, |frame| frame.pose);
-                let frame = base.compose(written.map_or_else(home, |p| self.written_pose(model.text, p)));
-                let mut number = |node: Option<Node<'d, 'd>>, key: &'static str, default: f64| {
-                    let Some(n) = node.and_then(|n| child(n, key)) else { return default };
-                    let words = n.text().unwrap_or_default();
-                    let found = exactly::<1>(words, &format!("`{key}`"), xml::at(model.text, n), self.notes);
-                    let [x] = found.unwrap_or([default]);
-                    x
-                };
-                // Defaults of SDFormat.
-                let mass = number(Some(inertial), "mass", 1.0);
-                let i = child(inertial, "inertia");
-                let diagonal = ["ixx", "iyy", "izz"].map(|key| number(i, key, 1.0));
-                let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|key| number(i, key, 0.0));
-                let [xx, yy, zz] = diagonal;
-                let cols = [[xx, xy, xz].into(), [xy, yy, yz].into(), [xz, yz, zz].into()];
-                let source = ElementSource { kind: "inertial", name, at: xml::at(model.text, inertial) };
-                let matrix = hardpoint::space::Mat3 { cols };
-                robot::mass(&mut self.m, self.notes, source, body, frame, mass, Some(matrix));
-            }
-        }
-        if self.m.masses.is_empty() {
-            return;
-        }
-        let written = outer.iter().find_map(|w| child(*w, "gravity"));
-        let given = written
-            .and_then(|g| exactly::<3>(g.text().unwrap_or_default(), "`gravity`", xml::at(0, g), self.notes));
-        match given {
-            Some(g) if g.iter().any(|x| *x != 0.0) => {
-                self.m.gravity = Some(g.into());
-                self.notes.taken("gravity", "", written.and_then(|g| xml::at(0, g)));
-            }
-            Some(_) => {}
-            None => {
-                self.m.gravity = Some(GRAVITY.into());
-                self.notes.approximated(
-                    "gravity",
-                    "",
-                    None,
-                    "no gravity is defined: the default of SDFormat, 9.8 m/s^2 along -z, is used",
-                );
-            }
-        }
-    }
-
     /// Fixes a link of a static model, and adds the shapes of the link.
     fn add_link(&mut self, link: Node<'d, 'd>, model: &Model<'d>) {
         let name = link.attribute("name").unwrap_or_default().trim();
@@ -686,6 +679,15 @@ impl<'d> Reader<'d, '_> {
     }
 }
 
+/// Returns the name of the frame that carries a joint or a frame; `None` if it is that of the model.
+fn carrier_of<'a>(node: Node<'a, '_>) -> Option<&'a str> {
+    match node.tag_name().name() {
+        "joint" => Some(child(node, "child").and_then(|c| c.text()).unwrap_or_default().trim()),
+        "frame" => node.attribute("attached_to").map(str::trim).filter(|a| !a.is_empty()),
+        _ => None,
+    }
+}
+
 /// Returns the frame that a pose is relative to, if it names one; versions before 1.7 use another attribute.
 fn relative_to<'a>(pose: Node<'a, '_>) -> Option<&'a str> {
     let named = pose.attribute("relative_to").or_else(|| pose.attribute("frame")).map(str::trim);
@@ -700,36 +702,42 @@ fn add_shape(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'
         notes.refused("visual", &link, at, "it has no shape");
         return;
     };
-    let numbers = |key: &'static str| {
-        child(shape, key).and_then(|n| xml::numbers(n.text().unwrap_or_default())).unwrap_or_default()
-    };
-    let one = |key| numbers(key).first().copied();
-    let three = |key| <[f64; 3]>::try_from(numbers(key)).ok();
-    let solid = match shape.tag_name().name() {
-        "mesh" => {
+    match (shape.tag_name().name(), solid_of(shape)) {
+        ("mesh", _) => {
             let path = child(shape, "uri").and_then(|u| u.text()).unwrap_or_default().trim();
-            let scale = three("scale").unwrap_or([1.0; 3]);
+            let scale = numbers(shape, "scale").unwrap_or([1.0; 3]);
             input.mesh(body, place, scale, path, &link, xml::at(text, shape), notes);
-            return;
         }
-        "box" => three("size").map(Solid::Box),
-        "cylinder" => one("radius").zip(one("length")).map(|(r, l)| Solid::Cylinder(r, l)),
-        "capsule" => one("radius").zip(one("length")).map(|(r, l)| Solid::Capsule(r, l)),
-        "sphere" => one("radius").map(|r| Solid::Ball([r; 3])),
-        "ellipsoid" => three("radii").map(Solid::Ball),
-        "empty" => {
-            notes.ignored("visual", at);
-            return;
+        ("empty", _) => notes.ignored("visual", at),
+        (_, Some(Ok(solid))) => {
+            input.shapes.solid(body, place, solid);
+            notes.taken("visual", &link, at);
         }
-        other => {
-            notes.refused("visual", &link, at, format!("shapes of type `{other}` are not supported"));
-            return;
+        (_, Some(Err(why))) => notes.refused("visual", &link, xml::at(text, shape), why),
+        (kind, None) => {
+            notes.refused("visual", &link, at, format!("shapes of type `{kind}` are not supported"));
         }
+    }
+}
+
+/// Returns the first N numbers of an element of a shape.
+fn numbers<const N: usize>(shape: Node<'_, '_>, key: &'static str) -> Option<[f64; N]> {
+    let list = xml::numbers(child(shape, key)?.text()?)?;
+    list.get(..N)?.try_into().ok()
+}
+
+/// Returns the solid of a simple shape, or an error if its size is missing; `None` for other shapes.
+fn solid_of(shape: Node<'_, '_>) -> Option<Result<Solid, &'static str>> {
+    let round = |of: fn(f64, f64) -> Solid| {
+        Some(of(numbers::<1>(shape, "radius")?[0], numbers::<1>(shape, "length")?[0]))
     };
-    let Some(solid) = solid else {
-        notes.refused("visual", &link, xml::at(text, shape), "its size is not numeric");
-        return;
+    let solid = match shape.tag_name().name() {
+        "box" => numbers(shape, "size").map(Solid::Box),
+        "cylinder" => round(Solid::Cylinder),
+        "capsule" => round(Solid::Capsule),
+        "sphere" => numbers::<1>(shape, "radius").map(|[r]| Solid::Ball([r; 3])),
+        "ellipsoid" => numbers(shape, "radii").map(Solid::Ball),
+        _ => return None,
     };
-    input.shapes.solid(body, place, solid);
-    notes.taken("visual", &link, at);
+    Some(solid.ok_or("its size is not numeric"))
 }

@@ -35,6 +35,36 @@ pub enum Solid {
     Ball([f64; 3]),
 }
 
+impl Solid {
+    /// Returns the volume and the moments of inertia about its own axes per unit of mass.
+    pub fn moments(self) -> (f64, [f64; 3]) {
+        use std::f64::consts::PI;
+        match self {
+            Self::Box([x, y, z]) => {
+                let [x2, y2, z2] = [x, y, z].map(|a| a * a);
+                (x * y * z, [(y2 + z2) / 12.0, (z2 + x2) / 12.0, (x2 + y2) / 12.0])
+            }
+            Self::Cylinder(r, l) => {
+                let across = (3.0 * r * r + l * l) / 12.0;
+                (PI * r * r * l, [across, across, r * r / 2.0])
+            }
+            Self::Capsule(r, l) => {
+                // A cylinder with half a ball at each end.
+                let [tube, ball] = [PI * r * r * l, 4.0 / 3.0 * PI * r * r * r];
+                let volume = tube + ball;
+                let [t, b] = [tube / volume, ball / volume];
+                let h = l / 2.0;
+                let across = t * (3.0 * r * r + l * l) / 12.0 + b * (0.4 * r * r + h * h + 0.75 * r * h);
+                (volume, [across, across, t * r * r / 2.0 + b * 0.4 * r * r])
+            }
+            Self::Ball([a, b, c]) => {
+                let [a2, b2, c2] = [a, b, c].map(|x| x * x);
+                (4.0 / 3.0 * PI * a * b * c, [(b2 + c2) / 5.0, (c2 + a2) / 5.0, (a2 + b2) / 5.0])
+            }
+        }
+    }
+}
+
 impl Shapes {
     /// Adds a simple shape at a pose in its body.
     pub fn solid(&mut self, body: usize, place: Pose, solid: Solid) {

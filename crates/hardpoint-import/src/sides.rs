@@ -198,7 +198,9 @@ impl Mirror<'_> {
         let ends = |on| match on {
             ForceOn::Points(ends) => Some(ends),
             // The sign on the other side depends on the joint, or on the axes.
-            ForceOn::Coordinate(_) | ForceOn::Bushing(..) | ForceOn::Joint(..) => None,
+            ForceOn::Coordinate(_) | ForceOn::Bushing(..) | ForceOn::Joint(..) | ForceOn::Constant(..) => {
+                None
+            }
         };
         if let (ForceOn::Joint(l, left_law), ForceOn::Joint(r, right_law)) = (left.on, right.on) {
             let names = [l, r].map(|k| &self.m.joints[k].name);

@@ -72,18 +72,10 @@ const LINK: Vocabulary = Vocabulary {
     ],
 };
 /// Elements of a robot without effect on its motion.
-const IRRELEVANT: [&str; 8] = [
-    "material",
-    "transmission",
-    "sensor",
-    "ros2_control",
-    "camera",
-    "collision_filter_group",
-    "disable_collisions",
-    "light",
-];
+const IRRELEVANT: [&str; 7] =
+    ["material", "sensor", "ros2_control", "camera", "collision_filter_group", "disable_collisions", "light"];
 /// Elements for Gazebo without effect on the motion of links and joints.
-const IRRELEVANT_IN_GAZEBO: [&str; 36] = [
+const IRRELEVANT_IN_GAZEBO: [&str; 33] = [
     "material",
     "mu1",
     "mu2",
@@ -98,11 +90,8 @@ const IRRELEVANT_IN_GAZEBO: [&str; 36] = [
     "maxVel",
     "minDepth",
     "laserRetro",
-    "dampingFactor",
     "maxContacts",
     "fdir1",
-    "gravity",
-    "turnGravityOff",
     "provideFeedback",
     "stopKd",
     "stopKp",
@@ -202,6 +191,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
                 let why = "bushings are forces: if it closes a loop, use a `loop_joint` instead";
                 reader.notes.refused("linear_bushing_rpy", "", xml::at(0, node), why);
             }
+            "transmission" => reader.transmission(node),
             other if IRRELEVANT.contains(&other) => reader.notes.ignored(other, xml::at(0, node)),
             other => reader.unknown(other, node),
         }

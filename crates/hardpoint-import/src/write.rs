@@ -393,6 +393,12 @@ impl<'m> Writer<'m> {
                             value(matrix.iter().map(|row| Value::from(numbers(row))).collect::<Array>());
                     }
                 }
+                ForceOn::Constant((body, at), force) => {
+                    t["type"] = value("force");
+                    t["at"] = value(self.point(body, at));
+                    t["force"] = value(force.norm());
+                    t["along"] = direction(force);
+                }
             }
             if spring.damping != 0.0 {
                 t["damping"] = value(spring.damping);

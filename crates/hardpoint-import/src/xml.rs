@@ -253,13 +253,8 @@ pub struct Vocabulary {
 /// Reports the unknown content of an element, which may affect the motion. `owner` is the name of the object that
 /// contains it.
 pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, notes: &mut ImportLog) {
+    unknown_attributes(text, node, owner, words.attributes, notes);
     let kind = node.tag_name().name();
-    for a in node.attributes().filter(|a| !words.attributes.contains(&a.name())) {
-        let range = a.range();
-        let at = Some(SourceSpan { text, start: range.start, end: range.end });
-        let why = format!("`{}` has an unknown attribute `{}`", kind, a.name());
-        notes.not_understood(a.name(), owner, at, why);
-    }
     for part in children(node) {
         let name = local(part);
         if words.irrelevant.contains(&name) {
@@ -268,6 +263,22 @@ pub fn unknown(text: usize, node: Node<'_, '_>, owner: &str, words: Vocabulary, 
             let why = format!("`{kind}` has an unknown element `{name}`");
             notes.not_understood(name, owner, at(text, part), why);
         }
+    }
+}
+
+/// Reports the unknown attributes of an element, which may affect the motion.
+pub fn unknown_attributes(
+    text: usize,
+    node: Node<'_, '_>,
+    owner: &str,
+    known: &[&str],
+    notes: &mut ImportLog,
+) {
+    for a in node.attributes().filter(|a| !known.contains(&a.name())) {
+        let range = a.range();
+        let at = Some(SourceSpan { text, start: range.start, end: range.end });
+        let why = format!("`{}` has an unknown attribute `{}`", node.tag_name().name(), a.name());
+        notes.not_understood(a.name(), owner, at, why);
     }
 }
 

@@ -67,6 +67,7 @@ record! {
         let status = match found.status {
             Status::Found if certainty.unidentifiable.is_empty() => "found",
             Status::Found => "not_told",
+            Status::Stuck => "stuck",
             Status::IterationLimit => "iteration_limit",
             Status::Interrupted => "interrupted",
         };
@@ -84,7 +85,7 @@ record! {
     /// Name of the measurement file.
     data: String = of.data.into();
     /// Status at the end: `found`, `not_told` (found, but the readings do not determine all variables),
-    /// `iteration_limit` or `interrupted`.
+    /// `stuck`, `iteration_limit` or `interrupted`.
     status: &'static str = status;
     /// Status in words, with an instruction.
     message: String = String::new();
@@ -149,6 +150,7 @@ record! {
         let prior = certainty.prior_sigmas[k];
         let ratio = certainty.sigmas[k].zip(prior).map(|(s, p)| s / p);
         let source = match (certainty.bounds[k], certainty.sigmas[k], ratio) {
+            (None, ..) if of.found.status == Status::Stuck => "not fitted",
             (Some(BoundSide::Lower), ..) => "at its lower bound",
             (Some(BoundSide::Upper), ..) => "at its upper bound",
             (None, None, _) => "undetermined",
@@ -165,7 +167,8 @@ record! {
     start: f64 = shown(start);
     /// Fitted value: the value of a parameter, the change of all other variables.
     end: f64 = shown(start + by);
-    /// Standard deviation; `null` if the readings and priors do not determine it, or it is at a bound.
+    /// Standard deviation; `null` if the readings and priors do not determine it, it is at a bound, or the search got
+    /// stuck.
     sigma: Option<f64> = certainty.sigmas[k].map(shown);
     /// Mean of its prior; `null` without a prior of its own.
     prior_mean: Option<f64> = certainty.prior_means[k].map(|mean| shown(start + mean));
@@ -173,8 +176,8 @@ record! {
     prior_sigma: Option<f64> = prior.map(shown);
     /// Fitted value minus mean of the prior, in standard deviations of the prior.
     pull: Option<f64> = certainty.prior_means[k].zip(prior).map(|(mean, p)| (by - mean) / p);
-    /// Source of the result: `learnt from data`, `still your prior`, `no prior`, `undetermined`, `at its lower bound`
-    /// or `at its upper bound`.
+    /// Source of the result: `learnt from data`, `still your prior`, `no prior`, `undetermined`, `not fitted` (the
+    /// search got stuck), `at its lower bound` or `at its upper bound`.
     source: &'static str = source;
 }
 
@@ -565,6 +568,10 @@ impl CalibrateFacts {
                 count(self.untold.len(), "direction"),
                 if self.untold.len() == 1 { "is" } else { "are" },
                 if self.priors > 0 { " and the priors" } else { "" }
+            ),
+            "stuck" => format!(
+                "stuck, not at the best fit: better designs do not assemble, or stop before a posture of the table; \
+                 check the measurements, or fit other variables{fit}"
             ),
             "interrupted" => "interrupted: the best design so far".into(),
             _ => "the iteration limit was reached before the best fit: increase `--iterations`".into(),

@@ -155,6 +155,11 @@ fn ended(file: &ModelFile, stop: &Stop, who: &str, left: String) -> Diagnostic {
             rounded(stop.pivot_ratio, 2)
         ));
     }
+    if matches!(stop.kind, StopKind::JointLimit { begins_beyond: false, .. }) {
+        d = d.note(
+            "curves and metrics cover the output times up to there; limits and clearances all of the motion",
+        );
+    }
     d = d.note(left);
     match stop.help() {
         Some(help) => d.help(help),

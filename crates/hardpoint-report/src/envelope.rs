@@ -38,7 +38,8 @@ record! {
     margin: f64 = in_units(1, request.margin);
     /// Permitted error.
     permitted: f64 = in_units(1, found.error);
-    /// Largest distance between the triangles and the envelope, at their centres and the middles of their edges.
+    /// Largest distance between the triangles and the envelope, at their centres, the middles of their edges, and
+    /// points of the envelope.
     deviation: f64 = in_units(1, found.surface.deviation);
     /// Distance by which positions between these reach beyond the envelope: a quarter of that by which the others reach
     /// beyond the envelope of every second one.

@@ -93,9 +93,9 @@ record! {
     model: String = model.name.clone();
     /// Name of the model file.
     file: String = file.file_name().into();
-    /// Outcome of the best search: `optimal`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted` or
-    /// `no_start`; or `not_reproduced` if the saved design does not move like the optimum, or `not_saved` if it could
-    /// not be saved.
+    /// Outcome of the best search: `optimal`, `no_effect`, `stuck`, `limits_not_kept`, `iteration_limit`, `interrupted`
+    /// or `no_start`; or `not_reproduced` if the saved design does not move like the optimum, or `not_saved` if it
+    /// could not be saved.
     status: &'static str = status_word(search.status());
     /// Status in words, with an instruction.
     message: String = String::new();
@@ -415,6 +415,7 @@ pub struct SavedFact {
 pub fn status_word(status: Status) -> &'static str {
     match status {
         Status::Optimal => "optimal",
+        Status::NoEffect => "no_effect",
         Status::Stuck => "stuck",
         Status::LimitsNotKept => "limits_not_kept",
         Status::IterationLimit => "iteration_limit",
@@ -519,6 +520,7 @@ fn start_line(k: usize, search: &SearchResult) -> String {
 fn in_words(status: Status) -> &'static str {
     match status {
         Status::Optimal => "an optimum",
+        Status::NoEffect => "no goal depends on the variables",
         Status::Stuck => "no further progress",
         Status::LimitsNotKept => "limits not kept",
         Status::IterationLimit => "iteration limit reached",
@@ -566,6 +568,16 @@ impl OptimizeFacts {
                 "optimum found; {} are at their bounds, and wider bounds would improve it",
                 some_of(&binding, ", ")
             ),
+            Status::NoEffect => {
+                let goals = search.asked.goals.iter().map(|goal| format!("`{}`", goal.name));
+                let variables = self.variables.iter().map(|v| format!("`{}`", v.name));
+                format!(
+                    "no goal ({}) depends on the variables ({}): give `bounds` to variables that change them, or choose \
+                     other goals",
+                    some_of(&goals.collect::<Vec<_>>(), ", "),
+                    some_of(&variables.collect::<Vec<_>>(), ", ")
+                )
+            }
             Status::Stuck => "no step makes progress, although it is not quite an optimum: try more `starts`, or more output times \
                 where a metric jumps"
                 .into(),

@@ -23,8 +23,6 @@ use crate::study::{BeforeAfter, Evaluations, FailureFact, bar, case_name, percen
 const BAND: f64 = 3.0;
 /// Contributions below this fraction are not listed.
 const SLIGHT: f64 = 1e-3;
-/// Number of standard errors above which Monte Carlo and derivatives differ.
-const ERRORS: f64 = 3.0;
 /// Bands below this fraction of the curve's largest value are round-off.
 const NO_BAND: f64 = 1e-13;
 /// Number of bars in a histogram.
@@ -42,7 +40,10 @@ record! {
         let metrics: Vec<SpreadFact> = (0..found.metrics.len()).map(|k| SpreadFact::of(studied, k)).collect();
         let inaccurate = metrics.iter().filter_map(|m| Some(format!("`{}` ({})", m.titled(), m.nonlinear.as_ref()?)));
         let inaccurate: Vec<String> = inaccurate.collect();
-        let instead = if samples > 0 { "use the sampled designs" } else { "sample designs with `samples`" };
+        let instead = match samples >= SampledMetric::FEWEST {
+            true => "use the sampled designs",
+            false => "sample designs with `samples`",
+        };
         let (linear, accuracy) = match inaccurate.is_empty() {
             true => {
                 let less = percent(NONLINEAR);
@@ -188,8 +189,8 @@ record! {
     end: Option<f64> = sought.map_or(Some(tolerance.reach), |t| t.after).map(shown);
     /// Standard deviation of the deviation.
     sigma: f64 = shown(of.sigma);
-    /// Relative cost of its tolerance.
-    cost: Option<f64> = tolerance.cost;
+    /// Relative cost of its tolerance: `cost` over the tolerance in this unit.
+    cost: Option<f64> = tolerance.cost.map(shown);
 }
 
 record! {
@@ -285,7 +286,7 @@ record! {
     /// Statistics of a metric over the sampled designs.
     SampledFact::of(of: &MetricSpread, drawn: &SampledMetric, shown: &dyn Fn(f64) -> f64) {
         let off = of.sigma - drawn.sigma[0];
-        let differs = off.abs() > ERRORS * drawn.sigma[1];
+        let differs = drawn.differs_from(of.sigma);
     }
     /// Number of designs with a value.
     known: usize = drawn.known;
@@ -668,7 +669,12 @@ impl ToleranceFacts {
             rows.push(("yield", format!("{} keep all limits", yield_text(part, error))));
         }
         if self.samples > 0 {
-            rows.push(("sampled", format!("{}, seed {}", count(self.samples, "design"), self.seed)));
+            let fewest = SampledMetric::FEWEST;
+            let remark = match self.samples < fewest {
+                true => format!("; too few to check sigma, which takes at least {fewest}"),
+                false => String::new(),
+            };
+            rows.push(("sampled", format!("{}, seed {}{remark}", count(self.samples, "design"), self.seed)));
         }
         if self.failed > 0 {
             let part = percent(self.failed as f64 / self.samples as f64);

@@ -233,6 +233,9 @@ fn status_sentence(status: Status) -> &'static str {
         }
         Status::NoStart => "no design could be evaluated; `hardpoint optimize` lists the reasons",
         Status::IterationLimit => "the iteration limit was reached: increase `max_iterations`",
+        Status::NoEffect => {
+            "it does not depend on the variables: give `bounds` to variables that change it, or trade other goals"
+        }
         Status::Stuck | Status::Optimal => "no step makes progress: try more `starts`",
         Status::Interrupted => "interrupted",
     }

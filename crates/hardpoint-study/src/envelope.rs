@@ -2,7 +2,9 @@
 //!
 //! The envelope is the union of the shape at many poses: where the least of its signed distances is not positive. The
 //! poses are doubled until those between them reach no farther beyond the surface than half of the error that is
-//! permitted, and the cells of the surface are halved until its triangles deviate by no more than the other half.
+//! permitted, and the cells of the surface are halved until its triangles deviate by no more than the other half. Both
+//! are measured from the triangles to the envelope and from points of the envelope to the triangles: parts that are
+//! thinner than a cell have no triangles.
 
 mod request;
 mod surface;
@@ -21,6 +23,7 @@ use surface::{LeastOf, surface};
 
 use super::evaluation::StudyCost;
 use super::grid::each_half_row;
+use super::request::RequestError;
 
 /// Maximum number of cells that the surface passes: a file of about 300 MB.
 const MOST_CELLS: usize = 1_000_000;
@@ -41,6 +44,8 @@ pub enum EnvelopeError {
     Topology(TopologyError),
     /// No position was reached; the first stop.
     NotReached(Option<Box<Stop>>),
+    /// No cell of the smallest size is inside the shape.
+    TooThin(RequestError),
     /// The caller ended the study.
     Interrupted,
 }
@@ -80,6 +85,14 @@ struct Union<'a> {
 impl LeastOf for Union<'_> {
     fn part(&self, k: usize, p: Vec3) -> f64 {
         self.swept.distance(k, p) - self.margin
+    }
+
+    fn zero(&self, k: usize, p: Vec3) -> Vec3 {
+        self.swept.surface_point(k, p, self.margin)
+    }
+
+    fn corners(&self, k: usize) -> Vec<Vec3> {
+        self.swept.corners(k)
     }
 }
 
@@ -146,8 +159,9 @@ pub fn envelope(
     for halvings in 1.. {
         let finer = poses_of(halvings, &mut cost)?;
         let union = Union { swept: &found.swept, margin: request.margin };
-        let beyond =
-            |surface: &Triangles| surface.vertices.iter().map(|p| union.least(*p)).fold(0.0, f64::max);
+        let beyond = |surface: &Triangles| {
+            surface.vertices.iter().chain(&surface.samples).map(|p| union.least(*p)).fold(0.0, f64::max)
+        };
         made = of(&finer.swept, first_cell)?;
         between = made.as_ref().map_or(f64::INFINITY, beyond);
         let grew = finer.swept.len() > found.swept.len();
@@ -170,8 +184,15 @@ pub fn envelope(
         cell *= 0.5;
         made = of(&found.swept, cell)?;
     }
+    if surface.triangles.is_empty() {
+        let name = &model.shapes[request.shape.0].name;
+        return Err(EnvelopeError::TooThin(RequestError::model(
+            format!("`{name}` is thinner than the smallest cells of its envelope"),
+            "add a distance around it (margin)",
+        )));
+    }
     Ok(Envelope {
-        is_within_error: enough && surface.deviation <= half && !surface.triangles.is_empty(),
+        is_within_error: enough && surface.deviation <= half,
         surface,
         poses: found.swept.len(),
         error,

@@ -48,8 +48,7 @@ export function checks(state: State): HTMLElement {
 /** Result of the study of which this is the page; nothing of it changes with the design. */
 export function studyTables(state: State, { title, tables }: StudyTables): HTMLElement {
   const heading = el('p', { class: 'of-design', role: 'status' }, 'Result of the study, not of the present design')
-  const studied = JSON.stringify(state.settings)
-  const sync = () => (heading.hidden = JSON.stringify(state.settings) === studied)
+  const sync = () => (heading.hidden = state.isRecorded)
   state.onChoice(sync)
   sync()
   return el(

@@ -95,11 +95,16 @@ export function valueContent(state: State, subject: Subject): Content {
   const base = reference ?? drawn[0]
   const scale = largest(state, index, order)
   for (const [k, one] of quantities.entries()) {
+    const side = over === undefined ? undefined : report.quantities[onSideOf(report, over, one.index)]
     const abscissa = (design: Drawn) => {
-      if (over === undefined) return undefined
-      const x = report.quantities[onSideOf(report, over, one.index)]
-      const own = design.curve(x.index, 0)
-      return own.length === 0 && isGiven(x) ? x.curves[0] : own
+      if (!side) return undefined
+      const own = design.curve(side.index, 0)
+      return own.length === 0 && isGiven(side) ? side.curves[0] : own
+    }
+    const course = (design: Drawn) => () => {
+      const of = (index: number, from: Order) => ([0, 1, 2] as const).slice(from).map((k) => design.curve(index, k))
+      const x = abscissa(design)
+      return { y: of(one.index, order), x: x && side && [x, ...of(side.index, 1)] }
     }
     for (const design of drawn) {
       const all = quiet(design.curve(one.index, order), scale)
@@ -113,7 +118,10 @@ export function valueContent(state: State, subject: Subject): Content {
       const label = !several ? alone : plain ? own : `${own}, ${design.name}`
       const color = several ? hue(k) : (design.color ?? css('--former'))
       const dash = several && plain ? PATTERNS[k % PATTERNS.length] : design.dash
-      content.lines.push({ label, color, curve, over: x, width: design.width, dash, about: aboutQuantity(one) })
+      content.lines.push({
+        ...{ label, color, curve, dash, over: x, width: design.width, about: aboutQuantity(one) },
+        course: difference ? undefined : course(design),
+      })
     }
   }
   if (difference) content.caption = differenceCaption(reference)
@@ -123,8 +131,11 @@ export function valueContent(state: State, subject: Subject): Content {
     addTargets(state, quantity, content, present, over)
     addContacts(state, quantity, content, over)
   }
-  for (const [k, { label, x, y }] of measured.entries())
-    content.lines.push({ label, color: hue(k + 5), curve: y, over: x, free: true, marks: withGaps(y) })
+  if (difference) {
+    if (measured.length > 0) content.caption += ' Measured data are values, and not shown among changes.'
+  } else
+    for (const [k, { label, x, y }] of measured.entries())
+      content.lines.push({ label, color: hue(k + 5), curve: y, over: x, free: true, marks: withGaps(y) })
   content.lines = content.lines.filter(({ curve }) => curve.length > 0)
   return overOther(state, over, content)
 }

@@ -1,3 +1,5 @@
+import { abscissaOf } from '../content'
+import type { Curve } from '../curve'
 import { css } from '../dom'
 import { csvOf, type Column } from '../export/csv'
 import { pngOf } from '../export/png'
@@ -6,7 +8,7 @@ import { save } from '../export/save'
 import { hasVideo, motionVideo } from '../export/video'
 import type { View } from '../scene/view'
 import type { State } from '../state'
-import { stepsWithin } from '../zoom'
+import { type Part, stepsWithin } from '../zoom'
 import { composePrint } from './composer'
 import type { Figure } from './figure'
 import type { Item } from './menu'
@@ -76,23 +78,33 @@ function paper() {
   return { page: css('--page'), text: css('--ink'), muted: css('--muted'), rule: css('--rule') }
 }
 
-/** Time, abscissas of the curves, and every curve once, at the steps that some plot shows. */
+/** Time, then every curve once, after its abscissa if that is not time, at the steps that some plot shows. */
 function columns({ report }: State, figures: Figure[]): Column[] {
-  const contents = figures.map(({ plot }) => plot.content)
-  const overs = new Map(contents.flatMap(({ over }) => (over ? [[over.label, over] as const] : [])))
-  const columns = [
-    { label: 'time', unit: report.units.time, curve: report.times },
-    ...[...overs.values()].map(({ label, unit, curve }) => ({ label, unit, curve })),
-    ...contents.flatMap(({ title, unit, lines }) =>
-      lines
-        .filter(({ free, hidden }) => !free && !hidden)
-        .map(({ label, curve }) => ({ label: label === title ? label : `${title}: ${label}`, unit, curve })),
-    ),
-  ]
-  const seen = contents.map(({ over, part }) => part && stepsWithin(over?.curve ?? report.times, part))
-  if (seen.some((steps) => !steps)) return columns
+  const time = { label: 'time', unit: report.units.time, curve: report.times }
+  const columns: Column[] = [time]
+  const parts: { xs: Curve; part?: Part }[] = []
+  for (const { plot } of figures) {
+    const { content } = plot
+    const { title, unit, over, part } = content
+    for (const line of content.lines.filter(({ free, hidden }) => !free && !hidden)) {
+      const xs = abscissaOf(line, content, report.times)
+      parts.push({ xs, part })
+      const label = line.label === title ? title : `${title}: ${line.label}`
+      if (over && !columns.some(({ curve }) => isSame(curve, xs))) {
+        const isTaken = columns.some((column) => column.label === over.label)
+        columns.push({ label: isTaken ? `${over.label} of ${label}` : over.label, unit: over.unit, curve: xs })
+      }
+      columns.push({ label, unit, curve: line.curve })
+    }
+  }
+  if (parts.some(({ part }) => !part)) return columns
+  const seen = parts.map(({ xs, part }) => stepsWithin(xs, part!))
   return columns.map((column) => ({
     ...column,
-    curve: column.curve.filter((_, k) => seen.some((steps) => steps!.has(k))),
+    curve: column.curve.filter((_, k) => seen.some((steps) => steps.has(k))),
   }))
+}
+
+function isSame(a: Curve, b: Curve): boolean {
+  return a === b || (a.length === b.length && a.every((value, k) => Object.is(value, b[k])))
 }

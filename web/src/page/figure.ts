@@ -1,11 +1,11 @@
-import { el, onSchemeChange } from '../dom'
+import { el, onSchemeChange, prose } from '../dom'
 import { messageOf } from '../format'
 import { Plot } from '../plot'
-import { groups, ORDERS, type Order, type Report } from '../report'
+import { groups, orderedName, ORDERS, type Order, type Report } from '../report'
 import type { State } from '../state'
 import type { Part, Zoom } from '../zoom'
 import { sensitivityContent, valueContent, type Subject } from './contents'
-import { type Measured, measuredOf } from './measured'
+import { type Measured, type MeasuredSubject, measuredOf } from './measured'
 import { pointing } from './pointing'
 import { ValueTable } from './value_table'
 
@@ -48,6 +48,14 @@ interface FigureActions {
   tool?: (figure: Figure) => HTMLElement | undefined
 }
 
+/** A file of measured data, which is read for what the figure shows. */
+interface MeasuredFile {
+  name: string
+  text: string
+  /** What the figure showed when the file was opened: columns without names of quantities belong to that. */
+  of: string
+}
+
 /** A plot with selectors of its quantities, its abscissa, and values, changes or sensitivities. */
 export class Figure {
   readonly plot: Plot
@@ -61,7 +69,10 @@ export class Figure {
   #difference = false
   #path: boolean
   #shown: FigureKind
-  #measured: Measured[] = []
+  #files: MeasuredFile[] = []
+  /** Reason why the last file could not be opened. */
+  #unread = ''
+  #failing = ''
   #table = new ValueTable()
   #delta = toggle('difference', 'Show changes to the reference design', 'Δ', () => {
     this.#difference = !this.#difference
@@ -139,7 +150,7 @@ export class Figure {
     let extra: HTMLElement | undefined
     let listed = ''
     this.show = () => {
-      const subject = this.subject
+      const subject = { ...this.subject, measured: this.#measured() }
       const values = this.#shown === 'value'
       // The studio adds its parts when it has loaded.
       if (!extra && (extra = tool?.(this))) controls.lastElementChild!.before(extra)
@@ -175,7 +186,7 @@ export class Figure {
   get subject(): Subject {
     const { quantity, order, over } = this.state.choice
     if (this.#follows) this.#accompany(quantity)
-    const own = { also: this.#also, difference: this.#difference, measured: this.#measured, path: this.#path }
+    const own = { also: this.#also, difference: this.#difference, path: this.#path }
     return this.#follows
       ? { ...own, quantity, order, over }
       : { ...own, quantity: this.#quantity!, order: this.#order, over: this.#over }
@@ -253,14 +264,14 @@ export class Figure {
     return [
       el('option', { value: '' }, '+ curve'),
       el('option', { value: 'file' }, 'measured data (CSV)…'),
-      ...(this.#measured.length > 0 ? [el('option', { value: 'none' }, 'remove measured data')] : []),
+      ...(this.#files.length > 0 ? [el('option', { value: 'none' }, 'remove measured data')] : []),
       ...same.map(({ index }) => el('option', { value: index }, name(index))),
     ]
   }
 
   #add(value: string): void {
     if (value === 'file') this.#file.click()
-    else if (value === 'none') this.#measured = []
+    else if (value === 'none') [this.#files, this.#unread] = [[], '']
     else if (value !== '') {
       const index = Number(value)
       const at = this.#also.indexOf(index)
@@ -294,19 +305,54 @@ export class Figure {
   async #load(file: File | undefined): Promise<void> {
     this.#file.value = ''
     if (!file) return
-    const { quantities } = this.state.report
-    const { quantity, order, also = [], over } = this.subject
-    const of = (index: number) => ({ name: quantities[index].name, unit: quantities[index].units[order] })
-    const time = { name: 'time', unit: this.state.report.units.time }
     try {
-      const abscissa = over === undefined ? time : { ...of(over), unit: quantities[over].units[0] }
-      const subject = { quantities: [quantity, ...also].map(of), over: abscissa }
-      this.#measured.push(...measuredOf(await file.text(), file.name, subject))
-      this.#failure.textContent = ''
+      const read = { name: file.name, text: await file.text(), of: this.#shownNames }
+      measuredOf(read.text, read.name, this.#measuredSubject(read))
+      this.#files.push(read)
+      this.#unread = ''
     } catch (error) {
-      this.#failure.textContent = messageOf(error)
+      this.#unread = messageOf(error)
     }
     this.show()
+  }
+
+  /** Names of what is plotted. */
+  get #shownNames(): string {
+    const { quantity, order, over } = this.subject
+    return `${quantity} ${order} ${over}`
+  }
+
+  /** The columns of a file that can be drawn. */
+  #measuredSubject({ of }: MeasuredFile): MeasuredSubject {
+    const { quantities, units } = this.state.report
+    const { quantity, order, also = [], over } = this.subject
+    const wanted = (index: number, order: Order) => {
+      const one = quantities[index]
+      return { name: orderedName(one, order), unit: one.units[order], rateOf: order > 0 ? one.name : undefined }
+    }
+    return {
+      quantities: [quantity, ...also].map((index) => wanted(index, order)),
+      over: over === undefined ? { name: 'time', unit: units.time } : wanted(over, 0),
+      known: ['time', ...quantities.map(({ name }) => name)],
+      isForUnnamed: of === this.#shownNames,
+    }
+  }
+
+  /** Curves of the files for what is plotted; where a file has none, the reason is shown. */
+  #measured(): Measured[] {
+    const failures = this.#unread ? [this.#unread] : []
+    const found = this.#files.flatMap((file) => {
+      try {
+        return measuredOf(file.text, file.name, this.#measuredSubject(file))
+      } catch (error) {
+        failures.push(messageOf(error))
+        return []
+      }
+    })
+    const failing = failures.join('. ')
+    if (failing !== this.#failing) this.#failure.replaceChildren(...prose(failing))
+    this.#failing = failing
+    return found
   }
 }
 

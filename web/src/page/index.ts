@@ -4,8 +4,9 @@ import { rankingTable } from '../influence/table'
 import type { Pose, View } from '../scene/view'
 import { forcePaths } from '../loads/polar'
 import { driverMap } from '../maps/map'
-import type { State } from '../state'
+import { ORIGINAL, type State } from '../state'
 import { sweepPlot } from '../sweep/scatter'
+import { settingsAt } from '../sweep/settings'
 import { bar } from './bar'
 import { cards } from './cards'
 import { checks, studyTables } from './checks'
@@ -138,8 +139,8 @@ function tableTabs(state: State, limits?: VariableLimits): Tab[] {
   if (variables.length > 0) all.push({ name: 'variables', title: 'Variables', content: variableList(state, limits) })
   if (sweep) {
     const title = { design: 'Designs', point: 'Front' }[sweep.what] ?? 'Residuals'
-    const plot = sweepPlot(sweep, (settings) => state.setDesign(settings))
-    const heading = sweep.what === 'posture' ? [recordHeading(state)] : []
+    const plot = sweepPlot(sweep, (k) => state.setDesign(settingsAt(state.report, sweep, k)))
+    const heading = sweep.what === 'posture' ? [recordHeading(state, 'Fitted design')] : []
     all.push({ name: 'designs', title, content: el('div', {}, ...heading, plot) })
   }
   if (maps.length > 0) {
@@ -163,10 +164,10 @@ export function slot(head: HTMLElement, tools: HTMLElement): void {
   head.querySelector('.space')!.after(tools)
 }
 
-/** Heading over what is solved once, for the design as loaded. */
-function recordHeading(state: State): HTMLElement {
-  const heading = el('p', { class: 'of-design' }, 'Original design')
-  const sync = () => (heading.hidden = !state.changed)
+/** Heading over what is solved once, for the design that the page was made of. */
+function recordHeading(state: State, name = ORIGINAL): HTMLElement {
+  const heading = el('p', { class: 'of-design', 'data-testid': 'of-record' }, name)
+  const sync = () => (heading.hidden = state.isRecorded)
   state.onChoice(sync)
   sync()
   return heading

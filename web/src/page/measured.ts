@@ -1,4 +1,5 @@
 import type { Curve } from '../curve'
+import { conversion } from '../units'
 
 /** A curve that was read from a file. */
 export interface Measured {
@@ -11,35 +12,37 @@ export interface Measured {
 export interface MeasuredQuantity {
   name: string
   unit: string
+  /** Name of the quantity whose rate this is: a column of that name is it only with a unit that says so. */
+  rateOf?: string
 }
 
-/** Units by dimension, with their factors to the first. */
-const UNITS: Record<string, number>[] = [
-  { N: 1, kN: 1000, lbf: 4.4482216152605 },
-  { 'N*m': 1, Nm: 1, 'kN*m': 1000, kNm: 1000, 'N*mm': 0.001, Nmm: 0.001 },
-  { mm: 1, cm: 10, m: 1000, in: 25.4 },
-  { deg: 1, '°': 1, rad: 180 / Math.PI },
-  { s: 1, ms: 0.001 },
-]
+/** Quantities of the plot that a file is read for. */
+export interface MeasuredSubject {
+  quantities: readonly MeasuredQuantity[]
+  over: MeasuredQuantity
+  /** Names of all quantities of the report, and `time`: a column of one of them is no other. */
+  known?: readonly string[]
+  /** True if columns without these names may be those of the plot. */
+  isForUnnamed?: boolean
+}
 
 /** Separators of columns, the first that is found in the heading counts. */
 const SEPARATORS = [';', '\t', ',']
 
 /**
  * Curves of a file of comma-separated values for a plot of some quantities over another one, or over time: columns by
- * their names, else the first two columns. An error says what is missing.
+ * their names, else the first two columns unless these have names of other quantities. An error says what is missing.
  */
 export function measuredOf(
   text: string,
   file: string,
-  { quantities, over }: { quantities: readonly MeasuredQuantity[]; over: MeasuredQuantity },
+  { quantities, over, known = [], isForUnnamed = true }: MeasuredSubject,
 ): Measured[] {
   const lines = text.split(/\r?\n/).filter((line) => line.trim() !== '' && !line.startsWith('#'))
   const separator = SEPARATORS.find((one) => lines[0]?.includes(one)) ?? ','
   const rows = lines.map((line) => cells(line, separator))
   const hasHeading = rows[0]?.some((cell) => cell !== '' && Number.isNaN(numberOf(cell, separator)))
   const titles = hasHeading ? rows.shift()! : []
-  const heading = titles.map(nameOf)
   const [{ name: first }] = quantities
   const width = Math.max(0, ...rows.map((row) => row.length))
   if (width < 2 || rows.length < 1)
@@ -48,9 +51,25 @@ export function measuredOf(
     const factor = factorOf(titles[k] ?? '', of, file)
     return Float32Array.from(rows, (row) => numberOf(row[k] ?? '', separator) * factor)
   }
-  const x = Math.max(0, heading.indexOf(over.name))
-  const named = quantities.flatMap((of) => (heading.includes(of.name) ? [{ of, k: heading.indexOf(of.name) }] : []))
-  const found = named.length > 0 ? named : [{ of: quantities[0], k: x === 0 ? 1 : 0 }]
+  const place = (of: MeasuredQuantity) => titles.findIndex((title) => isNamed(title, of))
+  const named = quantities.map((of) => ({ of, k: place(of) })).filter(({ k }) => k >= 0)
+  const unnamed = (of: MeasuredQuantity, taken: readonly number[]) => {
+    const k = [0, 1].find((k) => !taken.includes(k)) ?? -1
+    if (k < 0 || !isForUnnamed || known.includes(nameOf(titles[k] ?? '')))
+      throw new Error(
+        `\`${file}\` has no column \`${of.name}\`${titles.length > 0 ? `: it has ${titles.join(', ')}` : ''}`,
+      )
+    return k
+  }
+  const at = place(over)
+  const x =
+    at >= 0
+      ? at
+      : unnamed(
+          over,
+          named.map(({ k }) => k),
+        )
+  const found = named.length > 0 ? named : [{ of: quantities[0], k: unnamed(quantities[0], [x]) }]
   const abscissa = column(x, over)
   const curves = found.map(({ of, k }) => ({ label: `${of.name}, ${file}`, x: abscissa, y: column(k, of) }))
   if (curves.every(({ x, y }) => !y.some((value, k) => Number.isFinite(value + x[k]))))
@@ -68,15 +87,29 @@ function numberOf(cell: string, separator: string): number {
   return text.trim() === '' ? NaN : Number(text.replace('−', '-'))
 }
 
-/** Factor from the unit of a heading, such as `side [kN]`, to that of the quantity; 1 for a heading without a unit. */
+/** True for a column of a quantity, by its heading. */
+function isNamed(title: string, { name, unit, rateOf }: MeasuredQuantity): boolean {
+  const named = nameOf(title)
+  if (named === name) return true
+  return named === rateOf && Number.isFinite(conversion(unitIn(title) ?? '', unit))
+}
+
+/** Unit of a heading such as `side [kN]`, else of `side (kN)`. */
+function unitIn(title: string): string | undefined {
+  return (/\[\s*([^\]]+?)\s*\]/.exec(title) ?? /\(\s*(.+?)\s*\)\s*$/.exec(title))?.[1]
+}
+
+/** Factor from the unit of a heading to that of the quantity; 1 for a heading without a unit. */
 function factorOf(title: string, { name, unit }: MeasuredQuantity, file: string): number {
-  const written = /[[(]\s*([^\])]+?)\s*[\])]/.exec(title)?.[1].replace(/\s|·/g, '*').replace(/\*+/g, '*')
-  if (written === undefined || written === unit) return 1
-  const known = UNITS.find((units) => written in units)
-  // Other words in brackets are no unit.
-  if (!known) return 1
-  if (!(unit in known)) throw new Error(`\`${title}\` of \`${file}\` is no ${unit || 'plain number'}, as ${name} is`)
-  return known[written] / known[unit]
+  const written = unitIn(title)
+  if (written === undefined) return 1
+  const factor = conversion(written, unit)
+  // A word in round brackets may be a remark.
+  if (factor === undefined && !title.includes('[') && !/[*/^·²³\d]/.test(written)) return 1
+  if (factor === undefined) throw new Error(`\`${title}\` of \`${file}\`: the page has no unit \`${written}\``)
+  if (Number.isNaN(factor))
+    throw new Error(`\`${title}\` of \`${file}\` is no ${unit || 'plain number'}, as ${name} is`)
+  return factor
 }
 
 /** `toe` of `toe [deg]` and `toe (deg)`. */

@@ -8,7 +8,7 @@ export interface Item {
   run: () => void | Promise<void>
 }
 
-/** A button that opens a list of actions; errors are shown in place of the list. */
+/** A button that opens a list of actions; errors are shown in place of the list until the reader goes on. */
 export function menu(title: string, testId: string, items: () => Item[]): HTMLElement {
   const list = el('div', {
     class: 'menu',
@@ -57,6 +57,13 @@ export function menu(title: string, testId: string, items: () => Item[]): HTMLEl
     } catch (error) {
       failure.textContent = `${name}: ${messageOf(error)}`
       failure.hidden = false
+      const shown = new AbortController()
+      const hide = ({ target }: Event) => {
+        if (element.contains(target as Node)) return
+        failure.hidden = true
+        shown.abort()
+      }
+      for (const event of ['pointerdown', 'keydown']) addEventListener(event, hide, { signal: shown.signal })
     }
   }
   element.addEventListener('keydown', (event) => {

@@ -118,7 +118,9 @@ export function variables(state: State, limits?: VariableLimits): HTMLElement {
 
 function statusOf(state: State): string {
   if (state.isPredicted) return 'Changes are predicted to first order. '
-  return state.hasCurrentSensitivities ? '' : 'Sensitivities are being updated. '
+  if (state.hasCurrentSensitivities) return ''
+  const { unsolved } = state
+  return unsolved ? `Sensitivities of this design are not known: ${unsolved}. ` : 'Sensitivities are being updated. '
 }
 
 /** Scrolls a list to one of its rows; scrollIntoView would move the whole page on a phone. */

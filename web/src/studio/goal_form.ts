@@ -44,6 +44,8 @@ export class GoalForm {
   #why = el('p', { class: 'muted', 'data-testid': 'goal-why', role: 'status' })
   #reduction: HTMLElement
   #unit = el('span', { class: 'unit' })
+  /** True if it has entries of the reader that are not submitted. */
+  #isEntered = false
 
   constructor(
     private readonly host: GoalHost,
@@ -78,7 +80,7 @@ export class GoalForm {
         'data-testid': 'goal-form',
         open: isOpen,
         // Within the form of the study, but not part of its request.
-        oninput: (event: Event) => (event.stopPropagation(), this.sync()),
+        oninput: (event: Event) => (event.stopPropagation(), (this.#isEntered = true), this.sync()),
         onkeydown: (event: KeyboardEvent) => {
           if (event.key !== 'Enter' || !(event.target instanceof HTMLInputElement)) return
           event.preventDefault()
@@ -91,11 +93,31 @@ export class GoalForm {
       el('div', { class: 'goal-row' }, this.#aim, this.#target, this.#min, this.#max, this.#unit, this.#add),
       this.#why,
     )
-    this.propose(host.selected(), isOpen)
+    this.#choose(host.selected(), isOpen)
+  }
+
+  /** Takes over what was entered in the form of another text, as far as it is still offered. */
+  adopt(former: GoalForm): void {
+    if (!former.#isEntered) return
+    this.#isEntered = true
+    this.element.open = former.element.open
+    const fields = (form: GoalForm) => [form.#of, form.#take, form.#over, form.#case, form.#aim]
+    fields(this).forEach((field, k) => {
+      const { value } = fields(former)[k]
+      if ([...field.options].some((option) => option.value === value)) field.value = value
+    })
+    const typed = (form: GoalForm) => [form.#at, form.#target, form.#min, form.#max]
+    typed(this).forEach((field, k) => (field.value = typed(former)[k].value))
+    this.sync()
   }
 
   /** Chooses what a goal is for. */
-  propose({ of, over }: Proposal, isOpen = true): void {
+  propose(proposal: Proposal): void {
+    this.#isEntered = true
+    this.#choose(proposal, true)
+  }
+
+  #choose({ of, over }: Proposal, isOpen: boolean): void {
     const isMetric = this.metrics.some(({ metric }) => metric === of)
     this.#of.value = isMetric ? `metric ${of}` : `of ${of}`
     if (!this.#of.value) this.#of.selectedIndex = 0
@@ -186,6 +208,7 @@ export class GoalForm {
     if (typeof found === 'string') return
     this.#add.disabled = true
     this.#why.textContent = 'Adding…'
+    this.#isEntered = false
     this.onAdd(found.judged, found.aim)
     this.host.add(found.judged, found.aim, this.around.chosen())
   }

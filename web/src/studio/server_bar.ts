@@ -115,13 +115,21 @@ class Desk {
   }
 
   private async compare(): Promise<void> {
-    const present = await this.text.text()
+    // A design without a text differs from that on disk; saving it gives the reason.
+    const present = await this.text.text().catch(() => undefined)
+    if (present !== undefined) this.notes.drop('unwritten')
     this.button.disabled = this.saved === undefined || present === this.saved
     this.button.classList.toggle('unsaved', this.isUnsaved())
   }
 
   async save(): Promise<void> {
-    await this.put(await this.text.text())
+    let present: string
+    try {
+      present = await this.text.text()
+    } catch (error) {
+      return this.notes.show('unwritten', `Not saved: ${messageOf(error)}.`, { stop: true })
+    }
+    await this.put(present)
   }
 
   /** Saves a text; with `anyway` also what is no valid model. */
@@ -224,8 +232,8 @@ class Desk {
     const submit = async (event: Event) => {
       event.preventDefault()
       const file = name.value.endsWith('.toml') ? name.value : `${name.value}.toml`
-      const present = await this.text.text()
       try {
+        const present = await this.text.text()
         const saved = await this.server.saveAs(file, present)
         if (saved.outcome === 'saved') {
           this.button.disabled = true

@@ -24,8 +24,12 @@ const LINES = 5
 /** Parts of the page that the panes use. */
 export interface StudyHost {
   studies: Studies
-  /** The text of the present design. */
+  /** The last text that is known of a shown design. */
   text: () => string
+  /** The text of the present design; an error says why there is none. */
+  present: () => Promise<string>
+  /** Reason why the text is not that of the present design; empty if there is none. */
+  unwritten: () => string
   /** Shows the design that a study found; its changes count from the text that was studied. */
   apply: (result: StudyResult, studied: string) => void
   /** Shows a design of a study under way next to the present one, or none any more. */
@@ -57,6 +61,7 @@ export interface OptimizePane extends StudyPane {
 export function optimizePane(host: StudyHost): OptimizePane {
   let proposed: Proposal | undefined
   let shown: GoalForm | undefined
+  let isReloaded = false
   const kept: Kept = { variables: new Map(), goals: new Map() }
   const made = pane(host, {
     name: 'Optimise',
@@ -71,7 +76,7 @@ export function optimizePane(host: StudyHost): OptimizePane {
         kept,
         () => shown!,
       )
-      const isOpen = shown?.element.open
+      const former = shown
       shown = new GoalForm(
         host.goals,
         offer.goals,
@@ -83,7 +88,9 @@ export function optimizePane(host: StudyHost): OptimizePane {
           if (aim.kind !== 'keep') kept.goals.set(name, { chosen: true, weight: '1', target })
         },
       )
-      if (isOpen) shown.element.open = true
+      if (former?.element.open) shown.element.open = true
+      if (former && !isReloaded) shown.adopt(former)
+      isReloaded = false
       if (proposed) shown.propose(proposed)
       proposed = undefined
       return { ...form, elements: form.elements(shown.element) }
@@ -91,7 +98,7 @@ export function optimizePane(host: StudyHost): OptimizePane {
     start: (text, request) => host.studies.optimize(text, request),
     steps: ({ starts, iterations }) => (starts > 1 ? starts : iterations),
     isSeveral: ({ starts }) => starts > 1,
-    forget: () => (kept.variables.clear(), kept.goals.clear()),
+    forget: () => (kept.variables.clear(), kept.goals.clear(), (isReloaded = true)),
   })
   const propose = (proposal: Proposal) => {
     if (shown?.element.isConnected) shown.propose(proposal)
@@ -167,6 +174,7 @@ function pane<Offer, Request>(
     shown = 'form'
     const view = formView(name, verb, made, refusal, {
       isStale: () => read !== host.text(),
+      refusal: host.unwritten,
       changed: () => (touched = true),
       reload: () => (forget(), void load()),
       run: (request) => void work(made, request),
@@ -191,8 +199,14 @@ function pane<Offer, Request>(
   }
 
   const work = async (made: Form<Request>, request: Request) => {
+    if (shown === 'progress') return
     shown = 'progress'
-    const text = host.text()
+    let text: string
+    try {
+      text = await host.present()
+    } catch (error) {
+      return showForm(made, refused(error))
+    }
     const view = progressView(name, steps(request), isSeveral(request), {
       cancel: () => running.cancel(),
       preview: (change) => host.preview(change, text),
@@ -224,7 +238,7 @@ function pane<Offer, Request>(
     // What the search found stays next to the present design until it is applied or discarded.
     host.preview(result.change ?? undefined, text)
     const view = resultView(name, result, { apply: () => (leave(), host.apply(result, text)), leave })
-    stale = () => (view.since.hidden = host.text() === text)
+    stale = () => (view.since.hidden = host.text() === text && host.unwritten() === '')
     stale()
     show(...view.elements, ...starts)
     announced.textContent = result.message
@@ -243,6 +257,8 @@ function pane<Offer, Request>(
 interface FormActions<Request> {
   /** True if the text is another than the one that the form was made from. */
   isStale: () => boolean
+  /** Reason why the present design cannot be studied; empty if there is none. */
+  refusal: () => string
   changed: () => void
   reload: () => void
   run: (request: Request) => void
@@ -254,7 +270,7 @@ function formView<Request>(
   verb: string,
   made: Form<Request>,
   refusal: HTMLElement | undefined,
-  { isStale, changed, reload, run }: FormActions<Request>,
+  { isStale, refusal: blocked, changed, reload, run }: FormActions<Request>,
 ) {
   const testId = name.toLowerCase()
   const why = el('span', { class: 'muted', 'data-testid': `${testId}-why` })
@@ -265,7 +281,7 @@ function formView<Request>(
     'Reload from model',
   )
   const sync = () => {
-    const request = made.request()
+    const request = blocked() || made.request()
     begin.disabled = typeof request === 'string'
     why.replaceChildren(...prose(typeof request === 'string' ? request : ''))
     again.hidden = !isStale()

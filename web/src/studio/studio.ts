@@ -12,6 +12,7 @@ import { messageOf } from '../format'
 import type { Picture } from '../linkage/backdrop'
 import { Drawing } from '../linkage/drawing'
 import { page, type PageMemory, type PageParts, slot } from '../page'
+import { hasCases } from '../page/metrics'
 import type { Item } from '../page/menu'
 import type { VariableLimits } from '../page/variables'
 import type { Design as WireDesign, ModelText, Payload } from '../payload'
@@ -96,8 +97,10 @@ export class Studio {
   #busy = false
   #resting?: ReturnType<typeof setTimeout>
   #hand = 0
-  /** The text of the present design. */
+  /** The text of the present design, or of the last one that had a text. */
   #text: string
+  /** Reason why the present design has no text; empty if it has one. */
+  #unwritten = ''
   /** A text that is being solved, and why the last one could not be shown. */
   #next?: string
   #failure?: unknown
@@ -108,6 +111,9 @@ export class Studio {
   /** Choices by case, for when it is shown again; and those that the next page is to make. */
   readonly #choices = new Map<string | null, Choices>()
   #recalled?: Choices
+  /** Report and model that the page was made of. */
+  readonly #first: { report: Report; model: ModelText }
+  readonly #recorded: readonly VariableSetting[]
   /** True if the next page is to open with the sheet of its motion. */
   #fresh = false
   readonly #storage: Storage
@@ -127,6 +133,8 @@ export class Studio {
     this.#sensing = new Solver(module)
     this.#checks = new Solver(module)
     this.#text = model.text
+    this.#first = { report: state.report, model }
+    this.#recorded = state.recorded
     this.history = new History({ text: model.text, settings: [], label: 'original' })
     this.history.setFileDesigns(state.report.named_designs, model.text)
     const bar = historyBar(this.history, {
@@ -145,6 +153,8 @@ export class Studio {
     const host = {
       studies: new Workers(module, (text) => ({ ...this.model, text })),
       text: () => this.#text,
+      present: () => this.#currentText(),
+      unwritten: () => this.#unwritten,
       apply: ({ change, text }: StudyResult, studied: string) => void this.#applyResult(change, text, studied),
       preview: (change: VariableSetting[] | undefined, studied: string) => this.#preview(change, studied),
       targets: this.#targets,
@@ -182,7 +192,8 @@ export class Studio {
     ])
     // A card is a value, for which there may be a goal.
     root.addEventListener('contextmenu', (event) => {
-      const name = (event.target as Element).closest<HTMLElement>('[data-testid^=card-]')?.dataset.testid
+      // Its figures have identifiers of their own.
+      const name = (event.target as Element).closest<HTMLElement>('.card[data-testid^=card-]')?.dataset.testid
       if (!name || !this.#opened) return
       event.preventDefault()
       this.propose({ of: name.slice('card-'.length), over: this.#proposal().over })
@@ -289,14 +300,14 @@ export class Studio {
     return this.#text
   }
 
-  /** Called when the text is another. */
+  /** Called when the text is another, or unknown. */
   onText(listener: () => void): void {
     this.#listeners.push(listener)
   }
 
   /** Shows another text. */
   async replace(text: string, label: string): Promise<void> {
-    if (text === this.#text) return
+    if (text === this.#text && !this.#unwritten) return
     this.history.go({ text, settings: [], label })
     const solved = this.#openModel({ ...this.model, text }, [])
     this.#setText(text)
@@ -393,7 +404,7 @@ export class Studio {
   }
 
   #showStatus(words: string): void {
-    this.#status.textContent = words
+    this.#status.textContent = this.#status.title = words
   }
 
   /** Listens to changes of the shown design. */
@@ -553,6 +564,7 @@ export class Studio {
   }
 
   #offerCases(cases: string[]): void {
+    if (cases.length > 0) this.state.case = this.model.case ?? cases[0]
     if (cases.length < 2) return this.#cases.replaceChildren(...this.#separation(cases))
     const select = el(
       'select',
@@ -651,10 +663,24 @@ export class Studio {
     this.history.endGesture()
     const [settings, version] = [state.settings, this.#version]
     const same = () => version === this.#version && JSON.stringify(settings) === JSON.stringify(state.settings)
-    try {
-      const text = await this.#currentText()
+    const refuse = (error: unknown) => {
       if (!same()) return
+      state.unsolved = messageOf(error)
+      this.#showStatus(state.unsolved)
+      state.choose({})
+      this.root.dataset.settled = 'yes'
+    }
+    let text: string
+    try {
+      text = await this.#currentText()
+      if (!same()) return
+      this.#setUnwritten('')
       this.#setText(text)
+    } catch (error) {
+      if (same()) this.#setUnwritten(messageOf(error))
+      return refuse(error)
+    }
+    try {
       if (settings.length === 0) state.setSensitivities(undefined, [])
       else if (!state.hasCurrentSensitivities) {
         this.#sensing.stop()
@@ -663,11 +689,19 @@ export class Studio {
         if (!same()) return
         if (hasSameNames(report, state.report)) state.setSensitivities(report, settings)
       }
+      state.unsolved = ''
       this.#showStatus('')
       this.root.dataset.settled = 'yes'
     } catch (error) {
-      if (same()) this.#showStatus(messageOf(error))
+      refuse(error)
     }
+  }
+
+  /** Notes why the present design has no text. */
+  #setUnwritten(why: string): void {
+    if (why === this.#unwritten) return
+    this.#unwritten = why
+    for (const listener of this.#listeners) listener()
   }
 
   /** The text with the changes. */
@@ -694,28 +728,44 @@ export class Studio {
   /** Shows another model, solved anew. */
   async #openModel(model: ModelText, settings: VariableSetting[]): Promise<void> {
     this.#showStatus('solving')
+    this.root.dataset.settled = 'no'
     this.#failure = undefined
     this.#next = model.text
     this.#version++
     this.#sensing.stop()
     try {
-      const { json, decode } = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...model, shown: null } })
+      const { model: solved, report } = await this.#page(model)
       const former = this.model.case
-      this.model = json.model ?? model
+      this.model = solved
       this.#next = undefined
-      const report = read(json, decode)
       this.history.setFileDesigns(report.named_designs, this.model.text)
       this.#show(report, former)
+      this.#setUnwritten('')
       this.#setText(this.model.text)
       await this.#open()
       if (this.history.compared.length > 0) await this.#compare()
-      if (settings.length > 0) this.state.setDesign(settings)
+      if (settings.length > 0 || this.state.changed) this.state.setDesign(settings)
       else this.root.dataset.settled = 'yes'
     } catch (error) {
       this.#failure = error
       this.#showStatus(messageOf(error))
+      this.root.dataset.settled = 'yes'
       if (error instanceof RequestError) this.#editor?.showMessages(error.messages)
     }
+  }
+
+  /** A model with its report, whose records are those of the page if they are of the same text. */
+  async #page(model: ModelText): Promise<{ model: ModelText; report: Report }> {
+    const { report, model: first } = this.#first
+    if (model.text === first.text && model.case === first.case) return { model: first, report }
+    const { json, decode } = await this.#sensing.ask<Payload>({ ask: 'page', model: { ...model, shown: null } })
+    const found = { model: json.model ?? model, report: read(json, decode) }
+    if (model.text === first.text) {
+      const { maps, sweep, study } = report
+      const metrics = report.metrics && hasCases(report.metrics) ? report.metrics : found.report.metrics
+      Object.assign(found.report, { maps, sweep, study, metrics })
+    }
+    return found
   }
 
   /** Rebuilds the page with the former choices; another case has its own, if it was shown before. */
@@ -734,6 +784,7 @@ export class Studio {
     view?.dispose()
     keepMeshes(before.report, report)
     const state = new State(report)
+    state.recorded = this.#recorded
     if (!fresh) state.recall({ ...recalled.choices, time: before.time })
     this.root.replaceChildren()
     this.state = state
@@ -836,7 +887,7 @@ export class Studio {
 
   /** Draws a design of a study under way next to the present one; of several at once the last. */
   #preview(change: VariableSetting[] | undefined, studied: string): void {
-    if (change && studied !== this.#text) return
+    if (change && (studied !== this.#text || this.#unwritten)) return
     const isIdle = this.#previewed === undefined
     this.#previewed = { change }
     if (isIdle) void this.#drawPreviews()
@@ -887,9 +938,11 @@ export class Studio {
     }
     const former = history.save('before optimisation')
     history.compareWith([former])
-    if (text !== null) await this.replace(text, 'found')
-    else if (studied !== this.#text) await this.replace(studied, 'studied')
-    if (text === null && change) this.state.setDesign(change)
+    if (text !== null) return this.replace(text, 'found')
+    // A design without a text of its own is a change of the text that was studied.
+    const settings = change ?? []
+    history.go({ text: studied, settings, label: 'found' })
+    await this.#openModel({ ...this.model, text: studied }, settings)
   }
 
   async #openEditor(): Promise<HTMLElement> {

@@ -8,7 +8,10 @@ import type {
   ToleranceOffer,
 } from '../engine/protocol'
 import { Solver } from '../engine/solver'
+import { messageOf } from '../format'
 import type { ModelText } from '../payload'
+
+const BEST = 'This is the best design so far.'
 
 /** The studies of a model, each run by an engine of its own in the page. */
 export class Workers implements Studies {
@@ -54,7 +57,14 @@ export class Workers implements Studies {
       best = news.change ?? best
       for (const listener of listeners) listener(news)
     }
-    const whole = solver.ask<StudyReply>(request, onProgress).then(({ json }) => json)
+    const whole = solver.ask<StudyReply>(request, onProgress).then(
+      ({ json }) => json,
+      (error): StudyReply => {
+        // The designs before a failure are still of use, such as where the last one cannot be written as a text.
+        if (!best) throw error
+        return { tables: [], change: best, text: null, message: `Failed: ${messageOf(error)}. ${BEST}` }
+      },
+    )
     return {
       onProgress: (listener) => listeners.push(({ done, total, line, change }) => listener(done, total, line, change)),
       cancel: () => {
@@ -62,7 +72,7 @@ export class Workers implements Studies {
           tables: [],
           change: best,
           text: null,
-          message: best ? 'Cancelled. This is the best design so far.' : 'Cancelled before a better design was found.',
+          message: best ? `Cancelled. ${BEST}` : 'Cancelled before a better design was found.',
         })
         solver.stop()
       },

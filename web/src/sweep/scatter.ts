@@ -1,11 +1,9 @@
 import './sweep.css'
 import { el, svg } from '../dom'
-import type { VariableSetting } from '../engine/protocol'
 import { extent, linearAxis, type Axis } from '../export/axis'
 import { figure, number, titled } from '../format'
 import type { Sweep, SweepAxis } from '../report'
 import { along, nearest } from './nearest'
-import { settingsAt } from './settings'
 
 const MARGIN = { left: 70, right: 16, top: 10, bottom: 46 }
 /** The picture is so high for its width, and no higher, px. */
@@ -21,9 +19,9 @@ const FEW = 200
 
 /**
  * Swept designs as points over two of their variables and metrics, and what Sobol's indices say of the metric that is
- * shown. A point that is pressed, or dragged along, is passed on as the changes of its variables.
+ * shown. The index of a point that is pressed, or dragged along, is passed on.
  */
-export function sweepPlot(sweep: Sweep, setDesign?: (settings: VariableSetting[]) => void): HTMLElement {
+export function sweepPlot(sweep: Sweep, setDesign?: (point: number) => void): HTMLElement {
   return new Scatter(sweep, setDesign).element
 }
 
@@ -42,7 +40,7 @@ class Scatter {
 
   constructor(
     private readonly sweep: Sweep,
-    private readonly setDesign?: (settings: VariableSetting[]) => void,
+    private readonly setDesign?: (point: number) => void,
   ) {
     const render = () => this.#render()
     const choice = (name: string, chosen: number) =>
@@ -181,7 +179,7 @@ class Scatter {
 
   /** Shows the design of the chosen point. */
   #show(): void {
-    if (this.#chosen !== undefined && this.#isOfDesigns()) this.setDesign?.(settingsAt(this.sweep, this.#chosen))
+    if (this.#chosen !== undefined && this.#isOfDesigns()) this.setDesign?.(this.#chosen)
   }
 
   #key(event: KeyboardEvent): void {

@@ -34,7 +34,10 @@ declare global {
     taken: { change: StudyResult['change']; studied: string }[]
     /** The text of the present design. */
     model: string
+    /** Reason why the present design has no text. */
+    unwritten: string
     refresh: () => void
+    propose: (of: string) => void
     drawn?: Point[] | 'cancelled'
     plot: Plot
     show: () => void
@@ -94,7 +97,15 @@ const toleranceOffer: ToleranceOffer = {
   seed: 1,
 }
 
-Object.assign(window, { shown: [], compared: [], studies: [], taken: [], previews: [], model: 'name = "strut"' })
+Object.assign(window, {
+  shown: [],
+  compared: [],
+  studies: [],
+  taken: [],
+  previews: [],
+  model: 'name = "strut"',
+  unwritten: '',
+})
 const first: Step = { text: window.model, settings: [], label: 'opened' }
 window.designs = new History(first)
 const bar = historyBar(window.designs, {
@@ -114,6 +125,11 @@ const host = {
     tolerance: begin,
   },
   text: () => window.model,
+  present: async () => {
+    if (window.unwritten) throw new Error(window.unwritten)
+    return window.model
+  },
+  unwritten: () => window.unwritten,
   apply: ({ change }: StudyResult, studied: string) => window.taken.push({ change, studied }),
   preview: (change: StudyResult['change'] | undefined) => window.previews.push(change),
   targets: new Set<string>(),
@@ -130,7 +146,9 @@ const host = {
     },
   },
 }
-const panes = [optimizePane(host), tolerancePane(host)]
+const optimize = optimizePane(host)
+const panes = [optimize, tolerancePane(host)]
+window.propose = (of) => optimize.propose({ of })
 window.refresh = () => panes.forEach((pane) => pane.refresh())
 
 const times = Float32Array.from({ length: 101 }, (_, k) => k / 10)

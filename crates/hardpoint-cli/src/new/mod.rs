@@ -100,9 +100,10 @@ fn begun(session: &Session, options: &New) -> Result<Outcome, Outcome> {
         session.not_read(&problems);
         return Ok(Outcome::BadModel);
     }
-    let shown = path.display();
+    let shown = text::argument(path.display().to_string());
     text::print(&format!(
-        "{shown}: {}\n\n  hardpoint run {shown}\n  hardpoint studio {shown}\n",
+        "{}: {}\n\n  hardpoint run {shown}\n  hardpoint studio {shown}\n",
+        path.display(),
         template.what
     ));
     Ok(Outcome::Done)

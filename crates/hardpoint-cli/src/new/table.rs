@@ -12,6 +12,8 @@ const LARGEST: u64 = 16 << 20;
 #[derive(Debug, PartialEq)]
 pub struct Hardpoints {
     pub rows: Vec<Row>,
+    /// Line of the column names, from 1, if it has them.
+    pub header: Option<usize>,
     /// Unit of its coordinates, if the column names have one, as in `x [mm]`.
     pub unit: Option<String>,
 }
@@ -32,11 +34,13 @@ pub fn read(path: &Path, in_plane: bool) -> Result<Hardpoints, String> {
         return Err(format!("it is larger than {} MiB", LARGEST >> 20));
     }
     let is = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
-    let cells = match ["xlsx", "xlsm", "xls", "ods"].into_iter().any(is) {
-        true => sheet(path)?,
-        false => text(path)?,
-    };
-    hardpoints(&cells, in_plane)
+    if ["xlsx", "xlsm", "xls", "ods"].into_iter().any(is) {
+        return hardpoints(&sheet(path)?, in_plane);
+    }
+    let (cells, delimiter) = text(path)?;
+    let table = hardpoints(&cells, in_plane)?;
+    check_numbers_of_fields(&cells, &table, delimiter)?;
+    Ok(table)
 }
 
 /// Cells of the first sheet that is not empty.
@@ -58,9 +62,30 @@ fn sheet(path: &Path) -> Result<Vec<Vec<String>>, String> {
     Err("none of its sheets has a cell".into())
 }
 
-/// Cells of a text, separated by semicolons, tabs or commas. Unless commas separate them, numbers may have a decimal
-/// comma.
-fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
+/// Number of columns of a table without column names.
+const UNNAMED: usize = 4;
+
+/// Checks that no row of a text has more fields than the table has columns: a decimal comma, or a separator that is too
+/// much, would move the coordinates into other columns. Empty fields at the end do no harm.
+fn check_numbers_of_fields(cells: &[Vec<String>], table: &Hardpoints, delimiter: u8) -> Result<(), String> {
+    let used = |row: &Vec<String>| row.iter().rposition(|cell| !cell.trim().is_empty()).map_or(0, |k| k + 1);
+    let columns = table.header.and_then(|line| cells.get(line - 1)).map_or(UNNAMED, used);
+    let fields = |row: &Row| cells.get(row.line - 1).map_or(0, used);
+    let Some(row) = table.rows.iter().find(|row| fields(row) > columns) else { return Ok(()) };
+    let counted = match table.header {
+        Some(line) => format!("line {line} has the names of {columns} columns"),
+        None => format!("a table without column names has {columns} columns"),
+    };
+    let help = match delimiter {
+        b',' => "if its numbers have decimal commas, separate the fields with semicolons",
+        _ => "remove the others, or name their columns",
+    };
+    Err(format!("line {} has {} fields, but {counted}; {help}", row.line, fields(row)))
+}
+
+/// Cells of a text, separated by semicolons, tabs or commas, and the separator. Unless commas separate them, numbers
+/// may have a decimal comma.
+fn text(path: &Path) -> Result<(Vec<Vec<String>>, u8), String> {
     let text = std::fs::read_to_string(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::InvalidData => "it is not a text in UTF-8".to_owned(),
         _ => e.to_string(),
@@ -93,7 +118,7 @@ fn text(path: &Path) -> Result<Vec<Vec<String>>, String> {
                 .collect(),
         );
     }
-    Ok(cells)
+    Ok((cells, delimiter))
 }
 
 /// Removes the `#` before the column names: a line above the first row with columns x and y is a header, not a comment.
@@ -124,6 +149,7 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
     let lines = || (1..).zip(cells).filter(|(_, row)| filled(row));
     let mut columns = [0, 1, 2, 3].map(Some);
     let mut begin = 0;
+    let mut header = None;
     let mut unit = None;
     if let Some((line, head)) = lines().next() {
         if in_plane && lines().all(|(_, row)| row.len() <= 3) {
@@ -131,6 +157,7 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
         }
         if head.iter().all(|cell| number(cell).is_none()) {
             begin = line;
+            header = Some(line);
             let titles: Vec<(String, Option<String>)> = head.iter().map(|cell| title(cell)).collect();
             for (k, axis) in (1..).zip(["x", "y", "z"]) {
                 columns[k] = titles.iter().position(|(t, _)| t == axis);
@@ -181,7 +208,7 @@ fn hardpoints(cells: &[Vec<String>], in_plane: bool) -> Result<Hardpoints, Strin
         }
         rows.push(Row { line, name: name.to_owned(), place });
     }
-    if rows.is_empty() { Err("it has no rows".into()) } else { Ok(Hardpoints { rows, unit }) }
+    if rows.is_empty() { Err("it has no rows".into()) } else { Ok(Hardpoints { rows, header, unit }) }
 }
 
 /// Returns whether a line below the names of the columns has a word in place of every coordinate.
@@ -244,7 +271,8 @@ mod tests {
                 Some("mm".to_owned()),
             ),
         ] {
-            assert_eq!(of(text, false), Ok(Hardpoints { rows: expected.clone(), unit }), "{text}");
+            let found = of(text, false).map(|table| (table.rows, table.unit));
+            assert_eq!(found, Ok((expected.clone(), unit)), "{text}");
         }
     }
 
@@ -264,7 +292,8 @@ mod tests {
             ("#,name,x,y,z\n1,A,1,2,3.5\n2,B,-1,0,1e3\n", None, [2, 3]),
         ] {
             let unit = unit.map(str::to_owned);
-            assert_eq!(of(text, false), Ok(Hardpoints { rows: expected(lines), unit }), "{text}");
+            let found = of(text, false).map(|table| (table.rows, table.unit));
+            assert_eq!(found, Ok((expected(lines), unit)), "{text}");
         }
     }
 
@@ -282,9 +311,36 @@ mod tests {
         assert!(of("A,1,2\nB,1,2\n", false).unwrap_err().contains("not a number for z"));
     }
 
+    /// Named columns besides the coordinates, empty fields at the end of a line, and lines without fields.
+    #[test]
+    fn further_columns_and_empty_fields_are_ignored() {
+        for text in [
+            "name,x,y,z,comment,part\nA,1,2,3,outer,7\nB,4,5,6\n",
+            "name,x,y,z\nA,1,2,3,,\n,,,\nB,4,5,6,\n",
+            "A,1,2,3,,\nB,4,5,6\n",
+            "name;x;y;z;\nA;1,0;2,0;3,0;\nB;4;5;6\n",
+        ] {
+            let found: Vec<_> =
+                of(text, false).unwrap().rows.into_iter().map(|r| (r.name, r.place)).collect();
+            let expected = [("A".to_owned(), [1.0, 2.0, 3.0]), ("B".to_owned(), [4.0, 5.0, 6.0])];
+            assert_eq!(found, expected, "{text}");
+        }
+    }
+
     #[test]
     fn an_invalid_table_is_reported_with_its_line() {
         for (text, part) in [
+            (
+                "name,x,y,z\nA,1,2,3\nB,0,5,0,7,99\n",
+                "line 3 has 6 fields, but line 1 has the names of 4 columns; if its numbers have decimal commas, \
+                 separate the fields with semicolons",
+            ),
+            ("name,x,y,z,\nA,0,5,0,7\n", "line 2 has 5 fields"),
+            (
+                "A,1,2,3\n\nB,0,5,0,7,99\n",
+                "line 3 has 6 fields, but a table without column names has 4 columns",
+            ),
+            ("name;x;y;z\nA;1;2;3;4\n", "remove the others, or name their columns"),
             ("", "no rows"),
             ("name,x,y\nA,1,2\n", "without a column `z`"),
             ("A,1,2,3\nB,1,2\n", "line 2: `` is not a number for z"),

@@ -177,3 +177,21 @@ fn invalid_calibrations_are_rejected() {
     bench.put("far.csv", "strut_drive,toe\n4000,0.2\n");
     assert_rejected(&["far.csv", "--sigma", "toe=0.1"], 2, "no posture of the table can be reached");
 }
+
+#[test]
+fn a_fit_that_better_designs_would_not_move_is_stuck() {
+    // The readings are of another assembly: the best coupler is shorter than b = a + d - c = 80 mm, where Grashof's
+    // condition ends and the crank cannot turn through the postures.
+    let bench = Bench::with(&["four_bar_of_studies.toml"]);
+    let readings = "motor,psi\n-150,217.6\n-106,202.1\n-62,178.6\n-18,168.7\n4,172.6\n26,180.1\n70,199.1\n\
+                    114,215.4\n158,222.5\n";
+    bench.put("measured.csv", readings);
+    let arguments =
+        ["calibrate", "four_bar_of_studies.toml", "measured.csv", "--sigma", "psi=0.1", "--variable", "b"];
+    let output = bench.run(&[&arguments[..], &["--json"]].concat());
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((output.status.code(), &summary["status"]), (Some(1), &"stuck".into()), "{summary}");
+    let fitted = &summary["variables"][0];
+    assert!((fitted["end"].as_f64().unwrap() - 80.0).abs() < 0.1, "{fitted}");
+    assert_eq!((&fitted["sigma"], &summary["next"]), (&serde_json::Value::Null, &serde_json::json!([])));
+}

@@ -51,6 +51,7 @@ fn an_end_stop_ends_the_run_with_5_and_keeps_what_was_solved() {
         err.contains("its maximum is 30 mm; it is reached at t = 0.2283956 s, with crank -41.111 deg"),
         "{err}"
     );
+    assert!(err.contains("curves and metrics cover the output times up to there"), "{err}");
     assert_eq!(bench.text("results/press/motion.csv").lines().count(), 1 + 3);
 
     bench.put("press.toml", &PRESS.replace("MORE", ", stop = true").replace("-40", "5"));

@@ -55,6 +55,19 @@ fn every_template_is_a_model_with_everything_that_checks_and_runs_at_once() {
     }
 }
 
+#[cfg(not(windows))]
+#[test]
+fn commands_for_a_name_with_spaces_can_be_pasted_into_a_shell() {
+    let bench = Bench::with(&[]);
+    let found = |name: &str| {
+        let output = bench.run(&["new", name, "--template", "four-bar"]);
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert!(found("f b").contains("\n  hardpoint run 'f b.toml'\n  hardpoint studio 'f b.toml'\n"));
+    assert!(found("l'arm").contains("\n  hardpoint run 'l'\\''arm.toml'\n"));
+    assert!(found("a-b_2").contains("\n  hardpoint run a-b_2.toml\n"));
+}
+
 #[test]
 fn the_goals_of_every_template_can_be_reached() {
     for template in templates() {

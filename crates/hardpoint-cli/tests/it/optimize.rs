@@ -449,3 +449,131 @@ fn a_point_of_a_front_is_saved_and_its_goals_are_those_of_the_saved_model() {
         assert!(line.split(',').any(is_goal), "{line}: {goal}");
     }
 }
+
+/// Runs a study of a model of these tests with further tables; returns the exit code and the summary.
+fn studied(model: &str, tables: &str, arguments: &[&str]) -> (Option<i32>, serde_json::Value) {
+    let bench = Bench::with(&[model]);
+    let text = bench.text(model);
+    bench.put(model, &format!("{text}{tables}"));
+    let output = bench.run(&[&[arguments[0], model], &arguments[1..], &["--json"]].concat());
+    (output.status.code(), serde_json::from_slice(&output.stdout).unwrap_or_default())
+}
+
+/// Goals of the points of a front.
+fn front(summary: &serde_json::Value) -> Vec<Vec<f64>> {
+    let goals = |point: &serde_json::Value| {
+        point["goals"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    summary["points"].as_array().unwrap().iter().map(goals).collect()
+}
+
+#[test]
+fn targets_that_one_design_meets_do_not_conflict() {
+    // stroke = 2 r and x_max = r + l without offset: r = 60 and l = 170.
+    for trade_off in ["trade_off = [\"stroke\", \"x_max\"]", "trade_off = [\"x_max\", \"stroke\"]"] {
+        let model = "slider_crank_of_studies.toml";
+        let bench = Bench::with(&[model]);
+        let text = bench.text(model).replace("value = 20", "value = 0");
+        let goals = "goals = { stroke = { target = 120 }, x_max = { target = 230 } }";
+        bench.put(model, &format!("{text}\n[optimize]\n{trade_off}\n{goals}\n"));
+        let output = bench.run(&["trade-off", model, "--json"]);
+        let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!((output.status.code(), &summary["status"]), (Some(0), &"no_conflict".into()), "{summary}");
+        let variables = summary["points"][0]["variables"].as_array().unwrap();
+        for (found, expected) in variables.iter().zip([60.0, 170.0]) {
+            assert!((found.as_f64().unwrap() - expected).abs() < 0.02, "{variables:?}");
+        }
+    }
+}
+
+#[test]
+fn a_front_ends_where_a_target_is_met_with_the_least_of_the_other_goal() {
+    let model = "four_bar_of_studies.toml";
+    // The least maximum of y at the target, as a limit.
+    let limited = "\n[optimize.goals]\npy_max = {}\n[optimize.limits]\npx = { metric = \"px\", equal = 30 }\n\
+                   mu = { metric = \"mu_min\", min = 40 }\n";
+    let (code, least) = studied(model, limited, &["optimize"]);
+    assert_eq!(code, Some(0), "{least}");
+    let least = least["goals"][0]["after"].as_f64().unwrap();
+    let goals = "\ngoals = { px = { target = 30 }, py_max = {} }\nlimits = { mu = { metric = \"mu_min\", min = 40 } }\n";
+    let ends = [["px", "py_max"], ["py_max", "px"]].map(|[a, b]| {
+        let tables = format!("\n[optimize]\ntrade_off = [\"{a}\", \"{b}\"]{goals}");
+        let (code, summary) = studied(model, &tables, &["trade-off", "--points", "5"]);
+        assert_eq!((code, summary["failed"].as_u64()), (Some(0), Some(0)), "{summary}");
+        let points = front(&summary);
+        let (first, last) = (points[0].clone(), points[points.len() - 1].clone());
+        if a == "px" { [first, last] } else { [last, first].map(|p| vec![p[1], p[0]]) }
+    });
+    let [[end, other], [end_again, other_again]] = ends;
+    // A thousandth of the range, at the rate of exchange of the front.
+    assert!(end[0] <= 1.01e-3 * other[0] && (end[1] - least).abs() < 1e-2, "{end:?} {least}");
+    for (a, b) in [(end, end_again), (other, other_again)] {
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-4), "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn no_point_of_three_goals_is_worse_than_a_design_that_meets_two() {
+    let model = "four_bar_of_studies.toml";
+    let tables = "\n[optimize]\ngoals = { py_range = {}, psi_range = { target = 80 }, px = { target = 30 } }\n\
+                  limits = { mu = { metric = \"mu_min\", min = 35 } }\n";
+    let (code, summary) = studied(model, tables, &["trade-off", "--points", "10"]);
+    assert_eq!(code, Some(0), "{summary}");
+    // Both targets as limits.
+    let limited = "\n[optimize.goals]\npy_range = {}\n[optimize.limits]\npx = { metric = \"px\", equal = 30 }\n\
+                   psi_range = { metric = \"psi_range\", equal = 80 }\nmu = { metric = \"mu_min\", min = 35 }\n";
+    let (code, least) = studied(model, limited, &["optimize"]);
+    assert_eq!(code, Some(0), "{least}");
+    let least = least["goals"][0]["after"].as_f64().unwrap();
+    let points = front(&summary);
+    assert!(points.len() > 5 && points.iter().all(|p| p[0] <= least + 1e-6), "{least} {points:?}");
+    assert!(
+        points.iter().any(|p| (p[0] - least).abs() < 0.2 && p[1] < 0.1 && p[2] < 0.1),
+        "{least} {points:?}"
+    );
+}
+
+#[test]
+fn a_minimum_is_maximised_by_a_target_out_of_reach() {
+    // The transmission angle is extreme where crank and ground are in line; at the optimum b = c, and both extremes are
+    // equally far from 90 deg.
+    let tables = "\n[optimize.goals]\nmu_min = { target = 90 }\n";
+    let (code, summary) = studied("four_bar_of_studies.toml", tables, &["optimize"]);
+    assert_eq!((code, &summary["status"]), (Some(0), &"optimal".into()), "{summary}");
+    let end = |k: usize| {
+        let of = |key: &str| summary["variables"][k][key].as_f64().unwrap();
+        of("nominal") + of("end")
+    };
+    // a and d at their bounds; 2 b^2 (1 - cos mu) = (d - a)^2 and 2 b^2 (1 + cos mu) = (d + a)^2.
+    let (a, d) = (20.0_f64, 170.0_f64);
+    let b = ((a * a + d * d) / 2.0).sqrt();
+    let mu = (2.0 * a * d / (2.0 * b * b)).acos().to_degrees();
+    let found = [end(0), end(1), end(2), end(3), summary["goals"][0]["after"].as_f64().unwrap()];
+    for (found, expected) in found.into_iter().zip([a, b, b, d, mu]) {
+        assert!((found - expected).abs() < 1e-4, "{found} {expected}: {summary}");
+    }
+}
+
+#[test]
+fn weights_without_a_square_are_refused() {
+    for weight in ["1e300", "1e-170"] {
+        let tables = format!("\n[optimize.goals]\npsi = {{ target = 120, weight = {weight} }}\n");
+        let (code, _) = studied("four_bar_of_studies.toml", &tables, &["optimize"]);
+        assert_eq!(code, Some(3), "{weight}");
+    }
+}
+
+#[test]
+fn goals_that_depend_on_no_variable_are_reported() {
+    // The angle of the crank is given by the driver.
+    let model = "slider_crank_of_studies.toml";
+    let metrics = "\n[measures]\nphi = { type = \"coordinate\", joint = \"A\" }\n\
+                   [metrics.turn]\nof = \"phi\"\ntake = \"max\"\n[metrics.mean]\nof = \"phi\"\ntake = \"mean\"\n";
+    let tables = format!("{metrics}[optimize.goals]\nturn = {{}}\nmean = {{ target = 3 }}\n");
+    let (code, summary) = studied(model, &tables, &["optimize"]);
+    assert_eq!((code, &summary["status"]), (Some(1), &"no_effect".into()), "{summary}");
+    let message = summary["message"].as_str().unwrap();
+    assert!(["`turn`", "`mean`", "`r`", "`l`"].iter().all(|name| message.contains(name)), "{message}");
+    let (code, summary) = studied(model, &tables, &["trade-off"]);
+    assert_eq!((code, &summary["status"]), (Some(1), &"no_optimum".into()), "{summary}");
+}

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use hardpoint::load::{BodyMass, body_masses};
 use hardpoint::space::Vec3;
-use hardpoint_export::Format;
+use hardpoint_export::{FORMATS, Format};
 use hardpoint_file::ModelFile;
 
 use crate::bench::Bench;
@@ -181,6 +182,193 @@ fn hardpoints_come_back_to_the_last_digit() {
         };
         assert_eq!(places(&first), places(&second), "{name}");
         assert_eq!(joints(&first).len(), joints(&second).len(), "{name}");
+    }
+}
+
+/// A double pendulum with all that a format may leave out: `link` has a full inertia and a turned frame, `bob` is a
+/// point.
+const LOADED: &str = r#"
+name = "loaded"
+units = { length = "mm", angle = "deg" }
+[hardpoints]
+A = [0, 0, 0]
+B = [100, 50, 20]
+C = [150, 90, 30]
+[bodies]
+link = { frame = { position = "B", euler = [10, 20, 30] } }
+bob = {}
+[joints]
+A = { type = "revolute", bodies = ["ground", "link"], at = "A", axis = "z" }
+B = { type = "revolute", bodies = ["bob", "link"], at = "B", axis = [1, 2, 3] }
+[drivers]
+A = { joint = "A", law = "30*t" }
+B = { joint = "B", law = 0 }
+[points]
+p = { body = "bob", at = "C" }
+[masses]
+plate = { type = "rigid", centre = { body = "link", at = [60, 30, 10] }, mass = 2, ixx = 0.02, iyy = 0.03, izz = 0.04, ixy = 0.003, iyz = -0.002, izx = 0.001 }
+bar = { type = "bar", from = { body = "link", at = "A" }, to = { body = "link", at = "B" }, diameter = 20, density = 7850 }
+bob = { type = "rigid", centre = "p", mass = 3 }
+[gravity]
+along = "-y"
+[forces]
+s = { type = "spring", from = { body = "ground", at = [0, 200, 0] }, to = "p", stiffness = 5, free_length = 100 }
+[shapes]
+ball = { sphere = "C", body = "bob", radius = 10 }
+[design]
+Bx = { move = "B", along = "x" }
+[measures]
+angle = { type = "coordinate", joint = "A" }
+[time]
+end = 1
+steps = 4
+"#;
+
+#[test]
+fn masses_and_gravity_come_back() {
+    let first = model(LOADED);
+    let of = |f: &ModelFile| -> BTreeMap<String, BodyMass> {
+        let named = f.model.bodies.iter().zip(body_masses(&f.model));
+        named.filter_map(|(body, mass)| Some((body.name.clone(), mass?))).collect()
+    };
+    let masses = of(&first);
+    assert_eq!(masses.len(), 2);
+    for format in ["mjcf", "urdf"] {
+        let exported = Format::named(format).unwrap().export(&first, "model").unwrap();
+        let file = format!("again.{}", Format::named(format).unwrap().endings[0]);
+        let again = hardpoint_import::import(exported.text.as_bytes(), &file, &|_| None);
+        let again = model(&again.unwrap_or_else(|e| panic!("{e}")).text);
+        for (body, found) in of(&again) {
+            let BodyMass { mass, centre, inertia } = masses[&body];
+            assert!((found.mass - mass).abs() < 1e-12, "{format} {body}: {found:?}");
+            assert!((found.centre - centre).norm() < 1e-12, "{format} {body}: {found:?}");
+            // MuJoCo requires moments of a point as well: a radius of gyration of a thousandth of the size.
+            let ball = if format == "mjcf" && body == "bob" {
+                mass * (1e-3 * first.model.size()).powi(2)
+            } else {
+                0.0
+            };
+            for ((a, b), axis) in inertia.cols.iter().zip(found.inertia.cols).zip(Vec3::AXES) {
+                assert!((*a + axis * ball - b).norm() < 1e-15, "{format} {body}: {inertia:?} {found:?}");
+            }
+        }
+        assert_eq!(of(&again).len(), 2, "{format}: {}", exported.text);
+        // URDF has no gravity: the importer's is along -z.
+        let gravity = if format == "mjcf" { first.model.gravity } else { Vec3::new(0.0, 0.0, -9.80665) };
+        assert!((again.model.gravity - gravity).norm() < 1e-12, "{format}: {:?}", again.model.gravity);
+    }
+}
+
+/// Without masses of its own, and with moments that are known about one axis only, as in a planar model.
+#[test]
+fn masses_that_a_format_requires_are_written_and_reported() {
+    let changes = |text: &str, name: &str| {
+        let exported = Format::named(name).unwrap().export(&model(text), "model").unwrap();
+        let list = exported.unsupported.iter().filter(|u| u.kind.starts_with("mass"));
+        (list.map(|u| (u.name.clone(), u.why.clone())).collect::<Vec<_>>(), exported.text)
+    };
+    let part = |text: &str, from: &str, to: &str| {
+        let (before, rest) = text.split_once(from).unwrap();
+        before.to_owned() + to + rest.split_once('\n').unwrap().1
+    };
+    let planar = part(
+        &part(LOADED, "plate = ", ""),
+        "bar = ",
+        "plate = { type = \"rigid\", centre = { body = \"link\", at = [60, 30, 10] }, mass = 2, izz = 0.04 }\n",
+    );
+    let (list, text) = changes(&planar, "urdf");
+    assert!(
+        list[0].0 == "link" && list[0].1.contains("moments of inertia that the model leaves out"),
+        "{list:?}"
+    );
+    assert_eq!(list.len(), 1);
+    let again =
+        hardpoint_import::import(text.as_bytes(), "again.urdf", &|_| None).unwrap_or_else(|e| panic!("{e}"));
+    let again = model(&again.text);
+    let link = again.model.bodies.iter().position(|b| b.name == "link").unwrap();
+    // The plate of this moment about z with the smallest moments about x and y.
+    let inertia = body_masses(&again.model)[link].unwrap().inertia;
+    for (found, expected) in inertia.cols.iter().zip(Vec3::AXES.map(|axis| axis * (0.02 + 0.02 * axis.z))) {
+        assert!((*found - expected).norm() < 1e-12, "{text}");
+    }
+    assert!(text.contains(r#"ixy="0" ixz="0""#), "{text}");
+    let (list, _) = changes(LOADED, "mjcf");
+    assert!(list.len() == 1 && list[0].0 == "bob" && list[0].1.contains("small positive ones"), "{list:?}");
+    let without_bob = part(LOADED, "bob = { type", "");
+    let (list, text) = changes(&without_bob, "mjcf");
+    assert!(list.len() == 1 && list[0].0 == "bob" && list[0].1.contains("thousandth"), "{list:?}");
+    assert!(text.contains("<option gravity=\"0 -9.80665 0\"/>"), "{text}");
+    let (list, text) = changes(&part(&part(&without_bob, "plate = ", ""), "bar = ", ""), "mjcf");
+    assert!(list.len() == 1 && list[0].1.contains("to be replaced"), "{list:?}");
+    assert!(text.contains("mass=\"1\" fullinertia=\"1 1 1 0 0 0\""), "{text}");
+}
+
+/// Every format writes, or lists, all that a model has.
+#[test]
+fn what_a_format_leaves_out_is_listed_for_every_format() {
+    let file = model(LOADED);
+    for format in FORMATS {
+        let exported = format.export(&file, "model").unwrap();
+        let kinds: std::collections::BTreeSet<&str> = exported.unsupported.iter().map(|u| u.kind).collect();
+        let expected: &[&str] = match format.name {
+            "csv" | "teimorbit" => &[
+                "bodies",
+                "design variables",
+                "driver",
+                "force",
+                "frames",
+                "gravity",
+                "joints",
+                "masses",
+                "measures",
+                "points",
+                "points of bodies",
+                "shapes",
+            ],
+            "dxf" => &[
+                "design variables",
+                "driver",
+                "force",
+                "frames",
+                "gravity",
+                "joints",
+                "masses",
+                "measures",
+                "points",
+                "shapes",
+            ],
+            "urdf" => &[
+                "design variables",
+                "driver",
+                "force",
+                "frames",
+                "gravity",
+                "hardpoints",
+                "measures",
+                "points of bodies",
+                "shapes",
+            ],
+            "mjcf" => &[
+                "design variables",
+                "driver",
+                "force",
+                "frames",
+                "hardpoints",
+                "mass",
+                "measures",
+                "points of bodies",
+                "shapes",
+            ],
+            "c" => &["design variables", "force", "gravity", "masses", "shapes"],
+            // The design is a parameter of the unit.
+            "fmu" => &["force", "gravity", "masses", "shapes"],
+            other => panic!("list what `{other}` leaves out"),
+        };
+        assert_eq!(kinds.into_iter().collect::<Vec<_>>(), expected, "{}", format.name);
+        // No name twice.
+        let all: std::collections::BTreeSet<_> =
+            exported.unsupported.iter().map(|u| (u.kind, &u.name)).collect();
+        assert_eq!(all.len(), exported.unsupported.len(), "{}: {:#?}", format.name, exported.unsupported);
     }
 }
 

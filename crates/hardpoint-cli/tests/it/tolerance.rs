@@ -220,3 +220,41 @@ fn a_worst_case_that_does_not_assemble_is_reported() {
     assert!(text.contains("do not reach the end of the motion"), "{text}");
     assert!(phi["nonlinear"].as_str().unwrap().contains("do not reach the end"), "{phi}");
 }
+
+#[test]
+fn costs_of_tolerances_count_in_the_units_of_their_variables() {
+    let bench = Bench::with(&[]);
+    let name = "slider_crank_of_studies.toml";
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models").join(name);
+    let tables = "\n[tolerance]\nallocate = \"rss\"\nrequired_sigmas = 3\n[tolerance.variables]\nr = { cost = 1 }\n\
+                  ph = { cost = 1 }\n[tolerance.limits]\nx = { min = 169, max = 170.2 }\n";
+    bench.put(name, &(std::fs::read_to_string(path).unwrap() + tables));
+    let output = bench.run(&["tolerance", name, "--samples", "0", "--json"]);
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // x = r cos p + sqrt(l^2 - (r sin p - e)^2), mm and deg. The least of 1 / t_r + 1 / t_p with
+    // (g_r t_r)^2 + (g_p t_p)^2 = room^2 has t ~ g^(-2/3).
+    let (r, l, e, p) = (50.0_f64, 160.0_f64, 20.0_f64, 0.7 + 0.2 * std::f64::consts::PI);
+    let root = (l * l - (r * p.sin() - e).powi(2)).sqrt();
+    let rod = (r * p.sin() - e) / root;
+    let x = r * p.cos() + root;
+    let g = [p.cos() - rod * p.sin(), (-r * p.sin() - rod * r * p.cos()).to_radians()];
+    let shape = g.map(|g| g.abs().powf(-2.0 / 3.0));
+    let used = g.iter().zip(shape).map(|(g, t)| (g * t).powi(2)).sum::<f64>().sqrt();
+    let expected = shape.map(|t| t * (x - 169.0) / used);
+    for (k, expected) in expected.into_iter().enumerate() {
+        let end = summary["variables"][k]["end"].as_f64().unwrap();
+        assert!((end / expected - 1.0).abs() < 1e-5, "{end} {expected}: {summary}");
+        assert_eq!(summary["variables"][k]["cost"].as_f64().map(|cost| (cost * 1e9).round()), Some(1e9));
+    }
+    let cost = summary["allocation"]["cost"]["after"].as_f64().unwrap();
+    assert!((cost / expected.iter().map(|t| 1.0 / t).sum::<f64>() - 1.0).abs() < 1e-5, "{cost}");
+}
+
+#[test]
+fn a_few_designs_do_not_reject_the_linear_result() {
+    for samples in ["2", "3", "5"] {
+        let (text, summary) = studied("slider_crank_of_studies.toml", samples);
+        assert_eq!(summary["status"], "complete", "{samples}: {text}");
+        assert!(text.contains("too few to check sigma"), "{text}");
+    }
+}

@@ -739,7 +739,9 @@ impl Source<'_> {
             lines.join("\n")
         };
         let mut drivers = model.drivers.iter().map(|driver| {
-            (driver.name.clone(), format!("{}, {}", driver.name, unit(si, model.driven(driver).quantity)))
+            let note = if driver.is_reversed { "; reversed, as in the model file" } else { "" };
+            let unit = unit(si, model.driven(driver).quantity);
+            (driver.name.clone(), format!("{}, {unit}{note}", driver.name))
         });
         let driver_names = enumerated("DRIVER", &mut drivers);
         let mut bodies = model.bodies.iter().skip(1).map(|body| (body.name.clone(), body.name.clone()));

@@ -32,7 +32,7 @@ macro_rules! driven {
                 may "law": law::LAW, "\"30*sin(2*pi*t)\"";
                 /// Origin of the values of this driver's laws.
                 or("\"drawing\"") "counted_from": COUNTED, "\"zero\"";
-                /// True if the driver moves in the opposite sense of its laws, from the design configuration.
+                /// True if the driven quantity moves in the opposite sense of the driver's values.
                 or("false") "reversed": Shape::Flag, "true";
             },
             ..table! { $($table)* }
@@ -168,6 +168,7 @@ pub(super) fn drivers(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
                 .formulas
                 .push(FormulaDraft { of: FormulaOf::Law(entry.0.clone(), parameter), expression });
         }
-        raw.draft.drivers.push(DriverDraft { name: entry.0, drives, from_zero, reversed, law });
+        let (name, unit) = (entry.0, r.units.of(quantity).0);
+        raw.draft.drivers.push(DriverDraft { name, drives, from_zero, reversed, law, unit });
     }
 }

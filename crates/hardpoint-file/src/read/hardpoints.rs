@@ -8,16 +8,17 @@ use crate::values::{EntryPlace, Fields, Reader, Subject, above_tables, shown};
 use super::raw::Raw;
 
 pub(super) fn hardpoints(r: &mut Reader<'_>, model: &Fields<'_>, raw: &mut Raw) {
+    let example = if r.is_planar { "[100.0, -50.5]" } else { "[100.0, 0, -50.5]" };
     for (name, at, value) in r.entries(model, "hardpoints", "hardpoint") {
         let subject = Subject {
             name: format!("hardpoint `{name}`"),
             example: above_tables(&name)
-                .unwrap_or_else(|| format!("for example `{} = [100.0, 0, -50.5]`", shown(&name))),
+                .unwrap_or_else(|| format!("for example `{} = {example}`", shown(&name))),
         };
         r.unread.clear();
         let mut place = EntryPlace::at(at);
         place.key("position", value);
-        let position = match r.written_place(value, &subject, "three coordinates") {
+        let position = match r.written_place(value, &subject, "") {
             Some(LocationDraft::At(position)) => position,
             Some(LocationDraft::Formula(coordinates)) => {
                 for (axis, expression) in coordinates.into_iter().enumerate() {

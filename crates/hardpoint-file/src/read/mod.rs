@@ -43,6 +43,7 @@ pub use parse::{ReadError, parse, parse_in, parse_with, read};
 
 pub use task::{TaskAim, TaskFile, TaskRegion};
 
+pub(crate) use law::LAW_TABLE;
 pub(crate) use model::MODEL;
 #[cfg(test)]
 pub(crate) use model::tables;

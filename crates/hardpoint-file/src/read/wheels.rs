@@ -43,8 +43,8 @@ pub(crate) const WHEEL: Table = table! {
     may "bump": DRIVER, "\"jounce\"";
     /// The driver that steers it, for the virtual steering axis.
     may "steer": DRIVER, "\"rack\"";
-    /// Planes of the lower and upper arm, for graphical instant centres: two pivots and the ball joint of an arm, or
-    /// top mount and axis point of a strut.
+    /// Planes of the lower and upper arm, for graphical instant centres: tables of a `body` and two or three points
+    /// `at`.
     may "arm_planes": Shape::exactly(2, &ARM_PLANE_SHAPE),
         "[{ body = \"lca\", at = [\"lca_front\", \"lca_rear\", \"lower_ball\"] }, { body = \"strut\", at = [\"strut_top\", \"strut_lower\"] }]";
     /// Ends of its spring, for the motion ratio.

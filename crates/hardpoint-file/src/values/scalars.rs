@@ -15,6 +15,8 @@ use super::reader::Reader;
 
 /// Maximum length of a name.
 const LONGEST_NAME: usize = 100;
+/// Alternative to coordinates.
+const NAME_OR: &str = "a hardpoint's name or ";
 
 impl Reader<'_> {
     /// A number, converted to SI if its form is a length or an angle; an expression returns radians.
@@ -181,12 +183,23 @@ impl Reader<'_> {
         expected: &str,
         shape: Shape,
     ) -> Option<[f64; N]> {
+        self.quantities_of(value, subject, [expected, &N.to_string()], shape)
+    }
+
+    /// Exactly `N` numbers; `count` is the permitted number of them.
+    fn quantities_of<const N: usize>(
+        &mut self,
+        value: &Value<'_>,
+        subject: &Subject,
+        [expected, count]: [&str; 2],
+        shape: Shape,
+    ) -> Option<[f64; N]> {
         let list = value.get_ref().as_array();
         let Some(list) = list.filter(|list| list.len() == N) else {
             self.wrong(value, subject, expected);
             if let (Some(list), Some(d)) = (list, self.found.last_mut()) {
                 let n = list.len();
-                d.label = Some(format!("{n} value{} instead of {N}", if n == 1 { "" } else { "s" }));
+                d.label = Some(format!("{n} value{} instead of {count}", if n == 1 { "" } else { "s" }));
             }
             return None;
         };
@@ -201,19 +214,23 @@ impl Reader<'_> {
         complete.then_some(numbers)
     }
 
-    /// Global coordinates, in m.
-    pub fn coordinates(&mut self, value: &Value<'_>, subject: &Subject, expected: &str) -> Option<Vec3> {
-        self.quantities(value, subject, expected, LENGTH).map(Vec3::from)
+    /// Global coordinates, in m. `or` describes what else is permitted.
+    pub fn coordinates(&mut self, value: &Value<'_>, subject: &Subject, or: &str) -> Option<Vec3> {
+        let [expected, count] = match self.is_planar {
+            // The third of two coordinates was added before.
+            true => ["two or three coordinates", "2 or 3"],
+            false => ["three coordinates", "3"],
+        };
+        self.quantities_of(value, subject, [&format!("{or}{expected}"), count], LENGTH).map(Vec3::from)
     }
 
     /// Name of a hardpoint, or coordinates.
     pub fn place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<LocationDraft> {
-        let expected = "a hardpoint's name or three coordinates";
         match value.get_ref() {
             DeValue::String(name) => {
                 self.short(name, value.span(), &subject.name).map(LocationDraft::Hardpoint)
             }
-            _ => self.written_place(value, subject, expected),
+            _ => self.written_place(value, subject, NAME_OR),
         }
     }
 
@@ -221,22 +238,15 @@ impl Reader<'_> {
     pub fn fixed_place(&mut self, value: &Value<'_>, subject: &Subject) -> Option<LocationDraft> {
         match value.get_ref() {
             DeValue::String(_) => self.place(value, subject),
-            _ => self
-                .coordinates(value, subject, "a hardpoint's name or three coordinates")
-                .map(LocationDraft::At),
+            _ => self.coordinates(value, subject, NAME_OR).map(LocationDraft::At),
         }
     }
 
-    /// Global coordinates, each a number or an expression.
-    pub fn written_place(
-        &mut self,
-        value: &Value<'_>,
-        subject: &Subject,
-        expected: &str,
-    ) -> Option<LocationDraft> {
+    /// Global coordinates, each a number or an expression. `or` describes what else is permitted.
+    pub fn written_place(&mut self, value: &Value<'_>, subject: &Subject, or: &str) -> Option<LocationDraft> {
         let list = value.get_ref().as_array().filter(|list| list.len() == 3);
         let Some(list) = list.filter(|list| list.iter().any(|v| v.get_ref().is_str())) else {
-            return self.coordinates(value, subject, expected).map(LocationDraft::At);
+            return self.coordinates(value, subject, or).map(LocationDraft::At);
         };
         let per_metre = self.units.length.per_metre();
         let coordinates = [0, 1, 2].map(|k| {
@@ -283,7 +293,7 @@ fn is_number_with_unit(text: &str) -> bool {
     if text.parse::<f64>().is_ok() {
         return true;
     }
-    let number = text.trim_start_matches(['+', '-']);
+    let number = text.strip_prefix(['+', '-']).unwrap_or(text);
     let rest = number.trim_start_matches(|c: char| c.is_ascii_digit() || ".,".contains(c));
     // What begins with an `e` may be the exponent of a longer expression.
     let rest = rest.trim();

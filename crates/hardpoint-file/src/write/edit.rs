@@ -1,8 +1,9 @@
 //! Edits of a model file for a changed design: the same text with new numbers.
 
-use hardpoint::joint::Quantity;
-use hardpoint::law::ParameterKind;
-use hardpoint::model::{Change, Direction, Model, VariableId};
+use hardpoint::constraint::Row;
+use hardpoint::design::{Geometry, JointConstants};
+use hardpoint::joint::{Need, Quantity};
+use hardpoint::model::{Change, Direction, Hardpoint, Joint, Model, VariableId};
 use hardpoint::space::{Mat3, Vec3};
 use toml_edit::{DocumentMut, Item, Value};
 
@@ -12,10 +13,9 @@ use crate::values::{Diagnostic, Diagnostics, Folder, Severity, quoted};
 use hardpoint_table::Units;
 
 use super::split::split;
+use super::text::Step::{self, At, Key};
+use super::text::{ROUND_OFF, number_style, replace, shortest, value_at};
 
-/// Tolerance of written numbers in units of round-off, which covers the sums, products and roots between a number of
-/// the file and of the changed design: 5.200000000000001 is written as 5.2.
-const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// Tolerance of directions and lengths of the saved file, in rad or relative to the mechanism's size: some hundred
 /// times the round-off of their roots, far below manufacturing tolerances.
 const SAME: f64 = 1e-12;
@@ -25,7 +25,8 @@ const TRIAL: f64 = 1e-4;
 impl ModelFile {
     /// Text of this file with the design changed: variable k of [`model`](Self::model) at `design[k]` (missing
     /// entries are 0) becomes 0, the new nominal design. Comments, order, layout and untouched numbers stay as they
-    /// are; expressions keep their dependence on them; bounds and named designs stay at the same values.
+    /// are; expressions keep their dependence on them; bounds, named designs, ranges of sweeps and means of priors stay
+    /// at the same values.
     ///
     /// The new text is read back and verified to describe the changed design to round-off.
     ///
@@ -60,11 +61,13 @@ impl ModelFile {
         let mut edit = Edit { file: self, values, document, faults: Vec::new() };
         edit.hardpoints();
         edit.parameters();
-        edit.lengths();
+        edit.given_lengths();
+        edit.fixed_lengths();
         edit.laws();
         edit.joints();
+        edit.curves();
         edit.bounds();
-        edit.designs();
+        edit.values_of_variables();
         if !edit.faults.is_empty() {
             return Err(Diagnostics::new(self.source.clone(), edit.faults));
         }
@@ -101,12 +104,21 @@ impl ModelFile {
 
     /// Returns whether the new text describes the changed design.
     fn read_back(&self, text: &str, values: &[f64]) -> Result<(), Diagnostics> {
-        let saved = parsed(Folder::Given(&self.texts), text, self.file_name())?;
+        let d =
+            self.diagnostic(Severity::Error, CODE, "the changed design cannot be saved in this file", None);
+        // Positions in the new text are not those of the file.
+        let saved = match parsed(Folder::Given(&self.texts), text, self.file_name()) {
+            Ok(saved) => saved,
+            Err(found) => {
+                let errors = found.list().iter().filter(|e| e.severity == Severity::Error);
+                let invalid = |e: &Diagnostic| format!("a file with its numbers is invalid: {}", e.message);
+                let d = errors.map(invalid).fold(d, Diagnostic::note);
+                let d = d.help("leave out the variables that cause this, or change the file by hand");
+                return Err(Diagnostics::new(self.source.clone(), vec![d]));
+            }
+        };
         let Some((what, name)) = difference(&self.model, values, &saved.model) else { return Ok(()) };
-        let message = "the changed design cannot be saved in this file";
-        let d = self
-            .diagnostic(Severity::Error, CODE, message, None)
-            .note(format!("a file with its numbers would define another {what} `{name}`"));
+        let d = d.note(format!("a file with its numbers would define another {what} `{name}`"));
         let d = match self.origins.names.get(&name) {
             Some(original) => d
                 .note(format!("`{name}` is the mirror image of `{original}`, and has no numbers of its own"))
@@ -191,21 +203,13 @@ pub fn hardpoint_in(text: &str, name: &str) -> Option<[f64; 3]> {
 /// A change that the file has no number for.
 const CODE: &str = "HP0505";
 
-struct Edit<'f> {
-    file: &'f ModelFile,
-    values: Vec<f64>,
-    document: DocumentMut,
+/// A file in which a changed design is written.
+pub(super) struct Edit<'f> {
+    pub file: &'f ModelFile,
+    pub values: Vec<f64>,
+    pub document: DocumentMut,
     faults: Vec<Diagnostic>,
 }
-
-/// A step of a path to a value: a key of a table, or an index of a list.
-#[derive(Clone, Copy)]
-enum Step<'s> {
-    Key(&'s str),
-    At(usize),
-}
-
-use Step::{At, Key};
 
 impl Edit<'_> {
     fn units(&self) -> Units {
@@ -213,7 +217,7 @@ impl Edit<'_> {
     }
 
     /// Variables that are changed, with their values and changes one by one.
-    fn changes(&self) -> impl Iterator<Item = (usize, &Change, f64)> {
+    pub fn changes(&self) -> impl Iterator<Item = (usize, &Change, f64)> {
         let variables = self.file.model.variables.iter().zip(&self.values).enumerate();
         let changed = variables.filter(|(_, (_, value))| **value != 0.0);
         changed.flat_map(|(k, (v, value))| v.changes.iter().map(move |change| (k, change, *value)))
@@ -221,12 +225,12 @@ impl Edit<'_> {
 
     /// Returns whether this is a mirror image: its numbers are those of the original, and are valid if both change in
     /// the same way.
-    fn is_image(&self, name: &str) -> bool {
+    pub fn is_image(&self, name: &str) -> bool {
         self.file.origins.names.contains_key(name)
     }
 
     /// Returns true, with a diagnostic, if a value is written in another file and cannot be saved in this one.
-    fn is_elsewhere(&mut self, variables: &str, name: &str) -> bool {
+    pub fn is_elsewhere(&mut self, variables: &str, name: &str) -> bool {
         let Some(file) = self.file.origins.included.get(name) else { return false };
         let why = format!("`{name}` is in the included file `{file}`");
         self.refuse(
@@ -238,7 +242,7 @@ impl Edit<'_> {
     }
 
     /// Names of the variables with such a change, for messages.
-    fn of(&self, does: impl Fn(&Change) -> bool) -> String {
+    pub fn of(&self, does: impl Fn(&Change) -> bool) -> String {
         let mut names: Vec<&str> = Vec::new();
         for (k, _, _) in self.changes().filter(|(_, change, _)| does(change)) {
             let name = self.file.model.variables[k].name.as_str();
@@ -249,7 +253,7 @@ impl Edit<'_> {
         quoted(&names)
     }
 
-    fn refuse(&mut self, variables: &str, why: String, help: &str) {
+    pub fn refuse(&mut self, variables: &str, why: String, help: &str) {
         let message = format!("the change of {variables} cannot be saved: {why}");
         self.faults.push(self.file.diagnostic(Severity::Error, CODE, message, None).help(help));
     }
@@ -319,108 +323,6 @@ impl Edit<'_> {
             if !written && !self.is_image(&parameter.name) && !self.is_elsewhere(&by, &parameter.name) {
                 let why = format!("parameter `{}` is given by an expression", parameter.name);
                 self.refuse(&by, why, "change the parameters that it follows");
-            }
-        }
-    }
-
-    /// Changes given lengths of rods; a length that follows from hardpoints is written if these move and the rod keeps
-    /// its length.
-    fn lengths(&mut self) {
-        let model = &self.file.model;
-        let kept = model.geometry(&self.values).kept;
-        let places = model.hardpoint_places(&self.values);
-        let keeping = |v: &hardpoint::model::DesignVariable| v.fixed_length;
-        let keeps = model.variables.iter().zip(&self.values).any(|(v, value)| keeping(v) && *value != 0.0);
-        for (j, joint) in model.joints.iter().enumerate() {
-            let way = [Key("joints"), Key(&joint.name), Key("length")];
-            let grown = |c: &Change| matches!(c, Change::Length(c) if c.joint.0 == j);
-            let by = self.of(grown);
-            if let (Some(old), false) = (joint.length, by.is_empty()) {
-                let grows: f64 = self
-                    .changes()
-                    .filter_map(|(_, c, value)| match c {
-                        Change::Length(c) if c.joint.0 == j => Some(c.rate * value),
-                        _ => None,
-                    })
-                    .sum();
-                if !self.write(&way, Quantity::Length, old, old + grows)
-                    && !self.is_image(&joint.name)
-                    && !self.is_elsewhere(&by, &joint.name)
-                {
-                    let why = format!("the `length` of `{}` is given by an expression", joint.name);
-                    self.refuse(&by, why, "change the parameters that the expression uses");
-                }
-            }
-            let [i, k] = joint.at.map(|h| places[h.0]);
-            let (length, drawn) = (kept[j].distance, (k - i).norm());
-            if keeps
-                && joint.length.is_none()
-                && joint.kind.is_rod()
-                && (length - drawn).abs() > ROUND_OFF * drawn
-            {
-                let number = shortest(
-                    length,
-                    ROUND_OFF * length,
-                    |x| self.units().to_si(Quantity::Length, x),
-                    self.units().from_si(Quantity::Length, length),
-                );
-                let added = joint_table(&mut self.document, &joint.name, &number);
-                if !added && !self.is_image(&joint.name) {
-                    let by = model
-                        .variables
-                        .iter()
-                        .zip(&self.values)
-                        .find(|(v, value)| keeping(v) && **value != 0.0);
-                    let by = by.map_or(String::new(), |(v, _)| format!("`{}`", v.name));
-                    let why = format!(
-                        "`{}` keeps its length, and has no table in the file to write that to",
-                        joint.name
-                    );
-                    self.refuse(&by, why, "write the rod as a joint of its own, with a `length`");
-                }
-            }
-        }
-    }
-
-    /// Changes parameters of laws.
-    fn laws(&mut self) {
-        let model = &self.file.model;
-        let laws = model.laws(&self.values);
-        let changed: Vec<(usize, usize)> = {
-            let all = self.changes().filter_map(|(_, c, _)| match c {
-                Change::Law(c) => Some((c.driver.0, c.parameter)),
-                _ => None,
-            });
-            let mut all: Vec<_> = all.collect();
-            all.sort_unstable();
-            all.dedup();
-            all
-        };
-        for (d, p) in changed {
-            let driver = &model.drivers[d];
-            let [old, new] = [&driver.law, &laws[d]].map(|law| law.parameters().swap_remove(p));
-            let quantity = match old.kind {
-                ParameterKind::Value | ParameterKind::ValueRate(_) => model.driven(driver).quantity,
-                ParameterKind::Angle => Quantity::Angle,
-                _ => Quantity::Number,
-            };
-            let name = old.name.replace(']', "").replace('[', ".");
-            let steps: Vec<Step<'_>> = name.split('.').map(|s| s.parse().map_or(Key(s), At)).collect();
-            let start = [Key("drivers"), Key(&driver.name)];
-            // Values of a table are the second numbers of its `points`.
-            let steps = match &steps[..] {
-                [Key("f"), At(k)] => vec![Key("points"), At(*k), At(1)],
-                _ => steps,
-            };
-            let ways = [[&start[..], &steps].concat(), [&start[..], &[Key("law")], &steps].concat()];
-            let written = ways.iter().any(|way| self.write(way, quantity, old.value, new.value));
-            let by = self.of(|c| matches!(c, Change::Law(c) if c.driver.0 == d && c.parameter == p));
-            if !written && !self.is_image(&driver.name) && !self.is_elsewhere(&by, &driver.name) {
-                let why = format!(
-                    "the law of driver `{}` has no number `{}` of its own in the file",
-                    driver.name, old.name
-                );
-                self.refuse(&by, why, "write the law as a table that names this number");
             }
         }
     }
@@ -560,38 +462,56 @@ impl Edit<'_> {
 
     /// Entry of `[design]` that makes a variable: its own, or the one of the point `P` for `P_x`; `None` if it is not
     /// in this file.
-    fn entry_of(&self, variable: &str) -> Option<String> {
+    pub fn entry_of(&self, variable: &str) -> Option<String> {
         let has = |name: &str| self.document.get("design").and_then(|d| d.get(name)).is_some();
         let whole = variable.strip_suffix(['x', 'y', 'z']).and_then(|n| n.strip_suffix('_'));
         [Some(variable), whole].into_iter().flatten().find(|name| has(name)).map(str::to_owned)
     }
 
-    /// Values of named designs stay the same: x of a variable whose value v becomes 0 is written as x - v. Those of
-    /// parameters are absolute, and variables that a design does not name are those of the new nominal design.
-    fn designs(&mut self) {
+    /// Values of named designs, ranges of a sweep and means of priors stay the same.
+    fn values_of_variables(&mut self) {
         let model = &self.file.model;
         for design in &model.designs {
             for (variable, by) in &design.changes {
-                let of = &model.variables[variable.0];
-                let value = self.values[variable.0];
-                if value == 0.0 || self.document.get("parameters").and_then(|p| p.get(&of.name)).is_some() {
-                    continue;
-                }
-                let near = (by - value).abs() <= ROUND_OFF * by.abs().max(value.abs());
-                let new = if near { 0.0 } else { by - value };
-                self.write(&[Key("designs"), Key(&design.name), Key(&of.name)], of.quantity, *by, new);
+                let name = &model.variables[variable.0].name;
+                self.shift(*variable, &[Key("designs"), Key(&design.name), Key(name)], *by);
             }
+        }
+        for range in model.sweeping.iter().flat_map(|sweep| &sweep.ranges) {
+            let own = [Key("sweep"), Key("variables"), Key(&model.variables[range.variable.0].name)];
+            for (k, (end, by)) in [("from", range.low), ("to", range.high)].into_iter().enumerate() {
+                // `{ from = -5, to = 5 }` or `[-5, 5]`
+                for step in [Key(end), At(k)] {
+                    self.shift(range.variable, &[&own[..], &[step]].concat(), by);
+                }
+            }
+        }
+        for prior in model.calibrating.iter().flat_map(|calibration| &calibration.priors) {
+            let name = &model.variables[prior.variable.0].name;
+            let way = [Key("calibrate"), Key("variables"), Key(name), Key("mean")];
+            self.shift(prior.variable, &way, prior.mean);
         }
     }
 
+    /// Keeps a value of a variable: x of a variable whose value v becomes 0 is written as x - v. Those of parameters
+    /// are absolute, and variables without a written value are those of the new nominal design.
+    fn shift(&mut self, variable: VariableId, way: &[Step<'_>], by: f64) {
+        let (of, value) = (&self.file.model.variables[variable.0], self.values[variable.0]);
+        let is_parameter = self.document.get("parameters").and_then(|p| p.get(&of.name)).is_some();
+        if value == 0.0 || is_parameter {
+            return;
+        }
+        let near = (by - value).abs() <= ROUND_OFF * by.abs().max(value.abs());
+        let new = if near { 0.0 } else { by - value };
+        self.write(way, of.quantity, by, new);
+    }
+
     /// Replaces a number; returns false if there is none.
-    fn write(&mut self, way: &[Step<'_>], quantity: Quantity, old: f64, new: f64) -> bool {
-        let units = self.units();
+    pub fn write(&mut self, way: &[Step<'_>], quantity: Quantity, old: f64, new: f64) -> bool {
+        let mut text = self.number(quantity, old, new);
         let way = self.written_way(way);
         let Some(value) = value_at(&mut self.document, &way) else { return false };
         let Some(point) = number_style(value) else { return false };
-        let near = ROUND_OFF * old.abs().max(new.abs());
-        let mut text = shortest(new, near, |x| units.to_si(quantity, x), units.from_si(quantity, new));
         if point && !text.contains(['.', 'e']) {
             text += ".0";
         }
@@ -599,16 +519,26 @@ impl Edit<'_> {
         true
     }
 
-    /// Path to a coordinate of a hardpoint with two coordinates.
-    fn written_way<'w>(&self, way: &[Step<'w>]) -> Vec<Step<'w>> {
-        let mut way = way.to_vec();
-        if let ([Key("hardpoints"), Key(name), At(axis)], Some(plane)) = (&mut way[..], self.file.plane) {
-            let list = self.document.get("hardpoints").and_then(|t| t.get(*name)?.as_array());
+    /// Number in the unit of the file, with round-off relative to the old and the new value.
+    pub fn number(&self, quantity: Quantity, old: f64, new: f64) -> String {
+        let units = self.units();
+        let near = ROUND_OFF * old.abs().max(new.abs());
+        shortest(new, near, |x| units.to_si(quantity, x), units.from_si(quantity, new))
+    }
+
+    /// Path to a coordinate of a place: of two coordinates, those in the plane are written.
+    fn written_way<'w>(&mut self, way: &[Step<'w>]) -> Vec<Step<'w>> {
+        let is_place = matches!(way, [Key("hardpoints"), ..] | [Key("joints"), _, Key("curve"), ..]);
+        let mut written = way.to_vec();
+        if let (true, Some(plane), Some((At(axis), list))) = (is_place, self.file.plane, way.split_last())
+            && let Some(last) = written.last_mut()
+        {
+            let list = value_at(&mut self.document, list).and_then(|value| value.as_array());
             if list.is_some_and(|list| list.len() == 2) {
-                *axis = plane.coordinate(*axis).unwrap_or(usize::MAX);
+                *last = At(plane.coordinate(*axis).unwrap_or(usize::MAX));
             }
         }
-        way
+        written
     }
 
     /// Replaces a direction and keeps the length of the written vector.
@@ -634,83 +564,16 @@ impl Edit<'_> {
 }
 
 /// Markers that an axis of a joint defines.
-fn ends_of(joint: &hardpoint::model::Joint, which: usize) -> &'static [usize] {
+fn ends_of(joint: &Joint, which: usize) -> &'static [usize] {
     match (joint.kind.axis2, which) {
-        (hardpoint::joint::Need::OnBodyJ, 0) => &[0],
-        (hardpoint::joint::Need::OnBodyJ, _) => &[1],
+        (Need::OnBodyJ, 0) => &[0],
+        (Need::OnBodyJ, _) => &[1],
         _ => &[0, 1],
     }
 }
 
 fn turns(rotation: &Mat3) -> bool {
     Vec3::AXES.iter().any(|a| (*rotation * *a - *a).norm() > SAME)
-}
-
-fn value_at<'d>(document: &'d mut DocumentMut, way: &[Step<'_>]) -> Option<&'d mut Value> {
-    let mut item: &mut Item = document.as_item_mut();
-    for (k, step) in way.iter().enumerate() {
-        match step {
-            Key(key) => item = item.as_table_like_mut()?.get_mut(key)?,
-            // Tables of a list continue below their header; a list of values has values only.
-            At(n) if item.is_array_of_tables() => {
-                let table = item.as_array_of_tables_mut()?.get_mut(*n)?;
-                let Some(Key(key)) = way.get(k + 1) else { return None };
-                return table.get_mut(key)?.as_value_mut().filter(|_| way.len() == k + 2);
-            }
-            At(n) => {
-                let value = item.as_array_mut()?.get_mut(*n)?;
-                return match way.get(k + 1..)? {
-                    [] => Some(value),
-                    [At(m)] => value.as_array_mut()?.get_mut(*m),
-                    [Key(key)] => value.as_inline_table_mut()?.get_mut(key),
-                    [Key(key), At(m)] => {
-                        value.as_inline_table_mut()?.get_mut(key)?.as_array_mut()?.get_mut(*m)
-                    }
-                    _ => None,
-                };
-            }
-        }
-    }
-    item.as_value_mut()
-}
-
-/// Returns whether a number is written with a decimal point; `None` for other values.
-fn number_style(value: &Value) -> Option<bool> {
-    match value {
-        Value::Integer(_) => Some(false),
-        Value::Float(f) => {
-            Some(f.as_repr().and_then(|r| r.as_raw().as_str()).is_some_and(|t| t.contains('.')))
-        }
-        _ => None,
-    }
-}
-
-/// Replaces a value and preserves the space and comments around it.
-fn replace(value: &mut Value, text: &str) {
-    let decor = value.decor().clone();
-    *value = text.parse().expect("a number or a list of numbers is TOML");
-    *value.decor_mut() = decor;
-}
-
-/// Adds the length to the table of a rod.
-fn joint_table(document: &mut DocumentMut, joint: &str, length: &str) -> bool {
-    let table = document.get_mut("joints").and_then(|j| j.as_table_like_mut()?.get_mut(joint));
-    let Some(table) = table.and_then(Item::as_table_like_mut) else { return false };
-    let value: Value = length.parse().expect("a number is TOML");
-    table.insert("length", Item::Value(value));
-    true
-}
-
-/// Number with the fewest digits that is read as `target`, or within `near` of it; `exact` is the same in the unit of
-/// the text.
-fn shortest(target: f64, near: f64, to_si: impl Fn(f64) -> f64, exact: f64) -> String {
-    let tried = (0..17).map(|digits| format!("{exact:.digits$e}"));
-    let found = tried
-        .filter_map(|text| text.parse::<f64>().ok())
-        .find(|x| (to_si(*x) - target).abs() <= near)
-        .unwrap_or(exact);
-    // No -0 in a file.
-    format!("{}", if found == 0.0 { 0.0 } else { found })
 }
 
 /// Name of the first difference between a changed design and the nominal design of another model, if there is one.
@@ -720,28 +583,70 @@ fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<(String, S
     let near = |a: Vec3, b: Vec3, size: f64| (a - b).norm() <= SAME * size;
     let far = model.distance_from_origin() + size;
     for (place, hardpoint) in model.hardpoint_places(values).into_iter().zip(&model.hardpoints) {
-        let other = saved.hardpoints.iter().find(|h| h.name == hardpoint.name);
+        // Places without a name are those of joints and points, below.
+        let is_same =
+            |other: &&Hardpoint| !hardpoint.unnamed && !other.unnamed && other.name == hardpoint.name;
+        let other = saved.hardpoints.iter().find(is_same);
         if other.is_some_and(|other| !near(place, other.position, far)) {
             return found("place of hardpoint", &hardpoint.name);
         }
     }
     let (changed, again) = (model.geometry(values), saved.geometry(&[]));
-    for (j, joint) in model.joints.iter().enumerate() {
-        let [a, b] = [&changed, &again].map(|g| g.kept[j].distance);
-        if !((a - b).abs() <= SAME * size) {
-            return found("length of joint", &joint.name);
+    for (j, (joint, other)) in model.joints.iter().zip(&saved.joints).enumerate() {
+        if let Some(constant) = other_constant(joint, &changed.kept[j], &again.kept[j], size) {
+            return found(&format!("{constant} of joint"), &joint.name);
         }
-        let world = |m: &Model, g: &hardpoint::design::Geometry, e: usize| {
-            m.bodies[joint.bodies[e].0].frame.compose(g.markers[j][e])
-        };
+        let world =
+            |m: &Model, g: &Geometry, e: usize| m.bodies[joint.bodies[e].0].frame.compose(g.markers[j][e]);
         for e in [0, 1] {
             let [a, b] = [world(model, &changed, e), world(saved, &again, e)];
-            if !near(a.r, b.r, far) {
+            // A joint without a place is drawn between others.
+            if joint.kind.places > 0 && !near(a.r, b.r, far) {
                 return found("place of joint", &joint.name);
             }
             if joint.axis.is_some() && !near(a.rot.cols[2], b.rot.cols[2], 1.0) {
                 return found("axis of joint", &joint.name);
             }
+            let has_x = joint.axis2.is_some() && joint.kind.axis2 != Need::OnBodyJ;
+            if has_x && !near(a.rot.cols[0], b.rot.cols[0], 1.0) {
+                return found("second axis of joint", &joint.name);
+            }
+        }
+        if let (Some(a), Some(b)) = (&joint.curve, &other.curve) {
+            let [on_a, on_b] = [(model, &changed, a), (saved, &again, b)].map(|(model, geometry, curve)| {
+                let marker = world(model, geometry, 0);
+                [0, 1, 2, 3, 4].map(|k| {
+                    let [[x, y], ..] = curve.at(curve.length() * 0.25 * f64::from(k));
+                    marker.point(Vec3::new(x, y, 0.0))
+                })
+            });
+            if on_a.iter().zip(on_b).any(|(a, b)| !near(*a, b, far)) {
+                return found("curve of joint", &joint.name);
+            }
+        }
+    }
+    for (k, point) in model.points.iter().enumerate() {
+        let [a, b] = [(model, &changed), (saved, &again)]
+            .map(|(model, geometry)| model.bodies[point.body.0].frame.point(geometry.points[k]));
+        if !near(a, b, far) {
+            return found("place of point", &point.name);
+        }
+    }
+    for (w, wheel) in model.wheels.iter().enumerate() {
+        let [a, b] = [(model, &changed), (saved, &again)]
+            .map(|(model, geometry)| model.bodies[wheel.body.0].frame.rot * geometry.spin_axes[w]);
+        if !near(a, b, 1.0) {
+            return found("spin axis of wheel", &wheel.name);
+        }
+    }
+    // Axes of forces are in the frames of their bodies, which turn with hardpoints if these define them.
+    let mut frames = model.bodies.iter().zip(&saved.bodies);
+    let are_alike = frames.all(|(a, b)| a.frame.rot == b.frame.rot);
+    for ((a, b), element) in changed.axes.iter().zip(&again.axes).zip(&model.elements) {
+        if let (Some([a, _]), Some([b, _]), true) = (a, b, are_alike)
+            && !near(a.cols[2], b.cols[2], 1.0)
+        {
+            return found("axis of force", &element.name);
         }
     }
     for ((a, b), driver) in model.laws(values).iter().zip(saved.laws(&[])).zip(&model.drivers) {
@@ -752,4 +657,19 @@ fn difference(model: &Model, values: &[f64], saved: &Model) -> Option<(String, S
         }
     }
     None
+}
+
+/// Name of the first constant of a joint that differs, of those that its constraints and coordinates use.
+fn other_constant(
+    joint: &Joint,
+    changed: &JointConstants,
+    saved: &JointConstants,
+    size: f64,
+) -> Option<&'static str> {
+    let rows = joint.kind.rows.iter().copied().chain(joint.kind.coordinates.iter().map(|c| c.row));
+    let differs = |row: &Row| {
+        let unit = if row.is_length() { size } else { 1.0 };
+        !((changed.by(*row) - saved.by(*row)).abs() <= SAME * unit)
+    };
+    rows.into_iter().find(differs).map(|row| if row == Row::Distance { "length" } else { "constant" })
 }

@@ -5,6 +5,8 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
+use super::text::add;
+
 /// Depth of tables with a header of their own: `[joints.hinge]`. Deeper ones are written inline.
 const HEADERS: usize = 2;
 
@@ -139,15 +141,7 @@ fn merge<'c>(
                 *old.decor_mut() = decor;
             }
             (_, Some(old)) => *old = Item::Value(value_of(change, path)?),
-            (_, None) => {
-                // `{ a = 1 }` ends in a space, which belongs before the brace.
-                if let Some((_, Item::Value(last))) = table.iter_mut().last()
-                    && last.decor().suffix().and_then(|s| s.as_str()).is_some_and(|s| s.trim().is_empty())
-                {
-                    last.decor_mut().set_suffix("");
-                }
-                drop(table.insert(name, Item::Value(value_of(change, path)?)));
-            }
+            (_, None) => add(table, name, value_of(change, path)?),
         }
         path.pop();
     }

@@ -39,7 +39,7 @@ impl ModelFile {
     /// let turned = StartPlacement::new(BodyId(1), Vec3::ZERO, Vec3::new(0.0, 0.001, 0.0));
     /// let back = file.in_assembly(&[turned], true).unwrap();
     /// assert!(back.text().ends_with("reversed = true\n\n[start.arm]\nshift = [0.0, 1.0, 0.0]\n"));
-    /// assert!(back.model.drivers[0].law.is_reversed());
+    /// assert!(back.model.drivers[0].is_reversed);
     /// ```
     pub fn in_assembly(&self, start: &[StartPlacement], reversed: bool) -> Result<Self, Diagnostics> {
         let name = |placement: &StartPlacement| self.model.bodies[placement.body.0].name.clone();
@@ -65,7 +65,7 @@ impl ModelFile {
         let mut changes = Vec::new();
         if reversed {
             let sense = |driver: &Driver| {
-                let flag = if driver.law.is_reversed() { Contents::None } else { Contents::Flag(true) };
+                let flag = if driver.is_reversed { Contents::None } else { Contents::Flag(true) };
                 (driver.name.clone(), Contents::Table(vec![("reversed".to_owned(), flag)]))
             };
             changes.push((
@@ -79,8 +79,7 @@ impl ModelFile {
         let text = merged(self.text(), &Contents::Table(changes));
         let text = text.map_err(|why| self.cannot_be_assembled(why))?;
         let mut file = parsed(Folder::Given(&self.texts), &text, self.file_name())?;
-        let is_wrong =
-            |old: &Driver, new: &Driver| (old.law.is_reversed() != reversed) != new.law.is_reversed();
+        let is_wrong = |old: &Driver, new: &Driver| (old.is_reversed != reversed) != new.is_reversed;
         let mut drivers = self.model.drivers.iter().zip(&file.model.drivers);
         if let Some((_, driver)) = drivers.find(|(old, new)| is_wrong(old, new)) {
             let why = format!("driver `{}` cannot get another sense in this file", driver.name);

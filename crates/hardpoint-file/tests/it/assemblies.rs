@@ -237,7 +237,7 @@ fn a_path_of_another_assembly_in_the_other_sense_is_found_and_its_file_reproduce
     assert!(nominal < 1e-14 * least, "{nominal:e}\n{text}");
     // A second change of sense and the first assembly again are the file as it was.
     let back = file.in_assembly(&start, true).unwrap().in_assembly(&[], true).unwrap();
-    assert!(back.model.start.is_empty() && !back.model.drivers[0].law.is_reversed(), "{}", back.text());
+    assert!(back.model.start.is_empty() && !back.model.drivers[0].is_reversed, "{}", back.text());
 }
 
 #[test]
@@ -265,11 +265,13 @@ fn a_reversed_driver_follows_the_negative_of_its_laws_in_all_cases() {
     let file = parse(&text, "reversed.toml").unwrap_or_else(|e| panic!("{e}"));
     let slow = file.model.motions().swap_remove(0);
     let degree = std::f64::consts::PI / 180.0;
-    for (law, speed) in [(&file.model.drivers[0].law, -30.0), (&slow.drivers[0].law, -10.0)] {
+    for (law, speed) in
+        [(file.model.drivers[0].coordinate_law(), -30.0), (slow.drivers[0].coordinate_law(), -10.0)]
+    {
         assert!((law.at(2.0).value() - 2.0 * speed * degree).abs() < 1e-14, "{law}");
         assert!((law.at(2.0).d() - speed * degree).abs() < 1e-14);
     }
-    assert_eq!(file.model.drivers[0].law.to_string(), "-(30*t)");
+    assert_eq!(file.model.drivers[0].coordinate_law().to_string(), "-(30*t)");
 }
 
 #[test]

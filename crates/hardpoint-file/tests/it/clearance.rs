@@ -684,3 +684,60 @@ fn a_motion_that_a_limit_stops_has_the_clearances_up_to_the_limit_at_any_output_
         assert!(matches!(claim(1e-9), ClearanceProof::NotProved { .. }), "{steps} steps");
     }
 }
+
+#[test]
+fn a_part_of_the_motion_in_which_the_distance_is_constant_and_greatest_has_no_minimum() {
+    // While the arm points away from the wall, its fixed end is nearest: rates there are round-off of either sign. The
+    // other pairs add times.
+    let text = |steps: usize| {
+        format!(
+            r#"
+name = "plateau"
+units = {{ length = "mm", angle = "deg" }}
+time = {{ end = 1.0, steps = {steps} }}
+bodies = {{ crank = {{}}, rocker = {{}} }}
+joints.R1 = {{ type = "revolute", bodies = ["ground", "crank"], at = "O1", axis = [0.1, -0.05, 1] }}
+joints.c = {{ type = "distance", bodies = ["crank", "rocker"], at = ["A", "B"] }}
+joints.R2 = {{ type = "revolute", bodies = ["ground", "rocker"], at = "O2", axis = [0.25, 1, -0.1] }}
+drivers.d = {{ joint = "R1", law = "360*t" }}
+[hardpoints]
+O1 = [0, 0, 10]
+A = [80, 60, 0.001]
+B = [480, 260, 280]
+O2 = [420, 150, 20]
+P = [260, 70, 260]
+Q = [300, 40, 150]
+[shapes]
+rod = {{ capsule = "c", radius = 6 }}
+arm = {{ body = "crank", capsule = ["O1", "A"], radius = 6 }}
+ring = {{ body = "ground", ring = "P", axis = [1, 0.2, 0.1], radius = 25, round = 8 }}
+wall = {{ body = "ground", plane = "P", normal = {{ through = ["P", "Q"] }} }}
+block = {{ body = "ground", hull = [[250, 90, 220], "Q", "P", [330, 120, 330]], round = 2 }}
+[clearances.c]
+between = [["rod", "arm"], ["ring", "wall", "block"]]
+"#
+        )
+    };
+    for steps in [7, 9, 11, 30] {
+        let model = model_of(&text(steps));
+        let found = Analysis::new(&model).unwrap().clearances(&[]);
+        let shape = |name: &str| model.shapes.iter().position(|s| s.name == name).unwrap();
+        let of = |pair: &&PairClearance| pair.shapes.map(|s| s.0) == [shape("arm"), shape("wall")];
+        let pair = found.pairs.iter().find(of).unwrap();
+        let [only] = &pair.minima[..] else { panic!("{steps} steps: {:?}", pair.minima) };
+        // Of the end of the arm, by its own rotation about the axis.
+        let unit = |v: [f64; 3]| v.map(|x| x / v.iter().map(|x| x * x).sum::<f64>().sqrt());
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (axis, v) = (unit([0.1, -0.05, 1.0]), [80.0, 60.0, -9.999]);
+        let normal = unit([40.0, -30.0, -110.0]);
+        let along = dot(axis, v);
+        let across = [
+            axis[1] * v[2] - axis[2] * v[1],
+            axis[2] * v[0] - axis[0] * v[2],
+            axis[0] * v[1] - axis[1] * v[0],
+        ];
+        let (sin, cos) = (dot(normal, across), dot(normal, v) - along * dot(normal, axis));
+        let height = dot(normal, [-260.0, -70.0, 10.0 - 260.0]) + along * dot(normal, axis);
+        assert_near(only.at.distance[0] * 1e3, height - sin.hypot(cos) - 6.0, &format!("{steps} steps"));
+    }
+}

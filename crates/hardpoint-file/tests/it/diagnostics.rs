@@ -377,6 +377,44 @@ fn syntax() {
     snapshot("deep_nesting", &format!("name = {}", "[".repeat(100_000)));
 }
 
+/// Squares and cubes of such lengths overflow.
+#[test]
+fn lengths_beyond_the_universe_are_reported_where_they_are_written() {
+    for (old, new, what) in [
+        ("B = [100, 50, 0]", "B = [1e160, 50, 0]", "a coordinate of hardpoint `B`"),
+        ("B = [100, 50, 0]", "B = [\"1e200 + 1\", 50, 0]", "`B.x`"),
+        ("at = \"A\"", "at = [0, -1e308, 0]", "a coordinate of `J1`"),
+    ] {
+        let text = VALID.replacen(old, new, 1);
+        let error = parse(&text, "x.toml").unwrap_err();
+        let [found] = error.list() else { panic!("{new}: {error}") };
+        assert_eq!(found.code, "HP0202");
+        assert_eq!(found.message, format!("{what} is larger than 1e30 m"));
+        assert!(error.to_string().contains(new.split_once(" = ").unwrap().1), "{error}");
+    }
+    let text = VALID.replacen("B = [100, 50, 0]", "B = [1e30, 50, 0]", 1);
+    parse(&text, "x.toml").unwrap_or_else(|e| panic!("{e}"));
+}
+
+#[test]
+fn the_values_of_a_law_are_reported_in_the_unit_of_the_file() {
+    let error = parse(&VALID.replace("360*t", "1e308*t"), "x.toml").unwrap_err();
+    let [found] = error.list() else { panic!("{error}") };
+    assert_eq!(found.code, "HP0214");
+    assert!(found.message.contains("changes too fast"), "{error}");
+    assert_eq!(found.notes, ["value 0 deg, first derivative 1e308 deg/s, second derivative 0 deg/s^2 there"]);
+    let error = parse(&VALID.replace("360*t", "0.25 + sqrt(t)"), "x.toml").unwrap_err();
+    assert!(error.to_string().contains("value 0.25 deg, first derivative inf deg/s"), "{error}");
+}
+
+#[test]
+fn many_signs_are_no_number_in_quotes() {
+    let signs = "-".repeat(100_001);
+    let text = VALID.replace("B = [100, 50, 0]", &format!("B = [100, \"{signs}1\", 0]"));
+    let file = parse(&text, "x.toml").unwrap_or_else(|e| panic!("{}", e.list()[0].message));
+    assert_eq!(file.model.hardpoints[1].position.y, -1e-3);
+}
+
 #[test]
 fn several_problems_at_once() {
     broken(

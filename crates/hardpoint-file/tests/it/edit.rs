@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use hardpoint::law::ParameterKind;
+use hardpoint::model::{Change, DesignVariable, Model, VariableId};
 use hardpoint::run::metrics;
 use hardpoint::{Analysis, Run, Solution};
 use hardpoint_file::{ModelFile, parse, read};
@@ -25,6 +27,60 @@ fn models() -> Vec<PathBuf> {
 fn solved(file: &ModelFile, design: &[f64]) -> Solution {
     let analysis = Analysis::new(&file.model).unwrap();
     analysis.solve(Run::new().at(design).without_sensitivities())
+}
+
+/// Sensitivities of the saved file agree with those of the changed design to this part of the largest of their output.
+const SAME_SENSITIVITIES: f64 = 1e-6;
+
+/// Compares the sensitivities of a changed design with those of its saved file. Returns the variables whose directions
+/// follow from the nominal design, so that they change with it: shapes, tilts about lines through hardpoints.
+fn compare_sensitivities(what: &str, file: &ModelFile, design: &[f64], again: &ModelFile) -> Vec<String> {
+    let [a, b] = [(file, design), (again, &[][..])].map(|(file, design)| {
+        let [first, .., last] = file.model.times[..] else { panic!("{what}: one output time") };
+        let model = Model { times: vec![first, 0.4 * last + 0.6 * first], ..file.model.clone() };
+        Analysis::new(&model).unwrap().solve(Run::new().at(design))
+    });
+    let mut redefined = Vec::new();
+    for (v, (old, new)) in file.model.variables.iter().zip(&again.model.variables).enumerate() {
+        assert_eq!(old.name, new.name, "{what}");
+        if changes_of(file, &file.model, old) != changes_of(file, &again.model, new) {
+            redefined.push(format!("{what}: {}", old.name));
+            continue;
+        }
+        let step = file.model.natural_step(VariableId(v));
+        for m in 0..a.measured.outputs.len() {
+            for order in 0..3 {
+                let both = |k: usize| [&a, &b].map(|s| step * s.measured.d(k, VariableId(v), m)[order]);
+                let largest =
+                    (0..a.motion.len()).map(|k| both(k)[0].abs()).fold(file.model.size().max(1.0), f64::max);
+                for k in 0..a.motion.len() {
+                    let [x, y] = both(k);
+                    let output = &a.measured.outputs[m].name;
+                    // Of a mechanism that a change jams, there are none.
+                    assert!(
+                        (x - y).abs() <= SAME_SENSITIVITIES * largest || x.is_nan() && y.is_nan(),
+                        "{what}: d {output} / d {}, order {order}: {x} {y}",
+                        old.name
+                    );
+                }
+            }
+        }
+    }
+    redefined
+}
+
+/// Changes of a variable of a model, without those of hardpoints that a file does not have: added ones move like the
+/// ends of rods that they stand for.
+fn changes_of(file: &ModelFile, model: &Model, variable: &DesignVariable) -> Vec<String> {
+    let changes = variable.changes.iter().filter_map(|change| match change {
+        Change::Move(c) => {
+            let name = &model.hardpoints[c.hardpoint.0].name;
+            let is_known = file.model.hardpoints.iter().any(|h| h.name == *name);
+            is_known.then(|| format!("{name} {:.9?}", c.velocity))
+        }
+        change => Some(format!("{change:.9?}")),
+    });
+    changes.collect()
 }
 
 /// Relative difference of two motions; infinite if they are not of the same length.
@@ -69,7 +125,7 @@ fn a_saved_design_moves_as_the_changed_one_and_changes_no_other_line() {
         let file = read(&path).unwrap();
         let name = path.file_stem().unwrap().to_str().unwrap();
         for k in 0..file.model.variables.len() {
-            let variable = hardpoint::model::VariableId(k);
+            let variable = VariableId(k);
             let mut design = vec![0.0; file.model.variables.len()];
             design[k] = PART * file.model.natural_step(variable);
             let what = format!("{name}: {}", file.model.variables[k].name);
@@ -90,10 +146,12 @@ fn a_saved_design_moves_as_the_changed_one_and_changes_no_other_line() {
             let after = solved(&again, &[]);
             let off = apart(file.model.size(), &before, &after);
             assert!(off < SAME_MOTION, "{what}: {off:e}");
-            // A rod that keeps its length while its ends move gets a line that says so.
+            // A rod that keeps its length while its ends move gets a line for it, and one for a hardpoint.
             let kept = |l: &&str| {
-                let added = l.starts_with("length = ") && !file.text().lines().any(|old| old == *l);
-                !(file.model.variables[k].fixed_length && added)
+                let is_new = !file.text().lines().any(|old| old == *l);
+                let key = l.split(" = ").next().unwrap();
+                let added = key == "length" || key.contains("_of_");
+                !(file.model.variables[k].fixed_length && is_new && added)
             };
             let after: Vec<&str> = text.lines().filter(kept).collect();
             assert_eq!(file.text().lines().count(), after.len(), "{what}");
@@ -194,9 +252,21 @@ fn a_rod_that_is_not_made_anew_is_given_its_length() {
     let file = parse(ROD, "rod.toml").unwrap();
     let design = of(&file, &[("B_kept", 0.004)]);
     let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
-    assert!(saved.contains("length = 335.41019662496"), "{saved}");
+    // It still follows C, which is moved by other variables.
+    assert!(saved.contains("length = \"sqrt(C.x^2 + (250 - B.y)^2)\""), "{saved}");
     let again = parse(&saved, "rod.toml").unwrap();
     assert!(apart(0.4, &solved(&file, &design), &solved(&again, &[])) < SAME_MOTION);
+    let redefined = compare_sensitivities("rod", &file, &design, &again);
+    assert!(redefined.is_empty(), "{redefined:?}");
+    // Without others, it has a number.
+    let alone = ROD
+        .replace("C_x = { move = \"C\", along = \"x\" }\r\n", "")
+        .replace("B_y = ", "D_y = ")
+        .replace("move = \"B\", along = \"y\"", "move = \"D\", along = \"y\"")
+        .replace("C = [\"reach\", 250, 0]", "C = [300, 250, 0]");
+    let file = parse(&alone, "rod.toml").unwrap();
+    let saved = file.edit(&of(&file, &[("B_kept", 0.004)])).unwrap_or_else(|e| panic!("{e}"));
+    assert!(saved.contains("length = 335.41019662496"), "{saved}");
 }
 
 #[test]
@@ -229,6 +299,258 @@ fn named_designs_stay_at_the_same_values() {
     }
 }
 
+#[test]
+fn a_rod_that_keeps_its_length_at_an_end_that_others_move_follows_an_added_hardpoint() {
+    let both = "B_kept = { move = \"B\", along = \"x\", fixed_length = true }\r\n";
+    let text = ROD.replace(both, &format!("{both}B_x = {{ move = \"B\", along = \"x\" }}\r\n"));
+    let file = parse(&text, "rod.toml").unwrap_or_else(|e| panic!("{e}"));
+    let design = of(&file, &[("B_kept", 0.004), ("B_x", 0.001), ("B_y", 0.002)]);
+    let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+    for line in [
+        "B = [5, 102.0, 0]",
+        "B_of_rod = [1, 102.0, 0]",
+        "B_y = { move = [\"B\", \"B_of_rod\"], along = \"y\"",
+        "B_x = { move = [\"B\", \"B_of_rod\"], along = \"x\"",
+        "length = \"sqrt((C.x - B_of_rod.x)^2 + (250 - B_of_rod.y)^2)\"",
+    ] {
+        assert!(saved.contains(line), "{line}\n{saved}");
+    }
+    let again = parse(&saved, "rod.toml").unwrap_or_else(|e| panic!("{e}\n{saved}"));
+    assert!(again.remarks.is_empty(), "{:?}", again.remarks);
+    let redefined = compare_sensitivities("rod", &file, &design, &again);
+    assert!(redefined.is_empty(), "{redefined:?}");
+    // A shape does not move points by their names alone.
+    let shape = "shape = [\"crank\"], field = { translate = \"x\" }";
+    let text = text.replace("B_x = { move = \"B\", along = \"x\"", &format!("B_x = {{ {shape}"));
+    let file = parse(&text, "rod.toml").unwrap_or_else(|e| panic!("{e}"));
+    let why = refused(&file, &of(&file, &[("B_kept", 0.004)])).unwrap();
+    let expected = "the change of `B_kept` cannot be saved: `rod` keeps its length under some variables that move `B`, \
+                    and follows others";
+    assert_eq!(why, expected);
+}
+
+#[test]
+fn a_limit_on_a_rod_that_keeps_its_length_can_be_saved() {
+    let text = "\
+name = \"rod length limit\"
+units = { length = \"mm\", angle = \"deg\" }
+planar = \"xy\"
+hardpoints = { A = [0, 0], B = [40, 20], C = [140, 60], D = [150, 0] }
+bodies = { crank = [\"A\", \"B\"], rocker = [\"C\", \"D\"] }
+time = { end = 1, steps = 10 }
+[joints]
+A = { type = \"revolute\", bodies = [\"ground\", \"crank\"], at = \"A\" }
+D = { type = \"revolute\", bodies = [\"ground\", \"rocker\"], at = \"D\" }
+rod = { type = \"distance\", bodies = [\"crank\", \"rocker\"], at = [\"B\", \"C\"] }
+[drivers.m]
+joint = \"A\"
+law = \"30*t\"
+[design]
+c = { move = \"C\", along = \"x\", fixed_length = true, bounds = [-10, 10] }
+b = { move = \"B\", along = \"x\", bounds = [-10, 10] }
+[measures]
+psi = { type = \"coordinate\", joint = \"D\" }
+[metrics]
+r = { of = \"psi\", take = \"change\" }
+[optimize]
+goals = { r = { target = 17 } }
+limits = { l = { length = \"rod\", max = 112 } }
+";
+    let file = parse(text, "rod.toml").unwrap_or_else(|e| panic!("{e}"));
+    let design = of(&file, &[("c", 0.01), ("b", -0.0046)]);
+    let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+    assert!(saved.contains("at = [\"B\", \"C\"], length = \"sqrt((140 - B.x)^2 + 40^2)\" }"), "{saved}");
+    let again = parse(&saved, "rod.toml").unwrap_or_else(|e| panic!("{e}\n{saved}"));
+    assert!(compare_sensitivities("rod", &file, &design, &again).is_empty());
+    assert!(apart(0.1, &solved(&file, &design), &solved(&again, &[])) < SAME_MOTION);
+    // The second save leaves the expression alone, and keeps the length.
+    let back = again.edit(&of(&again, &[("c", -0.01), ("b", 0.0046)])).unwrap();
+    assert!(back.contains("B = [40.0, 20], C = [140, 60]"), "{back}");
+    assert!(apart(0.1, &solved(&file, &[]), &solved(&parse(&back, "rod.toml").unwrap(), &[])) < SAME_MOTION);
+}
+
+#[test]
+fn a_text_that_becomes_invalid_is_reported_without_positions_in_it() {
+    let text = ROD
+        .replace("axis = [0, 0, 2] }", "axis = { through = [\"D\", \"E\"] } }")
+        .replace("D = [400, 0, 0]\r\n", "D = [400, 0, 0]\r\nE = [400, 0, 10]\r\n")
+        .replace("lean = { tilt = \"pivot\", about = \"x\" }", "lean = { move = \"E\", along = \"z\" }");
+    let file = parse(&text, "rod.toml").unwrap_or_else(|e| panic!("{e}"));
+    // Both points of the axis become one.
+    let found = file.edit(&of(&file, &[("lean", -0.01)])).unwrap_err();
+    let [d] = found.list() else { panic!("{found}") };
+    assert!(d.code == "HP0505" && d.line.is_none(), "{found}");
+    assert!(d.notes[0].starts_with("a file with its numbers is invalid: "), "{found}");
+}
+
+#[test]
+fn elements_with_two_places_of_their_own_can_be_saved() {
+    let text = "\
+name = \"places\"
+units = { length = \"mm\", angle = \"deg\" }
+hardpoints = { A = [0, 0, 0], D = [300, 0, 0] }
+parameters = { k = 40 }
+bodies = { a = {}, c = {} }
+time = { end = 1, steps = 2 }
+drivers.d = { joint = \"J\", law = \"10*t\" }
+design.A_y = { move = \"A\", along = \"y\" }
+measures.apart = { type = \"distance\", from = { body = \"a\", at = [0, 0, 10] }, to = { body = \"c\", at = [300, 0, 15] } }
+measures.df = { type = \"driver_force\", driver = \"d\" }
+[joints]
+J = { type = \"revolute\", bodies = [\"ground\", \"a\"], at = \"A\", axis = \"y\" }
+K = { type = \"revolute\", bodies = [\"ground\", \"c\"], at = \"D\", axis = \"y\" }
+rod = { type = \"distance\", bodies = [\"a\", \"c\"], at = [[0, 0, 100], [300, 0, 150]] }
+[forces]
+spring = { type = \"spring\", from = { body = \"ground\", at = [500, 0, 300] }, to = { body = \"a\", at = [550, 0, -80] }, stiffness = \"k\" }
+bushing = { type = \"bushing\", from = { body = \"ground\", at = [100, 0, 1] }, to = { body = \"c\", at = [110, 0, 2] }, x = 1, y = 1, z = 1 }
+[masses]
+bar = { type = \"bar\", from = { body = \"a\", at = [0, 0, 1] }, to = { body = \"a\", at = [0, 0, 90] }, diameter = 9, density = 7850 }
+";
+    let file = parse(text, "places.toml").unwrap_or_else(|e| panic!("{e}"));
+    let design = of(&file, &[("k", 5.0), ("A_y", 0.001)]);
+    let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(saved, text.replace("k = 40", "k = 45").replace("A = [0, 0, 0]", "A = [0, 1, 0]"));
+}
+
+/// Numbers by name.
+type Numbers = &'static [(&'static str, f64)];
+
+/// Laws with all their parameters: of a law, the text, and that with other numbers of the given parameters.
+const LAWS: [(&str, Numbers, &str); 8] = [
+    (
+        "{ type = \"harmonic\", amplitude = 10, frequency = 1 }",
+        &[("amplitude", 11.0), ("frequency", 1.5), ("phase", 3.0), ("offset", 2.0)],
+        "{ type = \"harmonic\", amplitude = 11, frequency = 1.5, phase = 3, offset = 2 }",
+    ),
+    (
+        "{ type = \"constant_speed\", speed = 10 }",
+        &[("speed", 11.0), ("offset", 2.0)],
+        "{ type = \"constant_speed\", speed = 11, offset = 2 }",
+    ),
+    (
+        "{ type = \"polynomial\", coefficients = [0, 4, -3] }",
+        &[("c0", 1.0), ("c1", 4.5), ("c2", -2.0)],
+        "{ type = \"polynomial\", coefficients = [1, 4.5, -2] }",
+    ),
+    (
+        "{ type = \"smooth_step\", to = 40, start = 0.5, end = 1 }",
+        &[("from", 1.0), ("to", 41.0), ("start", 0.4), ("end", 0.9)],
+        "{ type = \"smooth_step\", to = 41, start = 0.4, end = 0.9, from = 1 }",
+    ),
+    (
+        "{ type = \"trapezoid\", from = 0, to = 40, start = 0.5, end = 1.5, ramp = 0.2 }",
+        &[("from", 1.0), ("to", 41.0), ("start", 0.4), ("end", 1.6), ("ramp", 0.3)],
+        "{ type = \"trapezoid\", from = 1, to = 41, start = 0.4, end = 1.6, ramp = 0.3 }",
+    ),
+    (
+        "{ type = \"table\", points = [[0, 0], [0.5, 4], [1, 9]], spline = \"quintic\" }",
+        &[("f[1]", 5.0), ("start_speed", 1.0), ("end_acceleration", 2.0)],
+        "{ type = \"table\", points = [[0, 0], [0.5, 5], [1, 9]], spline = \"quintic\", \
+         start_speed = 1, end_acceleration = 2 }",
+    ),
+    (
+        "{ type = \"expression\", law = \"a*sin(w*t)\", parameters = { a = 25, w = 6.28 } }",
+        &[("a", 26.0), ("w", 6.5)],
+        "{ type = \"expression\", law = \"a*sin(w*t)\", parameters = { a = 26, w = 6.5 } }",
+    ),
+    (
+        "{ type = \"sequence\", pieces = [{ duration = 0.5, law = { type = \"polynomial\", coefficients = [0, 2] } }, \
+         { law = { type = \"sequence\", pieces = [{ duration = 0.1, law = { type = \"constant_speed\", speed = 1 } }, \
+         { law = 0 }] } }] }",
+        &[
+            ("piece[0].duration", 0.6),
+            ("piece[0].c1", 3.0),
+            ("piece[1].piece[0].duration", 0.2),
+            ("piece[1].piece[0].speed", 5.0),
+        ],
+        "{ type = \"sequence\", pieces = [{ duration = 0.6, law = { type = \"polynomial\", coefficients = [0, 3] } }, \
+         { law = { type = \"sequence\", pieces = [{ duration = 0.2, law = { type = \"constant_speed\", speed = 5 } }, \
+         { law = 0 }] } }] }",
+    ),
+];
+
+#[test]
+fn every_parameter_of_every_law_is_saved() {
+    let harmonic = "{ type = \"harmonic\", amplitude = 10, frequency = 1 }";
+    let mut kinds: Vec<&str> = Vec::new();
+    for (law, parameters, expected) in LAWS {
+        let variable =
+            |k: usize, name: &str| format!("law_{k} = {{ driver = \"motor\", parameter = \"{name}\" }}\r\n");
+        let design: String = parameters.iter().enumerate().map(|(k, (name, _))| variable(k, name)).collect();
+        let swing = "swing = { driver = \"motor\", parameter = \"amplitude\" }\r\n";
+        let text = ROD.replace(swing, &design).replace(harmonic, law);
+        let file = parse(&text, "rod.toml").unwrap_or_else(|e| panic!("{law}: {e}"));
+        let model = &file.model;
+        // Units of the file: deg of the driver, and of the phase.
+        let written = model.drivers[0].law.parameters();
+        let changes: Vec<(String, f64)> = (parameters.iter().enumerate())
+            .map(|(k, (name, value))| {
+                let old = written.iter().find(|p| p.name == *name).unwrap();
+                let scale = if old.kind.is_in_driver_unit() || old.kind == ParameterKind::Angle {
+                    1_f64.to_radians()
+                } else {
+                    1.0
+                };
+                let Change::Law(change) =
+                    &model.variables[model.variable(&format!("law_{k}")).unwrap().0].changes[0]
+                else {
+                    panic!()
+                };
+                (format!("law_{k}"), (value * scale - old.value) / change.rate)
+            })
+            .collect();
+        let changes: Vec<(&str, f64)> = changes.iter().map(|(name, by)| (name.as_str(), *by)).collect();
+        let saved = file.edit(&of(&file, &changes)).unwrap_or_else(|e| panic!("{law}: {e}"));
+        assert_eq!(saved, text.replace(law, expected));
+        let kind = law.split('"').nth(1).unwrap();
+        kinds.push(kind);
+    }
+    // Each type of the format.
+    let schema: serde_json::Value = serde_json::from_str(&hardpoint_file::schema()).unwrap();
+    let types = schema["$defs"]["LawTable"]["oneOf"].as_array().unwrap();
+    assert_eq!(types.len(), kinds.len());
+}
+
+#[test]
+fn points_of_a_curve_move_with_the_joint_that_carries_it() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/cam.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    // A distance that is kept has no place in a file where it was drawn.
+    let file = parse(&text, "cam.toml").unwrap_or_else(|e| panic!("{e}"));
+    assert!(refused(&file, &of(&file, &[("camshaft_x", 0.0005)])).is_some());
+    let kept = "{ move = \"camshaft\", along = \"x\", fixed_length = true }";
+    let text = text.replace(kept, "{ move = \"camshaft\", along = \"x\" }");
+    let file = parse(&text, "cam.toml").unwrap_or_else(|e| panic!("{e}"));
+    let design = of(&file, &[("camshaft_x", 0.0005)]);
+    let saved = file.edit(&design).unwrap_or_else(|e| panic!("{e}"));
+    assert!(saved.contains("[0.500000000, 45") || saved.contains("[0.5, 45.000000000, 0]"), "{saved}");
+    let again = parse(&saved, "cam.toml").unwrap_or_else(|e| panic!("{e}"));
+    assert!(apart(0.1, &solved(&file, &design), &solved(&again, &[])) < SAME_MOTION);
+    assert!(compare_sensitivities("cam", &file, &design, &again).is_empty());
+}
+
+#[test]
+fn ranges_of_a_sweep_and_means_of_priors_stay_at_the_same_values() {
+    let studies = "[metrics]\r\nm = { of = \"angle\", take = \"max\" }\r\n\
+                   [sweep.variables]\r\nB_y = { from = -2, to = 3 }\r\nC_x = [-3, 3] # mm\r\nreach = [290, 310]\r\n\
+                   [calibrate.variables]\r\nB_y = { sigma = 1, mean = 2 }\r\nC_x = 1\r\n";
+    let text = format!("{ROD}{studies}").replace("C = [\"reach\", 250, 0]", "C = [300, 250, 0]");
+    let file = parse(&text, "rod.toml").unwrap_or_else(|e| panic!("{e}"));
+    let change = of(&file, &[("B_y", 0.001), ("C_x", 0.002), ("reach", 0.005)]);
+    let saved = file.edit(&change).unwrap_or_else(|e| panic!("{e}"));
+    let expected = studies
+        .replace("from = -2, to = 3", "from = -3, to = 2")
+        .replace("[-3, 3] # mm", "[-5, 1] # mm")
+        .replace("mean = 2", "mean = 1");
+    assert!(saved.ends_with(&expected), "{saved}");
+    let again = parse(&saved, "rod.toml").unwrap_or_else(|e| panic!("{e}\n{saved}"));
+    let ends = |file: &ModelFile, k: usize| file.model.sweeping.as_ref().unwrap().ranges[k].low;
+    for k in 0..3 {
+        let variable = file.model.sweeping.as_ref().unwrap().ranges[k].variable;
+        assert!((ends(&file, k) - change[variable.0] - ends(&again, k)).abs() < 1e-12);
+    }
+}
+
 /// Metrics of the saved file are those of the changed design to this part of them, or of 1.
 const SAME_METRIC: f64 = 1e-9;
 /// Change of a variable relative to its bounds, or its natural step: small enough that every template still moves.
@@ -236,7 +558,7 @@ const ROOM: f64 = 0.02;
 
 /// Metrics of all cases at a design.
 fn metrics_of(file: &ModelFile, design: &[f64]) -> Vec<(String, f64)> {
-    let values = |model: &hardpoint::model::Model| {
+    let values = |model: &Model| {
         let solution = Analysis::new(model).unwrap().solve(Run::new().at(design).without_sensitivities());
         assert!(solution.stop.is_none(), "{}: {:?}", model.name, solution.stop);
         let values = metrics(model, &solution).into_iter();
@@ -260,7 +582,7 @@ fn templates_are_saved_with_every_variable_at_another_value() {
         let value = |k: usize| {
             let room = match model.variables[k].bounds {
                 Some([low, high]) => high.min(-low),
-                None => model.natural_step(hardpoint::model::VariableId(k)),
+                None => model.natural_step(VariableId(k)),
             };
             ROOM * room * (1.0 + 0.1 * k as f64)
         };
@@ -279,7 +601,8 @@ fn templates_are_saved_with_every_variable_at_another_value() {
         // The same variables, with the same effect, tolerance and bounds of the value.
         assert_eq!(model.variables.len(), again.model.variables.len(), "{name}");
         for ((old, new), value) in model.variables.iter().zip(&again.model.variables).zip(&design) {
-            assert_eq!((&old.name, &old.changes), (&new.name, &new.changes), "{name}");
+            assert_eq!(old.name, new.name, "{name}");
+            assert_eq!(changes_of(&file, model, old), changes_of(&file, &again.model, new), "{name}");
             assert_eq!(
                 (old.tolerance, old.typical, old.fixed_length),
                 (new.tolerance, new.typical, new.fixed_length),
@@ -305,8 +628,8 @@ fn templates_are_saved_with_every_variable_at_another_value() {
         assert_eq!(comments(file.text()), comments(&text), "{name}");
         assert_eq!(again.edit(&[]).unwrap(), text, "{name}");
     }
-    // B and C of the four-bar, and B of the slider-crank.
-    assert_eq!(split, 3);
+    // B and C of the four-bar, and B of the slider-crank; the length of a leg, and a hardpoint for that of a rod.
+    assert_eq!(split, 5);
     assert_eq!(expressions, ["delta.toml: rod_error"]);
 }
 

@@ -160,3 +160,86 @@ fn requests_without_an_envelope_are_refused_with_a_remedy() {
     let unknown = Overrides { relative_to: Some("rim".into()), ..overrides("ball", "along", 1e-3) };
     assert!(refused(unknown).contains("rim"));
 }
+
+/// A block of 30 mm with a fin of 40 mm on it, 1 mm thick: the same profile in x and z over 10 mm of y.
+fn fin() -> String {
+    let profile = [
+        [0.0, 0.0],
+        [30.0, 0.0],
+        [30.0, 14.5],
+        [70.0, 14.5],
+        [70.0, 15.5],
+        [30.0, 15.5],
+        [30.0, 30.0],
+        [0.0, 30.0],
+    ];
+    let line = |y: f64| profile.map(|[x, z]| format!("v {x} {y} {z}\n")).concat();
+    let ends = [[1, 2, 3], [1, 3, 6], [3, 4, 5], [3, 5, 6], [1, 6, 8], [6, 7, 8]];
+    let ends = ends.map(|[a, b, c]| format!("f {a} {b} {c}\nf {} {} {}\n", a + 8, c + 8, b + 8)).concat();
+    let side = |k: usize| {
+        let next = k % 8 + 1;
+        format!("f {k} {} {next}\nf {k} {} {}\n", next + 8, k + 8, next + 8)
+    };
+    format!("{}{}{ends}{}", line(0.0), line(10.0), (1..=8).map(side).collect::<String>())
+}
+
+#[test]
+fn a_fin_that_is_thinner_than_the_first_cells_is_part_of_the_envelope() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("fin.obj"), fin()).unwrap();
+    let path = folder.path().join("fin.toml");
+    let text = r#"
+name = "fin"
+units = { length = "mm", angle = "deg" }
+time = { end = 1.0, steps = 4 }
+bodies = { slider = {} }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = [0, 0, 0], axis = "y" }
+drivers.push = { joint = "slide", law = "3*t" }
+shapes.block = { body = "slider", mesh = "fin.obj" }
+"#;
+    std::fs::write(&path, text).unwrap();
+    let model = hardpoint_file::read(&path).unwrap_or_else(|e| panic!("{e}")).model;
+    // The first cells are 3.5 mm wide, and their triangles deviate by less than half of this error.
+    let request = Overrides { shape: "block".into(), error: Some(4e-3), ..Overrides::default() };
+    let found = envelope_of(&model, request);
+    assert_closed(&found.surface);
+    assert!(found.is_within_error, "{} {}", found.surface.deviation, found.error);
+    let end = found.surface.vertices.iter().map(|p| p.x).fold(0.0, f64::max);
+    assert!((end - 0.07).abs() < found.error, "{end}");
+    let exact = (30.0 * 30.0 + 40.0 * 1.0) * (10.0 + 3.0) * 1e-9;
+    let volume = found.surface.volume();
+    assert!((volume - exact).abs() < 0.02 * exact, "{volume} {exact}");
+}
+
+#[test]
+fn a_rod_that_is_thinner_than_the_first_cells_has_an_envelope() {
+    let text = r#"
+name = "thin"
+units = { length = "mm", angle = "deg" }
+time = { end = 1.0, steps = 3 }
+bodies = { slider = {} }
+joints.slide = { type = "translational", bodies = ["ground", "slider"], at = [0, 0, 0], axis = "y" }
+drivers.push = { joint = "slide", law = "20*t" }
+shapes.thin = { body = "slider", capsule = [[50, 0, 0], [80, 0, 0]], radius = 0.2 }
+shapes.wire = { body = "slider", ring = [50, 0, 0], axis = "y", radius = 10, round = 0 }
+"#;
+    let model = parse(text, "thin.toml").unwrap_or_else(|e| panic!("{e}")).model;
+    let of = |shape: &str| Overrides { shape: shape.into(), ..Overrides::default() };
+    let found = envelope_of(&model, Overrides { error: Some(1.2e-3), ..of("thin") });
+    assert_closed(&found.surface);
+    assert!(found.is_within_error, "{} {} {}", found.surface.deviation, found.between_poses, found.error);
+    // Less than all points within the radius of a rectangle: there are gaps between the positions.
+    let (a, b, r) = (30.0, 20.0, 0.2);
+    let exact = (a * b * 2.0 * r + (a + b) * PI * r * r + 4.0 / 3.0 * PI * r * r * r) * 1e-9;
+    let volume = found.surface.volume();
+    assert!(volume > 0.0 && volume < exact, "{volume} {exact}");
+    // The rod at both ends of its path.
+    for (end, sign) in [(-r, -1.0), (b + r, 1.0)] {
+        let beyond = found.surface.vertices.iter().map(|p| sign * (p.y * 1e3 - end)).fold(f64::MIN, f64::max);
+        assert!(beyond.abs() < found.error * 1e3, "{end}: {beyond}");
+    }
+    // A wire has no volume, unless a distance is added around it.
+    let refused = Request::of(&model, of("wire")).unwrap_err();
+    assert!(refused.message.contains("`wire`") && refused.message.contains("volume"), "{refused}");
+    assert!(Request::of(&model, Overrides { margin: Some(1e-3), ..of("wire") }).is_ok());
+}

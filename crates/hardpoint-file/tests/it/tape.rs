@@ -330,7 +330,7 @@ uca = { type = "block", centre = { body = "uca", at = "upper_ball" }, x = 60, y 
 road = { type = "wheel_force", wheel = "front_left", up = 4000, outboard = 900, forward = -300, law = "1 + 0.3*sin(3*t)" }
 coil = { type = "spring", from = { body = "ground", at = [0, 330, 330] }, to = { body = "lca", at = [0, 450, -20] }, stiffness = 40, cubic = 0.002, preload = -3000, damping = 2 }
 rubber = { type = "bushing", from = { body = "lca", at = [0, 400, 80] }, to = { body = "uca", at = [0, 400, 80] }, x = 5, y = 7, z = 2, damping = 0.1 }
-sleeve = { type = "bushing", from = { body = "lca", at = [0, 380, 70] }, to = { body = "uca", at = [0, 390, 80] }, axis = { through = ["lca_front", "lower_ball"] }, axis2 = "x", x = 5, y = 7, z = 2, about_z = 0.3, cubic_x = 0.001, preload_about_y = 4, matrix = [[1, 0.2, 0, 0, 3, 0], [0.2, 2, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [3, 0, 0, 0, 0.5, 0], [0, 0, 0, 0, 0, 0]] }
+sleeve = { type = "bushing", from = { body = "lca", at = [0, 380, 70] }, to = { body = "uca", at = [0, 390, 80] }, axis = { through = ["lca_front", "lower_ball"] }, axis2 = "x", x = 5, y = 7, z = 2, about_x = 0.3, cubic_x = 0.001, preload_about_y = 4, matrix = [[1, 0.2, 0, 0, 3, 0], [0.2, 2, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0], [3, 0, 0, 0, 0.5, 0], [0, 0, 0, 0, 0, 0]] }
 tyre = { type = "tyre", wheel = "front_left", stiffness = 200, preload = 3000, height = 12, law = "sin(4*t)" }
 stiff = { type = "torsion_spring", joint = "lca_pivot", stiffness = 2, damping = 0.1 }
 slip = { type = "joint_spring", joint = "rack_slide", stiffness = 1, damping = 0.2 }

@@ -86,16 +86,15 @@ impl Reader<'_> {
         if readings.iter().flatten().any(is_zero) {
             return false;
         }
-        let read = |reader: &mut Self, pair: [Marker; 2], units: ForceUnits, text: &str| match s
-            .flag("ROTATIONAL")
-        {
-            true => reader.moment(s, text, pair, units),
-            false => reader.line_force(s, text, pair, units),
-        };
+        let read =
+            |reader: &mut Self, pair: [Marker; 2], units: ForceUnits, text: &str| match s.has("ROTATIONAL") {
+                true => reader.moment(s, text, pair, units),
+                false => reader.line_force(s, text, pair, units),
+            };
         let found = match (readings, units) {
             (None, _) => Err("it has no FUNCTION".to_owned()),
             (Some(_), None) => Err(super::loads::NO_UNIT.to_owned()),
-            (Some(_), Some(_)) if s.flag("ACTIONONLY") => {
+            (Some(_), Some(_)) if s.has("ACTIONONLY") => {
                 Err("a force on one part alone that depends on positions has no equivalent".to_owned())
             }
             (Some([one, other]), Some(units)) => match self.pair(s) {

@@ -77,7 +77,7 @@ impl Reader<'_> {
         };
         for s in statements {
             match (s.name.as_str(), mass, force) {
-                ("PART" | "POINT_MASS", Some(unit), _) if s.has("MASS") && !s.flag("GROUND") => {
+                ("PART" | "POINT_MASS", Some(unit), _) if s.has("MASS") && !s.has("GROUND") => {
                     self.mass(s, unit, metre);
                 }
                 ("ACCGRAV", ..) => {
@@ -92,7 +92,7 @@ impl Reader<'_> {
                     self.notes.taken("ACCGRAV", &s.label, Some(s.at));
                     done.insert((s.name.clone(), s.id.clone()));
                 }
-                ("SPRINGDAMPER", _, Some(unit)) if !s.flag("ROTATION") && !s.flag("ROTATIONAL") => {
+                ("SPRINGDAMPER", _, Some(unit)) if !s.has("ROTATIONAL") => {
                     self.spring(s, unit);
                     done.insert((s.name.clone(), s.id.clone()));
                 }

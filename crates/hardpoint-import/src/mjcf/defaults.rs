@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use hardpoint::space::{Mat3, Pose, Quat, Vec3};
 
+use super::vocabulary::{COMPILER, DEFAULTS};
 use super::{DEEPEST, Element, Reader};
 
 use crate::report::SourceSpan;
@@ -15,8 +16,15 @@ use crate::xml::exactly;
 const MOST_DEFAULTS: usize = 100_000;
 
 impl<'d> Reader<'d, '_> {
-    pub(super) fn settings(&mut self, top: &[Element<'d>]) {
+    /// Reads compiler, options, default classes and meshes of a whole model, or of an extension of another format.
+    pub(super) fn settings(&mut self, top: &[Element<'d>], is_whole: bool) {
         for (text, node) in top.iter().filter(|(_, n)| n.has_tag_name("compiler")) {
+            xml::unknown(*text, *node, "", COMPILER, self.notes);
+            if is_whole {
+                self.mass_settings((*text, *node))
+            } else {
+                self.refuse_mass_settings((*text, *node))
+            }
             if let Some(angle) = node.attribute("angle") {
                 self.compiler.degrees = angle != "radian";
             }
@@ -53,6 +61,14 @@ impl<'d> Reader<'d, '_> {
         }
         for element in top.iter().filter(|(_, n)| n.has_tag_name("default")) {
             self.class(*element, None, 0);
+        }
+        for (text, node) in top.iter().filter(|(_, n)| n.has_tag_name("option")) {
+            if is_whole {
+                self.option((*text, *node));
+            } else {
+                let why = "options apply to models of MuJoCo only";
+                self.notes.refused("option", "", xml::at(*text, *node), why);
+            }
         }
         for (text, asset) in top.iter().filter(|(_, n)| n.has_tag_name("asset")) {
             for (text, node) in self.contents((*text, *asset), 0) {
@@ -95,10 +111,8 @@ impl<'d> Reader<'d, '_> {
         };
         let inner = self.contents((text, node), 0);
         for (text, element) in inner.iter().filter(|(_, n)| !n.has_tag_name("default")) {
-            match element.tag_name().name() {
-                "joint" => xml::unknown(*text, *element, name, super::JOINT, self.notes),
-                "equality" => xml::unknown(*text, *element, name, super::EQUALITY, self.notes),
-                _ => {}
+            if let Some((_, known)) = DEFAULTS.iter().find(|(kind, _)| element.has_tag_name(*kind)) {
+                xml::unknown(*text, *element, name, *known, self.notes);
             }
             for a in element.attributes() {
                 class.insert(
@@ -189,15 +203,7 @@ impl<'d> Reader<'d, '_> {
             }
             Some("zaxis") => {
                 let Some(z) = self.numbers::<3>(element, "zaxis", class) else { return none() };
-                // The smallest rotation that takes z into the direction.
-                let up = Vec3::from([0.0, 0.0, 1.0]);
-                match Vec3::from(z).unit() {
-                    Some(z) if (z + up).norm() < 1e-12 => {
-                        Mat3::about([1.0, 0.0, 0.0].into(), std::f64::consts::PI)
-                    }
-                    Some(z) => Mat3::between(up, z),
-                    None => fault(self, "zaxis"),
-                }
+                turned_to(z.into()).unwrap_or_else(|| fault(self, "zaxis"))
             }
             Some("euler") => {
                 let angles = self.numbers::<3>(element, "euler", class).unwrap_or_default();
@@ -216,6 +222,12 @@ impl<'d> Reader<'d, '_> {
         Pose { rot: self.orientation(element, class), r: r.into() }
     }
 
+    /// Returns the pose of a site, which may be defined by two points.
+    pub(super) fn site(&mut self, element: Element<'d>, class: Option<&str>) -> Pose {
+        let ends = self.numbers::<6>(element, "fromto", class);
+        ends.and_then(between_ends).unwrap_or_else(|| self.pose(element, class))
+    }
+
     /// Reports unknown default classes of an element.
     pub(super) fn classes_of(&mut self, (text, node): Element<'d>) {
         for key in ["class", "childclass"] {
@@ -232,4 +244,22 @@ impl<'d> Reader<'d, '_> {
             self.notes.problem_with("HP0803", xml::attribute_at(text, node, key), message, &help);
         }
     }
+}
+
+/// Returns the smallest rotation that takes z into a direction; `None` for a null vector.
+fn turned_to(z: Vec3) -> Option<Mat3> {
+    let z = z.unit()?;
+    let up = Vec3::from([0.0, 0.0, 1.0]);
+    let is_opposite = (z + up).norm() < 1e-12;
+    Some(if is_opposite {
+        Mat3::about([1.0, 0.0, 0.0].into(), std::f64::consts::PI)
+    } else {
+        Mat3::between(up, z)
+    })
+}
+
+/// Returns the frame that MuJoCo places between two points: in the middle, with z from the second to the first.
+pub(super) fn between_ends([a, b, c, d, e, f]: [f64; 6]) -> Option<Pose> {
+    let (from, to) = (Vec3::from([a, b, c]), Vec3::from([d, e, f]));
+    Some(Pose { rot: turned_to(from - to)?, r: (from + to) * 0.5 })
 }

@@ -58,7 +58,11 @@ impl<'d> Reader<'d, '_> {
                 self.notes.refused(kind, &name, at, "it is not active");
                 continue;
             }
-            xml::unknown(text, node, &name, super::EQUALITY, self.notes);
+            xml::unknown(text, node, &name, super::vocabulary::EQUALITY, self.notes);
+            if self.is_disabled("equality") {
+                self.notes.refused(kind, &name, at, "a flag of `option` disables equalities");
+                continue;
+            }
             match kind {
                 "connect" | "weld" => self.closure(element, kind, &name),
                 "joint" | "tendon" => self.relation(element, kind, &name),
@@ -286,6 +290,7 @@ impl<'d> Reader<'d, '_> {
             for element in self.contents(*list, 0) {
                 let (text, node) = element;
                 let name = node.attribute("name").unwrap_or_default();
+                xml::unknown(text, node, name, super::vocabulary::TENDON, self.notes);
                 let inner = self.contents(element, 0);
                 if node.has_tag_name("fixed") {
                     let mut terms = Vec::new();
@@ -322,7 +327,8 @@ impl<'d> Reader<'d, '_> {
             let found = reader.attribute(element, key, None);
             found.and_then(|(value, _)| xml::numbers(&value)).unwrap_or_default()
         };
-        let is_limited = self.attribute(element, "limited", None).is_none_or(|(value, _)| value != "false");
+        let is_limited = self.attribute(element, "limited", None).is_none_or(|(value, _)| value != "false")
+            && !self.is_disabled("limit");
         if self.attribute(element, "range", None).is_some() && is_limited {
             self.notes.refused(
                 kind,
@@ -331,7 +337,17 @@ impl<'d> Reader<'d, '_> {
                 "limits of tendons have no equivalent: limit the joints that they span",
             );
         }
-        robot::friction(self.notes, name, at, list(self, "frictionloss").first().copied().unwrap_or(0.0));
+        let friction = list(self, "frictionloss").first().copied().unwrap_or(0.0);
+        let friction = if self.is_disabled("frictionloss") { 0.0 } else { friction };
+        robot::friction(self.notes, name, at, friction);
+        for (key, why) in [
+            ("armature", "inertia of tendons has no equivalent"),
+            ("springyield", "springs with a yield limit are not supported: the spring is linear"),
+        ] {
+            if list(self, key).iter().any(|x| *x != 0.0) {
+                self.notes.refused(key, name, at, why);
+            }
+        }
         let mut coefficient = |key: &str| match list(self, key)[..] {
             [x, ref rest @ ..] => {
                 if rest.iter().any(|x| *x != 0.0) {
@@ -343,6 +359,8 @@ impl<'d> Reader<'d, '_> {
             [] => 0.0,
         };
         let [stiffness, damping] = ["stiffness", "damping"].map(&mut coefficient);
+        let stiffness = if self.is_disabled("spring") { 0.0 } else { stiffness };
+        let damping = if self.is_disabled("damper") { 0.0 } else { damping };
         if stiffness == 0.0 && damping == 0.0 {
             return None;
         }

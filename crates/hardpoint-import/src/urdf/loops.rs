@@ -16,9 +16,33 @@ use crate::xml::{Vocabulary, attribute, attribute_at, child, children, local, na
 /// Known content of a joint that closes a loop.
 const LOOP: Vocabulary = Vocabulary {
     attributes: &["name", "type"],
-    read: &["link1", "link2", "parent", "child", "origin", "parent_origin", "child_origin", "pose", "axis"],
-    irrelevant: &["limit", "dynamics", "physics", "sensor"],
+    read: &[
+        "link1",
+        "link2",
+        "parent",
+        "child",
+        "origin",
+        "parent_origin",
+        "child_origin",
+        "pose",
+        "axis",
+        "limit",
+        "dynamics",
+    ],
+    irrelevant: &["physics", "sensor"],
 };
+/// Known content of the axis of a joint of SDFormat.
+const AXIS: Vocabulary =
+    Vocabulary { attributes: &[], read: &["xyz", "limit", "dynamics"], irrelevant: &["physics"] };
+/// Known content of an inertial.
+const INERTIAL: Vocabulary =
+    Vocabulary { attributes: &[], read: &["origin", "mass", "inertia"], irrelevant: &[] };
+/// Known content of the elements of an inertial.
+const PARTS_OF_INERTIALS: [(&str, &[&str]); 3] = [
+    ("origin", &["xyz", "rpy", "quat_xyzw"]),
+    ("mass", &["value"]),
+    ("inertia", &["ixx", "iyy", "izz", "ixy", "ixz", "iyz"]),
+];
 /// Mass below which a link is a mere frame, kg.
 const LIGHT: f64 = 1e-6;
 
@@ -81,6 +105,11 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             else {
                 continue;
             };
+            xml::unknown(0, inertial, &name, INERTIAL, self.notes);
+            for (part, attributes) in PARTS_OF_INERTIALS {
+                let words = Vocabulary { attributes, read: &[], irrelevant: &[] };
+                named(inertial, part).for_each(|part| xml::unknown(0, part, &name, words, self.notes));
+            }
             let frame = outer.compose(self.origin(inertial));
             let one = |reader: &mut Self, e: Option<Node<'a, 'i>>, key| {
                 let [x] = e.and_then(|e| attribute::<1>(0, e, key, reader.notes)).unwrap_or_default();
@@ -116,6 +145,15 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             match local(part) {
                 name if READ.contains(&name) => is_reported = true,
                 name if IRRELEVANT_IN_GAZEBO.contains(&name) => {}
+                "gravity" | "turnGravityOff" => {
+                    is_reported = true;
+                    self.weight(part, owner);
+                }
+                "dampingFactor" => {
+                    is_reported = true;
+                    let why = "damping of the velocity of a link has no equivalent";
+                    self.notes.refused("dampingFactor", owner, xml::at(0, part), why);
+                }
                 "plugin" => {
                     is_reported = true;
                     if robot::is_mimic_plugin(part) {
@@ -132,6 +170,71 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
         if !is_reported {
             self.notes.ignored("gazebo", xml::at(0, node));
+        }
+    }
+
+    /// Compensates the weight of a link that has none in Gazebo.
+    fn weight(&mut self, node: Node<'a, 'i>, link: &str) {
+        let word = node.text().unwrap_or_default().trim();
+        let is_on = ["1", "true"].contains(&word) == node.has_tag_name("gravity");
+        let source = ElementSource { kind: node.tag_name().name(), name: link, at: xml::at(0, node) };
+        match self.poses.get(link) {
+            Some((body, _)) if !is_on => {
+                robot::compensate_gravity(&mut self.m, self.notes, source, *body, 1.0);
+            }
+            Some(_) => self.notes.ignored(source.kind, source.at),
+            None => {
+                let why = format!("the link `{link}` does not exist");
+                self.notes.refused(source.kind, link, source.at, why);
+            }
+        }
+    }
+
+    /// Reports a transmission, of which Drake reads the inertia of the rotor.
+    pub(super) fn transmission(&mut self, node: Node<'a, 'i>) {
+        let is_rotor = |n: &Node<'a, 'i>| {
+            local(*n) == "rotor_inertia" && n.attribute("value").is_some_and(|x| x.trim().parse() != Ok(0.0))
+        };
+        match node.descendants().find(is_rotor) {
+            Some(rotor) => {
+                let name = node.attribute("name").unwrap_or_default();
+                self.notes.refused("rotor_inertia", name, xml::at(0, rotor), robot::ROTOR);
+            }
+            None => self.notes.ignored("transmission", xml::at(0, node)),
+        }
+    }
+
+    /// Reports limits, springs and dampers of a joint that closes a loop.
+    fn unsupported_of_loop(&mut self, node: Node<'a, 'i>, name: &str) {
+        let number = |part: Node<'a, 'i>, key: &'static str| {
+            let text = part.attribute(key).or_else(|| child(part, key)?.text());
+            text.and_then(|text| text.trim().parse::<f64>().ok())
+        };
+        let axes = child(node, "axis").into_iter().chain([node]);
+        for part in axes.flat_map(children) {
+            let is_limited = || {
+                let [low, high] = ["lower", "upper"].map(|key| number(part, key));
+                xml::range(low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)).is_some()
+            };
+            let is_loaded = || {
+                ["damping", "friction", "spring_stiffness"]
+                    .iter()
+                    .any(|key| number(part, key).is_some_and(|x| x != 0.0))
+            };
+            let at = xml::at(0, part);
+            match local(part) {
+                kind @ "limit" if is_limited() => {
+                    let why =
+                        "limits of a joint that closes a loop are not imported: add `limits` to the joint";
+                    self.notes.refused(kind, name, at, why);
+                }
+                kind @ "dynamics" if is_loaded() => {
+                    let why = "springs, dampers and friction of a joint that closes a loop are not imported";
+                    self.notes.refused(kind, name, at, why);
+                }
+                kind @ ("limit" | "dynamics") => self.notes.ignored(kind, at),
+                _ => {}
+            }
         }
     }
 
@@ -224,6 +327,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
                 _ => self.ends(node),
             };
             xml::unknown(0, node, &name, LOOP, self.notes);
+            self.unsupported_of_loop(node, &name);
             if let [Some(i), Some(j)] = ends {
                 // Directions are those of the first link, except for fixed joints with both orientations.
                 let both = links.len() == 2 && links.iter().all(|end| end.has_attribute("rpy"));
@@ -256,9 +360,8 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         for node in named(robot, "gazebo").flat_map(|g| named(g, "joint")) {
             let Some(name) = self.name(node) else { continue };
             xml::unknown(0, node, &name, LOOP, self.notes);
-            let words =
-                Vocabulary { attributes: &[], read: &["xyz"], irrelevant: &["limit", "dynamics", "physics"] };
-            child(node, "axis").into_iter().for_each(|axis| xml::unknown(0, axis, &name, words, self.notes));
+            child(node, "axis").into_iter().for_each(|axis| xml::unknown(0, axis, &name, AXIS, self.notes));
+            self.unsupported_of_loop(node, &name);
             let kind = node.attribute("type").unwrap_or_default().to_ascii_lowercase();
             let [Some(i), Some(j)] = self.ends(node) else { continue };
             let axis = child(node, "axis").and_then(|a| child(a, "xyz"));

@@ -8,6 +8,7 @@ mod fuzz;
 mod meanings;
 mod models;
 mod robots;
+mod settings;
 mod unknown;
 mod vehicles;
 

@@ -85,6 +85,16 @@ fn in_urdf() {
             (r#"<gazebo>"#, r#"<closed_loop/><gazebo>"#, "closed_loop"),
             (r#"<link name="c"/>"#, r#"<link name="c"><attached to="b"/></link>"#, "attached"),
             (
+                r#"<link name="c"/>"#,
+                r#"<link name="c"><inertial><mass value="1" scale="2"/></inertial></link>"#,
+                "scale",
+            ),
+            (
+                r#"<link name="c"/>"#,
+                r#"<link name="c"><inertial><mass value="1"/><density value="2"/></inertial></link>"#,
+                "density",
+            ),
+            (
                 r#"<gazebo>"#,
                 r#"<gazebo><joint name="g" type="ball"><parent>b</parent><child>c</child><angle>1</angle></joint>"#,
                 "angle",
@@ -116,6 +126,16 @@ fn in_sdformat() {
                 "<xyz>0 1 0</xyz>",
                 "<xyz>0 1 0</xyz><initial_position>0.5</initial_position>",
                 "initial_position",
+            ),
+            (
+                "<link name=\"a\"/>",
+                "<link name=\"a\"><inertial><mass>1</mass><foo>1</foo></inertial></link>",
+                "foo",
+            ),
+            (
+                "<link name=\"a\"/>",
+                "<link name=\"a\"><inertial><inertia><iww>1</iww></inertia></inertial></link>",
+                "iww",
             ),
             ("<xyz>", "<xyz about='z'>", "about"),
             ("<lower>", "<stop>1</stop><lower>", "stop"),
@@ -161,6 +181,20 @@ fn in_mjcf() {
             (r#"<joint joint1"#, r#"<joint gap="1" joint1"#, "gap"),
             (r#"<geom size="0.1"/>"#, r#"<geom size="0.1"/><hinge_frame/>"#, "hinge_frame"),
             (r#"<body name="d""#, r#"<body sag="1" name="d""#, "sag"),
+            (r#"<mujoco>"#, r#"<mujoco><compiler foo="bar"/>"#, "foo"),
+            (r#"<mujoco>"#, r#"<mujoco><option bar="3"/>"#, "bar"),
+            (r#"<mujoco>"#, r#"<mujoco><option><flag weight="disable"/></option>"#, "weight"),
+            (r#"<geom size="0.1"/>"#, r#"<geom size="0.1" hollow="true"/>"#, "hollow"),
+            (r#"<geom size="0.1"/>"#, r#"<geom size="0.1"><plugin plugin="x"/></geom>"#, "plugin"),
+            (r#"<default>"#, r#"<default><geom hollow="true"/>"#, "hollow"),
+            (
+                r#"<geom size="0.1"/>"#,
+                r#"<geom size="0.1"/><inertial pos="0 0 0" mass="1" scale="2"/>"#,
+                "scale",
+            ),
+            (r#"<geom size="0.1"/>"#, r#"<geom size="0.1"/><frame sag="1"/>"#, "sag"),
+            (r#"<geom size="0.1"/>"#, r#"<geom size="0.1"/><site name="s" sag="1"/>"#, "sag"),
+            (r#"<fixed name="sum""#, r#"<fixed name="sum" slack="1""#, "slack"),
             (r#"<tendon>"#, r#"<deformable/><tendon>"#, "deformable"),
             (r#"<tendon>"#, r#"<extension><plugin plugin="x"/></extension><tendon>"#, "extension"),
         ],
@@ -188,6 +222,23 @@ fn in_adams() {
         &[
             ("JPRIM/4,INLINE", "JPRIM/4,INLINE,OFFSET=2", "OFFSET"),
             ("MOTION/8,TRANSLATIONAL", "MOTION/8,TRANSLATIONAL,PHASE=3", "PHASE"),
+        ],
+    );
+    let loads = "loads\nUNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND\nPART/1, GROUND\nMARKER/1, PART=1\n\
+        MARKER/6, PART=1, QP=1,0,0\nPART/2, QG=1,0,0, MASS=3, CM=2, VX=3\nMARKER/2, PART=2\nJOINT/1, REVOLUTE, I=2, J=6\n\
+        SPRINGDAMPER/1, I=2, J=1, TRANSLATION, K=3, LENGTH=1\nBUSHING/1, I=2, J=6, K=1,1,1\n\
+        SFORCE/1, I=2, J=1, TRANSLATION, FUNCTION=-3*DM(2,1)\nACCGRAV/KGRAV=-9.8\nSPLINE/1, X=1,2,3, Y=1,2,3\nVARIABLE/1, FUNCTION=1\nEND\n";
+    all_named(
+        "adams",
+        loads,
+        &[
+            ("TRANSLATION, K=3", "TRANSLATION, HHH=1, K=3", "HHH"),
+            ("BUSHING/1, I=2", "BUSHING/1, III=1, I=2", "III"),
+            ("SFORCE/1, I=2", "SFORCE/1, JJJ=1, I=2", "JJJ"),
+            ("ACCGRAV/", "ACCGRAV/KKK=1, ", "KKK"),
+            ("SPLINE/1, X", "SPLINE/1, FILE=f, X", "FILE"),
+            ("VARIABLE/1, F", "VARIABLE/1, NNN=1, F", "NNN"),
+            ("UNITS/F", "UNITS/UCF=32, F", "UCF"),
         ],
     );
     // Initial conditions of joints are reported.
@@ -222,4 +273,18 @@ fn in_freecad() {
         &text[at..]
     );
     named_in("freecad", &crate::document(changed.as_bytes()), "property");
+}
+
+#[test]
+fn in_suspension_explorer() {
+    let text = std::fs::read_to_string(folder().join("suspension-explorer/axle.yaml")).unwrap();
+    for (from, to, what) in [
+        ("    offset: 0\n", "    offset: 0\n    camber: 2\n", "camber"),
+        ("      rim_diameter: 13\n", "      rim_diameter: 13\n      stiffness: 2\n", "stiffness"),
+        ("    mount: lower_wishbone\n", "    mount: lower_wishbone\n    ratio: 2\n", "ratio"),
+    ] {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text, "{from}");
+        named_in("suspension-explorer", changed.as_bytes(), what);
+    }
 }

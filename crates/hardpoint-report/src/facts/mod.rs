@@ -448,7 +448,14 @@ pub(crate) fn drivers(model: &Model, units: Units) -> Vec<DriverFact> {
         };
         let (joint, coordinate) = of_joint.unzip();
         let unit = symbol(units, model.driven(d).quantity);
-        DriverFact { name: d.name.clone(), drives, joint, coordinate, law: d.law.to_string(), unit }
+        DriverFact {
+            name: d.name.clone(),
+            drives,
+            joint,
+            coordinate,
+            law: d.coordinate_law().to_string(),
+            unit,
+        }
     };
     model.drivers.iter().map(fact).collect()
 }

@@ -268,13 +268,14 @@ impl Compose<'_> {
             let [i, k] = &geometry.markers[j];
             let drawn = self.drawn(driver.joint);
             let in_world = || self.model.bodies[joint.bodies[0].0].frame.rot * i.rot.cols[2];
+            let law = driver.coordinate_law();
             let travel = |step: usize| {
-                let at = driver.law.at(self.solution.motion.times[step]).value();
+                let at = law.at(self.solution.motion.times[step]).value();
                 if turns { at } else { self.units.from_si(coordinate.quantity, at) }
             };
             DriverMark {
                 name: driver.name.clone(),
-                law: format!("{} {}", driver.law, symbol(self.units, coordinate.quantity)),
+                law: format!("{law} {}", symbol(self.units, coordinate.quantity)),
                 joint: drawn,
                 turns,
                 point: drawn.is_none().then(|| BodyPlace { body: joint.bodies[1].0, at: self.length(k.r) }),

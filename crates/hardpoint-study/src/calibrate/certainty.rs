@@ -1,7 +1,7 @@
 //! Accuracy of the fitted variables: covariance, and changes that cannot be identified.
 
-use super::BoundSide;
 use super::fit::{FitWorkspace, SearchResult, information};
+use super::{BoundSide, Status};
 use hardpoint_search::dot;
 
 /// A direction with a standard deviation of more natural steps than this (about the mechanism's size) is not reported.
@@ -16,7 +16,8 @@ const OF_READINGS: f64 = 0.5;
 /// Accuracy of the fitted parameters, SI.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Certainty {
-    /// Standard deviation of each fitted parameter; `None` if it is not determined, or at a bound.
+    /// Standard deviation of each fitted parameter; `None` if it is not determined, or at a bound, or the search got
+    /// stuck: the formula is that of an optimum.
     pub sigmas: Vec<Option<f64>>,
     /// Standard deviation of each fitted parameter by the priors alone; `None` without a prior.
     pub prior_sigmas: Vec<Option<f64>>,
@@ -24,7 +25,7 @@ pub struct Certainty {
     pub prior_means: Vec<Option<f64>>,
     /// Bounds that the fitted parameters are at.
     pub bounds: Vec<Option<BoundSide>>,
-    /// Covariance of the fitted variables over the reported directions.
+    /// Covariance of the fitted variables over the reported directions; NaN where the search got stuck.
     pub covariance: Vec<Vec<f64>>,
     /// Changes that the readings do not determine.
     pub unidentifiable: Vec<UnidentifiableChange>,
@@ -98,11 +99,15 @@ impl FitWorkspace<'_> {
         let n = self.parameters.len();
         let unidentifiable_part =
             |k: usize| directions.unidentifiable.iter().map(|(v, _)| v[k].abs()).fold(0.0, f64::max);
-        let in_steps = directions.covariance(n);
+        let is_stuck = search.status == Status::Stuck;
+        let in_steps = match is_stuck {
+            true => vec![vec![f64::NAN; n]; n],
+            false => directions.covariance(n),
+        };
         let covariance = (0..n)
             .map(|i| (0..n).map(|j| in_steps[i][j] * self.steps[i] * self.steps[j]).collect::<Vec<f64>>())
             .collect::<Vec<_>>();
-        let is_known = |k: usize| unidentifiable_part(k) <= PART && search.active[k].is_none();
+        let is_known = |k: usize| !is_stuck && unidentifiable_part(k) <= PART && search.active[k].is_none();
         let sigma = |k: usize| is_known(k).then(|| covariance[k][k].sqrt());
         let sigmas = (0..n).map(sigma).collect();
         let unidentifiable = |(v, sigma): &(Vec<f64>, Option<f64>)| {
@@ -124,7 +129,8 @@ impl FitWorkspace<'_> {
             let cv: Vec<f64> = in_steps.iter().map(|row| dot(row, v)).collect();
             (dot(&cv, v) / dot(v, v)).max(0.0).sqrt()
         };
-        let by_prior = directions.by_prior.iter().map(|v| unidentifiable(&(v.clone(), Some(spread(v)))));
+        let by_prior =
+            directions.by_prior.iter().map(|v| unidentifiable(&(v.clone(), (!is_stuck).then(|| spread(v)))));
         let prior_sigmas =
             self.priors.sigmas(n).into_iter().zip(&self.steps).map(|(s, step)| Some(s? * step));
         Certainty {

@@ -1,6 +1,6 @@
 //! Fit by bounded steps of a trust region over the directions that the readings determine.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use crate::evaluation::StudyCost;
 use crate::recent::Recent;
@@ -68,6 +68,8 @@ pub(super) struct FitWorkspace<'b> {
     /// Sum of squares that is zero in comparison with that of the nominal design.
     vanished: f64,
     pub cost: RefCell<StudyCost>,
+    /// Number of designs of the current iteration that do not reach all postures.
+    unreached: Cell<usize>,
 }
 
 /// State of a search.
@@ -134,6 +136,7 @@ impl<'b> FitWorkspace<'b> {
             nominal: Vec::new(),
             vanished: 0.0,
             cost: RefCell::new(StudyCost { designs: 1, ..StudyCost::default() }),
+            unreached: Cell::new(0),
         }
     }
 
@@ -320,8 +323,11 @@ impl<'b> FitWorkspace<'b> {
 
     /// Residuals of a design; `None` if a posture is not reached, or the mechanism does not follow all variables.
     fn rows_at(&self, x: &[f64], more: &dyn Fn() -> bool) -> Option<Rows> {
-        let rows = self.rows(&self.solve_postures(x, more)?, x);
-        rows.r.iter().chain(rows.d.iter().flatten()).all(|x| x.is_finite()).then_some(rows)
+        let rows = self.solve_postures(x, more).map(|postures| self.rows(&postures, x));
+        let is_finite = |rows: &Rows| rows.r.iter().chain(rows.d.iter().flatten()).all(|x| x.is_finite());
+        let rows = rows.filter(is_finite);
+        self.unreached.set(self.unreached.get() + usize::from(rows.is_none()));
+        rows
     }
 
     /// Standard deviation of the residuals, estimated if none are given.
@@ -458,6 +464,7 @@ impl<'b> FitWorkspace<'b> {
         let first = at.clone();
         progress(0, Self::squares(&at, &weights, scale) / (scale * scale));
         while iterations.len() < self.request.iterations {
+            self.unreached.set(0);
             let before = Self::squares(&at, &weights, scale);
             let mut undamped = self.undamped_step(&at, &weights, scale);
             if undamped.decrease <= near {
@@ -483,7 +490,7 @@ impl<'b> FitWorkspace<'b> {
             }
             let Some((next, rows)) = step.filter(|(_, rows)| Self::squares(rows, &weights, scale) < before)
             else {
-                status = Status::Found;
+                status = self.status_at_rest(&x, &at, &weights, scale);
                 break;
             };
             let after = Self::squares(&rows, &weights, scale);
@@ -498,7 +505,7 @@ impl<'b> FitWorkspace<'b> {
                 && settled
                 && (scale - scaled_before).abs() <= SETTLED.sqrt() * scale
             {
-                status = Status::Found;
+                status = self.status_at_rest(&x, &at, &weights, scale);
                 break;
             }
         }
@@ -506,6 +513,29 @@ impl<'b> FitWorkspace<'b> {
         let objective = [of(&first), of(&at)];
         let active = self.active_bounds(&x);
         SearchResult { status, x, at, weights, active, scale, objective, iterations }
+    }
+
+    /// Status of a search without further progress. A design is no optimum if the linearised problem predicts a better
+    /// one and designs on the way there were not reached.
+    fn status_at_rest(&self, x: &[f64], at: &Rows, weights: &[f64], scale: f64) -> Status {
+        let (rows, right) = self.linearised(at, weights, scale);
+        let undamped = |free: &[usize]| self.determined(at, weights, scale, free).directions;
+        let best = bounded_least_squares(x, &rows, &right, &self.bounds, &undamped);
+        let by: Vec<f64> = best.iter().zip(x).map(|(best, x)| best - x).collect();
+        let after: f64 = rows.iter().zip(&right).map(|(row, r)| (dot(row, &by) + r).powi(2)).sum();
+        let before = Self::squares(at, weights, scale);
+        let is_better = before > self.vanished && before - after > NEAR * before;
+        if is_better && self.unreached.get() > 0 { Status::Stuck } else { Status::Found }
+    }
+
+    /// Weighted derivatives and residuals of readings and priors at a point.
+    fn linearised(&self, at: &Rows, weights: &[f64], scale: f64) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let mut rows: Vec<Vec<f64>> =
+            at.d.iter().zip(weights).map(|(row, w)| row.iter().map(|d| w.sqrt() * d).collect()).collect();
+        let mut right: Vec<f64> = at.r.iter().zip(weights).map(|(r, w)| w.sqrt() * r).collect();
+        rows.extend(self.priors.a.iter().map(|row| row.iter().map(|a| scale * a).collect()));
+        right.extend(at.priors.iter().map(|r| scale * r));
+        (rows, right)
     }
 
     /// Sum of the loss over all residuals.
@@ -526,11 +556,7 @@ impl<'b> FitWorkspace<'b> {
     ) -> Option<(Vec<f64>, Rows)> {
         let before = Self::squares(at, weights, scale);
         let n = x.len();
-        let mut rows: Vec<Vec<f64>> =
-            at.d.iter().zip(weights).map(|(row, w)| row.iter().map(|d| w.sqrt() * d).collect()).collect();
-        let mut right: Vec<f64> = at.r.iter().zip(weights).map(|(r, w)| w.sqrt() * r).collect();
-        rows.extend(self.priors.a.iter().map(|row| row.iter().map(|a| scale * a).collect()));
-        right.extend(at.priors.iter().map(|r| scale * r));
+        let (mut rows, mut right) = self.linearised(at, weights, scale);
         let columns: Vec<f64> =
             (0..n).map(|k| rows.iter().map(|row| row[k] * row[k]).sum::<f64>().sqrt()).collect();
         let undamped = |free: &[usize]| self.determined(at, weights, scale, free).directions;

@@ -84,6 +84,8 @@ impl Loss {
 pub enum Status {
     /// No small change of the design improves the fit.
     Found,
+    /// Better designs cannot be reached: the mechanism does not assemble or stops before a posture.
+    Stuck,
     /// The iteration limit was reached.
     IterationLimit,
     /// The caller ended the fit.
@@ -201,7 +203,7 @@ pub fn calibrate(model: &Model, request: &Request<'_>, control: Control<'_>) -> 
     let certainty = workspace.certainty(&search, &directions);
     let next = match search.status {
         Status::Found => workspace.next(&search, &directions, &certainty),
-        Status::IterationLimit | Status::Interrupted => Vec::new(),
+        Status::Stuck | Status::IterationLimit | Status::Interrupted => Vec::new(),
     };
     let validation = request.validation.map(|data| workspace.validate(data, &others, &search, &directions));
     Ok(workspace.calibration(search, certainty, next, validation, outputs(model)))

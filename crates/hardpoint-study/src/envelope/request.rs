@@ -84,12 +84,16 @@ impl Request {
                     ));
                 }
             }
-            ShapeKind::Sphere { .. }
-            | ShapeKind::Capsule { .. }
-            | ShapeKind::Ring { .. }
-            | ShapeKind::Cylinder { .. }
-            | ShapeKind::Tyre { .. }
-            | ShapeKind::Hull { .. } => {}
+            ShapeKind::Sphere { .. } | ShapeKind::Capsule { .. } | ShapeKind::Ring { .. } => {
+                let radius = model.shapes[id.0].round.map_or(0.0, |round| model.numbers[round.0.0].value);
+                if radius <= 0.0 && margin <= 0.0 {
+                    return Err(RequestError::invalid(
+                        format!("`{shape}` has no thickness, and sweeps no volume"),
+                        "give it a radius (`round` of a ring), or add a distance around it (margin)",
+                    ));
+                }
+            }
+            ShapeKind::Cylinder { .. } | ShapeKind::Tyre { .. } | ShapeKind::Hull { .. } => {}
         }
         let relative_to = match relative_to {
             None => GROUND,

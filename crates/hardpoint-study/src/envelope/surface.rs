@@ -5,14 +5,18 @@
 //! exactly on the edges' zeros, so that neighbours share them and the surface is closed (marching tetrahedra: Doi and
 //! Koide 1991).
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use hardpoint::space::Vec3;
+use hardpoint::space::{Vec3, nearest_of_triangle};
 
 /// The function, as the least of several: `parts[k]` are those that can be the least nearby.
 pub trait LeastOf: Sync {
     /// Value of part k at a point.
     fn part(&self, k: usize, p: Vec3) -> f64;
+    /// Zero of part k that is nearest to a point.
+    fn zero(&self, k: usize, p: Vec3) -> Vec3;
+    /// Points of part k, none of them outside, at which parts thinner than a cell may end.
+    fn corners(&self, k: usize) -> Vec<Vec3>;
 }
 
 /// A closed surface of triangles.
@@ -22,8 +26,11 @@ pub struct Triangles {
     pub vertices: Vec<Vec3>,
     /// Indices of corners; seen from outside they turn to the left.
     pub triangles: Vec<[u32; 3]>,
-    /// Largest distance between the surface and the triangles, at their centres and the middles of their edges, m.
+    /// Largest distance between the surface and the triangles, at their centres and the middles of their edges, and
+    /// from points of the surface to the triangles, m.
     pub deviation: f64,
+    /// Points of the surface: the nearest ones to the middles of all cells that may hold some of it.
+    pub samples: Vec<Vec3>,
 }
 
 impl Triangles {
@@ -56,6 +63,8 @@ const TETRAHEDRA: [[usize; 4]; 6] =
 const RESOLVED: f64 = 1e-9;
 /// Maximum number of steps of the search for a zero: every fourth one halves the interval.
 const MOST_STEPS: usize = 120;
+/// Maximum number of points without triangles nearby whose distance from all triangles is computed.
+const MOST_FAR: usize = 64;
 /// Smallest part of an interval by which a step shortens it.
 const MARGIN: f64 = 1e-3;
 
@@ -77,10 +86,12 @@ pub fn surface(
     let (values, zeros) = (HashMap::new(), HashMap::new());
     let found = Triangles::default();
     let (parts, lists) = (Vec::new(), Vec::new());
-    let mut search = Search { of, low, cell, most, cells: 0, values, zeros, found, parts, lists };
+    let by_cell = HashMap::new();
+    let mut search = Search { of, low, cell, most, cells: 0, values, zeros, found, parts, lists, by_cell };
     let all = Nearby { middle: low, parts: (0..count).map(|k| (f64::NEG_INFINITY, k)).collect() };
     search.part([0; 3], halvings, &all, more)?;
     search.measure();
+    search.measure_from(count, more)?;
     Some(search.found)
 }
 
@@ -121,6 +132,8 @@ struct Search<'a> {
     /// Per triangle: the parts that can be the least in its cell.
     parts: Vec<u32>,
     lists: Vec<Nearby>,
+    /// First triangle of each cell and the one after its last one, by the cell's first corner.
+    by_cell: HashMap<Node, [usize; 2]>,
 }
 
 impl Search<'_> {
@@ -148,6 +161,9 @@ impl Search<'_> {
             self.cells += 1;
             if self.cells > self.most {
                 return None;
+            }
+            if let Some((_, k)) = near.parts.first() {
+                self.found.samples.push(self.of.zero(*k, middle));
             }
             self.cut(corner, near);
             return Some(());
@@ -204,6 +220,7 @@ impl Search<'_> {
         }
         let list = self.lists.len() as u32;
         let count = self.found.triangles.len() - before;
+        self.by_cell.insert(corner, [before, before + count]);
         if count > 0 {
             self.parts.extend(std::iter::repeat_n(list, count));
             self.lists.push(nearby);
@@ -263,5 +280,83 @@ impl Search<'_> {
             most = points.into_iter().map(|p| nearby.least(self.of, p).abs()).fold(most, f64::max);
         }
         self.found.deviation = most;
+    }
+
+    /// Adds the distances from points of the surface to the triangles: parts that are thinner than a cell have none.
+    fn measure_from(&mut self, count: usize, more: &dyn Fn() -> bool) -> Option<()> {
+        let mut most = self.found.deviation;
+        // One point of each eighth of a cell.
+        let mut measured: HashSet<Node> = HashSet::new();
+        let mut far = Vec::new();
+        let mut measure = |p: Vec3| {
+            let v = (p - self.low).to_array();
+            let of_size = |size: f64| v.map(|x| (x / size).floor().max(0.0) as u32);
+            if measured.insert(of_size(0.5 * self.cell)) {
+                match self.beyond(p, of_size(self.cell)) {
+                    Some(beyond) => most = most.max(beyond),
+                    None => far.push(p),
+                }
+            }
+        };
+        for k in 0..count {
+            if !more() {
+                return None;
+            }
+            self.of.corners(k).into_iter().for_each(&mut measure);
+        }
+        self.found.samples.iter().for_each(|p| measure(*p));
+        // Of parts without triangles some points are enough.
+        let apart = |p: &Vec3| {
+            let square = |q: &Vec3| (*q - *p).dot(*q - *p);
+            self.found.vertices.iter().map(square).fold(f64::INFINITY, f64::min).sqrt()
+        };
+        let every = far.len() / MOST_FAR + 1;
+        most = far.iter().step_by(every).map(apart).fold(most, f64::max);
+        self.found.deviation = most;
+        Some(())
+    }
+
+    /// Distance of a point of the solid in a cell from the triangles, if it is outside them; `None` if this cell and
+    /// those around it have none.
+    fn beyond(&self, p: Vec3, cell: Node) -> Option<f64> {
+        let corners = CORNERS.map(|step| self.values.get(&[0, 1, 2].map(|k| cell[k] + step[k])));
+        // A cell that was left out is inside, since the point is not outside.
+        let is_inside = |value: &Option<&f64>| value.is_some_and(|value| *value < 0.0);
+        if !self.by_cell.contains_key(&cell) || corners.iter().all(is_inside) {
+            return Some(0.0);
+        }
+        // Distance, and height over the plane of the triangle: of those that are as near, the greatest.
+        let mut best: Option<(f64, f64)> = None;
+        let mut visit = |node: Node| {
+            let [from, to] = self.by_cell.get(&node).copied().unwrap_or([0; 2]);
+            for t in &self.found.triangles[from..to] {
+                let corners = t.map(|k| self.found.vertices[k as usize]);
+                let (q, _) = nearest_of_triangle(p, corners, *t);
+                let [a, b, c] = corners;
+                let normal = (b - a).cross(c - a);
+                let (apart, height) = ((q - p).norm(), normal.dot(p - q) / normal.norm());
+                let is_nearer = best.is_none_or(|(least, highest)| {
+                    let same = RESOLVED * self.cell;
+                    apart < least - same || apart <= least + same && height.abs() > highest.abs()
+                });
+                if is_nearer && height.is_finite() {
+                    best = Some((apart, height));
+                }
+            }
+            best.map_or(f64::INFINITY, |(apart, _)| apart)
+        };
+        let mut least = visit(cell);
+        for [x, y, z] in (0..27_u32).map(|k| [k % 3, k / 3 % 3, k / 9]) {
+            let node =
+                [(cell[0] + x).checked_sub(1), (cell[1] + y).checked_sub(1), (cell[2] + z).checked_sub(1)];
+            let [Some(x), Some(y), Some(z)] = node else { continue };
+            let (low, node) = (self.place([x, y, z]), [x, y, z]);
+            let gap = |p: f64, low: f64| (low - p).max(p - low - self.cell).max(0.0);
+            let apart = Vec3::new(gap(p.x, low.x), gap(p.y, low.y), gap(p.z, low.z)).norm();
+            if node != cell && apart < least {
+                least = visit(node);
+            }
+        }
+        best.map(|(apart, height)| if height > 0.0 { apart } else { 0.0 })
     }
 }

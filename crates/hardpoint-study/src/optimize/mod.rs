@@ -37,7 +37,7 @@ use gauss_newton::GaussNewton;
 pub use optimality::{ActiveConstraint, Optimality};
 pub(crate) use optimality::{BINDS, MET};
 use problem::Limited;
-pub(crate) use problem::{Point, Problem, Refusal};
+pub(crate) use problem::{Extremum, Point, Problem, Refusal};
 pub use request::{Overrides, Request, Selection};
 pub(crate) use solver::Memory;
 use solver::{ScaledSequential, Solver, least_squares};
@@ -167,6 +167,8 @@ pub struct SearchResult {
 pub enum Status {
     /// Converged to an optimum.
     Optimal,
+    /// No goal depends on any of the searched variables.
+    NoEffect,
     /// No step makes progress, although the conditions of an optimum are not satisfied.
     Stuck,
     /// Ended at the design with the smallest violation that was found: not all limits can be satisfied there.
@@ -702,11 +704,29 @@ impl<'p> Descent<'p> {
         search.iterations.push(iteration);
     }
 
+    /// True if no goal depends on any variable, although not all are met: all derivatives vanish, and not at the best
+    /// design only, which may be a symmetric one.
+    fn has_no_effect(&self, search: &SearchResult) -> bool {
+        if search.optimality.met || !self.best.is_constant(self.problem) {
+            return false;
+        }
+        let best = self.problem.parts(&self.best.design);
+        let other = |halvings: i32| {
+            let parts = start(self.problem, 1).into_iter().zip(&best);
+            let parts: Vec<f64> = parts.map(|(a, b)| b + 0.5_f64.powi(halvings) * (a - b)).collect();
+            self.memory.at(&parts, |found| found.as_ref().ok().map(|point| point.is_constant(self.problem)))
+        };
+        (0..HALVINGS).find_map(other).unwrap_or(false)
+    }
+
     fn status(&self, search: &SearchResult) -> Status {
         let kept = self.violation(&self.best) <= KEPT;
         match () {
             () if self.memory.interrupted() => Status::Interrupted,
-            () if kept && search.optimality.residual <= OPTIMAL => Status::Optimal,
+            () if kept && search.optimality.residual <= OPTIMAL => match self.has_no_effect(search) {
+                true => Status::NoEffect,
+                false => Status::Optimal,
+            },
             () if self.ran_out => Status::IterationLimit,
             () if kept => Status::Stuck,
             () => Status::LimitsNotKept,

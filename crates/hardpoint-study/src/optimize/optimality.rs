@@ -4,7 +4,8 @@
 //! grad f + sum of lambda_i grad c_i = 0,    lambda_i >= 0,    lambda_i c_i = 0                   (Karush, Kuhn and Tucker)
 //! ```
 //!
-//! with goals on a maximum among the `c`: the weights of all points that attain it sum to one. The multipliers are
+//! with goals on a maximum among the `c`: the weights of all points that attain it sum to one. Those of the squared
+//! distance `t` of an extremum from its target sum to `2 t`. The multipliers are
 //! found by non-negative least squares over the active constraints, independent of the solver.
 
 use super::problem::{Point, Problem, Rows};
@@ -78,9 +79,15 @@ impl Optimality {
     pub(super) fn of(problem: &Problem<'_>, point: &Point, limit_scales: &[f64], steepest: f64) -> Self {
         let n = problem.bounds.len();
         let spans: Vec<f64> = problem.bounds.iter().map(|[low, high]| high - low).collect();
-        let smooth = Point { peaks: Vec::new(), ..point.clone() };
-        let gradient = by_parts(&smooth.gradient(n), &spans);
-        let size = n + point.peaks.len();
+        let gradient = by_parts(&point.smooth().gradient(n), &spans);
+        // Groups of candidates, and the derivative of the objective by the maximum of each.
+        let groups: Vec<(&Rows, f64)> = point
+            .peaks
+            .iter()
+            .map(|rows| (rows, 1.0))
+            .chain(point.extrema.iter().map(|e| (&e.rows, 2.0 * e.rows.greatest().max(0.0))))
+            .collect();
+        let size = n + groups.len();
         let weight = gradient.iter().fold(steepest, |most, g| most.max(g.abs())).max(f64::MIN_POSITIVE);
         let padded = |mut d: Vec<f64>| {
             d.resize(size, 0.0);
@@ -132,8 +139,8 @@ impl Optimality {
                 }
             }
         }
-        for (group, peaks) in point.peaks.iter().enumerate() {
-            for d in peaks.at_peak(&spans) {
+        for (group, (rows, _)) in groups.iter().enumerate() {
+            for d in rows.at_peak(&spans) {
                 let mut column = padded(d);
                 column[n + group] = weight;
                 columns.push(column);
@@ -142,8 +149,9 @@ impl Optimality {
         }
         let met = point.is_met(&spans, steepest);
         let scale = point.gradient_scale(&spans, steepest);
-        // The weights of the peaks of a group sum to one.
-        let right: Vec<f64> = gradient.iter().map(|g| -g).chain(point.peaks.iter().map(|_| weight)).collect();
+        // The weights of the candidates of a group sum to its derivative.
+        let of_groups = groups.iter().map(|(_, derivative)| derivative * weight);
+        let right: Vec<f64> = gradient.iter().map(|g| -g).chain(of_groups).collect();
         let multipliers = non_negative(&columns, &right);
         let left = |i: usize| {
             let balanced: f64 = columns.iter().zip(&multipliers).map(|(column, m)| m * column[i]).sum();

@@ -83,6 +83,8 @@ pub(crate) struct Point {
     pub design: Vec<f64>,
     /// Weighted residuals of squared goals.
     pub misfits: Rows,
+    /// Misfits that have corners.
+    pub extrema: Vec<Extremum>,
     /// Weighted values of linear goals that depend smoothly on the design.
     pub plain: Rows,
     /// Weighted candidates for the maximum, for goals on a maximum.
@@ -107,6 +109,15 @@ pub(crate) struct GoalShare {
     pub misfits: Range<usize>,
     pub plain: Range<usize>,
     pub peaks: Range<usize>,
+}
+
+/// Distance of a maximum or minimum of a curve from its target: the largest of several smooth numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Extremum {
+    /// Index of its residual in [`Point::misfits`].
+    pub misfit: usize,
+    /// Weighted distances of all candidates beyond the target, and that of the extremum which falls short of it.
+    pub rows: Rows,
 }
 
 /// Limit, or one of several numbers that it applies to.
@@ -160,6 +171,33 @@ impl Point {
     /// True if all goals are squares and only bounds limit the design.
     pub fn is_squares(&self) -> bool {
         self.has_only_squares() && self.limits.is_empty()
+    }
+
+    /// The misfits without corners.
+    pub fn smooth_misfits(&self) -> Rows {
+        let is_smooth = |k: &usize| self.extrema.iter().all(|extremum| extremum.misfit != *k);
+        let smooth = || (0..self.misfits.values.len()).filter(is_smooth);
+        Rows {
+            values: smooth().map(|k| self.misfits.values[k]).collect(),
+            d: smooth().map(|k| self.misfits.d[k].clone()).collect(),
+        }
+    }
+
+    /// The smooth part of the goals: without maxima, and without distances from a target that have corners.
+    pub fn smooth(&self) -> Self {
+        let (peaks, extrema) = (Vec::new(), Vec::new());
+        Self { misfits: self.smooth_misfits(), peaks, extrema, ..self.clone() }
+    }
+
+    /// True if all goals are constant to first order, up to round-off.
+    pub fn is_constant(&self, problem: &Problem<'_>) -> bool {
+        let rows = || [&self.misfits, &self.plain].into_iter().chain(&self.peaks);
+        let size = rows().flat_map(|rows| &rows.values).fold(0.0, |most: f64, value| most.max(value.abs()));
+        let change = |d: &Vec<f64>| {
+            let over_bounds = d.iter().zip(&problem.bounds).map(|(d, [low, high])| (d * (high - low)).abs());
+            over_bounds.fold(0.0, f64::max)
+        };
+        rows().flat_map(|rows| &rows.d).map(change).all(|change| change <= super::MET * size)
     }
 
     /// Norm of the misfits.
@@ -217,16 +255,21 @@ impl<'m> Problem<'m> {
         let limits: Vec<(usize, Limited)> = settings.limits.iter().enumerate().flat_map(limit).collect();
         let unused = |motion: usize| vec![MetricUse::Unused; motions.model(motion).metrics.len()];
         let mut uses: Vec<Vec<MetricUse>> = (0..motions.len()).map(unused).collect();
-        let to_target = goals.iter().filter(|entry| settings.goals[entry.of].target.is_some());
-        let free = goals.iter().filter(|entry| settings.goals[entry.of].target.is_none());
-        for entry in to_target {
+        // Of a value at a target, and of the range of a curve there, the derivative is enough.
+        let has_candidates = |entry: &&MotionMetric| {
+            let take = &motions.model(entry.motion).metrics[entry.metric].take;
+            settings.goals[entry.of].target.is_none() || sign_of_extremum(take).is_some()
+        };
+        let by_value = goals.iter().filter(|entry| !has_candidates(entry));
+        let by_candidates = goals.iter().filter(has_candidates);
+        for entry in by_value {
             uses[entry.motion][entry.metric] = MetricUse::Derivative;
         }
         let limited = limits.iter().filter_map(|(_, of)| match of {
             Limited::Metric(entry) => Some(entry),
             Limited::Design | Limited::Margin(_) => None,
         });
-        for entry in free.chain(limited) {
+        for entry in by_candidates.chain(limited) {
             uses[entry.motion][entry.metric] = MetricUse::Candidates;
         }
         let bounds = |v: &VariableId| model.variables[v.0].bounds.unwrap_or([0.0; 2]);
@@ -367,9 +410,17 @@ impl<'m> Problem<'m> {
                 point.misfits.values.extend(values);
                 point.misfits.d.extend(d);
             }
-            (_, Some(target)) => {
-                let (x, d) = by(value - target, &d);
-                point.misfits.push(x, d);
+            (take, Some(target)) => {
+                let (x, row) = by(value - target, &d);
+                if let Some(sign) = sign_of_extremum(take)
+                    && solution.motion.len() > 1
+                {
+                    let mut rows = peaks(sign);
+                    rows.values.iter_mut().for_each(|value| *value -= sign * goal.weight * target);
+                    rows.push(-sign * x, row.iter().map(|d| -sign * d).collect());
+                    point.extrema.push(Extremum { misfit: point.misfits.values.len(), rows });
+                }
+                point.misfits.push(x, row);
             }
             (Reduction::Greatest, None) if solution.motion.len() > 1 => point.peaks.push(peaks(1.0)),
             (Reduction::Range, None) if solution.motion.len() > 1 => {
@@ -475,11 +526,28 @@ impl<'m> Problem<'m> {
         let Point { misfits, plain, peaks, .. } = point;
         let mut all = [misfits, plain].into_iter().chain(peaks);
         let finite = all.all(|rows| rows.values.iter().chain(rows.d.iter().flatten()).all(|x| x.is_finite()));
-        if finite {
-            return Ok(());
-        }
-        let why = format!("metric `{metric}` has parts without value or derivative");
+        let why = match finite {
+            true if point.objective().is_finite() => return Ok(()),
+            true => format!("the square of metric `{metric}` with its weight is too large for a number"),
+            false => format!("metric `{metric}` has parts without value or derivative"),
+        };
         Err(Refusal { motion: Some(motion), why, interrupted: false })
+    }
+}
+
+/// 1 for the maximum of a curve, -1 for its minimum.
+fn sign_of_extremum(take: &Reduction) -> Option<f64> {
+    match take {
+        Reduction::Greatest => Some(1.0),
+        Reduction::Least => Some(-1.0),
+        Reduction::Value(_)
+        | Reduction::Slope(_)
+        | Reduction::Change
+        | Reduction::Mean
+        | Reduction::Integral
+        | Reduction::Range
+        | Reduction::Rms(_)
+        | Reduction::RmsAtPoints(_) => None,
     }
 }
 
@@ -551,7 +619,7 @@ mod tests {
             variables: (0..4).map(VariableId).collect(),
             goals: (0..8)
                 .map(|k| goal(k, None))
-                .chain([goal(2, Some(0.1)), goal(4, Some(0.2)), goal(7, Some(0.3))])
+                .chain([goal(2, Some(0.1)), goal(3, Some(0.2)), goal(4, Some(0.2)), goal(7, Some(0.3))])
                 .collect(),
             limits: (2..8)
                 .map(|k| limit(LimitTarget::Metric(k), -0.4, 0.7))
@@ -577,6 +645,7 @@ mod tests {
         let mut all = vec![(squares.misfit().powi(2), squares.gradient(point.misfits.d[0].len()))];
         all.extend(rows(&point.plain));
         all.extend(point.peaks.iter().flat_map(rows));
+        all.extend(point.extrema.iter().flat_map(|extremum| rows(&extremum.rows)));
         all.extend(point.limits.iter().map(|l| (l.exceeds, l.d.clone())));
         all.extend(point.spreads.iter().flat_map(|s| &s.ends).flat_map(rows));
         all
@@ -642,8 +711,19 @@ mod tests {
         let (least, lowest) = value("least");
         let parts = peaks(one, solution, least, -1.0).unwrap();
         assert_eq!(parts.values.iter().copied().fold(f64::INFINITY, f64::min), lowest);
-        // A metric of one case is evaluated in that case only, any other metric in each case.
+        // The distance from a target is the largest number of its group.
         let problem = Problem::new(&model, &motions, &settings);
+        let at = problem.at(vec![0.0; 4], &mut StudyCost::default(), &|| true).unwrap();
+        assert_eq!(at.extrema.len(), 4);
+        for Extremum { misfit, rows } in &at.extrema {
+            let distance = at.misfits.values[*misfit].abs();
+            assert!(
+                (rows.greatest() - distance).abs() <= 4.0 * f64::EPSILON,
+                "{} {distance}",
+                rows.greatest()
+            );
+        }
+        // A metric of one case is evaluated in that case only, any other metric in each case.
         let entry =
             |goal: usize| problem.goals.iter().filter(|t| t.of == goal).map(|t| t.motion).collect::<Vec<_>>();
         assert_eq!((entry(0), entry(6)), (vec![0, 1], vec![1]));

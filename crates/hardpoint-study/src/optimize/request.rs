@@ -105,10 +105,10 @@ fn check_bounds(model: &Model, v: VariableId) -> Result<(), RequestError> {
 
 fn check_goal(model: &Model, goal: &Goal) -> Result<(), RequestError> {
     let name = &goal.name;
-    if !(goal.weight > 0.0 && goal.weight.is_finite()) {
+    if !Goal::is_weight(goal.weight) {
         return Err(RequestError::invalid(
             format!("invalid weight of goal `{name}`"),
-            "give a positive number, or remove the goal",
+            "give a positive number, from 1e-50 to 1e50, or remove the goal",
         ));
     }
     match goal.target {

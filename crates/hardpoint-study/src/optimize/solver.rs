@@ -123,11 +123,11 @@ impl Solver for LeastSquares<'_> {
 /// ```text
 /// x = x0 + T z,   T = (2 J^T J + mu I)^-1/2        J: the misfits by x at the start
 ///
-/// min  squares(x) + plain(x) + sum of t    so that    peak_k(x) <= t,  limits(x) <= 0,  0 <= x <= 1,
-///                                                     high_k(x) <= u,  -low_k(x) <= v,  u + v <= most
+/// min  squares(x) + plain(x) + sum of t or t^2    so that    peak_k(x) <= t,  limits(x) <= 0,  0 <= x <= 1,
+///                                                            high_k(x) <= u,  -low_k(x) <= v,  u + v <= most
 /// ```
 ///
-/// The last line is a limit on the range of a curve.
+/// The squares are those of extrema at a target. The last line is a limit on the range of a curve.
 pub(super) struct Programming<'p> {
     memory: &'p Memory<'p>,
     spans: Vec<f64>,
@@ -137,8 +137,10 @@ pub(super) struct Programming<'p> {
     /// Factors of the objective and of every limit.
     scale: f64,
     limit_scales: Vec<f64>,
-    /// Number of groups of peaks and of limited ranges, and number of inequalities; equal for all designs.
+    /// Number of groups of peaks, the last of them squared, and of limited ranges, and number of inequalities; equal
+    /// for all designs.
     peaks: usize,
+    squared: usize,
     spreads: usize,
     inequal: usize,
     /// Per equality: true if its derivatives are independent of those before it. The solver cannot take others; most of
@@ -168,6 +170,17 @@ impl Programming<'_> {
         self.t.iter().map(column).chain(self.none()).collect()
     }
 
+    /// Groups of candidates with the scale of each: a maximum has the scale of the objective, and one whose square
+    /// counts has its root.
+    fn groups<'a>(&'a self, point: &'a Point) -> impl Iterator<Item = (f64, &'a Rows)> {
+        groups(self.scale, point)
+    }
+
+    /// Index of the first t whose square counts; those before count themselves.
+    fn first_squared(&self) -> usize {
+        self.searched() + self.peaks - self.squared
+    }
+
     /// Zeros for t, u and v.
     fn none(&self) -> impl Iterator<Item = f64> {
         std::iter::repeat_n(0.0, self.peaks + 2 * self.spreads)
@@ -192,8 +205,8 @@ impl Programming<'_> {
         for row in point.limits.iter().filter(|row| !row.equal && !row.spread) {
             c.push(self.limit_scales[row.of] * row.exceeds);
         }
-        for (group, rows) in point.peaks.iter().enumerate() {
-            c.extend(rows.values.iter().map(|v| self.scale * v - y[n + group]));
+        for (group, (scale, rows)) in self.groups(point).enumerate() {
+            c.extend(rows.values.iter().map(|v| scale * v - y[n + group]));
         }
         for (k, spread) in point.spreads.iter().enumerate() {
             let (scale, ends) = (self.limit_scales[spread.of], self.ends(k));
@@ -218,10 +231,12 @@ impl Program for Programming<'_> {
     fn objective(&self, y: &[f64]) -> f64 {
         let n = self.searched();
         self.memory.at(&self.x(y), |found| match found {
-            Ok(Point { misfits, plain, .. }) => {
-                let squares: f64 = misfits.values.iter().map(|r| r * r).sum();
-                let plain: f64 = plain.values.iter().sum();
-                self.scale * (squares + plain) + y[n..n + self.peaks].iter().sum::<f64>()
+            Ok(point) => {
+                let squares: f64 = point.smooth_misfits().values.iter().map(|r| r * r).sum();
+                let plain: f64 = point.plain.values.iter().sum();
+                let (linear, squared) = y[n..n + self.peaks].split_at(self.peaks - self.squared);
+                let peaks = linear.iter().sum::<f64>() + squared.iter().map(|t| t * t).sum::<f64>();
+                self.scale * (squares + plain) + peaks
             }
             Err(_) => f64::INFINITY,
         })
@@ -231,10 +246,11 @@ impl Program for Programming<'_> {
         let n = self.searched();
         self.memory.at(&self.x(y), |found| match found {
             Ok(point) => {
-                let smooth = Point { peaks: Vec::new(), ..point.clone() };
-                let mut g = self.by_z(&self.by_parts(&smooth.gradient(n)));
+                let mut g = self.by_z(&self.by_parts(&point.smooth().gradient(n)));
                 g.iter_mut().for_each(|g| *g *= self.scale);
-                g[n..n + self.peaks].fill(1.0);
+                let squared = self.first_squared();
+                g[n..squared].fill(1.0);
+                (squared..n + self.peaks).for_each(|k| g[k] = 2.0 * y[k]);
                 g
             }
             Err(_) => vec![f64::NAN; y.len()],
@@ -286,8 +302,8 @@ impl Program for Programming<'_> {
                 };
                 all.d.iter().map(row).collect()
             };
-            for (k, peaks) in point.peaks.iter().enumerate() {
-                rows.extend(below(self.scale, peaks, n + k));
+            for (k, (scale, peaks)) in self.groups(point).enumerate() {
+                rows.extend(below(scale, peaks, n + k));
             }
             for (k, spread) in point.spreads.iter().enumerate() {
                 let (scale, ends) = (self.limit_scales[spread.of], self.ends(k));
@@ -317,7 +333,7 @@ impl<'p> ScaledSequential<'p> {
         let by_parts = |d: &[f64]| d.iter().zip(&spans).map(|(d, span)| d * span).collect::<Vec<f64>>();
         let gradient = by_parts(&point.gradient(n));
         let steepest = gradient.iter().fold(0.0, |most: f64, g| most.max(g.abs()));
-        let rows: Vec<Vec<f64>> = point.misfits.d.iter().map(|d| by_parts(d)).collect();
+        let rows: Vec<Vec<f64>> = point.smooth_misfits().d.iter().map(|d| by_parts(d)).collect();
         // 2 J^T J
         let curved = |i: usize, j: usize| 2.0 * rows.iter().map(|d| d[i] * d[j]).sum::<f64>();
         let most = (0..n).map(|i| curved(i, i)).fold(0.0, f64::max);
@@ -332,14 +348,15 @@ impl<'p> ScaledSequential<'p> {
         };
         let limit_scales: Vec<f64> = limit_scales.iter().map(|s| 1.0 / s).collect();
         let mut y = vec![0.0; n];
-        y.extend(point.peaks.iter().map(|rows| scale * rows.greatest()));
+        y.extend(groups(scale, point).map(|(scale, rows)| scale * rows.greatest()));
         for spread in &point.spreads {
             y.extend(spread.ends.iter().map(|rows| limit_scales[spread.of] * rows.greatest()));
         }
         let equal = point.limits.iter().filter(|row| row.equal);
         let equal: Vec<Vec<f64>> = equal.map(|row| by_parts(&row.d)).collect();
         let (x0, t_too) = (start.to_vec(), t.clone());
-        let (peaks, spreads) = (point.peaks.len(), point.spreads.len());
+        let (squared, spreads) = (point.extrema.len(), point.spreads.len());
+        let peaks = point.peaks.len() + squared;
         let mut problem = Programming {
             memory,
             spans: spans.clone(),
@@ -348,6 +365,7 @@ impl<'p> ScaledSequential<'p> {
             scale,
             limit_scales,
             peaks,
+            squared,
             spreads,
             inequal: 0,
             independent: independent(equal),
@@ -365,6 +383,12 @@ impl Solver for ScaledSequential<'_> {
         let along = |i: usize| (0..n).map(|j| self.t[j][i] * y[j]).sum::<f64>();
         Some((0..n).map(|i| (self.x0[i] + along(i)).clamp(0.0, 1.0)).collect())
     }
+}
+
+/// Groups of candidates with their scales, for a scale of the objective.
+fn groups(scale: f64, point: &Point) -> impl Iterator<Item = (f64, &Rows)> {
+    let linear = point.peaks.iter().map(move |rows| (scale, rows));
+    linear.chain(point.extrema.iter().map(move |extremum| (scale.sqrt(), &extremum.rows)))
 }
 
 /// Returns which of some rows are independent of those before them, by orthogonalisation.

@@ -4,8 +4,6 @@ use hardpoint::model::{Model, ToleranceSettings};
 
 use super::{NONLINEAR, ToleranceResult};
 
-/// Sampled designs disagree with a linear result if the difference exceeds this number of standard errors.
-const ERRORS: f64 = 3.0;
 /// Fraction of failed designs above which failures are a significant part of the spread.
 const FAILING: f64 = 1e-3;
 /// Minimum number of sampled designs for contributions: fewer have errors of whole percents.
@@ -49,8 +47,8 @@ impl ToleranceResult {
     /// True if the standard deviation of the sampled designs differs significantly from the linear one.
     pub fn differs_from_samples(&self, metric: usize) -> bool {
         let Some(samples) = self.sampled.as_ref().map(|s| &s.metrics[metric]) else { return false };
-        let [sigma, error] = samples.sigma;
-        (self.metrics[metric].sigma - sigma).abs() > (ERRORS * error).max(NONLINEAR * sigma)
+        let (linear, [sigma, _]) = (self.metrics[metric].sigma, samples.sigma);
+        samples.differs_from(linear) && (linear - sigma).abs() > NONLINEAR * sigma
     }
 
     /// True if a significant part of the designs does not reach the end.

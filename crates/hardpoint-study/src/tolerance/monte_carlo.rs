@@ -293,8 +293,7 @@ impl SampledMetric {
         Self {
             known: sorted.len(),
             mean: [mean, sigma / n.sqrt()],
-            // var(s^2) = (kurtosis - 1) s^4 / n
-            sigma: [sigma, 0.5 * sigma * ((kurtosis - 1.0) / n).sqrt()],
+            sigma: [sigma, sigma / (2.0 * freedom(sorted.len(), kurtosis)).sqrt()],
             skewness,
             kurtosis,
             quantiles: [0.0, BEYOND, 0.5, 1.0 - BEYOND, 1.0].map(|part| quantile(&sorted, part)),
@@ -303,5 +302,70 @@ impl SampledMetric {
     }
 }
 
+impl SampledMetric {
+    /// Minimum number of designs whose standard deviation is compared with another: with fewer, chance changes it by
+    /// half.
+    pub const FEWEST: usize = 20;
+
+    /// True if the standard deviation differs from that of a model by more than [`ERRORS`] standard errors, under the
+    /// hypothesis that the model is right. The squares follow a chi-square distribution, whose cube root is about
+    /// normal (Wilson and Hilferty 1931).
+    ///
+    /// ```text
+    /// (s^2 / sigma^2)^1/3 ~ N(1 - 2 / 9 f, 2 / 9 f)        f: degrees of freedom
+    /// ```
+    pub fn differs_from(&self, sigma: f64) -> bool {
+        let variance = 2.0 / (9.0 * freedom(self.known, self.kurtosis));
+        let root = (self.sigma[0] / sigma).powi(2).cbrt();
+        self.known >= Self::FEWEST && (root - (1.0 - variance)).abs() > ERRORS * variance.sqrt()
+    }
+}
+
+/// Degrees of freedom of a variance: n - 1 for normal values, otherwise such that `var(s^2) = 2 s^4 / f`. Small samples
+/// have a small kurtosis, whatever their distribution.
+fn freedom(count: usize, kurtosis: f64) -> f64 {
+    const NORMAL: f64 = 3.0;
+    let kurtosis = if count < SampledMetric::FEWEST { kurtosis.max(NORMAL) } else { kurtosis };
+    2.0 * (count as f64 - 1.0) / (kurtosis - 1.0)
+}
+
+/// Number of standard errors by which sampled designs disagree with a model.
+const ERRORS: f64 = 3.0;
 /// Fraction of a normal distribution beyond three standard deviations on one side.
 const BEYOND: f64 = 0.001_349_898_031_630_094_6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sigma_differs_beyond_the_quantiles_of_chi_square() {
+        // 0.135 % and 99.865 % quantiles of chi-square with 19 and 99 degrees of freedom (scipy 1.17, `chi2.ppf`).
+        for (count, least, most) in [(20, 5.6412, 42.8712), (100, 62.0565, 146.5811)] {
+            let freedom = f64::from(count - 1);
+            for (square, differs) in
+                [(least * 0.97, true), (least * 1.03, false), (most * 0.99, false), (most * 1.01, true)]
+            {
+                let sampled = SampledMetric {
+                    known: count as usize,
+                    sigma: [(square / freedom).sqrt(), 0.0],
+                    kurtosis: 3.0,
+                    ..SampledMetric::default()
+                };
+                assert_eq!(sampled.differs_from(1.0), differs, "{count} {square}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_few_designs_say_nothing_of_sigma() {
+        for count in 2..SampledMetric::FEWEST {
+            let values = (0..count).map(|k| 1e-3 * k as f64).collect();
+            let sampled = SampledMetric::of(values);
+            assert!(!sampled.differs_from(1.0) && sampled.sigma[1] > 0.0, "{count}");
+        }
+        // sigma / sqrt(2 (n - 1)), as for normal values
+        let [sigma, error] = SampledMetric::of(vec![0.0, 1.0]).sigma;
+        assert!((error - sigma / 2_f64.sqrt()).abs() < 1e-15);
+    }
+}

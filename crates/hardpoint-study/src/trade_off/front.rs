@@ -3,7 +3,7 @@
 use super::functions::{Criticality, Scale, State};
 use super::scalarization::{Curvatures, Flat, Reference, Scalarization, Solved};
 use super::{FrontPoint, ON_FRONT, TradeOff};
-use crate::optimize::{Memory, assess, limit_scales};
+use crate::optimize::{LIMIT_KEPT, Memory, assess, limit_scales};
 
 /// Range of a goal, relative to its change from the nominal design, below which it does not conflict with the others.
 const NO_CONFLICT: f64 = 1e-7;
@@ -25,6 +25,11 @@ const NO_WEIGHT: f64 = 1e-6;
 const END_LOSSES: [f64; 3] = [1e-1, 1e-2, 1e-3];
 /// A goal of squares with a misfit below this fraction of its range is met. In general many designs meet it.
 const MET: f64 = 1e-4;
+/// Maximum number of times that the ends of a front are sought: their losses are fractions of the ranges between
+/// them ...
+const MOST_ENDS: usize = 4;
+/// ... until these change by less than this fraction.
+const SETTLED: f64 = 0.5;
 /// Differences of goals, as fractions of their ranges, that are round-off of the searches.
 const ROUND_OFF: f64 = 1e-9;
 /// A neighbour takes part in an interpolation if its gap is at most this much wider.
@@ -37,6 +42,8 @@ struct Node {
     anchor: Option<usize>,
     /// True if it is the optimum of this goal alone.
     is_alone: bool,
+    /// True if it meets a goal that many designs meet: others may be better in all others.
+    is_arbitrary: bool,
     designs: usize,
 }
 
@@ -57,6 +64,13 @@ pub(super) enum End {
     SinglePoint,
 }
 
+/// Reason why a side ends.
+enum SideEnd {
+    Filled,
+    /// The goals of the side do not conflict at this design.
+    Common(Box<Node>),
+}
+
 /// Points of a front of two goals, from the optimum of one to that of the other.
 #[derive(Clone)]
 struct Side {
@@ -65,6 +79,13 @@ struct Side {
     nodes: Vec<Node>,
     /// Gap after each node but the last.
     gaps: Vec<Gap>,
+}
+
+impl Side {
+    /// Node at the end of a goal.
+    fn end(&self, goal: usize) -> &Node {
+        &self.nodes[if goal == self.goals[0] { 0 } else { self.nodes.len() - 1 }]
+    }
 }
 
 /// Points of a front.
@@ -118,6 +139,7 @@ impl<'p> Front<'p> {
                 solved: Solved { flat: None, state, criticality, curvatures },
                 anchor: Some(goal),
                 is_alone: true,
+                is_arbitrary: false,
                 designs: 0,
             }
         };
@@ -147,28 +169,96 @@ impl<'p> Front<'p> {
             let mut side = self.side([0, 1]);
             let end = self.fill_side(&mut side, points, report);
             self.sides.push(side);
-            return end;
+            return match end {
+                SideEnd::Filled => End::Filled,
+                SideEnd::Common(node) => {
+                    self.common = Some(*node);
+                    End::SinglePoint
+                }
+            };
         }
         // (m + 1)(m + 2) / 2 points on a triangle
         let m = (1..).take_while(|m| (m + 1) * (m + 2) / 2 <= points).last().unwrap_or(1);
         for goals in [[0, 1], [1, 2], [0, 2]] {
             let mut side = self.side(goals);
-            if !self.is_degenerate(&side) {
-                // A pair with a common optimum has no front of its own.
-                if let End::SinglePoint = self.fill_side(&mut side, m + 1, report) {
-                    side.nodes.drain(1..side.nodes.len() - 1);
+            let mut is_single = self.is_degenerate(&side);
+            if !is_single && let SideEnd::Common(_) = self.fill_side(&mut side, m + 1, report) {
+                is_single = true;
+            }
+            // A pair with a common optimum has no front of its own.
+            if is_single {
+                side.nodes.drain(1..side.nodes.len() - 1);
+                side.gaps = vec![Gap::Open(0)];
+                if self.end_at_corner(&mut side) {
+                    let corner = &side.nodes[0];
+                    if self.is_common(corner) {
+                        self.common = Some(corner.clone());
+                        return End::SinglePoint;
+                    }
                 }
             }
             self.sides.push(side);
         }
+        self.join_sides();
         self.fill_inside(m, report);
         End::Filled
     }
 
+    /// Replaces both ends of a side of three goals, whose goals do not conflict, by the design that minimises the third
+    /// goal with a slight loss in these. Returns false if no goal is met at the ends, so that they are unique, or the
+    /// design is not found.
+    fn end_at_corner(&mut self, side: &mut Side) -> bool {
+        let met = |node: &Node, goal: &usize| self.is_met(&node.solved.state, *goal);
+        let is_unique = !side.nodes.iter().any(|node| side.goals.iter().any(|goal| met(node, goal)));
+        let Some(third) = (0..self.scale.zero.len()).find(|goal| !side.goals.contains(goal)) else {
+            return false;
+        };
+        if is_unique {
+            return false;
+        }
+        let starts = [&side.nodes[0].solved, &side.nodes[1].solved];
+        let Some(corner) = self.end_of(&side.goals, third, &starts, &END_LOSSES) else {
+            side.nodes.iter_mut().for_each(|node| node.is_arbitrary = true);
+            return false;
+        };
+        let anchor = None;
+        let corner = Node { solved: corner, anchor, is_alone: false, is_arbitrary: false, designs: 0 };
+        side.nodes = vec![corner.clone(), corner];
+        true
+    }
+
+    /// Extends sides of three goals that end at different designs where a goal has its optimum: the later one to the
+    /// end of the former.
+    fn join_sides(&mut self) {
+        for goal in 0..self.anchors.len() {
+            let with_goal: Vec<usize> =
+                (0..self.sides.len()).filter(|k| self.sides[*k].goals.contains(&goal)).collect();
+            let [former, later] = with_goal[..] else { continue };
+            let end = self.sides[former].end(goal).clone();
+            let [a, b] = [&end, self.sides[later].end(goal)].map(|n| n.solved.state.scaled(&self.scale));
+            if a.iter().zip(&b).all(|(a, b)| (a - b).abs() <= ROUND_OFF) {
+                continue;
+            }
+            let side = &mut self.sides[later];
+            let at = if side.goals[0] == goal { 0 } else { side.nodes.len() };
+            side.nodes.insert(at, end);
+            side.gaps.push(Gap::Open(0));
+        }
+    }
+
     /// The anchor that is the optimum of all goals, if there is one.
     fn common_anchor(&self) -> Option<Node> {
-        let is_common = |node: &&Node| node.solved.state.scaled(&self.scale).iter().all(|f| *f <= COMMON);
-        self.anchors.iter().find(is_common).cloned()
+        self.anchors.iter().find(|node| self.is_common(node)).cloned()
+    }
+
+    /// True if a design is the optimum of all goals.
+    fn is_common(&self, node: &Node) -> bool {
+        node.solved.state.scaled(&self.scale).iter().all(|f| *f <= COMMON + 2.0 * LIMIT_KEPT)
+    }
+
+    /// True if a goal of squares is met.
+    fn is_met(&self, state: &State, goal: usize) -> bool {
+        state.squares[goal] && state.goals[goal] <= MET * self.scale.range[goal]
     }
 
     fn side(&self, goals: [usize; 2]) -> Side {
@@ -203,14 +293,23 @@ impl<'p> Front<'p> {
     }
 
     /// Finds points in the widest gaps first.
-    fn fill_side(&mut self, side: &mut Side, points: usize, report: &mut dyn FnMut()) -> End {
-        for which in [0, 1] {
-            let at = if which == 0 { 0 } else { side.nodes.len() - 1 };
-            let Solved { state, criticality, .. } = &side.nodes[at].solved;
-            let goal = side.goals[which];
-            let is_met = state.curvature[goal].is_some() && state.goals[goal] <= MET * self.scale.range[goal];
-            if criticality.residual > ON_FRONT || is_met {
-                self.replace_optimum(side, which, None);
+    fn fill_side(&mut self, side: &mut Side, points: usize, report: &mut dyn FnMut()) -> SideEnd {
+        let has_many = |which: usize| {
+            let Solved { state, criticality, .. } = &side.end(side.goals[which]).solved;
+            criticality.residual > ON_FRONT || self.is_met(state, side.goals[which])
+        };
+        let ends: Vec<usize> = [0, 1].into_iter().filter(|which| has_many(*which)).collect();
+        for _ in 0..MOST_ENDS {
+            let ranges = self.scale.range.clone();
+            let replaced = ends.iter().filter(|which| self.replace_optimum(side, **which, None)).count();
+            if let Some(common) = self.common_end(side) {
+                return SideEnd::Common(Box::new(common));
+            }
+            self.rescale(side);
+            let mut changes =
+                side.goals.iter().map(|goal| (self.scale.range[*goal] / ranges[*goal] - 1.0).abs());
+            if replaced == 0 || changes.all(|change| change <= SETTLED) {
+                break;
             }
         }
         while side.nodes.len() < points && !self.memory.interrupted() {
@@ -222,6 +321,7 @@ impl<'p> Front<'p> {
             let Some(mut node) = self.between(side, k, width) else {
                 let alone = [0, 1].into_iter().find(|which| self.is_optimum(side, k, *which));
                 if alone.is_some_and(|which| self.replace_optimum(side, which, None)) {
+                    self.rescale(side);
                     continue;
                 }
                 if !self.memory.interrupted() {
@@ -232,13 +332,13 @@ impl<'p> Front<'p> {
             };
             let is_found = node.solved.criticality.residual <= ON_FRONT;
             if is_found && side.nodes.len() == 2 && self.pair(side, &node).iter().all(|f| *f <= COMMON) {
-                self.common = Some(node);
-                return End::SinglePoint;
+                return SideEnd::Common(Box::new(node));
             }
             if node.solved.flat.is_none()
                 && let Some(which) = self.is_slack(side, &node, k)
             {
                 if self.replace_optimum(side, which, None) {
+                    self.rescale(side);
                     continue;
                 }
                 // A better design with the same optimum.
@@ -246,7 +346,9 @@ impl<'p> Front<'p> {
             }
             if let Some(flat) = node.solved.flat {
                 let which = usize::from(flat.goal == side.goals[1]);
-                if !self.replace_optimum(side, which, Some(&node)) {
+                if self.replace_optimum(side, which, Some(&node)) {
+                    self.rescale(side);
+                } else {
                     side.gaps[k] = Gap::Failed;
                     self.failed += 1;
                 }
@@ -269,7 +371,28 @@ impl<'p> Front<'p> {
             self.remove_dominated(side, k + 1);
             report();
         }
-        End::Filled
+        SideEnd::Filled
+    }
+
+    /// An end of a side that is the optimum of both of its goals, if there is one.
+    fn common_end(&self, side: &Side) -> Option<Node> {
+        let is_common = |node: &&Node| self.pair(side, node).iter().all(|f| *f <= COMMON + 2.0 * LIMIT_KEPT);
+        side.goals
+            .iter()
+            .map(|goal| side.end(*goal))
+            .filter(|node| !node.is_arbitrary)
+            .find(is_common)
+            .cloned()
+    }
+
+    /// Takes the ranges of two goals over the points of their front.
+    fn rescale(&mut self, side: &Side) {
+        if self.anchors.len() == 2 {
+            let states: Vec<State> = side.nodes.iter().map(|n| n.solved.state.clone()).collect();
+            let Scale { zero, range, steepest } = &self.scale;
+            let steepest: Vec<f64> = steepest.iter().zip(range).map(|(s, r)| s * r).collect();
+            self.scale = Scale { zero: zero.clone(), ..scale_of(&states, &steepest) };
+        }
     }
 
     /// True if one node is better than another in a goal of a side and not worse in the other.
@@ -326,41 +449,52 @@ impl<'p> Front<'p> {
 
     /// Replaces the optimum of a goal, where the design with this optimum is not unique or has no gradient, by the end
     /// of the front: the design that minimises the other goal with a slight loss in the first. Returns false if it is
-    /// not found. The loss is reduced step by step, since designs with little of it are in a narrow curved valley,
-    /// unless a design with so small a loss is known.
+    /// not found. The search starts from both ends of the side, unless a design with so small a loss is known.
     fn replace_optimum(&mut self, side: &mut Side, which: usize, known: Option<&Node>) -> bool {
         let [kept, other] = [side.goals[which], side.goals[1 - which]];
-        let at = if which == 0 { 0 } else { side.nodes.len() - 1 };
         let before = self.memory.cost.borrow().designs;
-        let optimum = side.nodes[at].clone();
-        let least = optimum.solved.state.scaled(&self.scale)[kept];
-        let (mut end, losses) = match known {
-            Some(node) => (node.solved.clone(), &END_LOSSES[END_LOSSES.len() - 1..]),
-            None => (optimum.solved, &END_LOSSES[..]),
-        };
-        for loss in losses {
-            let values = end.state.scaled(&self.scale);
-            let mut reference: Reference = vec![None; values.len()];
-            reference[kept] = Some([least + loss, 0.0]);
-            reference[other] = Some([values[other], 1.0]);
-            let scalarization = self.scalarization(reference, 1.0);
-            match scalarization.solve(end.state.clone(), end.curvatures.clone()) {
-                Some(solved) if solved.criticality.residual <= ON_FRONT => end = solved,
-                _ => return false,
+        let found = match known {
+            Some(node) => {
+                let losses = &END_LOSSES[END_LOSSES.len() - 1..];
+                self.end_of(&[kept], other, &[&node.solved], losses)
             }
-        }
+            None => {
+                let starts = [kept, other].map(|goal| &side.end(goal).solved);
+                self.end_of(&[kept], other, &starts, &END_LOSSES)
+            }
+        };
+        let at = if which == 0 { 0 } else { side.nodes.len() - 1 };
+        let Some(solved) = found else {
+            side.nodes[at].is_arbitrary |= self.is_met(&side.nodes[at].solved.state, kept);
+            return false;
+        };
         let designs = self.memory.cost.borrow().designs - before + known.map_or(0, |n| n.designs);
-        side.nodes[at] = Node { solved: end, anchor: Some(kept), is_alone: false, designs };
+        let designs = designs + if side.nodes[at].is_alone { 0 } else { side.nodes[at].designs };
+        side.nodes[at] = Node { solved, anchor: Some(kept), is_alone: false, is_arbitrary: false, designs };
         let gap = if which == 0 { 0 } else { side.gaps.len() - 1 };
         side.gaps[gap] = Gap::Open(0);
-        // The ranges of the goals are those over the new points.
-        if self.anchors.len() == 2 {
-            let states: Vec<State> = side.nodes.iter().map(|n| n.solved.state.clone()).collect();
-            let Scale { zero, range, steepest } = &self.scale;
-            let steepest: Vec<f64> = steepest.iter().zip(range).map(|(s, r)| s * r).collect();
-            self.scale = Scale { zero: zero.clone(), ..scale_of(&states, &steepest) };
-        }
         true
+    }
+
+    /// Design that minimises a goal with a slight loss in others, the best one from several starts. The loss is reduced
+    /// step by step, since designs with little of it are in a narrow curved valley.
+    fn end_of(&self, kept: &[usize], other: usize, starts: &[&Solved], losses: &[f64]) -> Option<Solved> {
+        let from = |start: &&Solved| -> Option<Solved> {
+            let mut end = (*start).clone();
+            let mut is_found = false;
+            for loss in losses {
+                let mut reference: Reference = vec![None; self.scale.zero.len()];
+                kept.iter().for_each(|goal| reference[*goal] = Some([*loss, 0.0]));
+                reference[other] = Some([end.state.scaled(&self.scale)[other], 1.0]);
+                let scalarization = self.scalarization(reference, 1.0);
+                let solved = scalarization.solve(end.state.clone(), end.curvatures.clone());
+                is_found = solved.as_ref().is_some_and(|s| s.criticality.residual <= ON_FRONT);
+                end = solved.unwrap_or(end);
+            }
+            is_found.then_some(end)
+        };
+        let value = |solved: &Solved| solved.state.goals[other];
+        starts.iter().filter_map(from).min_by(|a, b| value(a).total_cmp(&value(b)))
     }
 
     fn scalarization<'s>(&'s self, reference: Reference, near: f64) -> Scalarization<'s>
@@ -418,7 +552,7 @@ impl<'p> Front<'p> {
             let is_found = |s: &Solved| s.flat.is_some() || s.criticality.residual <= ON_FRONT;
             if let Some(solved) = solved.filter(is_found) {
                 let designs = self.memory.cost.borrow().designs - before;
-                return Some(Node { solved, anchor: None, is_alone: false, designs });
+                return Some(Node { solved, anchor: None, is_alone: false, is_arbitrary: false, designs });
             }
         }
         None
@@ -510,7 +644,8 @@ impl<'p> Front<'p> {
             let [low, high] = [k, k + 1].map(|k| of(&side.nodes[k].solved.state));
             low.iter().zip(&high).map(|(a, b)| a + rest.clamp(0.0, 1.0) * (b - a)).collect()
         };
-        let corners = [0, 1, 2].map(|k| of(&self.anchors[k].solved.state));
+        let corner = |k: usize| self.sides.iter().find(|s| s.goals.contains(&k)).map(|s| s.end(k));
+        let corners = [0, 1, 2].map(|k| of(&corner(k).unwrap_or(&self.anchors[k]).solved.state));
         let mut sum = vec![0.0; corners[0].len()];
         let mut add = |by: f64, values: &[f64]| sum.iter_mut().zip(values).for_each(|(s, v)| *s += by * v);
         for k in 0..3 {
@@ -542,6 +677,10 @@ impl<'p> Front<'p> {
             }
             let ends = anchors.iter().filter(|_| sides.is_empty());
             for node in sides.iter().flat_map(|s| &s.nodes).chain(&inside).chain(ends) {
+                if node.is_arbitrary {
+                    failed += 1;
+                    continue;
+                }
                 let values = node.solved.state.scaled(&scale);
                 let is_known = |known: &(Node, Vec<f64>)| {
                     known.1.iter().zip(&values).all(|(a, b)| (a - b).abs() <= ROUND_OFF)

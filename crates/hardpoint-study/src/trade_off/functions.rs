@@ -1,9 +1,11 @@
 //! Goals and limits of one design as functions with derivatives, and the first-order condition of a front.
 //!
 //! Goals keep their own units: a goal of squares is the norm `|r|` of its residuals, which is the distance from the
-//! target or the root of the mean square. Designs are fractions of the bounds.
+//! target or the root of the mean square. That of a single residual is the larger one of `r` and `-r`, or the
+//! largest of all candidates for an extremum, which have derivatives where it vanishes. Designs are fractions of the
+//! bounds.
 
-use crate::optimize::{BINDS, MET, Point, Problem};
+use crate::optimize::{BINDS, Extremum, MET, Point, Problem};
 use hardpoint_search::quadratic::non_negative;
 use hardpoint_search::{dot, norm};
 
@@ -47,8 +49,10 @@ pub(super) struct State {
     pub x: Vec<f64>,
     pub point: Point,
     pub functions: Vec<Function>,
-    /// Second derivatives of the norm of linear residuals, for goals of squares.
+    /// Second derivatives of the norm of linear residuals, for goals of several squares.
     pub curvature: Vec<Option<Matrix>>,
+    /// True for goals of squares, which are met where they vanish.
+    pub squares: Vec<bool>,
     /// Goal and value of each group of peaks.
     pub groups: Vec<(usize, f64)>,
     /// Maximum of each limited range, as a fraction of its scale.
@@ -89,6 +93,7 @@ impl State {
         let count = problem.settings.goals.len();
         let mut functions = Vec::new();
         let (mut curvature, mut groups, mut goals) = (vec![None; count], Vec::new(), vec![0.0; count]);
+        let mut squares = vec![false; count];
         for goal in 0..count {
             let per_unit = 1.0 / problem.settings.goals[goal].weight;
             let shares = || problem.goals.iter().zip(&point.shares).filter(|(g, _)| g.of == goal);
@@ -97,7 +102,31 @@ impl State {
                 .map(|k| (per_unit * point.misfits.values[k], by_parts(&point.misfits.d[k], per_unit)))
                 .collect();
             let plain: Vec<usize> = shares().flat_map(|(_, s)| s.plain.clone()).collect();
-            if !rows.is_empty() {
+            squares[goal] = !rows.is_empty();
+            if let [(r, d)] = &rows[..] {
+                let group = groups.len();
+                let mut push = |value: f64, d: Vec<f64>| {
+                    functions.push(Function { role: Role::Peak(group), block: count + group, value, d });
+                };
+                let mut of_goal = shares().flat_map(|(_, s)| s.misfits.clone());
+                let is_own = |k: usize| point.extrema.iter().find(|extremum| extremum.misfit == k);
+                match of_goal.next().and_then(is_own) {
+                    Some(Extremum { rows, .. }) => {
+                        let rows = rows.values.iter().zip(&rows.d);
+                        rows.for_each(|(value, d)| push(per_unit * value, by_parts(d, per_unit)));
+                    }
+                    None => {
+                        for sign in [1.0, -1.0] {
+                            push(sign * r, d.iter().map(|d| sign * d).collect());
+                        }
+                    }
+                }
+                // The largest of the pushed numbers, to the last bit.
+                let of_group = functions.iter().filter(|f| f.role == Role::Peak(group));
+                let greatest = of_group.map(|f| f.value).fold(f64::NEG_INFINITY, f64::max);
+                goals[goal] += greatest;
+                groups.push((goal, greatest));
+            } else if !rows.is_empty() {
                 let (value, d, second) = norm_of(&rows, n);
                 functions.push(Function { role: Role::Goal(goal), block: goal, value, d });
                 curvature[goal] = Some(second);
@@ -147,7 +176,7 @@ impl State {
             }
         }
         let blocks = ends + 2 * ranges.len();
-        Self { x, point, functions, curvature, groups, ranges, blocks, goals }
+        Self { x, point, functions, curvature, squares, groups, ranges, blocks, goals }
     }
 
     /// Values and gradients of the functions with a role.

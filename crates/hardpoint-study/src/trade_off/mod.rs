@@ -82,7 +82,8 @@ pub enum Outcome {
     NoConflict,
     /// The caller ended the study.
     Interrupted,
-    /// The optimum of a goal, by its index, was not found; the status of the search.
+    /// The optimum of a goal, by its index, was not found, or the goal depends on no variable; the status of the
+    /// search.
     NoAnchor(usize, Status),
 }
 
@@ -158,7 +159,9 @@ pub fn trade_off(model: &Model, motions: &Motions<'_>, request: &Request, contro
         let search = found.best.map(|k| &found.searches[k]);
         let status = search.or(found.searches.first()).map_or(Status::NoStart, |s| s.status);
         match search.and_then(|s| s.found.as_ref()).filter(|f| f.violation <= optimize::LIMIT_KEPT) {
-            Some(found) if status != Status::Interrupted => anchors.push(problem.parts(&found.design)),
+            Some(found) if !matches!(status, Status::Interrupted | Status::NoEffect) => {
+                anchors.push(problem.parts(&found.design));
+            }
             _ => {
                 result.cost += memory.cost.take();
                 if status != Status::Interrupted {

@@ -12,6 +12,7 @@ mod circle;
 mod core;
 mod feature;
 mod gradient;
+mod least;
 mod nearest;
 mod placed;
 mod separation;

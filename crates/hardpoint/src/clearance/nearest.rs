@@ -1,12 +1,11 @@
 //! Nearest points of two cores, for plain numbers, and the features that hold them.
 
-use std::f64::consts::TAU;
-
 use crate::space::{Real, Vec3};
 
 use super::circle::Circle;
 use super::core::Core;
 use super::feature::{Feature, PARALLEL, Placed, distance};
+use super::least::{Part, Path, Surroundings, least_along, least_of_convex, least_of_segment};
 
 /// The nearest points of two cores.
 #[derive(Clone, Copy, Debug)]
@@ -79,17 +78,18 @@ impl Nearest {
         Self { is_tied, ..self }
     }
 
+    /// Gradient of the distance by the point from which it is measured; zero where both points are the same.
+    pub(super) fn gradient(&self) -> Vec3 {
+        let [p, q] = self.points;
+        if self.distance == 0.0 { Vec3::ZERO } else { (p - q) * (1.0 / self.distance) }
+    }
+
     pub(super) fn reversed(self) -> Self {
         let ([a, b], [p, q]) = (self.features, self.points);
         Self { features: [b, a], points: [q, p], ..self }
     }
 }
 
-/// Places at which a function along a circle, or of a segment's distance from one, is sampled before its least value is
-/// refined: the distance from a circle has up to four stationary points along a line.
-const SAMPLES: usize = 48;
-/// Halvings of an interval until it is below the resolution of its ends.
-const HALVINGS: usize = 60;
 /// A place nearer to an end of a segment than this fraction of it is the end: a search stops short of it by round-off.
 const AT_END: f64 = 1e-10;
 /// Cosine between a core and the way out of another one above which the way out is not the shortest: searches find the
@@ -129,13 +129,13 @@ pub(crate) fn nearest(a: &Core, b: &Core) -> Nearest {
             segment_and_cylinder(*ends, &Drum { middle: *middle, half_width: *half_width }).reversed()
         }
         (Core::Circle(circle), Core::Circle(other)) => {
-            along_circle(circle, Feature::Circle(0.0), |p| from_point(p, &Core::Circle(*other)))
+            along_circle(circle, Feature::Circle(0.0), &AroundCircle(other), |p| from_point(p, b))
         }
         (Core::Circle(circle), Core::Cylinder { .. }) => {
-            along_circle(circle, Feature::Circle(0.0), |p| from_point(p, b))
+            along_circle(circle, Feature::Circle(0.0), &AroundConvex(b), |p| from_point(p, b))
         }
         (Core::Cylinder { .. }, Core::Circle(circle)) => {
-            along_circle(circle, Feature::Circle(0.0), |p| from_point(p, a)).reversed()
+            along_circle(circle, Feature::Circle(0.0), &AroundConvex(a), |p| from_point(p, a)).reversed()
         }
         (Core::Cylinder { middle: p, half_width: w }, Core::Cylinder { middle: q, half_width: v }) => {
             cylinders([&Drum { middle: *p, half_width: *w }, &Drum { middle: *q, half_width: *v }])
@@ -145,66 +145,6 @@ pub(crate) fn nearest(a: &Core, b: &Core) -> Nearest {
 
 pub(super) fn found(features: [Feature; 2], points: [Vec3; 2], distance: f64) -> Nearest {
     Nearest { features, points, distance, sign: 1.0, is_parallel: false, is_tied: false }
-}
-
-/// The least of a function over [0, 1] that has one minimum.
-fn least_within(f: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
-    // Golden section.
-    const RATIO: f64 = 0.618_033_988_749_894_9;
-    let mut inner = [high - RATIO * (high - low), low + RATIO * (high - low)];
-    let mut values = inner.map(&f);
-    for _ in 0..HALVINGS {
-        if values[0] <= values[1] {
-            high = inner[1];
-            inner = [high - RATIO * (high - low), inner[0]];
-            values = [f(inner[0]), values[0]];
-        } else {
-            low = inner[0];
-            inner = [inner[1], low + RATIO * (high - low)];
-            values = [values[1], f(inner[1])];
-        }
-        if high - low <= 4.0 * f64::EPSILON * high.abs().max(low.abs()) {
-            break;
-        }
-    }
-    0.5 * (low + high)
-}
-
-/// The place in [0, 1] of the least of a convex function, whose slope never decreases.
-///
-/// The zero of the slope by the Illinois method; every third step halves the interval, since the slope may jump.
-fn least_of_convex(slope: impl Fn(f64) -> f64) -> f64 {
-    let (mut low, mut high) = ((0.0, slope(0.0)), (1.0, slope(1.0)));
-    if !(low.1 < 0.0) {
-        return 0.0;
-    }
-    if !(high.1 > 0.0) {
-        return 1.0;
-    }
-    // True if the lower end was moved last.
-    let mut raised = None;
-    for k in 0..HALVINGS {
-        let width: f64 = high.0 - low.0;
-        if width <= 2.0 * f64::EPSILON * high.0 {
-            break;
-        }
-        let part = if k % 3 == 2 { 0.5 } else { low.1 / (low.1 - high.1) };
-        let t = low.0 + part * width;
-        let at = slope(t);
-        if at == 0.0 {
-            return t;
-        }
-        // An end that stays twice counts half.
-        if at < 0.0 {
-            low = (t, at);
-            high.1 *= if raised == Some(true) { 0.5 } else { 1.0 };
-        } else {
-            high = (t, at);
-            low.1 *= if raised == Some(false) { 0.5 } else { 1.0 };
-        }
-        raised = Some(at < 0.0);
-    }
-    0.5 * (low.0 + high.0)
 }
 
 /// The point of a core that is nearest to a plane: the one that is farthest against its normal.
@@ -258,7 +198,7 @@ fn lowest_of_circle(
 }
 
 /// The nearest point of a core to a point.
-fn from_point(p: Vec3, core: &Core) -> Nearest {
+pub(super) fn from_point(p: Vec3, core: &Core) -> Nearest {
     let own = Feature::Point(0.0);
     match core {
         Core::Point(q) => found([own, own], [p, *q], (*q - p).norm()),
@@ -375,54 +315,12 @@ fn parallel_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> Option<Nearest> {
 }
 
 /// The nearest points of a segment and a circle.
-fn segment_and_circle([a, b]: [Vec3; 2], circle: &Circle) -> Nearest {
+pub(super) fn segment_and_circle([a, b]: [Vec3; 2], circle: &Circle) -> Nearest {
     let at = |t: f64| a + (b - a) * t;
-    let apart = |t: f64| (of_circle(circle, at(t)) - at(t)).norm();
-    let t = least_sampled(apart, (b - a).norm(), false);
+    let t = least_of_segment([a, b], circle);
     let feature = if t > 0.0 && t < 1.0 { Feature::Line } else { Feature::Point(t) };
     let points = [at(t), of_circle(circle, at(t))];
     found([feature, Feature::Circle(0.0)], points, (points[1] - points[0]).norm())
-}
-
-/// Place in [0, 1] of the least distance along a curve, which is sampled first; 0 and 1 are the same place of a closed
-/// one. Between two places the distance changes by no more than the curve is long: only minima that may be the least
-/// are refined.
-pub(super) fn least_sampled(f: impl Fn(f64) -> f64, length: f64, is_closed: bool) -> f64 {
-    let step = 1.0 / SAMPLES as f64;
-    let place = |k: usize| k as f64 * step;
-    let samples: [f64; SAMPLES + 1] = std::array::from_fn(|k| f(place(k)));
-    let around = |k: usize| {
-        let [first, last] = if is_closed { [SAMPLES - 1, 1] } else { [0, SAMPLES] };
-        [if k > 0 { k - 1 } else { first }, if k < SAMPLES { k + 1 } else { last }]
-    };
-    let is_low = |k: &usize| around(*k).iter().all(|n| samples[*k] <= samples[*n]);
-    let mut lows: Vec<usize> = (0..=SAMPLES).filter(is_low).collect();
-    lows.sort_by(|a, b| samples[*a].total_cmp(&samples[*b]));
-    let mut best = (f64::INFINITY, 0.0);
-    for k in lows {
-        if samples[k] - step * length >= best.0 {
-            break;
-        }
-        let is_flat = around(k).iter().all(|n| samples[*n] - samples[k] <= PARALLEL * length);
-        let t = if is_flat { place(k) } else { refined(&f, place(k), step, is_closed) };
-        let value = f(t);
-        if value < best.0 {
-            best = (value, t);
-        }
-    }
-    best.1
-}
-
-/// Place of the minimum of a function around a sample.
-fn refined(f: &impl Fn(f64) -> f64, place: f64, step: f64, is_closed: bool) -> f64 {
-    let around = [place - step, place + step];
-    if is_closed {
-        return least_within(f, around);
-    }
-    let t = least_within(f, around.map(|t| t.clamp(0.0, 1.0)));
-    // An end itself, if the function decreases up to it.
-    let is_end = |end: f64| (end - place).abs() < 1.5 * step && (f(end) <= f(t) || (end - t).abs() < AT_END);
-    [0.0, 1.0].into_iter().find(|end| is_end(*end)).unwrap_or(t)
 }
 
 /// A solid cylinder, halfway between whose caps is this circle.
@@ -453,7 +351,11 @@ impl Drum {
     /// Distance of a point, negative inside: a convex function of the point.
     pub fn distance(&self, p: Vec3) -> f64 {
         let (z, rho, _) = self.cylindrical(p);
-        let (above, beyond) = (z.abs() - self.half_width, rho - self.middle.radius);
+        Self::apart(z.abs() - self.half_width, rho - self.middle.radius)
+    }
+
+    /// Distance of a point at these distances outside the cap and outside the side.
+    fn apart(above: f64, beyond: f64) -> f64 {
         if above > 0.0 && beyond > 0.0 { above.hypot(beyond) } else { above.max(beyond) }
     }
 
@@ -488,7 +390,7 @@ impl Drum {
         } else {
             (Feature::Line, p - out * beyond)
         };
-        (feature, q, self.distance(p))
+        (feature, q, Self::apart(above, beyond))
     }
 }
 
@@ -496,7 +398,7 @@ impl Drum {
 pub(super) fn segment_and_cylinder([a, b]: [Vec3; 2], drum: &Drum) -> Nearest {
     let at = |t: f64| a + (b - a) * t;
     let depth = |t: f64| drum.distance(at(t));
-    let mut t = least_of_convex(|t| drum.slope(at(t), b - a));
+    let mut t = least_of_convex(|t| drum.slope(at(t), b - a), [0.0, 1.0]);
     let is_end = |end: f64, best: f64| depth(end) <= depth(best) || (end - best).abs() < AT_END;
     t = [0.0, 1.0].into_iter().fold(t, |best, end| if is_end(end, best) { end } else { best });
     // Over a cap, and along a side, all points of a parallel segment are nearest: the middle of them.
@@ -534,18 +436,64 @@ fn is_stationary([a, b]: [Vec3; 2], drum: &Drum, t: f64) -> bool {
     !is_parallel && out.dot(e).abs() <= f64::EPSILON.sqrt() * 10.0 * rho.max(e.norm()) * e.norm()
 }
 
-/// The nearest points of a circle and something whose nearest point to a given one is known.
-pub(super) fn along_circle(circle: &Circle, itself: Feature, from: impl Fn(Vec3) -> Nearest) -> Nearest {
-    let x = circle.axis.any_perpendicular();
-    let y = circle.axis.cross(x);
-    let at = |turn: f64| {
-        let (sin, cos) = (turn * TAU).sin_cos();
-        circle.centre + (x * cos + y * sin) * circle.radius
-    };
-    let apart = |turn: f64| from(at(turn)).distance;
-    let turn = least_sampled(apart, circle.radius * TAU, true);
-    let near = from(at(turn)).tied_along(at(turn + 0.25) - circle.centre);
+/// A convex solid around a path.
+struct AroundConvex<'a>(&'a Core);
+
+impl Surroundings for AroundConvex<'_> {
+    const IS_PLAIN: bool = true;
+
+    fn distance(&self, p: Vec3) -> (f64, Vec3) {
+        let near = from_point(p, self.0);
+        (near.distance, near.gradient())
+    }
+
+    /// The tangent plane of a convex function is below it.
+    fn bounded(&self, part: &Part) -> [f64; 2] {
+        let (distance, slope) = self.distance(part.middle);
+        [distance, distance + part.lowest_along(slope)]
+    }
+}
+
+/// A circle around a path.
+struct AroundCircle<'a>(&'a Circle);
+
+impl Surroundings for AroundCircle<'_> {
+    const IS_PLAIN: bool = true;
+
+    fn distance(&self, p: Vec3) -> (f64, Vec3) {
+        let q = of_circle(self.0, p);
+        let near = found([Feature::Point(0.0), Feature::Circle(0.0)], [p, q], (q - p).norm());
+        (near.distance, near.gradient())
+    }
+
+    /// With rho the distance from the axis, the squared distance is `v . v + R R - 2 R rho`. Along a circle `v . v` is
+    /// that of a linear function, which is less by the square of the tangents where these meet; -rho is concave, so
+    /// that a corner is the lowest.
+    fn bounded(&self, part: &Part) -> [f64; 2] {
+        let square = |p: Vec3| {
+            let v = p - self.0.centre;
+            let (z, rho) = (self.0.axis.dot(v), self.0.axis.cross(v).norm());
+            z * z + (rho - self.0.radius) * (rho - self.0.radius)
+        };
+        let [from, corner, to] = part.hull.map(square);
+        let corner = corner - part.out.dot(part.out) * part.tan * part.tan;
+        [square(part.middle).sqrt(), from.min(to).min(corner).max(0.0).sqrt()]
+    }
+}
+
+/// The nearest points of a circle, which is this feature of its shape, and something around it, of which `from` is the
+/// nearest point to a given one.
+pub(super) fn along_circle(
+    circle: &Circle,
+    itself: Feature,
+    around: &impl Surroundings,
+    from: impl Fn(Vec3) -> Nearest,
+) -> Nearest {
+    let path = Path::around(circle);
+    let turn = least_along(&path, around);
+    let near = from(path.at(turn)).tied_along(path.tangent(turn));
     // Parallel circles and faces: all points of the circle are nearest.
+    let apart = |turn: f64| from(path.at(turn)).distance;
     let is_level = |k: u8| (apart(f64::from(k) * 0.25) - near.distance).abs() <= PARALLEL * circle.radius;
     let is_parallel = (0..4).all(is_level);
     let is_tied = near.is_tied && !is_parallel;
@@ -559,7 +507,7 @@ fn cylinders(drums: [&Drum; 2]) -> Nearest {
         let core = Core::Cylinder { middle: other.middle, half_width: other.half_width };
         [-1.0, 1.0].map(|side| {
             let rim = drums[of].middle.moved(drums[of].half_width * side);
-            along_circle(&rim, Feature::Circle(side), |p| from_point(p, &core))
+            along_circle(&rim, Feature::Circle(side), &AroundConvex(&core), |p| from_point(p, &core))
         })
     };
     let ([a, b], [c, d]) = (rims(0), rims(1));

@@ -7,9 +7,11 @@ use crate::space::{Pose, Surface, TrianglePart, Vec3, nearest_of_triangle};
 
 use super::circle::Circle;
 use super::core::Core;
-use super::feature::Feature;
+use super::feature::{Feature, PARALLEL};
+use super::least::{Part, Path, Surroundings, least_along};
 use super::nearest::{
-    Nearest, along_circle, around_drum, found, least_sampled, nearer, segment_and_cylinder, segment_and_edge,
+    Nearest, along_circle, around_drum, found, from_point, nearer, segment_and_circle, segment_and_cylinder,
+    segment_and_edge,
 };
 
 /// A surface in the frame in which its points are given.
@@ -29,6 +31,7 @@ impl View<'_> {
         }
     }
 
+    /// Corners of its triangles.
     fn points(&self) -> &[Vec3] {
         match self {
             Self::Mesh(surface) => surface.vertices(),
@@ -73,7 +76,7 @@ impl View<'_> {
     }
 
     /// The nearest point to a point; its distance is negative inside.
-    fn nearest_to(&self, p: Vec3) -> Nearest {
+    pub fn nearest_to(&self, p: Vec3) -> Nearest {
         let own = Feature::Point(0.0);
         if let Self::Hull { points, facets } = self {
             // Inside a convex hull the nearest facet is the one whose plane is nearest.
@@ -117,6 +120,43 @@ impl View<'_> {
             let near = each([corners[k], corners[next]]);
             Nearest { features: [near.features[0], of_edge(near.features[1], [ids[k], ids[next]])], ..near }
         }))
+    }
+}
+
+/// A surface around a path that is inside in parts.
+struct Within<'a>(View<'a>);
+
+impl Surroundings for Within<'_> {
+    const IS_PLAIN: bool = false;
+
+    fn distance(&self, p: Vec3) -> (f64, Vec3) {
+        let near = self.0.nearest_to(p);
+        (near.distance, near.gradient())
+    }
+
+    /// The depth is at most the distance from any part of the surface, which is convex: a corner is the deepest.
+    fn bounded(&self, part: &Part) -> [f64; 2] {
+        let near = self.0.nearest_to(part.middle);
+        if !(near.distance < 0.0) {
+            return [near.distance, f64::NEG_INFINITY];
+        }
+        let points = self.0.points();
+        let bound = match near.features[1] {
+            Feature::Facet(ids) => {
+                let corners = ids.map(|k| points[k as usize]);
+                part.lowest_corner(|p| -(nearest_of_triangle(p, corners, ids).0 - p).norm())
+            }
+            Feature::Edge(ids) => {
+                let edge = Core::Segment(ids.map(|k| points[k as usize]));
+                part.lowest_corner(|p| -from_point(p, &edge).distance)
+            }
+            Feature::Vertex(_)
+            | Feature::Point(_)
+            | Feature::Line
+            | Feature::Circle(_)
+            | Feature::Face(_) => part.lowest_corner(|p| -(p - near.points[1]).norm()),
+        };
+        [near.distance, bound]
     }
 }
 
@@ -195,31 +235,107 @@ pub(super) fn core_and_surface(core: &Core, view: View<'_>) -> Nearest {
     }
 }
 
-/// The nearest points of a circle, which is this feature of its shape, and a surface. One that goes through an open
-/// surface overlaps with it.
+/// The nearest points of a circle, which is this feature of its shape, and a surface; of one that is partly inside, its
+/// deepest point. One that goes through an open surface overlaps with it.
 fn circle_and_surface(circle: &Circle, itself: Feature, view: View<'_>) -> Nearest {
-    let near = along_circle(circle, itself, |p| view.nearest_to(p));
-    if view.is_closed() || !near.distance.is_finite() {
-        return near;
-    }
     let reach = Core::Circle(*circle);
     let mut through = None;
-    view.search(near.distance, &|q| reach.distance_from(q), &mut |t| {
-        through = through.or_else(|| crossing(circle, view.triangle(t).0));
-        if through.is_some() { 0.0 } else { near.distance }
+    let mut best = found([itself, Feature::Vertex(0)], [circle.centre; 2], f64::INFINITY);
+    view.search(f64::INFINITY, &|q| reach.distance_from(q), &mut |t| {
+        if through.is_some() {
+            return 0.0;
+        }
+        let (corners, ids) = view.triangle(t);
+        let centre = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
+        let radius = corners.iter().map(|p| (*p - centre).norm()).fold(0.0, f64::max);
+        if reach.distance_from(centre) - radius >= best.distance {
+            return best.distance;
+        }
+        through = crossing(circle, corners);
+        if through.is_some() {
+            return 0.0;
+        }
+        let near = circle_and_triangle(circle, itself, corners, ids, best.distance);
+        if near.distance < best.distance {
+            best = near;
+        }
+        near.distance
     });
-    through.map_or(near, |at| near.overlapping(at))
+    if through.is_none() && best.distance.is_infinite() {
+        // The page has no meshes: nothing is known there.
+        return Nearest { distance: f64::NAN, ..best };
+    }
+    let is_within = || view.is_closed() && view.nearest_to(best.points[0]).distance < 0.0;
+    match through {
+        Some(at) if !view.is_closed() => best.overlapping(at),
+        None if !is_within() => {
+            let path = Path::around(circle);
+            let apart = |turn: f64| view.distance_from(path.at(turn)).abs();
+            let is_level =
+                |k: u8| (apart(f64::from(k) * 0.25) - best.distance).abs() <= PARALLEL * circle.radius;
+            Nearest { is_parallel: (0..4).all(is_level), ..best }
+        }
+        Some(_) | None => along_circle(circle, itself, &Within(view), |p| view.nearest_to(p)),
+    }
+}
+
+/// The nearest points of a circle and a triangle that it does not go through; edges farther than `least` are left out.
+fn circle_and_triangle(
+    circle: &Circle,
+    itself: Feature,
+    corners: [Vec3; 3],
+    ids: [u32; 3],
+    least: f64,
+) -> Nearest {
+    // Over the face the lowest or highest point of the circle is nearest, or all of it.
+    let up = Slope::over(circle, corners).up.unwrap_or_else(|| circle.axis.any_perpendicular());
+    let over_face = [-1.0, 1.0].map(|side| {
+        let p = circle.centre + up * (circle.radius * side);
+        let (q, part) = nearest_of_triangle(p, corners, ids);
+        found([itself, of_part(part)], [p, q], (q - p).norm())
+    });
+    let reach = Core::Circle(*circle);
+    let mut best = nearer(over_face);
+    for k in 0..3 {
+        let next = (k + 1) % 3;
+        let [a, b] = [corners[k], corners[next]];
+        if reach.distance_from((a + b) * 0.5) - 0.5 * (b - a).norm() >= least.min(best.distance) {
+            continue;
+        }
+        let near = segment_and_circle([a, b], circle).reversed();
+        if near.distance < best.distance {
+            best = Nearest { features: [itself, of_edge(near.features[1], [ids[k], ids[next]])], ..near };
+        }
+    }
+    best
+}
+
+/// Heights of a circle over the plane of a triangle: `height + radius w cos(angle)`, the angle counted from `up`, w the
+/// length of the plane's normal within the plane of the circle.
+struct Slope {
+    normal: Vec3,
+    height: f64,
+    /// Unit vector in the plane of the circle; `None` where that is parallel to the triangle.
+    up: Option<Vec3>,
+    w: f64,
+}
+
+impl Slope {
+    fn over(circle: &Circle, [a, b, c]: [Vec3; 3]) -> Self {
+        let across = (b - a).cross(c - a);
+        let normal = across * (1.0 / across.norm());
+        let steepest = normal - circle.axis * circle.axis.dot(normal);
+        let height = normal.dot(circle.centre - a);
+        Self { normal, height, up: steepest.unit(), w: steepest.norm() }
+    }
 }
 
 /// Point at which a circle goes through a triangle.
-fn crossing(circle: &Circle, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
-    let across = (b - a).cross(c - a);
-    let normal = across * (1.0 / across.norm());
-    let Circle { centre, axis, radius } = *circle;
-    // The height of the circle's points over the plane is h + R w cos(angle), the angle counted from `up`.
-    let (h, steepest) = (normal.dot(centre - a), normal - axis * axis.dot(normal));
-    let (up, w) = (steepest.unit()?, steepest.norm());
-    let cos = -h / (radius * w);
+fn crossing(circle: &Circle, corners: [Vec3; 3]) -> Option<Vec3> {
+    let Slope { normal, height, up, w } = Slope::over(circle, corners);
+    let ([a, b, c], Circle { centre, axis, radius }) = (corners, *circle);
+    let up = up?;
+    let cos = -height / (radius * w);
     let sin = (1.0 - cos * cos).sqrt();
     let inside =
         |p: &Vec3| [[a, b], [b, c], [c, a]].iter().all(|[u, v]| normal.dot((*v - *u).cross(*p - *u)) >= 0.0);
@@ -230,7 +346,6 @@ fn crossing(circle: &Circle, [a, b, c]: [Vec3; 3]) -> Option<Vec3> {
 
 /// The nearest points of a segment and a surface; of one that is partly inside, its deepest point.
 fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
-    let at = |t: f64| a + (b - a) * t;
     let first = view.nearest_to(a);
     if !first.distance.is_finite() {
         return first;
@@ -264,8 +379,8 @@ fn segment_and_surface([a, b]: [Vec3; 2], view: View<'_>) -> Nearest {
     if !view.is_closed() {
         return best.overlapping(best.points[0]);
     }
-    let t = least_sampled(|t| view.nearest_to(at(t)).distance, (b - a).norm(), false);
-    let near = view.nearest_to(at(t));
+    let t = least_along(&Path::Segment([a, b]), &Within(view));
+    let near = view.nearest_to(a + (b - a) * t);
     let near = Nearest { features: [Feature::Point(t), near.features[1]], ..near };
     if t > 0.0 && t < 1.0 { near.tied_along(b - a) } else { near }
 }

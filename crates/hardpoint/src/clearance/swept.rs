@@ -1,4 +1,4 @@
-//! A shape at one pose, in the frame of another body: distances of points from it.
+//! A shape at one pose, in the frame of another body: distances of points from it, and points of its surface.
 
 use std::sync::Arc;
 
@@ -6,6 +6,7 @@ use crate::model::{ShapeId, ShapeKind, with_core};
 use crate::space::{Pose, Surface, Vec3};
 
 use super::core::Core;
+use super::nearest::{Nearest, from_point};
 use super::placed::PlacedShapes;
 use super::surface::{View, moved};
 
@@ -65,5 +66,29 @@ impl ShapeAtPose {
             Solid::Mesh { surface, inverse } => View::Mesh(surface).distance_from(inverse.point(p)),
         };
         of_core - self.round
+    }
+
+    /// Point of its surface, with a margin around it, that is nearest to a point.
+    pub fn surface_point(&self, p: Vec3, margin: f64) -> Vec3 {
+        let of = |near: &Nearest| near.points[1] + near.gradient() * (self.round + margin);
+        match &self.solid {
+            Solid::Core(core) => of(&from_point(p, core)),
+            Solid::Hull { points, facets } => of(&View::Hull { points, facets }.nearest_to(p)),
+            Solid::Mesh { surface, inverse } => {
+                inverse.inverse().point(of(&View::Mesh(surface).nearest_to(inverse.point(p))))
+            }
+        }
+    }
+
+    /// Corners of a hull or mesh: its thinnest parts end there.
+    pub fn corners(&self) -> Vec<Vec3> {
+        match &self.solid {
+            Solid::Core(_) => Vec::new(),
+            Solid::Hull { points, .. } => points.clone(),
+            Solid::Mesh { surface, inverse } => {
+                let place = inverse.inverse();
+                surface.vertices().iter().map(|p| place.point(*p)).collect()
+            }
+        }
     }
 }

@@ -5,11 +5,12 @@ use std::f64::consts::TAU;
 use proptest::prelude::*;
 
 use crate::number::{Jet, Rates};
-use crate::space::{Mat3, Pose, Real, Vec3};
+use crate::space::{Mat3, Pose, Real, Surface, Vec3};
 
 use super::circle::Circle;
 use super::core::Core;
 use super::nearest::{Nearest, nearest};
+use super::surface::{View, core_and_surface};
 
 /// Kinds of cores that are paired with each other.
 const KINDS: usize = 5;
@@ -162,6 +163,135 @@ proptest! {
         prop_assert!((rate - slope).abs() < tolerance, "{first:?} {second:?} {near:?}: {rate} {slope}");
         let tolerance = 1e-6 * (1.0 + acceleration.abs()) / (small * small);
         prop_assert!((acceleration - curve).abs() < tolerance, "{first:?} {second:?} {near:?}: {acceleration} {curve}");
+    }
+}
+
+/// A circle, and a segment, circle or cylinder that passes it nearly along its tangent, of any other size: dips of the
+/// distance may be much narrower than either is long.
+fn tangent_pair(kind: usize, [a, b, c, d, e, f, g, h]: [f64; 8]) -> [Core; 2] {
+    // From 10^-most to 10^most.
+    let power = |x: f64, most: f64| 10.0_f64.powf(x * most);
+    let circle = Circle {
+        centre: Vec3::new(a, b, c) * 0.5,
+        axis: Vec3::new(d, e, 1.3).unit().unwrap(),
+        radius: power(f, 1.0),
+    };
+    let out = circle.axis.any_perpendicular();
+    let along = circle.axis.cross(out) + Vec3::new(g, h, a) * power(b - 1.0, 2.0);
+    let near =
+        circle.centre + out * circle.radius + Vec3::new(c, d, e) * (circle.radius * power(f - 1.0, 1.5));
+    let (axis, size) = (along.unit().unwrap(), circle.radius * power(g, 2.0));
+    let other = match kind {
+        0 => Core::Segment([near - axis * (size * (1.0 + h)), near + axis * size]),
+        1 => Core::Circle(Circle { centre: near - axis.any_perpendicular() * size, axis, radius: size }),
+        _ => Core::Cylinder {
+            middle: Circle { centre: near, axis, radius: 0.1 * circle.radius * power(h, 1.5) },
+            half_width: size,
+        },
+    };
+    [Core::Circle(circle), other]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn no_place_along_a_curve_is_nearer(kind in 0..3_usize, p in numbers(), back in any::<bool>()) {
+        const PLACES: usize = 2000;
+        let [circle, other] = tangent_pair(kind, p);
+        let near = if back { nearest(&other, &circle) } else { nearest(&circle, &other) };
+        let of = |curve: &Core, from: &Core| {
+            let at = |k: usize| k as f64 / PLACES as f64;
+            let place = |t: f64| match curve {
+                Core::Segment([a, b]) => *a + (*b - *a) * t,
+                Core::Circle(c) => {
+                    let (x, (sin, cos)) = (c.axis.any_perpendicular(), (t * TAU).sin_cos());
+                    c.centre + (x * cos + c.axis.cross(x) * sin) * c.radius
+                }
+                Core::Point(p) => *p,
+                Core::Cylinder { middle, .. } => middle.centre,
+                Core::HalfSpace { point, .. } => *point,
+            };
+            (0..=PLACES).map(|k| from.distance_from(place(at(k)))).fold(f64::INFINITY, f64::min)
+        };
+        let mut least = of(&circle, &other);
+        if kind < 2 {
+            least = least.min(of(&other, &circle));
+        }
+        prop_assert!(near.distance <= least + EXACT, "{circle:?} {other:?}: {near:?}, sampled {least}");
+    }
+}
+
+/// Distance of a point of a plane from a line through two others.
+fn beside([x, y]: [f64; 2], [[a, b], [c, d]]: [[f64; 2]; 2]) -> f64 {
+    ((c - a) * (y - b) - (d - b) * (x - a)).abs() / (c - a).hypot(d - b)
+}
+
+#[test]
+fn a_long_rod_over_a_small_ring_is_nearest_to_its_lower_lip() {
+    let circle = Circle { centre: Vec3::new(0.0, 0.0, -3.0), axis: Vec3::new(0.0, 0.0, 1.0), radius: 10.0 };
+    let ends = [Vec3::new(-480.0, 0.0, 25.0), Vec3::new(520.0, 0.0, -25.0)];
+    // The rod is in a plane with the axis of the ring, whose lips are points there.
+    let lips = [-10.0, 10.0].map(|x| beside([x, -3.0], ends.map(|p| [p.x, p.z])));
+    for ends in [ends, [ends[1], ends[0]]] {
+        let near = nearest(&Core::Segment(ends), &Core::Circle(circle));
+        assert!((near.distance - lips[1]).abs() < EXACT && lips[1] < lips[0] - 0.5, "{near:?} {lips:?}");
+    }
+}
+
+#[test]
+fn a_rod_near_a_rim_is_as_far_as_a_capsule_and_as_a_cylinder() {
+    // Nearly along the tangent of the rim.
+    let ends = [Vec3::new(-1039.58694, -1117.07814, 13.38923), Vec3::new(1393.85205, 637.41957, 2.78489)];
+    let disc = Circle { centre: Vec3::new(0.0, 0.0, 1.0), axis: Vec3::new(0.0, 0.0, 1.0), radius: 300.0 };
+    let disc = Core::Cylinder { middle: disc, half_width: 5.0 };
+    let radius = 0.5;
+    let middle =
+        Circle { centre: (ends[0] + ends[1]) * 0.5, axis: (ends[1] - ends[0]).unit().unwrap(), radius };
+    let rod = Core::Cylinder { middle, half_width: 0.5 * (ends[1] - ends[0]).norm() };
+    let as_capsule = nearest(&Core::Segment(ends), &disc).distance - radius;
+    // Of samples along the rod.
+    assert!((as_capsule - 1.479997).abs() < 1e-6, "{as_capsule}");
+    for near in [nearest(&rod, &disc), nearest(&disc, &rod)] {
+        assert!((near.distance - as_capsule).abs() < EXACT, "{near:?} {as_capsule}");
+    }
+}
+
+/// A plate whose top is at z = 0, with a pin on it: a pyramid of height `tip` on a square base of half width 1.
+fn plate_with_pin([x, y]: [f64; 2], tip: f64) -> Surface {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let mut points: Vec<Vec3> = [-10.0, 0.0]
+        .into_iter()
+        .flat_map(|z| corners.map(|[u, v]| Vec3::new(200.0 * u, 200.0 * v, z)))
+        .collect();
+    points.extend(corners.map(|[u, v]| Vec3::new(x + u, y + v, 0.001)));
+    points.push(Vec3::new(x, y, tip));
+    let mut quads = vec![[0, 3, 2, 1], [4, 5, 6, 7], [8, 11, 10, 9]];
+    quads.extend((0..4).map(|k| [k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k]));
+    let mut triangles: Vec<[u32; 3]> =
+        quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    triangles.extend((0..4).map(|k| [8 + k, 8 + (k + 1) % 4, 12]));
+    Surface::new(points, triangles)
+}
+
+#[test]
+fn a_ring_over_a_plate_is_nearest_to_a_thin_pin_and_goes_through_it() {
+    let ring = Circle { centre: Vec3::new(0.0, 0.0, 6.0), axis: Vec3::new(0.0, 0.0, 1.0), radius: 150.0 };
+    let to_pin = |angle: f64, tip: f64| {
+        let surface = plate_with_pin([150.0 * angle.cos(), 150.0 * angle.sin()], tip);
+        assert!(surface.is_closed());
+        core_and_surface(&Core::Circle(ring), View::Mesh(&surface)).distance
+    };
+    // The ring passes over the tip of each pin.
+    for k in 0..40 {
+        let angle = 0.157 * f64::from(k);
+        let over = to_pin(angle, 5.5);
+        assert!((over - 0.5).abs() < EXACT, "{angle}: {over}");
+        // The axis of the pin is deepest: its faces recede by 1 over their height.
+        let height = 12.0 - 0.001;
+        let depth = (12.0 - 6.0) / height * height / height.hypot(1.0);
+        let through = to_pin(angle, 12.0);
+        assert!((through + depth).abs() < EXACT, "{angle}: {through}, -{depth}");
     }
 }
 

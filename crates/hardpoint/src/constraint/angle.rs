@@ -1,4 +1,4 @@
-//! Angles of marker j relative to marker i: about z_i, about x_j, or seen along z_i.
+//! Angles of marker j relative to marker i: about z_i, about x_j, about z_j, or seen along z_i.
 //!
 //! All are `atan2(s, c)` of two Dot-1 products. As a constraint, the residual is `sin(angle - f)`: it is zero with unit
 //! slope at the solution, and has no branch cuts over any number of turns.
@@ -85,6 +85,50 @@ pub(super) fn heading_residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
 #[inline(always)]
 pub(super) fn heading_wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
     wrench_seen(ends, axis(&ends.j.rot, 0), about_z_i(ends))
+}
+
+/// `sin(angle - f)` for the angle about x_j where z_i is not perpendicular to it.
+#[inline(always)]
+pub(super) fn heading_on_j_residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
+    residual_seen(about_x_j(ends), target)
+}
+
+/// Wrench of that angle: the moment `(c y_j - s z_j) x z_i / (s^2 + c^2)`.
+#[inline(always)]
+pub(super) fn heading_on_j_wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
+    // ds = (y_j x z_i) . (w_j - w_i),  dc = (z_j x z_i) . (w_j - w_i)
+    let [s, c] = about_x_j(ends);
+    let g = axis(&ends.j.rot, 1) * c - axis(&ends.j.rot, 2) * s;
+    Wrench::moment(g.cross(axis(&ends.i.rot, 2)) * (T::one() / (s * s + c * c)))
+}
+
+/// s and c of the last Cardan angle, gamma of `Rx(alpha) Ry(beta) Rz(gamma)`: tan(gamma) = -(x_i . y_j) / (x_i . x_j).
+#[inline(always)]
+fn about_z_j<T: Real>(ends: &MarkerPair<T>) -> [T; 2] {
+    let x_i = axis(&ends.i.rot, 0);
+    [-x_i.dot(axis(&ends.j.rot, 1)), x_i.dot(axis(&ends.j.rot, 0))]
+}
+
+/// Last Cardan angle nearest to `near`, rad.
+#[inline(always)]
+pub(super) fn cardan<T: Real>(ends: &MarkerPair<T>, near: T) -> T {
+    unwrapped(about_z_j(ends), near)
+}
+
+/// `sin(angle - f)` for the last Cardan angle.
+#[inline(always)]
+pub(super) fn cardan_residual<T: Real>(ends: &MarkerPair<T>, target: T) -> T {
+    residual_seen(about_z_j(ends), target)
+}
+
+/// Wrench of the last Cardan angle: the moment `x_i x (c y_j + s x_j) / (s^2 + c^2)`, which is z_j if the z axes are
+/// parallel.
+#[inline(always)]
+pub(super) fn cardan_wrench<T: Real>(ends: &MarkerPair<T>) -> Wrench<T> {
+    // ds = -(y_j x x_i) . (w_j - w_i),  dc = (x_j x x_i) . (w_j - w_i)
+    let [s, c] = about_z_j(ends);
+    let g = axis(&ends.j.rot, 1) * c + axis(&ends.j.rot, 0) * s;
+    Wrench::moment(axis(&ends.i.rot, 0).cross(g) * (T::one() / (s * s + c * c)))
 }
 
 /// s and c of the angle of z_j about z_i: tan(angle) = (y_i . z_j) / (x_i . z_j).

@@ -41,6 +41,11 @@ pub enum Row {
     Angle,
     /// Angle of marker j about its own x axis equals f, rad; x_j must be perpendicular to z_i (a universal joint).
     AngleOnJ,
+    /// Angle of marker j about its own x axis, seen along it, equals f, rad, for axes of any direction.
+    HeadingOnJ,
+    /// The last of the Cardan angles of marker j relative to marker i, about z_j, equals f, rad: the angle of a joint
+    /// whose axis tilts.
+    CardanAngle,
     /// Angle of x_j about z_i, seen along z_i, equals f, rad, for axes of any direction.
     Heading,
     /// Angle of z_j about z_i, seen along z_i, equals its design value plus f, rad, for axes of any direction.
@@ -146,7 +151,8 @@ impl Row {
     pub fn value<T: Real>(self, ends: &MarkerPair<T>, near: T) -> T {
         match self {
             Self::Angle | Self::Heading => angle::value(ends, near),
-            Self::AngleOnJ => angle::value_on_j(ends, near),
+            Self::AngleOnJ | Self::HeadingOnJ => angle::value_on_j(ends, near),
+            Self::CardanAngle => angle::cardan(ends, near),
             Self::Course => angle::course(ends, near),
             _ => self.residual(ends, T::zero()),
         }
@@ -186,6 +192,8 @@ impl Row {
     fn rare_residual<T: Real>(self, ends: &MarkerPair<T>, target: T) -> T {
         match self {
             Self::AngleOnJ => angle::residual_on_j(ends, target),
+            Self::HeadingOnJ => angle::heading_on_j_residual(ends, target),
+            Self::CardanAngle => angle::cardan_residual(ends, target),
             Self::Heading => angle::heading_residual(ends, target),
             Self::Course => angle::course_residual(ends, target),
             Self::ConstantVelocity => convel::residual(ends, target),
@@ -212,6 +220,8 @@ impl Row {
     fn rare_wrench<T: Real>(self, ends: &MarkerPair<T>) -> Wrench<T> {
         match self {
             Self::AngleOnJ => angle::wrench_on_j(ends),
+            Self::HeadingOnJ => angle::heading_on_j_wrench(ends),
+            Self::CardanAngle => angle::cardan_wrench(ends),
             Self::Heading => angle::heading_wrench(ends),
             Self::Course => angle::course_wrench(ends),
             Self::ConstantVelocity => convel::wrench(ends),
@@ -280,6 +290,8 @@ impl Row {
             Self::Distance => "distance".into(),
             Self::Angle => "angle about z_i".into(),
             Self::AngleOnJ => "angle about x_j".into(),
+            Self::HeadingOnJ => "angle seen along x_j".into(),
+            Self::CardanAngle => "last Cardan angle, about z_j".into(),
             Self::Heading => "angle seen along z_i".into(),
             Self::Course => "angle of z_j seen along z_i".into(),
             Self::Cosine => "Dot-1: angle between z_i and z_j".into(),
@@ -334,7 +346,7 @@ mod tests {
     use super::*;
 
     /// All kinds of rows; add new constraints here.
-    const BATTERY: [Row; 23] = [
+    const BATTERY: [Row; 25] = [
         Row::Point(0),
         Row::Point(1),
         Row::Point(2),
@@ -358,6 +370,8 @@ mod tests {
         Row::PointOnBase(0),
         Row::PointOnBase(1),
         Row::PointOnBase(2),
+        Row::HeadingOnJ,
+        Row::CardanAngle,
     ];
 
     /// Deterministic generator of numbers in (-1, 1).
@@ -392,6 +406,11 @@ mod tests {
                 let (s, c) = 0.7_f64.sin_cos();
                 j.rot = i.rot.turned(2, -0.6, 0.8).turned(0, s, c);
             }
+            // The same, with axes that tilt.
+            Row::HeadingOnJ | Row::CardanAngle => {
+                let (s, c) = 0.7_f64.sin_cos();
+                j.rot = i.rot.turned(1, 0.28, 0.96).turned(2, -0.6, 0.8).turned(0, s, c);
+            }
             _ => {}
         }
         MarkerPair { i, j, axes: Mat3::from_rotation_vector(Vec3::new(0.4, -0.7, 0.2)) }
@@ -416,7 +435,7 @@ mod tests {
                 }
                 let target = match row {
                     Row::Angle | Row::AngleOnJ => 0.7,
-                    Row::Heading | Row::Course => row.value(&ends, 0.0),
+                    Row::HeadingOnJ | Row::CardanAngle | Row::Heading | Row::Course => row.value(&ends, 0.0),
                     _ => 0.1,
                 };
                 let rate = row.wrench(&ends).on(wj - wi);
@@ -443,7 +462,8 @@ mod tests {
     #[test]
     fn angles_are_measured_over_many_turns_and_differ_from_targets_by_their_residual() {
         let mut next = numbers(5);
-        for row in [Row::Angle, Row::AngleOnJ, Row::Heading, Row::Course] {
+        use Row::{Angle, AngleOnJ, CardanAngle, Course, Heading, HeadingOnJ};
+        for row in [Angle, AngleOnJ, HeadingOnJ, CardanAngle, Heading, Course] {
             for turns in [-3.0, 0.0, 7.0] {
                 let ends = random_ends(row, &mut next);
                 let whole = 2.0 * std::f64::consts::PI * turns;

@@ -18,8 +18,8 @@ use crate::constraint::{MarkerPair, Row};
 use crate::design::{BodyFixed, DesignVelocity, Geometry, JointConstants, MarkerVelocity, ShapeGeometry};
 use crate::law::Law;
 use crate::model::{
-    BodyId, Change, DesignVariable, Direction, DriverId, ElementId, HardpointId, Joint, JointId, Length,
-    Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target, VariableId,
+    BodyId, Change, DesignVariable, Direction, Driver, DriverId, ElementId, HardpointId, Joint, JointId,
+    Length, Measure, Model, NumberId, PointId, Shape, ShapeKind, SharedModel, Source, Target, VariableId,
 };
 use crate::number::{Dual, Real};
 use crate::space::{Mat3, Pose, Twist, Vec3};
@@ -222,10 +222,10 @@ impl<'m> DesignMap<'m> {
         rates
     }
 
-    /// Returns the drivers' laws in the design with these values.
+    /// Returns the laws of the driven coordinates in the design with these values.
     pub fn laws(&self, values: &[f64]) -> Vec<Law> {
         let model = self.model();
-        let mut laws: Vec<Law> = model.drivers.iter().map(|d| d.law.clone()).collect();
+        let mut laws: Vec<Law> = model.drivers.iter().map(Driver::coordinate_law).collect();
         if model.formulas.iter().any(|f| matches!(f.of, Target::Law(..))) {
             let results = PlacedDesign::new(self, values.to_vec()).values.formulas;
             // Without results, no formula depends on a variable that is not 0.

@@ -492,7 +492,8 @@ impl BodyDraft {
 impl DriverDraft {
     /// Returns a driver. A joint's name represents its only coordinate, `["joint", "coordinate"]` for one of several.
     pub fn new(name: impl Into<String>, drives: impl Into<DrivenDraft>, law: Law) -> Self {
-        Self { name: name.into(), drives: drives.into(), from_zero: false, reversed: false, law }
+        let (from_zero, reversed, unit) = (false, false, "");
+        Self { name: name.into(), drives: drives.into(), from_zero, reversed, law, unit }
     }
 }
 

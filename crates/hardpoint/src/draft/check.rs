@@ -41,6 +41,9 @@ use crate::space::{Mat3, Pose, Vec3};
 const PERPENDICULAR_TOLERANCE: f64 = 1e-6;
 /// Distance, relative to the size of the mechanism, below which two points coincide.
 const SAME_POINT: f64 = 1e-9;
+/// Largest coordinate and length, m: beyond the size of the universe, and so small that products of ten of them do not
+/// overflow.
+const LARGEST_LENGTH: f64 = 1e30;
 /// Maximum number of valid names in an error.
 const LISTED_NAMES: usize = 24;
 /// Number of errors up to which the check suggests a name ...
@@ -313,7 +316,23 @@ impl<'a> Checker<'a> {
         self.faults.last_mut().expect("just pushed")
     }
 
-    /// HP0201: empty and duplicate names; HP0202: coordinates that are not finite.
+    /// HP0202: coordinates or a length that are not finite or too large.
+    fn check_lengths(&mut self, what: &str, lengths: [f64; 3], at: DraftLocation) -> bool {
+        let [x, y, z] = lengths.map(f64::abs);
+        // NaN is not finite.
+        if x <= LARGEST_LENGTH && y <= LARGEST_LENGTH && z <= LARGEST_LENGTH {
+            return true;
+        }
+        if lengths.iter().all(|x| x.is_finite()) {
+            self.fault("HP0202", at, format!("{what} is larger than {LARGEST_LENGTH:e} m"))
+                .help(format!("give a number below {LARGEST_LENGTH:e} m"));
+        } else {
+            self.fault("HP0202", at, format!("{what} is not a finite number"));
+        }
+        false
+    }
+
+    /// HP0201: empty and duplicate names; HP0202: invalid coordinates.
     fn check_names(&mut self) {
         let d = self.draft;
         let lists: [(Section, &str, Vec<&str>); 26] = [
@@ -392,14 +411,8 @@ impl<'a> Checker<'a> {
             }
         }
         for (index, h) in d.hardpoints.iter().enumerate() {
-            if !h.position.is_finite() {
-                let at = Here { section: Section::Hardpoints, index }.key("position");
-                self.fault(
-                    "HP0202",
-                    at,
-                    format!("a coordinate of hardpoint `{}` is not a finite number", h.name),
-                );
-            }
+            let at = Here { section: Section::Hardpoints, index }.key("position");
+            self.check_lengths(&format!("a coordinate of hardpoint `{}`", h.name), h.position.to_array(), at);
         }
         if d.bodies.is_empty() && !self.is_table_unread("body") {
             let at = Here { section: Section::Bodies, index: 0 }.key("");
@@ -510,16 +523,15 @@ impl<'a> Checker<'a> {
     fn place(&mut self, place: &LocationDraft, owner: &str, at: DraftLocation) -> Option<HardpointId> {
         match place {
             LocationDraft::Hardpoint(name) => self.hardpoint(name, at),
-            LocationDraft::At(p) if p.is_finite() => {
+            LocationDraft::At(p) => {
+                if !self.check_lengths(&format!("a coordinate of `{owner}`"), p.to_array(), at) {
+                    return None;
+                }
                 self.model.hardpoints.push(Hardpoint { name: owner.into(), position: *p, unnamed: true });
                 self.extent.include(*p);
                 Some(HardpointId(self.model.hardpoints.len() - 1))
             }
             LocationDraft::Formula(coordinates) => self.formula_place(coordinates, owner, at),
-            LocationDraft::At(_) => {
-                self.fault("HP0202", at, format!("a coordinate of `{owner}` is not a finite number"));
-                None
-            }
         }
     }
 
@@ -593,12 +605,11 @@ impl<'a> Checker<'a> {
             match &b.frame {
                 FrameDraft::Default => {}
                 FrameDraft::Pose(pose) => {
-                    if !(pose.r.is_finite() && pose.rot.cols.iter().all(|c| c.is_finite())) {
-                        self.fault(
-                            "HP0202",
-                            here.key("frame"),
-                            format!("the frame of body `{}` is not finite", b.name),
-                        );
+                    let what = format!("a coordinate of the frame of body `{}`", b.name);
+                    let is_placed = self.check_lengths(&what, pose.r.to_array(), here.key("frame"));
+                    if is_placed && !pose.rot.cols.iter().all(|c| c.is_finite()) {
+                        let message = format!("the orientation of body `{}` is not finite", b.name);
+                        self.fault("HP0202", here.key("frame"), message);
                     }
                     frame = *pose;
                 }
@@ -610,12 +621,9 @@ impl<'a> Checker<'a> {
                                 .help("give numbers: body frames do not change with the design");
                             None
                         }
-                        LocationDraft::At(v) if v.is_finite() => Some(*v),
-                        LocationDraft::At(_) => {
-                            let message =
-                                format!("a coordinate of the frame of `{}` is not a finite number", b.name);
-                            self.fault("HP0202", here.item("frame", k), message);
-                            None
+                        LocationDraft::At(v) => {
+                            let what = format!("a coordinate of the frame of `{}`", b.name);
+                            self.check_lengths(&what, v.to_array(), here.item("frame", k)).then_some(*v)
                         }
                         LocationDraft::Hardpoint(name) => {
                             self.hardpoint(name, here.item("frame", k)).and_then(|h| self.position(h))

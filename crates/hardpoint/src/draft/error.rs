@@ -167,6 +167,12 @@ impl fmt::Display for Section {
     }
 }
 
+/// Number of a message: short also if it is very large or small.
+pub(crate) fn short(x: f64) -> String {
+    let is_plain = x == 0.0 || !x.is_finite() || (1e-4..1e9).contains(&x.abs());
+    if is_plain { x.to_string() } else { format!("{x:e}") }
+}
+
 /// Joins items with a separator. A longer list is cut after `most` items, with the number of the others.
 pub fn some_of(items: &[impl AsRef<str>], separator: &str, most: usize) -> String {
     let shown: Vec<&str> = items.iter().take(most).map(AsRef::as_ref).collect();

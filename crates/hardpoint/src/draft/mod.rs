@@ -17,6 +17,7 @@ pub use change::{ChangeDraft, ShapeDraft};
 pub(crate) use check::{CheckElement, ElementCheck};
 pub use check::{ConstantError, Nominal};
 pub use element::{ElementDraft, ElementKindDraft, ElementType};
+pub(crate) use error::short;
 pub use error::{DraftError, DraftLocation, Section, did_you_mean, some_of};
 use measure::not_drivable;
 pub use measure::{FieldDraft, FieldKind, MeasureField, MeasureKindDraft, MeasureType};
@@ -331,6 +332,8 @@ pub struct DriverDraft {
     pub reversed: bool,
     /// Law of the prescribed quantity, m or rad.
     pub law: Law,
+    /// Symbol of the unit in which laws of this driver are written, for messages; empty for a plain number.
+    pub unit: &'static str,
 }
 
 /// Placement at which the assembly of a body starts.

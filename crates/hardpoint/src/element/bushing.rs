@@ -75,7 +75,7 @@ impl ForceFormula for Bushing {
         let opening = at.opening_between(e, [self.from, self.to]);
         let law = self.law();
         for (k, of) in law.directions.iter().enumerate() {
-            let [_, stiffness] = at.elastic_force(opening.coordinates[k], of);
+            let [_, stiffness] = at.elastic_resistance(opening.coordinates[k], of);
             each(opening.coordinates[k], stiffness);
         }
         for StiffnessEntry { row, column, value } in law.coupled.iter().flat_map(|matrix| &matrix.entries) {

@@ -152,13 +152,14 @@ impl CheckElement for ElasticJoint {
 }
 
 impl ForceFormula for ElasticJoint {
-    fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId, out: &mut [Wrench<T>]) {
-        let Some(opening) = at.opening(self.joint) else { return };
+    fn apply<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId, out: &mut [Wrench<T>]) {
+        let Some(opening) = at.opening(e, self.joint) else { return };
         at.apply_between(self.joint, at.elastic_wrench(&opening, &self.law()), T::one(), out);
     }
 
-    fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, _: ElementId) -> T {
-        at.opening(self.joint).map_or(T::zero(), |opening| at.elastic_wrench(&opening, &self.law()).f.norm())
+    fn size<T: Real>(&self, at: &AppliedLoads<'_, T>, e: ElementId) -> T {
+        at.opening(e, self.joint)
+            .map_or(T::zero(), |opening| at.elastic_wrench(&opening, &self.law()).f.norm())
     }
 
     fn deflections<T: Real>(&self, _: &AppliedLoads<'_, T>, _: ElementId, _: impl FnMut(T, T)) {}

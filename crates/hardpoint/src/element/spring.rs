@@ -12,13 +12,14 @@ impl Spring {
         self.extension.as_ref().or(self.compression.as_ref())
     }
 
+    /// Length in the design configuration, which depends on the design.
+    fn design_length<T: Real>(&self, at: &AppliedLoads<'_, T>) -> T {
+        (at.design_position(self.to) - at.design_position(self.from)).norm()
+    }
+
     /// Tension from the deflection, and its derivative by the length.
     fn pull<T: Real>(&self, at: &AppliedLoads<'_, T>, length: T) -> [T; 2] {
-        let free_length = match self.free_length {
-            Some(free) => at.number(free.0),
-            // L_o of the design configuration, which depends on the design
-            None => (at.design_position(self.to) - at.design_position(self.from)).norm(),
-        };
+        let free_length = self.free_length.map_or_else(|| self.design_length(at), |free| at.number(free.0));
         let way = length - free_length;
         let stiffness = at.or_zero(self.stiffness.map(|n| n.0));
         let (mut pull, mut slope) = (stiffness * way, stiffness);
@@ -111,7 +112,8 @@ impl ForceFormula for Spring {
         let (p, q) = (at.point(from), at.point(to));
         let d = q - p;
         // s = p + k (L - L_o) + k_3 (L - L_o)^3 + f T(L - L_o) + c L.
-        let mut tension = self.pull(at, d.norm())[0] + at.preload(self.preload.map(|n| n.0));
+        let pull = at.grown(self.pull(at, d.norm())[0], || self.pull(at, self.design_length(at))[0]);
+        let mut tension = pull + at.preload(self.preload.map(|n| n.0));
         if let Some(damping) = self.damping {
             let velocity = at.bodies[at.body(to)].velocity(q) - at.bodies[at.body(from)].velocity(p);
             tension += at.number(damping.0) * (d.dot(velocity) / at.apart(d));

@@ -90,7 +90,8 @@ pub(crate) fn release(
         let coordinates = open.joints[joint.0].kind.coordinates;
         if let Some(coordinate) = coordinates.iter().position(|c| c.freedom == Some(freedom)) {
             let name = open.joints[joint.0].name.clone();
-            open.drivers.push(Driver { name, joint, coordinate, law: Law::constant(0.0) });
+            let (law, is_reversed) = (Law::constant(0.0), false);
+            open.drivers.push(Driver { name, joint, coordinate, law, is_reversed });
         }
     }
     let mut numbered: Vec<(usize, Driver)> =
@@ -134,6 +135,7 @@ fn drive_openings(open: &mut Model, joint: JointId, rigid: usize) {
         joint,
         coordinate,
         law: Law::constant(0.0),
+        is_reversed: false,
     });
     let openings: Vec<Driver> = openings.collect();
     open.drivers.extend(openings);

@@ -1,8 +1,8 @@
 //! Equilibria of a mechanism at its output times, by Newton's method on the openings.
 
 use crate::design::{BodyFixed, DesignMap, DesignVelocity};
+use crate::linalg::Elimination;
 use crate::linalg::semidefinite::is_definite;
-use crate::linalg::{Elimination, Factored};
 use crate::load::{ElementTurns, GivenLoads, OpeningLoads};
 use crate::measure::{DriverPoses, Instant, StepValues};
 use crate::model::{DriverId, MeasureKind, Model, UnitForce};
@@ -49,6 +49,11 @@ const LEFT_IN_MIDDLE: f64 = 0.5;
 /// Length of a step, rad or sizes, within which no other branch is expected: a stop that the loads touch or leave
 /// changes the stiffness at once, however short the step.
 const NEAR: f64 = 1e-6;
+/// Part of the terms that a stiffness is the sum of, below which it is round-off.
+const ROUND_OFF_OF_TERMS: f64 = 1e-13;
+/// Steps of the power iteration for the direction of least stiffness. It is the answer to an error only, and exact
+/// where one direction is much less stiff than all others.
+const POWER_STEPS: usize = 300;
 /// A pivot of the scaled stiffness below this holds nothing.
 const HOLDS_NOTHING: f64 = 1e-12;
 /// Difference of symmetric entries of the scaled stiffness above which the forces have no potential; round-off is
@@ -61,8 +66,8 @@ enum Rejection {
     Locked(StepRejection),
     /// The mechanism does not reach the position, or Newton's method does not converge.
     NoConvergence,
-    /// The equilibrium is not stable.
-    Unstable,
+    /// The equilibrium is not stable: a motion of mainly this opening needs no work.
+    Unstable(usize),
     /// No force resists a motion of this opening.
     NothingHolds(usize),
 }
@@ -128,6 +133,10 @@ pub(crate) struct EquilibriumSolver<'a> {
     tangent: Elimination<f64>,
     /// Per opening: its unit, in which the stiffness is near one.
     units: Vec<f64>,
+    /// Per opening: its unit in the design configuration without loads.
+    first_units: Option<Vec<f64>>,
+    /// Per opening: size of the terms of its stiffness.
+    terms: Vec<f64>,
     /// True if the stiffness that was factored last is regular.
     is_regular: bool,
     /// True if the derivatives are those at the equilibrium that was found last.
@@ -170,6 +179,8 @@ impl<'a> EquilibriumSolver<'a> {
             stiffness: vec![0.0; n * n],
             tangent: Elimination::new(n),
             units: vec![1.0; n],
+            first_units: None,
+            terms: vec![0.0; n],
             is_regular: false,
             is_prepared: false,
             iterations: 0,
@@ -462,33 +473,32 @@ impl<'a> EquilibriumSolver<'a> {
 
     /// Sets the stiffness at the position of the stepper.
     fn set_tangent(&mut self, one: &mut Stepper<'_>) {
-        let Self { openings, loads, stiffness, .. } = self;
+        let Self { openings, loads, stiffness, terms, .. } = self;
         loads.prepare(&one.mechanism.topology, &mut one.mechanism.state);
         loads.stiffness(|a, b, slope| stiffness[a * openings.len() + b] = slope);
+        terms.copy_from_slice(loads.terms_of_own_stiffness());
     }
 
     /// Factors the stiffness in units of the openings. Returns the sign of its determinant.
     fn factor(&mut self) -> Result<bool, Rejection> {
         let n = self.openings.len();
         for a in 0..n {
-            let diagonal = self.stiffness[a * n + a].abs();
-            self.units[a] = if diagonal > 0.0 { 1.0 / diagonal.sqrt() } else { 1.0 };
+            // A stiffness that is round-off stays so in its unit.
+            let (own, terms) = (self.stiffness[a * n + a].abs(), self.terms[a]);
+            let size = if own > ROUND_OFF_OF_TERMS * terms { own } else { terms };
+            self.units[a] = if size > 0.0 { 1.0 / size.sqrt() } else { 1.0 };
         }
-        let factored = self.factor_shifted(0.0);
-        self.is_regular = n == 0 || factored.pivot_ratio > HOLDS_NOTHING;
-        if self.is_regular { Ok(factored.positive) } else { Err(Rejection::NothingHolds(self.least_held())) }
-    }
-
-    /// Factors the scaled stiffness, with this added to its diagonal.
-    fn factor_shifted(&mut self, shift: f64) -> Factored<f64> {
-        let n = self.openings.len();
+        if self.first_units.is_none() {
+            self.first_units = Some(self.units.clone());
+        }
         for a in 0..n {
             for (b, to) in self.tangent.row_mut(a).iter_mut().enumerate() {
-                let diagonal = if a == b { shift } else { 0.0 };
-                *to = self.stiffness[a * n + b] * self.units[a] * self.units[b] + diagonal;
+                *to = self.stiffness[a * n + b] * self.units[a] * self.units[b];
             }
         }
-        self.tangent.factor()
+        let factored = self.tangent.factor();
+        self.is_regular = n == 0 || factored.pivot_ratio > HOLDS_NOTHING;
+        if self.is_regular { Ok(factored.positive) } else { Err(Rejection::NothingHolds(self.least_held())) }
     }
 
     /// True if every virtual motion from the equilibrium whose stiffness was set last needs work; false if one does
@@ -503,21 +513,31 @@ impl<'a> EquilibriumSolver<'a> {
             || (0..n).all(|a| (0..a).all(|b| (scaled(a, b) - scaled(b, a)).abs() <= UNSYMMETRIC));
         match positive && all_need_work() {
             true => Ok(true),
-            false if !positive || has_potential() => Err(Rejection::Unstable),
+            false if !positive || has_potential() => Err(Rejection::Unstable(self.least_held())),
             false => Ok(false),
         }
     }
 
-    /// The opening that the least force resists: the largest component of the direction without stiffness.
-    fn least_held(&mut self) -> usize {
+    /// The opening that the least force resists: the largest component of the direction of least stiffness, in the
+    /// units of the design configuration without loads.
+    fn least_held(&self) -> usize {
         let n = self.openings.len();
-        // Inverse iteration from a vector that is not symmetric.
+        let units = self.first_units.as_ref().unwrap_or(&self.units);
+        let scaled = |a: usize, b: usize| self.stiffness[a * n + b] * units[a] * units[b];
+        let symmetric = |a: usize, b: usize| 0.5 * (scaled(a, b) + scaled(b, a));
+        // No eigenvalue is above the largest sum of a row: c 1 - K has the largest one where K has the least.
+        let row = |a: usize| (0..n).map(|b| symmetric(a, b).abs()).sum::<f64>();
+        let above = (0..n).map(row).fold(0.0, f64::max);
+        // From a vector that is not symmetric.
         let mut direction: Vec<f64> = (0..n).map(|k| 1.0 + 0.1 * k as f64).collect();
-        self.factor_shifted(HOLDS_NOTHING);
-        for _ in 0..3 {
-            self.tangent.solve(&mut direction);
-            let size = direction.iter().map(|x| x.abs()).fold(0.0, f64::max);
-            direction.iter_mut().for_each(|x| *x /= size);
+        for _ in 0..POWER_STEPS {
+            let next =
+                |a: usize| above * direction[a] - (0..n).map(|b| symmetric(a, b) * direction[b]).sum::<f64>();
+            let next: Vec<f64> = (0..n).map(next).collect();
+            let size = next.iter().map(|x| x.abs()).fold(0.0, f64::max);
+            if size > 0.0 {
+                direction = next.into_iter().map(|x| x / size).collect();
+            }
         }
         (0..n).fold(0, |best, k| if direction[k].abs() > direction[best].abs() { k } else { best })
     }
@@ -675,12 +695,28 @@ impl<'a> EquilibriumSolver<'a> {
         found
     }
 
+    /// The opening that nothing holds in the design configuration without loads, if there is one.
+    fn unheld(&mut self, one: &mut Stepper<'_>) -> Option<usize> {
+        advance::move_at_rest(one, &self.last.drivers).ok()?;
+        match self.prepare_with(one, &GivenLoads::none(self.model)) {
+            Err(Rejection::NothingHolds(k)) => Some(k),
+            Err(Rejection::Locked(_) | Rejection::NoConvergence | Rejection::Unstable(_)) | Ok(_) => None,
+        }
+    }
+
     /// Reason why the way to the equilibrium at time t ends after a part of it.
     fn stop(&mut self, one: &mut Stepper<'_>, t: f64, done: f64, rejection: Rejection) -> Box<Stop> {
+        let unheld = if self.path.is_empty() && done == 0.0 { self.unheld(one) } else { None };
         let at_output = self.path.last();
         let last_time = at_output.map(|passed| passed.time);
         let failed_time = last_time.map_or(t, |from| from + (t - from) * done);
         let drivers = at_output.map_or(&self.last.drivers, |passed| &passed.drivers).clone();
+        let rejection = match (rejection, unheld) {
+            (rejection @ Rejection::Locked(_), _) | (rejection, None) => rejection,
+            (Rejection::NothingHolds(_) | Rejection::NoConvergence | Rejection::Unstable(_), Some(k)) => {
+                Rejection::NothingHolds(k)
+            }
+        };
         let kind = match (rejection, last_time) {
             (Rejection::Locked(rejection), _) => advance::stop_at_rest(one, t, rejection).kind,
             (Rejection::NothingHolds(k), None) if done == 0.0 => {
@@ -689,12 +725,7 @@ impl<'a> EquilibriumSolver<'a> {
             (Rejection::NoConvergence, None) => StopKind::LimitLoad { part: done },
             (Rejection::NoConvergence, Some(_)) => StopKind::NoEquilibrium,
             // A stiffness that vanishes on the way has held all directions before.
-            (Rejection::NothingHolds(_) | Rejection::Unstable, _) => {
-                // The direction in which the stiffness vanishes.
-                if advance::move_at_rest(one, &self.last.drivers).is_ok() {
-                    self.prepare(one);
-                }
-                let k = self.least_held();
+            (Rejection::NothingHolds(k) | Rejection::Unstable(k), _) => {
                 StopKind::Unstable { direction: self.direction(self.openings[k]) }
             }
         };

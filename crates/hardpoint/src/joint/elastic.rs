@@ -60,6 +60,12 @@ fn make(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<Ela
     // With simple freedoms all slides come first, then all turns, so that they are the coordinates of the force.
     let is_simple = own.iter().all(|f| matches!(f, Freedom::Slide(_) | Freedom::Turn(2) | Freedom::Ball));
     let mut freedoms: Vec<Freedom> = opened.chain(own.iter().copied()).collect();
+    // The third turn of a cross is between its pins, whose angles keep their meaning.
+    if let [.., third, z @ Freedom::Turn(2), Freedom::Turn(0)] = &mut freedoms[..]
+        && *third == Freedom::Turn(1)
+    {
+        std::mem::swap(third, z);
+    }
     if is_simple {
         freedoms.sort_by_key(|f| match f {
             Freedom::Slide(k) => *k,
@@ -68,18 +74,27 @@ fn make(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<Ela
         });
     }
     let place = |freedom: Freedom| freedoms.iter().rposition(|f| *f == freedom);
+    // Where axes tilt, angles are those of the chain, with rows that hold for axes of any direction: after the tilts of
+    // simple types, before that of a cross.
+    let tilts = directions[3] || directions[4];
+    let tilting = |row: Row| match row {
+        Row::Angle if is_simple => Row::CardanAngle,
+        Row::Angle => Row::Heading,
+        Row::AngleOnJ => Row::HeadingOnJ,
+        other => other,
+    };
     let coordinates = rigid.coordinates.iter().map(|c| CoordinateType {
         name: c.name,
         quantity: c.quantity,
         freedom: c.freedom.and_then(|k| place(own[k])),
-        row: c.row,
+        row: if tilts { tilting(c.row) } else { c.row },
     });
     let openings = (0..DIRECTIONS).filter(|d| directions[*d]).map(|d| CoordinateType {
         name: DIRECTION_NAMES[d],
         quantity: if d < 3 { Quantity::Length } else { Quantity::Angle },
         freedom: freedoms.iter().position(|f| *f == freedom_of(d)),
         // Only tree joints are driven in these directions.
-        row: if d < 3 { Row::Dot2(d) } else { Row::Angle },
+        row: if d < 3 { Row::Dot2(d) } else { Row::CardanAngle },
     });
     let coordinates = coordinates.chain(openings).collect::<Vec<_>>().leak();
     let free = free_directions(rigid);

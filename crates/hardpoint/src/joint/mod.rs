@@ -243,8 +243,8 @@ impl CoordinateType {
     pub const fn axis(&self) -> CoordinateAxis {
         match self.row {
             Row::Dot2(k) => CoordinateAxis::Along(k),
-            Row::Angle | Row::Heading | Row::Course => CoordinateAxis::About(2),
-            Row::AngleOnJ => CoordinateAxis::About(0),
+            Row::Angle | Row::CardanAngle | Row::Heading | Row::Course => CoordinateAxis::About(2),
+            Row::AngleOnJ | Row::HeadingOnJ => CoordinateAxis::About(0),
             Row::Distance
             | Row::Point(_)
             | Row::PointOnBase(_)
@@ -345,7 +345,7 @@ impl JointType {
 
     /// True if it is a cross of two pins.
     pub fn is_cross(&self) -> bool {
-        self.coordinates.iter().any(|c| c.row == Row::AngleOnJ)
+        self.coordinates.iter().any(|c| matches!(c.row, Row::AngleOnJ | Row::HeadingOnJ))
     }
 
     /// True if its axis may tilt between the two bodies, which a point, a line or a plane holds together.

@@ -84,7 +84,7 @@ pub struct Law {
     factor: f64,
     /// Value of the prescribed quantity in the design configuration, in the driver's unit, if the law counts from zero.
     design_value: Option<f64>,
-    /// True if the driver moves in the opposite sense.
+    /// True if the change from the design configuration has the other sign.
     is_reversed: bool,
 }
 
@@ -185,8 +185,8 @@ impl Law {
         self
     }
 
-    /// This law with the driver moving in the opposite sense: the change from the design configuration has the other
-    /// sign. Text and parameters remain as written.
+    /// This law in the opposite sense: the change from the design configuration has the other sign. Text and parameters
+    /// remain as written.
     ///
     /// ```
     /// use hardpoint::law::Law;
@@ -201,9 +201,10 @@ impl Law {
         self
     }
 
-    /// True if the driver moves in the opposite sense: see [`Law::reversed`].
-    pub fn is_reversed(&self) -> bool {
-        self.is_reversed
+    /// This law in the unit of its text: without [scale](Self::scaled).
+    pub(crate) fn as_written(&self) -> Self {
+        let design_value = self.design_value.map(|value| value / self.factor);
+        Self { factor: 1.0, design_value, ..self.clone() }
     }
 
     /// Index and value of the parameter with the design value of the prescribed quantity, if the law counts from zero.

@@ -208,6 +208,16 @@ impl<T: Real> AppliedLoads<'_, T> {
         if self.share == 1.0 { whole } else { whole * T::constant(self.share) }
     }
 
+    /// A force on the way to an equilibrium, without the part of the one in the design configuration that does not act
+    /// yet: a prestress grows like all loads.
+    pub fn grown(&self, force: T, in_design: impl FnOnce() -> T) -> T {
+        if self.share == 1.0 {
+            return force;
+        }
+        let prestress = in_design();
+        force - (prestress - self.part(prestress))
+    }
+
     /// An optional preload; zero by default.
     pub fn preload(&self, n: Option<NumberId>) -> T {
         n.map_or_else(T::zero, |n| self.part(self.number(n)))
@@ -286,12 +296,13 @@ impl<T: Real> AppliedLoads<'_, T> {
         (ends, j.kind.coordinates[coordinate].row)
     }
 
-    /// Opening of an elastic joint; `None` in a model without equilibrium, where elastic joints are rigid.
-    pub fn opening(&self, joint: JointId) -> Option<Opening<T>> {
+    /// Opening of an elastic joint under the force of an element; `None` in a model without equilibrium, where elastic
+    /// joints are rigid.
+    pub fn opening(&self, e: ElementId, joint: JointId) -> Option<Opening<T>> {
         self.model.equilibrium.as_ref()?;
         let [m_i, m_j] = self.geometry.markers[joint.0];
         let [i, j] = each(&self.model.joints[joint.0].bodies, |b| self.bodies[b.0].pose);
-        Some(Opening::between(&i.compose(m_i), &j.compose(m_j)))
+        Some(Opening::between(&i.compose(m_i), &j.compose(m_j), self.near[e.0]))
     }
 
     /// Opening of an element between two points: of its markers there, which have the same axes in the design
@@ -305,13 +316,26 @@ impl<T: Real> AppliedLoads<'_, T> {
             };
             Pose { rot, r: self.point(point) }
         };
-        Opening::between(&marker(0, i), &marker(1, j))
+        let opening = Opening::between(&marker(0, i), &marker(1, j), self.near[e.0]);
+        if self.share == 1.0 {
+            return opening;
+        }
+        let apart = self.design_position(j) - self.design_position(i);
+        let apart = match self.geometry.axes[e.0] {
+            Some(axes) => {
+                let frame: Mat3<T> = self.model.bodies[self.body(i)].frame.rot.spread();
+                (frame * axes[0]).transpose_mul(apart)
+            }
+            None => apart,
+        };
+        let o = T::zero();
+        Opening { in_design: [apart.x, apart.y, apart.z, o, o, o], ..opening }
     }
 
     /// Opening of an element that acts on a joint or between two points.
     pub fn opening_at(&self, e: ElementId) -> Option<Opening<T>> {
         match self.model.elements[e.0].kind.force(self.model)?.acts_on {
-            ActsOn::Joint(joint) => self.opening(joint),
+            ActsOn::Joint(joint) => self.opening(e, joint),
             ActsOn::Points(points) => Some(self.opening_between(e, points)),
             ActsOn::Line(_)
             | ActsOn::Point(_)
@@ -321,9 +345,8 @@ impl<T: Real> AppliedLoads<'_, T> {
         }
     }
 
-    /// Elastic force or moment on body j along a coordinate of an opening, `-(k e + k_3 e^3 + C(e) - f_0)`, and the
-    /// stiffness against it.
-    pub fn elastic_force(&self, e: T, of: &Elasticity<'_>) -> [T; 2] {
+    /// Elastic resistance along a coordinate of an opening, `k e + k_3 e^3 + C(e)`, and its derivative.
+    pub fn elastic_resistance(&self, e: T, of: &Elasticity<'_>) -> [T; 2] {
         let stiffness = self.or_zero(of.stiffness);
         let (mut push, mut slope) = (stiffness * e, stiffness);
         if let Some(cubic) = of.cubic {
@@ -334,21 +357,37 @@ impl<T: Real> AppliedLoads<'_, T> {
             let [force, by_way] = curve.at(e);
             (push, slope) = (push + force, slope + by_way);
         }
-        [self.preload(of.preload) - push, slope]
+        [push, slope]
     }
 
     /// Elastic forces and moments of a law on body j along the coordinates of an opening.
     pub fn elastic_forces(&self, opening: &Opening<T>, law: &ElasticLaw<'_>) -> [T; 6] {
+        let mut forces = self.elastic_forces_at(&opening.coordinates, law);
+        if self.share != 1.0 {
+            let prestress = self.elastic_forces_at(&opening.in_design, law);
+            for (force, prestress) in forces.iter_mut().zip(prestress) {
+                *force = self.grown(*force, || prestress);
+            }
+        }
+        for (k, of) in law.directions.iter().enumerate().filter(|(_, of)| of.preload.is_some()) {
+            forces[k] += self.preload(of.preload);
+        }
+        forces
+    }
+
+    /// Elastic forces and moments without preloads, `-(k e + k_3 e^3 + C(e))` and those of the matrix.
+    fn elastic_forces_at(&self, coordinates: &[T; 6], law: &ElasticLaw<'_>) -> [T; 6] {
         let mut forces = [T::zero(); 6];
-        for (k, of) in law.directions.iter().enumerate().filter(|(_, of)| of.acts()) {
-            [forces[k], _] = self.elastic_force(opening.coordinates[k], of);
+        for (k, of) in law.directions.iter().enumerate().filter(|(_, of)| of.resists()) {
+            let [push, _] = self.elastic_resistance(coordinates[k], of);
+            forces[k] = -push;
         }
         for entry in law.coupled.iter().flat_map(|matrix| &matrix.entries) {
-            let (StiffnessEntry { row, column, value }, e) = (*entry, &opening.coordinates);
+            let StiffnessEntry { row, column, value } = *entry;
             let stiffness = self.number(value);
-            forces[row] -= stiffness * e[column];
+            forces[row] -= stiffness * coordinates[column];
             if row != column {
-                forces[column] -= stiffness * e[row];
+                forces[column] -= stiffness * coordinates[row];
             }
         }
         forces
@@ -368,11 +407,11 @@ impl<T: Real> AppliedLoads<'_, T> {
 
     /// Sum of a wrench and the elastic wrenches on body j of a joint; the wrench itself in a model without equilibrium.
     pub fn elastic_wrench_of(&self, joint: JointId, rigid: Wrench<T>) -> Wrench<T> {
-        let Some(opening) = self.opening(joint) else { return rigid };
         let mut sum = rigid;
-        for force in self.model.elements.iter().filter_map(|element| element.kind.force(self.model)) {
-            if let Compliance::Joint(elastic) = force.compliance
+        for (e, element) in self.model.elements.iter().enumerate() {
+            if let Some(Compliance::Joint(elastic)) = element.kind.force(self.model).map(|f| f.compliance)
                 && elastic.joint == joint
+                && let Some(opening) = self.opening(ElementId(e), joint)
             {
                 sum += self.elastic_wrench(&opening, &elastic.law());
             }
@@ -529,7 +568,8 @@ impl<T: Real> AppliedLoads<'_, T> {
         equilibrium: Option<NumberId>,
         damping: Option<NumberId>,
     ) -> T {
-        let force = -(self.number(stiffness) * (value - self.or_zero(equilibrium)));
+        // The prestress k chi_o grows with the loads.
+        let force = -(self.number(stiffness) * (value - self.preload(equilibrium)));
         damping.map_or(force, |damping| force - self.number(damping) * rate)
     }
 

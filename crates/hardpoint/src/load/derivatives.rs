@@ -21,7 +21,7 @@ use crate::motion::kinematics::State;
 use crate::motion::level::of_body;
 use crate::number::{Dual, Real};
 use crate::sensitivity::{Differentiated, Turning};
-use crate::space::{Twist, Wrench};
+use crate::space::{Twist, Vec3, Wrench};
 use crate::topology::Topology;
 
 use super::acting::{AppliedLoads, MovingBody};
@@ -116,6 +116,8 @@ pub(super) struct LoadDerivatives<'a, T> {
     has_mass: Vec<bool>,
     /// Per load: its derivatives by the unit twists W of a body.
     slopes: Vec<[T; 6]>,
+    /// Per load: see [`LoadDerivatives::terms_by_own_driver`].
+    terms: Vec<f64>,
     /// Derivatives of the friction equations along the direction, at constant reactions.
     residuals: Vec<T>,
     /// Transmitted loads at constant wrenches: only the speeds of drivers change.
@@ -159,6 +161,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             has_mass: bodies_with_masses(model),
             forces_on: forces_on_bodies(model),
             slopes: vec![[T::zero(); 6]; loads.len()],
+            terms: vec![0.0; loads.len()],
             changed,
             constant,
             position: LoadedPosition::new(model),
@@ -296,6 +299,7 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
     /// Adds the derivatives of all forces by the twists W of the bodies to the coefficients of the loads. This is for
     /// positions at rest, at which forces depend on nothing else that moves, and for loads of drivers.
     pub fn add_force_coefficients(&mut self, at: &Equilibrium<'_, T>) {
+        self.terms.fill(0.0);
         for b in 1..self.forces_on.len() {
             if self.forces_on[b].is_empty() && !self.forced.contains(&b) {
                 continue;
@@ -307,9 +311,19 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
                 let applied = self.position.loads(self.model, &self.constant);
                 self.forces_on[b].iter().for_each(|e| applied.add(*e, &mut self.required));
                 applied.add_further(&mut self.required);
-                for (slopes, load) in self.slopes.iter_mut().zip(&self.loads) {
-                    let work = |b: &usize| self.required[*b].derivative().on(load.virtual_twists[*b]);
-                    slopes[unit] = self.beside[b].iter().fold(T::zero(), |sum, b| sum + work(b));
+                let loads = self.slopes.iter_mut().zip(&mut self.terms).zip(&self.loads);
+                for ((slopes, terms), load) in loads {
+                    let own = load.virtual_twists[b];
+                    let own = [own.w.x, own.w.y, own.w.z, own.v.x, own.v.y, own.v.z][unit].value().abs();
+                    let (mut sum, mut size) = (T::zero(), 0.0);
+                    for &b in &self.beside[b] {
+                        let (wrench, twist) = (self.required[b].derivative(), load.virtual_twists[b]);
+                        sum += wrench.on(twist);
+                        size += sum_of_sizes(wrench.m) * sum_of_sizes(twist.w)
+                            + sum_of_sizes(wrench.f) * sum_of_sizes(twist.v);
+                    }
+                    slopes[unit] = sum;
+                    *terms += own * size;
                 }
             }
             self.position.bodies[b] = self.nominal[b];
@@ -359,6 +373,12 @@ impl<'a, T: Real> LoadDerivatives<'a, T> {
             }
             sums.iter().enumerate().for_each(|(b, sum)| each(a, b, *sum));
         }
+    }
+
+    /// Per load of a driver: a bound of the terms of the forces in its derivative by this driver, whose round-off is
+    /// that of the derivative. Set with the coefficients of the forces.
+    pub fn terms_by_own_driver(&self) -> &[f64] {
+        &self.terms
     }
 
     /// Derivatives of the loads of drivers at rest by a variable whose sensitivities have been solved, with the
@@ -456,6 +476,11 @@ fn set_residuals<T: Real>(
     transmitted: &TransmittedLoads<Dual<T>>,
 ) {
     to.iter_mut().enumerate().for_each(|(k, to)| *to = friction.residual(k, applied, transmitted).d);
+}
+
+/// Sum of the sizes of the components of a vector.
+fn sum_of_sizes<T: Real>(v: Vec3<T>) -> f64 {
+    v.x.value().abs() + v.y.value().abs() + v.z.value().abs()
 }
 
 /// Per body: the forces that act on it.

@@ -9,6 +9,7 @@
 //! | here | theory | meaning |
 //! |---|---|---|
 //! | `acting` | F = f - g | per body, required wrench minus applied wrench |
+//! | `body_mass` | m, c, I | mass properties of whole bodies in the nominal design |
 //! | `equilibrium` | T, mu, nu | reactions of joints and driver loads |
 //! | `derivatives` | y' | derivatives of loads by the design, by virtual motion |
 //! | `solver` | | loads step after step |
@@ -25,6 +26,7 @@
 //! `acting`, `equilibrium`, `derivatives`, `virtual_motion` and `measures` are generic over the number type.
 
 mod acting;
+mod body_mass;
 mod compliance;
 mod derivatives;
 mod equilibrium;
@@ -41,6 +43,7 @@ mod turns;
 mod virtual_motion;
 
 pub(crate) use acting::{AppliedLoads, ForceFormula, MassFormula, Solid, Spread};
+pub use body_mass::{BodyMass, body_masses};
 pub(crate) use compliance::Compliances;
 pub(crate) use gradient::LoadGradients;
 pub(crate) use opening_loads::{ElementTurns, GivenLoads, OpeningLoads};

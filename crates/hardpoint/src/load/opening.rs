@@ -2,20 +2,22 @@
 //!
 //! The coordinates are those of the chain `S(x, y, z) Rx(alpha) Ry(beta) Rz(gamma)` from marker i to marker j: the
 //! displacement along the axes of marker i, then Cardan angles. A force that works on them has a potential if its
-//! stiffnesses are symmetric. Turns of any size are possible about z alone; alpha and beta stay below 90 deg.
+//! stiffnesses are symmetric. Turns about z may have any size, and are counted; alpha and beta stay below 90 deg.
 
 use crate::space::{Pose, Real, Vec3, Wrench};
 
 /// Coordinates of marker j relative to marker i: x, y, z, m; alpha, beta, gamma, rad.
 pub(crate) struct Opening<T> {
     pub coordinates: [T; 6],
+    /// Coordinates in the design configuration; known only while loads grow, and zero for joints.
+    pub in_design: [T; 6],
     /// Per coordinate: the unit wrench on body j that does work on it, about the world origin.
     pub wrenches: [Wrench<T>; 6],
 }
 
 impl<T: Real> Opening<T> {
-    /// Opening between two markers, global.
-    pub fn between(i: &Pose<T>, j: &Pose<T>) -> Self {
+    /// Opening between two markers, global, with gamma within half a turn of `near`.
+    pub fn between(i: &Pose<T>, j: &Pose<T>, near: T) -> Self {
         let [x_i, y_i, z_i] = i.rot.cols;
         let [x_j, y_j, z_j] = j.rot.cols;
         let d = i.rot.transpose_mul(j.r - i.r);
@@ -27,7 +29,7 @@ impl<T: Real> Opening<T> {
         let per = T::one() / cosine;
         let alpha = (-m23).atan2(m33);
         let beta = m13.atan2(cosine);
-        let gamma = (-m12).atan2(m11);
+        let gamma = (-m12).angle_near(m11, near);
         // l_alpha = a2 x a3 / D, l_beta = a3 x a1 / D, l_gamma = a1 x a2 / D, of the axes a1 = x_i,
         // a2 = y_i cos(alpha) + z_i sin(alpha), a3 = z_j, with D = a1 . (a2 x a3) = cos(beta)
         let a2 = y_i * (m33 * per) - z_i * (m23 * per);
@@ -42,6 +44,6 @@ impl<T: Real> Opening<T> {
             turn(z_j.cross(x_i)),
             turn(x_i.cross(a2)),
         ];
-        Self { coordinates: [d.x, d.y, d.z, alpha, beta, gamma], wrenches }
+        Self { coordinates: [d.x, d.y, d.z, alpha, beta, gamma], in_design: [T::zero(); 6], wrenches }
     }
 }

@@ -147,6 +147,11 @@ impl<'a, T: Real> OpeningLoads<'a, T> {
         self.derivatives.differentiate_by_drivers(each);
     }
 
+    /// Per opening: a bound of the terms of the derivative of its force by itself.
+    pub fn terms_of_own_stiffness(&self) -> &[f64] {
+        self.derivatives.terms_by_own_driver()
+    }
+
     /// Per opening: twists of the bodies while it moves alone.
     pub fn unit_twists(&self) -> impl Iterator<Item = &[Twist<T>]> + Clone {
         self.derivatives.virtual_twists()

@@ -1,6 +1,6 @@
-//! Whole turns of the angles that elements act on.
+//! Whole turns of the angles that forces of elements depend on.
 
-use crate::measure::is_counted_of_element;
+use crate::measure::ElementCoordinate;
 use crate::model::{ElementId, Model};
 use crate::motion::kinematics::State;
 use crate::topology::{CoordinateId, Topology};
@@ -8,7 +8,7 @@ use crate::topology::{CoordinateId, Topology};
 /// Source of the number of turns of an element's coordinate.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Turns {
-    /// The element does not act on a coordinate.
+    /// The force does not depend on a coordinate.
     None,
     /// A length of a cut joint, which has no turns.
     Length,
@@ -34,11 +34,10 @@ impl Turns {
 
     /// Returns the source of one element; the index of an angle on the path is not set.
     pub fn of(model: &Model, topology: &Topology, e: ElementId) -> Self {
-        let Some((joint, coordinate)) = model.elements[e.0].kind.coordinate(model) else { return Self::None };
-        let link = topology.links.iter().find(|link| link.joint == Some(joint));
-        match link.zip(model.joints[joint.0].kind.coordinates[coordinate].freedom) {
-            Some((link, freedom)) => Self::Coordinate(link.coordinate_of(freedom)),
-            None if is_counted_of_element(model, topology, e) => Self::Path(0),
+        let Some(coordinate) = ElementCoordinate::of(model, e) else { return Self::None };
+        match coordinate.in_tree(topology) {
+            Some(c) => Self::Coordinate(c),
+            None if coordinate.is_counted(topology) => Self::Path(0),
             None => Self::Length,
         }
     }

@@ -316,7 +316,9 @@ impl<'a, T: Real> Instant<'a, T> {
             // atan2(y_i . x_j, x_i . x_j)
             Row::Angle | Row::Heading => axis(0, 1).dot(axis(1, 0)).atan2(axis(0, 0).dot(axis(1, 0))),
             // atan2(z_i . y_j, z_i . z_j)
-            Row::AngleOnJ => axis(0, 2).dot(axis(1, 1)).atan2(axis(0, 2).dot(axis(1, 2))),
+            Row::AngleOnJ | Row::HeadingOnJ => axis(0, 2).dot(axis(1, 1)).atan2(axis(0, 2).dot(axis(1, 2))),
+            // atan2(-x_i . y_j, x_i . x_j)
+            Row::CardanAngle => (-axis(0, 0).dot(axis(1, 1))).atan2(axis(0, 0).dot(axis(1, 0))),
             // atan2(y_i . z_j, x_i . z_j)
             Row::Course => axis(0, 1).dot(axis(1, 2)).atan2(axis(0, 0).dot(axis(1, 2))),
             // a_i . (P_j - P_i)

@@ -26,5 +26,5 @@ pub(crate) use slope::{DriverPoses, Slopes, hindrance};
 pub(crate) use step_values::{RecordedValue, RecordedValues, StepValues};
 pub(crate) use storage::finite;
 pub use storage::{MeasureResults, Output, outputs};
-pub(crate) use turns::{PathAngles, is_counted_of_element};
+pub(crate) use turns::{ElementCoordinate, PathAngles};
 pub(crate) use wheel::WheelAt;

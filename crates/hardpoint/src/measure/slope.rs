@@ -340,7 +340,8 @@ impl<T: Real> DriverAlone<'_, T> {
                     let with = together.iter().flatten().map(|d| (d, false));
                     for (d, is_opposed) in with.chain(opposed.iter().flatten().map(|d| (d, true))) {
                         let rate = self.instant(*d).output(output).d;
-                        let turned = model.is_reversed(*d) != model.is_reversed(*driver);
+                        let is_reversed = |d: &DriverId| model.drivers[d.0].is_reversed;
+                        let turned = is_reversed(d) != is_reversed(driver);
                         sum = if turned == is_opposed { sum + rate } else { sum - rate };
                     }
                     sum

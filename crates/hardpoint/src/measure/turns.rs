@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use crate::constraint::MarkerPair;
+use crate::constraint::{MarkerPair, Row};
 use crate::design::{BodyFixed, DesignMap, Geometry};
-use crate::joint::Quantity;
+use crate::joint::{Freedom, Quantity};
 use crate::law::Law;
+use crate::model::element::ActsOn;
 use crate::model::{DriverId, ElementId, JointId, MeasureKind, Model, OutputSource};
 use crate::motion::turns::{CountedAngles, turned};
 use crate::motion::{BodyState, Motion};
 use crate::number::{Jet, Rates};
-use crate::space::{Mat3, Pose};
+use crate::space::{Mat3, Pose, Vec3};
 use crate::topology::{CoordinateId, Topology};
 
 use super::formulas::Instant;
@@ -131,7 +132,7 @@ pub(super) fn unwrap_angles(
 /// An angle that is counted along the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PathAngle {
-    /// The coordinate of a cut joint that an element acts on.
+    /// The coordinate of an element.
     Element(ElementId),
     /// A measure.
     Measure(usize),
@@ -141,7 +142,7 @@ pub(crate) enum PathAngle {
 pub(crate) fn path_angles(model: &Model, topology: &Topology, measures: bool) -> Vec<PathAngle> {
     let mut angles: Vec<PathAngle> = (0..model.elements.len())
         .map(ElementId)
-        .filter(|e| is_counted_of_element(model, topology, *e))
+        .filter(|e| ElementCoordinate::of(model, *e).is_some_and(|c| c.is_counted(topology)))
         .map(PathAngle::Element)
         .collect();
     if measures {
@@ -153,12 +154,54 @@ pub(crate) fn path_angles(model: &Model, topology: &Topology, measures: bool) ->
     angles
 }
 
-/// Returns whether an element acts on the angle of a joint that the tree does not carry.
-pub(crate) fn is_counted_of_element(model: &Model, topology: &Topology, e: ElementId) -> bool {
-    let Some((joint, coordinate)) = model.elements[e.0].kind.coordinate(model) else { return false };
-    let coordinate = &model.joints[joint.0].kind.coordinates[coordinate];
-    let in_tree = coordinate.freedom.is_some() && topology.links.iter().any(|link| link.joint == Some(joint));
-    coordinate.quantity == Quantity::Angle && !in_tree
+/// The coordinate that the force of an element depends on, whose turns are counted if it is an angle.
+#[derive(Clone, Copy)]
+pub(crate) struct ElementCoordinate {
+    /// Joint of the coordinate; `None` for the turn about z between the two points of a bushing.
+    joint: Option<JointId>,
+    /// Freedom of the joint that is this coordinate, if there is one.
+    freedom: Option<usize>,
+    row: Row,
+    is_angle: bool,
+}
+
+impl ElementCoordinate {
+    /// Coordinate of an element: that of the joint that it acts on, or the turn about z that it resists.
+    pub fn of(model: &Model, e: ElementId) -> Option<Self> {
+        let kind = &model.elements[e.0].kind;
+        match kind.force(model)?.acts_on {
+            ActsOn::Coordinate(joint, coordinate) => {
+                let of = &model.joints[joint.0].kind.coordinates[coordinate];
+                let is_angle = of.quantity == Quantity::Angle;
+                Some(Self { joint: Some(joint), freedom: of.freedom, row: of.row, is_angle })
+            }
+            ActsOn::Joint(joint) => {
+                // Without equilibrium its joint is rigid.
+                let elastic = kind.elastic_law().filter(|law| law.resists_turns_about_z());
+                elastic.filter(|_| model.equilibrium.is_some())?;
+                // The last turn of the chain is the last Cardan angle.
+                let freedoms = model.joints[joint.0].kind.freedoms.unwrap_or_default();
+                let last = freedoms.len().checked_sub(1).filter(|k| freedoms[*k] == Freedom::Turn(2));
+                Some(Self { joint: Some(joint), freedom: last, row: Row::CardanAngle, is_angle: true })
+            }
+            ActsOn::Points(_) => {
+                kind.elastic_law().filter(|law| law.resists_turns_about_z())?;
+                Some(Self { joint: None, freedom: None, row: Row::CardanAngle, is_angle: true })
+            }
+            ActsOn::Line(_) | ActsOn::Point(_) | ActsOn::Wheel(_) | ActsOn::Body(_) => None,
+        }
+    }
+
+    /// The generalised coordinate of the tree that equals it, if there is one.
+    pub fn in_tree(&self, topology: &Topology) -> Option<CoordinateId> {
+        let link = topology.links.iter().find(|link| link.joint.is_some() && link.joint == self.joint)?;
+        Some(link.coordinate_of(self.freedom?))
+    }
+
+    /// True if it is an angle that the tree does not carry.
+    pub fn is_counted(&self, topology: &Topology) -> bool {
+        self.is_angle && self.in_tree(topology).is_none()
+    }
 }
 
 /// The angles of a design that are counted along the path.
@@ -190,9 +233,8 @@ impl<'m> PathAngles<'m> {
         for angle in &angles {
             let (on, origin) = match *angle {
                 PathAngle::Element(e) => {
-                    let joint = model.elements[e.0].kind.coordinate(model).map(|(joint, _)| joint);
-                    let on = joint.map_or_else(Vec::new, |joint| model.joints[joint.0].bodies.to_vec());
-                    (on, Some(0.0))
+                    let force = model.elements[e.0].kind.force(model);
+                    (force.map_or_else(Vec::new, |force| force.acts_on.bodies(model).to_vec()), Some(0.0))
                 }
                 PathAngle::Measure(m) => {
                     let measure = &model.measures[m];
@@ -218,19 +260,26 @@ impl<'m> PathAngles<'m> {
         })
     }
 
-    /// The coordinate that an element acts on, within a turn, counted from the design configuration.
+    /// The coordinate of an element, within a turn, counted from the design configuration.
     fn of_element(&self, e: ElementId) -> Rates {
         let unknown = Rates::constant(f64::NAN);
-        let Some((joint, coordinate)) = self.model.elements[e.0].kind.coordinate(self.model) else {
+        let Some(ElementCoordinate { joint, row, .. }) = ElementCoordinate::of(self.model, e) else {
             return unknown;
         };
-        let j = &self.model.joints[joint.0];
-        let row = j.kind.coordinates[coordinate].row;
-        let [m_i, m_j] = self.geometry.markers[joint.0];
-        let [i, j] = j.bodies.map(|b| self.poses[b.0]);
-        let ends = MarkerPair { i: i.compose(m_i), j: j.compose(m_j), axes: Mat3::IDENTITY.spread() };
-        let kept = self.geometry.kept[joint.0].by(row);
-        row.value(&ends, kept) - kept
+        let force = self.model.elements[e.0].kind.force(self.model);
+        let Some([i, j]) = force.map(|force| force.acts_on.bodies(self.model)) else { return unknown };
+        let [i, j] = [i, j].map(|b| (self.poses[b.0], self.model.bodies[b.0].frame.rot));
+        let ([m_i, m_j], kept) = match joint {
+            Some(joint) => (self.geometry.markers[joint.0], self.geometry.kept[joint.0].by(row)),
+            // Angles do not depend on the points. Without axes of its own a bushing has the global ones.
+            None => {
+                let global = || [i.1, j.1].map(|rot| rot.transpose().spread());
+                let axes = self.geometry.axes[e.0].unwrap_or_else(global);
+                (axes.map(|rot| Pose { rot, r: Vec3::zero() }), Rates::constant(0.0))
+            }
+        };
+        let (i, j) = (i.0.compose(m_i), j.0.compose(m_j));
+        row.value(&MarkerPair { i, j, axes: Mat3::IDENTITY.spread() }, kept) - kept
     }
 }
 

@@ -536,6 +536,12 @@ impl ElasticLaw<'_> {
         self.coupled?.entry(row, column)
     }
 
+    /// True if a turn about z causes any force.
+    pub fn resists_turns_about_z(&self) -> bool {
+        let mut coupled = self.coupled.iter().flat_map(|matrix| &matrix.entries);
+        self.directions[5].resists() || coupled.any(|e| e.row == 5 || e.column == 5)
+    }
+
     /// True if the force depends on positions by arithmetic alone.
     pub fn is_arithmetic(&self) -> bool {
         self.directions.iter().all(|of| of.curve.is_none())
@@ -567,9 +573,9 @@ impl Elasticity<'_> {
         self.stiffness.is_some() || self.curve.is_some()
     }
 
-    /// True if there is any force along it.
-    pub fn acts(&self) -> bool {
-        self.gives() || self.cubic.is_some() || self.preload.is_some()
+    /// True if a displacement along it causes a force.
+    pub fn resists(&self) -> bool {
+        self.gives() || self.cubic.is_some()
     }
 }
 

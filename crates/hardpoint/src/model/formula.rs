@@ -107,6 +107,8 @@ impl Model {
             | Row::Dot2(_)
             | Row::Angle
             | Row::AngleOnJ
+            | Row::HeadingOnJ
+            | Row::CardanAngle
             | Row::Heading
             | Row::Cosine
             | Row::Offset

@@ -1209,11 +1209,6 @@ impl Model {
         one.into_iter().chain(other).chain(all).filter(move |_| depends)
     }
 
-    /// True if a driver moves backward where its own law goes forward.
-    pub(crate) fn is_reversed(&self, driver: DriverId) -> bool {
-        self.drivers[driver.0].law.is_reversed()
-    }
-
     /// Dimension of a driver's force: its product with the driven quantity is work.
     pub fn force_on(&self, driver: &Driver) -> Dimension {
         match self.driven(driver).quantity {

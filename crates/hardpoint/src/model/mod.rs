@@ -68,7 +68,7 @@ pub use wheel::{
 use crate::constraint::MarkerPair;
 use crate::joint::{CoordinateType, JointType, Need, Quantity};
 use crate::law::Law;
-use crate::space::{Mat3, Pose, Vec3};
+use crate::space::{Mat3, Pose, Real, Vec3};
 
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident)*) => {$(
@@ -253,8 +253,23 @@ pub struct Driver {
     pub joint: JointId,
     /// Index of the coordinate in the joint's type.
     pub coordinate: usize,
-    /// The coordinate over time, m or rad.
+    /// The driver's value over time, m or rad: the coordinate, or its opposite if the driver is reversed.
     pub law: Law,
+    /// True if the coordinate moves in the opposite sense of the driver's values.
+    pub is_reversed: bool,
+}
+
+impl Driver {
+    /// Turns a change of the coordinate into that of the driver's value, and back: both count from the design
+    /// configuration, and are opposite if the driver is reversed.
+    pub fn with_sense<T: Real>(&self, change: T) -> T {
+        if self.is_reversed { -change } else { change }
+    }
+
+    /// Law of the coordinate, m or rad; that of the driver's values is [`law`](Self::law).
+    pub fn coordinate_law(&self) -> Law {
+        if self.is_reversed { self.law.clone().reversed() } else { self.law.clone() }
+    }
 }
 
 /// One scalar b (the paper's tau) that the design depends on; nominal value 0.

@@ -60,6 +60,18 @@ pub struct Goal {
     pub weight: f64,
 }
 
+impl Goal {
+    /// Smallest and largest weight: with them the squares of weighted goals, and products of these, are numbers of full
+    /// accuracy.
+    const WEIGHTS: [f64; 2] = [1e-50, 1e50];
+
+    /// True if goals can have this weight.
+    pub fn is_weight(weight: f64) -> bool {
+        let [least, most] = Self::WEIGHTS;
+        weight >= least && weight <= most
+    }
+}
+
 /// A quantity that must stay between two values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {

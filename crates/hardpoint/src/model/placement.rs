@@ -51,12 +51,7 @@ impl Model {
     #[must_use]
     pub fn reversed(&self) -> Self {
         let mut model = self.clone();
-        for driver in &mut model.drivers {
-            driver.law = driver.law.clone().reversed();
-        }
-        for law in model.cases.iter_mut().flat_map(|case| case.laws.iter_mut().flatten()) {
-            *law = law.clone().reversed();
-        }
+        model.drivers.iter_mut().for_each(|driver| driver.is_reversed = !driver.is_reversed);
         model
     }
 

@@ -38,7 +38,8 @@ pub struct Tolerance {
     pub reach: f64,
     /// Distribution of the deviations within it.
     pub scatter: Scatter,
-    /// Relative cost of the tolerance: `cost / reach`. Tolerances without a cost are not changed.
+    /// Relative cost of the tolerance, in the variables' SI unit: `cost / reach`. Tolerances without a cost are not
+    /// changed.
     pub cost: Option<f64>,
 }
 

@@ -11,7 +11,7 @@ use hardpoint_tape::{Number, Options, Program, record};
 
 use crate::design::DesignMap;
 use crate::linalg::Factors;
-use crate::model::VariableId;
+use crate::model::{Driver, VariableId};
 use crate::number::record as recording;
 use crate::space::Vec3;
 
@@ -133,7 +133,9 @@ impl DrivenStep {
                 Channel::Ball(..) => 0.5,
             },
         });
-        let drivers = one.saved.drivers.iter().zip(driver_units(model, topology));
+        // Zero has one sign.
+        let values = model.drivers.iter().zip(&one.saved.drivers).map(|(d, f)| d.with_sense(f[0]) + 0.0);
+        let drivers = values.zip(driver_units(model, topology));
         let values = if any_design { model.whole(&[]) } else { Vec::new() };
         let variable = |k: usize| DrivenVariable {
             changes_law: !design_map.field(VariableId(k), &values).laws.is_empty(),
@@ -141,7 +143,7 @@ impl DrivenStep {
         Some(Self {
             design: (0..values.len()).map(variable).collect(),
             coordinates: coordinates.collect(),
-            drivers: drivers.map(|([start, ..], unit)| DrivenCoordinate { start: *start, unit }).collect(),
+            drivers: drivers.map(|(start, unit)| DrivenCoordinate { start, unit }).collect(),
             correction,
             path,
             motion,
@@ -173,7 +175,12 @@ fn recorded(
             };
             channel.put(Number::input(beside), &mut state);
         }
-        let drivers: Vec<[Number; ORDERS]> = one.saved.drivers.iter().map(|f| f.map(Number::input)).collect();
+        // Inputs are the drivers' values, the kernel drives coordinates.
+        let coordinate = |(driver, saved): (&Driver, &[f64; ORDERS])| {
+            saved.map(|x| driver.with_sense(Number::input(driver.with_sense(x))))
+        };
+        let drivers: Vec<[Number; ORDERS]> =
+            model.drivers.iter().zip(&one.saved.drivers).map(coordinate).collect();
         let number = if any_design { Number::input } else { Number::constant };
         let values: Vec<Number> = model.whole(&[]).into_iter().map(number).collect();
         let geometry = recording::strictly(|| design_map.geometry(&values));

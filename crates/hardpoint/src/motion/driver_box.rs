@@ -98,7 +98,7 @@ pub(crate) struct BoxPoint<const N: usize> {
 
 /// Box of driver values with what is known at its middle.
 struct Wanted<'w, const N: usize> {
-    /// Value of every driver of the mechanism.
+    /// Coordinate of every driver of the mechanism.
     drivers: Vec<Taylor<Interval, N>>,
     /// Distance of every variable from the middle.
     since: Vec<Interval>,
@@ -316,20 +316,24 @@ impl<'m, const N: usize> DriverBoxes<'m, N> {
         Ok(Rc::new(BoxPoint { at, enclosure }))
     }
 
+    /// Coordinate of every driver over a box of driver values.
     fn drivers_over(&self, boxed: &[Interval]) -> Vec<Taylor<Interval, N>> {
-        let mut drivers = vec![Taylor::zero(); self.one.mechanism.model.drivers.len()];
+        let drivers = &self.one.mechanism.model.drivers;
+        let mut coordinates = vec![Taylor::zero(); drivers.len()];
         for (k, (d, over)) in self.drivers.iter().zip(boxed).enumerate() {
-            drivers[*d] = Taylor::variable(*over, k);
+            coordinates[*d] = drivers[*d].with_sense(Taylor::variable(*over, k));
         }
-        drivers
+        coordinates
     }
 
     /// Position at a point, by a straight path from the nearest one that is known.
     fn position(&mut self, values: &[f64]) -> Result<AcceptedPosition, BoxFailure> {
-        let units = &self.one.mechanism.driver_units;
+        let Mechanism { model, driver_units: units, .. } = &self.one.mechanism;
+        let coordinates: Vec<f64> =
+            self.drivers.iter().zip(values).map(|(d, x)| model.drivers[*d].with_sense(*x)).collect();
         let away = |at: &AcceptedPosition| {
             let part = |(d, x): (&usize, &f64)| ((at.drivers[*d][0] - x) / units[*d]).powi(2);
-            self.drivers.iter().zip(values).map(part).sum::<f64>()
+            self.drivers.iter().zip(&coordinates).map(part).sum::<f64>()
         };
         let known = self.points.iter().filter_map(|(key, known)| Some((key, &known.as_ref().ok()?.at)));
         // Ties are broken by the values, so that nothing depends on the order of the map.
@@ -343,7 +347,7 @@ impl<'m, const N: usize> DriverBoxes<'m, N> {
         for (line, now) in line.iter_mut().zip(&saved.drivers) {
             *line = [now[0]; 2];
         }
-        for (d, x) in self.drivers.iter().zip(values) {
+        for (d, x) in self.drivers.iter().zip(&coordinates) {
             line[*d][1] = *x;
         }
         let path = Path::Line { at: 0.0 };

@@ -542,7 +542,7 @@ impl Programs {
             let recorded = record(|| {
                 let t = Number::input(*model.times.first().unwrap_or(&0.0));
                 let of = |law: &Law| law.to_order::<_, 3>(t).derivatives();
-                let of_drivers = model.drivers.iter().flat_map(|d| of(&d.law));
+                let of_drivers = model.drivers.iter().flat_map(|d| of(&d.coordinate_law()));
                 let of_forces = model.laws_of_forces().filter(|_| loads).map(|law| of(law)[0]);
                 let laws: Vec<Number> = of_drivers.chain(of_forces).collect();
                 [laws, recording::limits()].concat()

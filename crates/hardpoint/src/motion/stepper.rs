@@ -198,12 +198,12 @@ impl<'m> Stepper<'m> {
             Path::Line { at } => (None, at),
             Path::Laws => (moved.then_some(now), failed),
         };
-        let Mechanism { topology, saved, .. } = &self.mechanism;
+        let Mechanism { model, topology, saved, .. } = &self.mechanism;
         Box::new(Stop {
             kind,
             last_time,
             failed_time,
-            drivers: saved.drivers.iter().map(|f| f[0]).collect(),
+            drivers: model.drivers.iter().zip(&saved.drivers).map(|(d, f)| d.with_sense(f[0])).collect(),
             block,
             pivot_ratio: block.map_or(1.0, |b| saved.pivots[b.0].0),
             joints: block.map_or_else(Vec::new, |b| topology.joints_of_block(b)),

@@ -15,7 +15,7 @@ pub struct Stop {
     pub last_time: Option<f64>,
     /// The earliest time known to fail, s.
     pub failed_time: f64,
-    /// Values of all drivers at the last solved position, m or rad.
+    /// Values of all drivers at the last solved position, relative to the design configuration, m or rad.
     pub drivers: Vec<f64>,
     /// The block of the plan that holds that loop.
     pub block: Option<BlockId>,

@@ -371,7 +371,8 @@ impl<'m> Analysis<'m> {
 
     /// Program that evaluates these laws at many times, if they are those of the nominal design and it saves time.
     pub(super) fn laws_program(&self, laws: &[Law], loads: bool) -> Option<Arc<Runnable>> {
-        let nominal = self.model().drivers.iter().zip(laws).all(|(driver, law)| driver.law == *law);
+        let nominal =
+            self.model().drivers.iter().zip(laws).all(|(driver, law)| driver.coordinate_law() == *law);
         if nominal { self.programs.laws(self.model(), loads) } else { None }
     }
 

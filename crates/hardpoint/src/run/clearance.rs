@@ -635,7 +635,10 @@ impl<'m> Curves<'m> {
             // Per time: the step of Newton's method to the nearest stationary time.
             let is_minimum = |k: usize| {
                 let [_, rate, acceleration] = samples[k].distance;
-                k > 0 && k < last && acceleration > 0.0 && rate.abs() <= LOCATED * span * acceleration
+                // Where the distance does not change over a part of the motion, the sign of both is that of round-off.
+                let is_curved = acceleration * span * span > FLAT * self.size;
+                let is_beside_level = is_level(k - 1) || is_level(k);
+                is_curved && !is_beside_level && rate.abs() <= LOCATED * span * acceleration
             };
             let (mut found, mut kinks): (Vec<f64>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
             for k in (1..last).filter(|k| is_minimum(*k)) {

@@ -167,7 +167,12 @@ impl Analysis<'_> {
             kind,
             last_time,
             failed_time,
-            drivers: design.laws.iter().take(model.drivers.len()).map(|law| law.at(at).value()).collect(),
+            drivers: model
+                .drivers
+                .iter()
+                .zip(&design.laws)
+                .map(|(driver, law)| driver.with_sense(law.at(at).value()))
+                .collect(),
             block: None,
             pivot_ratio: 1.0,
             joints: Vec::new(),

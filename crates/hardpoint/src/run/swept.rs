@@ -64,4 +64,14 @@ impl SweptShape {
     pub fn ball(&self, pose: usize) -> (Vec3, f64) {
         self.poses[pose].ball()
     }
+
+    /// Point of the surface of the shape at a pose, with a margin around it, that is nearest to a point.
+    pub fn surface_point(&self, pose: usize, p: Vec3, margin: f64) -> Vec3 {
+        self.poses[pose].surface_point(p, margin)
+    }
+
+    /// Corners of a hull or mesh at a pose; none of another shape.
+    pub fn corners(&self, pose: usize) -> Vec<Vec3> {
+        self.poses[pose].corners()
+    }
 }

@@ -184,6 +184,26 @@ fn deflection_against_a_spring_table_follows_its_slope() {
     assert!((found - expected).abs() < 1e-6 * expected, "{found} {expected}");
 }
 
+/// Two points of 1 kg and 3 kg, 4 m apart along x: their centre is 3 m and 1 m away, `I = 1 * 3^2 + 3 * 1^2` about y
+/// and z. The frame of the body has no effect.
+#[test]
+fn masses_of_a_body_add_up_about_their_common_centre() {
+    let mut draft = rotor("t").point_mass("one", "rotor", [0.0, 2.0, 0.0], 1.0);
+    draft = draft.point_mass("three", "rotor", [4.0, 2.0, 0.0], 3.0);
+    let frame = Pose { rot: Mat3::about(Vec3::new(0.6, 0.0, 0.8), 0.7), r: Vec3::new(1.0, 2.0, 3.0) };
+    draft.bodies[0].frame = FrameDraft::Pose(frame);
+    let model = Model::from_draft(&draft).unwrap();
+    let masses = hardpoint::load::body_masses(&model);
+    assert!(masses[0].is_none());
+    let found = masses[1].unwrap();
+    assert!((found.mass - 4.0).abs() < SAME);
+    assert!((found.centre - Vec3::new(3.0, 2.0, 0.0)).norm() < SAME);
+    let expected = [Vec3::ZERO, Vec3::new(0.0, 12.0, 0.0), Vec3::new(0.0, 0.0, 12.0)];
+    for (a, b) in found.inertia.cols.iter().zip(expected) {
+        assert!((*a - b).norm() < SAME * 12.0, "{found:?}");
+    }
+}
+
 /// Moments of inertia of a body about its centre, and about another point.
 #[test]
 fn moments_about_another_point_are_those_of_the_parallel_axis_theorem() {

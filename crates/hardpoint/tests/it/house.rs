@@ -62,6 +62,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "hardpoint-table",
         ],
     ),
+    ("hardpoint-engine", &["hardpoint-studio"]),
     ("hardpoint-bench", &["hardpoint", "hardpoint-file"]),
     (
         "hardpoint-python",

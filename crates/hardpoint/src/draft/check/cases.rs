@@ -51,8 +51,10 @@ impl Checker<'_> {
                 let Some(&d) = known.get(driver) else { continue };
                 let given = self.formula_law_in((case, &c.name), (DriverId(d), driver), law, &at);
                 let Some(law) = given else { continue };
-                self.check_law(&format!("driver `{driver}` in case `{}`", c.name), &law, times, at);
-                laws[d] = Some(if self.model.drivers[d].law.is_reversed() { law.reversed() } else { law });
+                let unit = self.number_of("driver", driver).map_or("", |k| draft.drivers[k].unit);
+                let of = format!("driver `{driver}` in case `{}`", c.name);
+                self.check_law(&of, (&law, unit), times, at);
+                laws[d] = Some(law);
             }
             for d in (0..laws.len()).filter(|d| laws[*d].is_none()) {
                 let (name, law) = (self.model.drivers[d].name.clone(), self.model.drivers[d].law.clone());
@@ -60,7 +62,8 @@ impl Checker<'_> {
                 let faults = self.faults.len();
                 if !reported.contains(&d) {
                     let at = Here { section: Section::Drivers, index }.key("law");
-                    self.check_law(&format!("driver `{name}`"), &law, times, at);
+                    let unit = draft.drivers.get(index).map_or("", |driver| driver.unit);
+                    self.check_law(&format!("driver `{name}`"), (&law, unit), times, at);
                 }
                 if self.faults.len() > faults {
                     reported.insert(d);

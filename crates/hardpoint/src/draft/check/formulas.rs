@@ -222,6 +222,11 @@ impl<'a> Checker<'a> {
             self.mark_unknown(of);
             return None;
         }
+        let is_coordinate = matches!(w.formula.of, Target::Coordinate(..));
+        if is_coordinate && !self.check_lengths(&format!("`{}`", w.name), [value, 0.0, 0.0], w.at.clone()) {
+            self.mark_unknown(w.formula.of);
+            return None;
+        }
         match w.formula.of {
             Target::Parameter(p) => self.model.parameters[p.0].value = value,
             Target::Coordinate(h, axis) => self.set(h, axis, value),

@@ -238,6 +238,12 @@ impl Checker<'_> {
                 .help(
                     "give the distance between its two ends, or remove `length` to use the distance in the design configuration",
                 );
+        } else {
+            self.check_lengths(
+                &format!("the length of `{}`", j.name),
+                [length, 0.0, 0.0],
+                here.key("length"),
+            );
         }
         Some(length)
     }

@@ -1,6 +1,6 @@
 //! Checks of drivers and couplers, and of the coordinates that they name.
 
-use crate::draft::{CouplerKindDraft, DraftLocation, Section};
+use crate::draft::{CouplerKindDraft, DraftLocation, Section, short};
 use crate::joint;
 use crate::joint::CoordinateType;
 use crate::law::Law;
@@ -65,12 +65,17 @@ impl Checker<'_> {
             self.zeros.extend(zero.map(|zero| (driver, zero)));
             let Some(law) = self.formula_law(&d.name, &d.law, &here.key("law")) else { continue };
             if draft.cases.is_empty() {
-                self.check_law(&format!("driver `{}`", d.name), &law, &draft.times, here.key("law"));
+                self.check_law(
+                    &format!("driver `{}`", d.name),
+                    (&law, d.unit),
+                    &draft.times,
+                    here.key("law"),
+                );
             }
             let Some(Driven { joint, coordinate, .. }) = driven else { continue };
             self.driver_of.insert((joint, coordinate), driver);
-            let law = if d.reversed { law.reversed() } else { law };
-            self.model.drivers.push(Driver { name: d.name.clone(), joint, coordinate, law });
+            let (name, is_reversed) = (d.name.clone(), d.reversed);
+            self.model.drivers.push(Driver { name, joint, coordinate, law, is_reversed });
         }
     }
 
@@ -103,16 +108,34 @@ impl Checker<'_> {
     }
 
     /// HP0214: a law that is not finite, or too fast, at an output time.
-    pub(super) fn check_law(&mut self, of: &str, law: &Law, times: &[f64], at: DraftLocation) {
+    pub(super) fn check_law(
+        &mut self,
+        of: &str,
+        (law, unit): (&Law, &str),
+        times: &[f64],
+        at: DraftLocation,
+    ) {
         let all = |t: f64, holds: &dyn Fn(&f64) -> bool| law.at(t).derivatives()[..3].iter().all(holds);
         if let Some(&t) = times.iter().find(|&&t| !all(t, &|x| x.abs() < LARGEST_RATE)) {
-            let [f, fd, fdd, _] = law.at(t).derivatives();
+            // As the user wrote it.
+            let written = law.as_written().at(t).derivatives();
+            let number = |order: usize| match (unit, order) {
+                ("", _) => short(written[order]),
+                (_, 0) => format!("{} {unit}", short(written[order])),
+                (_, 1) => format!("{} {unit}/s", short(written[order])),
+                _ => format!("{} {unit}/s^{order}", short(written[order])),
+            };
             let (what, remedy) = match all(t, &|x| x.is_finite()) {
                 false => ("has no finite value", "are finite".to_owned()),
-                true => ("changes too fast", format!("are below {LARGEST_RATE:e}")),
+                true => ("changes too fast", format!("are below {LARGEST_RATE:e} in SI units")),
             };
             self.fault("HP0214", at, format!("the law of {of} {what} at t = {t} s"))
-                .note(format!("value {f}, first derivative {fd}, second derivative {fdd} there"))
+                .note(format!(
+                    "value {}, first derivative {}, second derivative {} there",
+                    number(0),
+                    number(1),
+                    number(2)
+                ))
                 .help(format!("change the law, or the times, so that all three {remedy}"));
         }
     }

@@ -208,10 +208,11 @@ impl Checker<'_> {
         if self.unread(here, "") {
             return None;
         }
-        if !(g.weight > 0.0 && g.weight.is_finite()) {
-            let message = format!("invalid weight of goal `{}`: {}", g.name, g.weight);
+        if !Goal::is_weight(g.weight) {
+            let message = format!("invalid weight of goal `{}`: {:?}", g.name, g.weight);
             self.fault("HP0237", here.key("weight"), message).help(
-                "give a positive number, or remove the goal; to maximise a metric, give it a large `target`",
+                "give a positive number, from 1e-50 to 1e50, or remove the goal; to maximise a metric, give it a large \
+                 `target`",
             );
         }
         if g.target.is_some_and(|target| !target.is_finite()) {

@@ -170,6 +170,7 @@ impl<'d> Checker<'d> {
                 .note("a tolerance t costs `cost / t`, relative to the others")
                 .help("give a positive number, or remove `cost` for a fixed tolerance");
         }
+        let units_per_si = quantity.map(|q| per_si(Dimension::from(q), one.per_metre, one.per_radian));
         let reach = match one.reach {
             Some(reach) if !(reach > 0.0 && reach.is_finite()) => {
                 let message = format!("invalid tolerance of `{name}`: {reach}");
@@ -178,7 +179,7 @@ impl<'d> Checker<'d> {
                     .help("give a positive number, or remove the variable if it is exact");
                 return None;
             }
-            Some(reach) => reach / per_si(Dimension::from(quantity?), one.per_metre, one.per_radian),
+            Some(reach) => reach / units_per_si?,
             None => {
                 let Some(reach) = first.tolerance else {
                     if !own {
@@ -194,7 +195,9 @@ impl<'d> Checker<'d> {
         };
         let play = play.and_then(|play| play.joint);
         let variables = variables.into_iter().map(VariableId).collect();
-        Some(Tolerance { name: name.clone(), variables, play, reach, scatter: scatter?, cost: one.cost })
+        // `cost / reach` is a number in the variables' unit, so that the cost has this unit as well.
+        let cost = one.cost.zip(units_per_si).map(|(cost, units)| cost / units);
+        Some(Tolerance { name: name.clone(), variables, play, reach, scatter: scatter?, cost })
     }
 
     /// Distribution of a tolerance, with the defaults of the study. HP0241 if it is invalid.
