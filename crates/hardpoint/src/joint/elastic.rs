@@ -81,7 +81,20 @@ fn make(rigid: &'static JointType, directions: [bool; DIRECTIONS]) -> Option<Ela
         Row::Angle if is_simple => Row::CardanAngle,
         Row::Angle => Row::Heading,
         Row::AngleOnJ => Row::HeadingOnJ,
-        other => other,
+        Row::Point(_)
+        | Row::PointOnBase(_)
+        | Row::Dot1(..)
+        | Row::Dot2(_)
+        | Row::Distance
+        | Row::HeadingOnJ
+        | Row::CardanAngle
+        | Row::Heading
+        | Row::Course
+        | Row::Cosine
+        | Row::Offset
+        | Row::Contact
+        | Row::ConstantVelocity
+        | Row::LowestPoint(_) => row,
     };
     let coordinates = rigid.coordinates.iter().map(|c| CoordinateType {
         name: c.name,
