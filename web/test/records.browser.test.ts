@@ -72,14 +72,19 @@ describe('records of the page', () => {
   })
 
   test('of a fit are of the fitted design, which is the one that is shown', async () => {
-    await open(fitted)
+    page = await visit(fitted, { viewport: { width: 1440, height: 900 } })
+    // What undo comes back to is known before anything is solved.
+    const undo = page.getByTestId('undo')
+    await undo.waitFor()
+    expect(await undo.isEnabled()).toBe(true)
+    await ready(page)
     await page.getByTestId('tab-designs').click()
     const heading = page.getByTestId('of-record')
     expect(await heading.isVisible()).toBe(false)
     await change('tie_rod_inner_z', '0')
     await page.getByTestId('tab-designs').click()
     expect(await heading.innerText()).toBe('Fitted design')
-    await page.getByTestId('undo').click()
+    await undo.click()
     await settled(page)
     expect(await heading.isVisible()).toBe(false)
   })

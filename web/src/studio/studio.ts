@@ -137,6 +137,9 @@ export class Studio {
     this.#recorded = state.recorded
     this.history = new History({ text: model.text, settings: [], label: 'original' })
     this.history.setFileDesigns(state.report.named_designs, model.text)
+    // A page made of a changed design, such as that of a fit: undoing a change comes back to this design.
+    this.#recordStep()
+    this.history.endGesture()
     const bar = historyBar(this.history, {
       show: (step) => void this.#showStep(step),
       compare: () => void this.#compare(),
@@ -601,6 +604,7 @@ export class Studio {
 
   /** Solves the changed design; while the engine is busy, only the last change waits. */
   #solve(): void {
+    this.root.dataset.settled = 'no'
     this.#wanted = this.state.settings
     if (!this.#busy) void this.#solvePending()
   }
