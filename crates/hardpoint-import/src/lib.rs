@@ -392,14 +392,14 @@ impl Input<'_> {
         &mut self,
         body: usize,
         place: hardpoint::space::Pose,
-        scale: [f64; 3],
+        linear: hardpoint::space::Mat3,
         path: &str,
         name: &str,
         at: Option<SourceSpan>,
         notes: &mut ImportLog,
     ) {
         let added = match self.file(path) {
-            Some(bytes) => self.shapes.file(body, place, scale, path, &bytes),
+            Some(bytes) => self.shapes.file(body, place, linear, path, &bytes),
             None => Err("the file does not exist next to the source".into()),
         };
         match added {

@@ -4,9 +4,11 @@
 mod defaults;
 mod equality;
 mod masses;
+mod meshes;
 mod vocabulary;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::rc::Rc;
 
 use hardpoint::space::{Pose, Vec3};
 use roxmltree::{Document, Node};
@@ -20,6 +22,7 @@ use crate::xml::{children, exactly};
 use crate::{Format, Input, robot, xml};
 
 use masses::has_volume;
+use meshes::{MeshAsset, MeshGeom};
 use vocabulary::{BODY, FRAME, GEOM, IRRELEVANT, JOINT, SITE};
 
 /// MJCF format.
@@ -76,6 +79,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             other => reader.section(other, (*text, *node)),
         }
     }
+    reader.join_welds();
     reader.join_connections();
     reader.free_bodies();
     reader.add_masses();
@@ -118,6 +122,7 @@ pub fn extension<'d>(
             other => reader.section(other, (*text, *node)),
         }
     }
+    reader.join_welds();
     reader.join_connections();
     reader.m
 }
@@ -191,8 +196,9 @@ struct JointOnBody<'d> {
     class: Option<String>,
 }
 
-/// Point at which two bodies are connected.
-struct PointConnection {
+/// Constraint between two bodies: a common point (`connect`) or frame (`weld`). Its markers are those of the design
+/// configuration of the source.
+struct Closure {
     name: String,
     at: Option<SourceSpan>,
     ends: [Marker; 2],
@@ -217,7 +223,7 @@ struct VisibleShape<'d> {
     size: Vec<f64>,
     /// End points of the axis, if the shape is defined by them.
     ends: Option<[f64; 6]>,
-    mesh: Option<(String, [f64; 3])>,
+    mesh: Option<Rc<MeshAsset>>,
 }
 
 struct Reader<'d, 'n> {
@@ -227,8 +233,7 @@ struct Reader<'d, 'n> {
     documents: &'d [Option<Document<'d>>],
     compiler: Compiler,
     classes: BTreeMap<String, Class>,
-    /// Files and scales of the meshes.
-    meshes: BTreeMap<String, (String, [f64; 3])>,
+    meshes: BTreeMap<String, Rc<MeshAsset>>,
     bodies: BTreeMap<String, (usize, Pose)>,
     sites: BTreeMap<String, (usize, Pose)>,
     joints: BTreeMap<String, Coordinate>,
@@ -237,7 +242,8 @@ struct Reader<'d, 'n> {
     rods: BTreeMap<String, [String; 2]>,
     /// Values of joint coordinates in the design configuration, and without force of springs (`springref`).
     references: BTreeMap<String, [f64; 2]>,
-    connections: Vec<PointConnection>,
+    connections: Vec<Closure>,
+    welds: Vec<Closure>,
     free: Vec<FreeBody>,
     shapes: Vec<VisibleShape<'d>>,
     /// Names of all joints.
@@ -273,6 +279,7 @@ impl<'d, 'n> Reader<'d, 'n> {
             rods: BTreeMap::new(),
             references: BTreeMap::new(),
             connections: Vec::new(),
+            welds: Vec::new(),
             free: Vec::new(),
             shapes: Vec::new(),
             names: BTreeSet::new(),
@@ -683,8 +690,9 @@ fn add_shape(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'
     let (text, node) = shape.element;
     let at = xml::at(text, node);
     match (shape.kind.as_str(), &shape.mesh) {
-        ("mesh", Some((path, scale))) => {
-            input.mesh(shape.body, shape.place, *scale, path, &shape.link, at, notes);
+        ("mesh", Some(mesh)) => {
+            let VisibleShape { body, place, ref link, .. } = shape;
+            mesh.add(input, notes, MeshGeom { body, place, link, at });
         }
         ("mesh", None) => {}
         (kind, _) => match solid_of(kind, &shape.size, shape.ends, shape.place) {

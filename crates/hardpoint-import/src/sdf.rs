@@ -13,7 +13,7 @@ use crate::markers::{ElementSource, MarkerJoint};
 use crate::mechanism::{GROUND, Joint, Mechanism};
 use crate::report::ImportLog;
 use crate::shapes::Solid;
-use crate::turn::{home, roll_pitch_yaw};
+use crate::turn::{diagonal, home, roll_pitch_yaw};
 use crate::xml::{Vocabulary, child, children, exactly, local, named};
 use crate::{Format, Input, robot, xml};
 
@@ -75,6 +75,10 @@ const IRRELEVANT: [&str; 22] = [
     "name",
     "placement_frame",
 ];
+/// Frame of the world.
+const WORLD: &str = "world";
+/// Frame of the model that contains the reference.
+const OWN_MODEL: &str = "__model__";
 /// Elements with a pose in a model or world.
 const PLACED: [&str; 5] = ["link", "frame", "joint", "model", "include"];
 
@@ -91,6 +95,7 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         notes.problem_with("HP0803", xml::at(0, root), message, "specify the format, like `--format urdf`");
         return None;
     }
+    let world_frame = Frame { body: GROUND, pose: home() };
     let mut reader = Reader {
         m: Mechanism::new(input.stem, "m", "rad"),
         notes,
@@ -98,12 +103,13 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
         documents: &documents,
         models: Vec::new(),
         bodies: BTreeMap::new(),
-        frames: BTreeMap::new(),
-        carriers: BTreeMap::new(),
+        frames: BTreeMap::from([(WORLD.to_owned(), world_frame)]),
+        carriers: BTreeMap::from([(WORLD.to_owned(), Carrier::Body(GROUND))]),
         scopes: BTreeSet::new(),
         names: BTreeSet::new(),
         joints: BTreeMap::new(),
         several: false,
+        only: String::new(),
         shapes: Vec::new(),
         declared: 0,
         bare: BTreeSet::new(),
@@ -124,9 +130,9 @@ fn read(input: &mut Input<'_>, notes: &mut ImportLog) -> Option<Mechanism> {
             node: *node,
             text: 0,
             scope: String::new(),
+            frame: OWN_MODEL.to_owned(),
             include: None,
             is_static: false,
-            is_merged: false,
             inner: Vec::new(),
             canonical: None,
             place: home(),
@@ -200,8 +206,8 @@ struct Frame {
 #[derive(Clone)]
 enum Carrier {
     Body(usize),
-    /// Another frame: the prefix of names in its model, and its name.
-    Frame(String, String),
+    /// Another frame, by its full name.
+    Frame(String),
 }
 
 /// Model, or the world that contains the models.
@@ -210,18 +216,29 @@ struct Model<'d> {
     node: Node<'d, 'd>,
     /// Index of its text.
     text: usize,
-    /// Prefix of the names in it.
+    /// Prefix of the names in it: if its content is merged into the including model, that of this model.
     scope: String,
+    /// Full name of its frame.
+    frame: String,
     /// Index of the text with the including element, and that element.
     include: Option<(usize, Node<'d, 'd>)>,
     is_static: bool,
-    /// True if its content is merged into the including model.
-    is_merged: bool,
     /// Indices of the models in it.
     inner: Vec<usize>,
-    /// Body that carries its frame.
+    /// Body that carries its frame; `None` for the world and for a model without links.
     canonical: Option<usize>,
     place: Pose,
+}
+
+impl Model<'_> {
+    /// Returns the full name of a frame that is named in the model.
+    fn full_name(&self, name: &str) -> String {
+        match name {
+            WORLD => WORLD.to_owned(),
+            OWN_MODEL => self.frame.clone(),
+            _ => format!("{}{name}", self.scope),
+        }
+    }
 }
 
 /// Element or model that is not placed yet.
@@ -260,6 +277,8 @@ struct Reader<'d, 'n> {
     joints: BTreeMap<String, MarkerJoint>,
     /// True if the file has several models, whose names then precede the names in them.
     several: bool,
+    /// Prefix of the names in the only model of the file, which the mechanism omits.
+    only: String,
     shapes: Vec<VisibleShape<'d>>,
     /// Number of models, links, frames and joints.
     declared: usize,
@@ -306,7 +325,8 @@ impl<'d> Reader<'d, '_> {
             let at = xml::at(model.text, link);
             let note = ElementSource { kind: "link", name: &name, at }.note(self.notes);
             let full = format!("{}{name}", model.scope);
-            let body = self.m.body(&full, note, None);
+            let shown = self.shown(&full).to_owned();
+            let body = self.m.body(&shown, note, None);
             self.notes.taken("link", &name, at);
             if self.bodies.insert(full, body).is_some() {
                 let message = format!("the link `{name}` is defined twice");
@@ -322,7 +342,9 @@ impl<'d> Reader<'d, '_> {
         let first = named(model.node, "link").next().and_then(|l| l.attribute("name"));
         let wanted = model.node.attribute("canonical_link").filter(|l| !l.is_empty()).or(first);
         let of = wanted.and_then(|link| self.bodies.get(&format!("{}{}", model.scope, link.trim())).copied());
+        // The world is no model: its frame is that of ground.
         model.canonical = of.or_else(|| model.inner.iter().find_map(|k| self.models[*k].canonical));
+        model.canonical = model.canonical.filter(|_| depth > 0);
         self.declare_carriers(&model);
         for node in children(model.node) {
             let (name, at) = (local(node), xml::at(model.text, node));
@@ -347,10 +369,7 @@ impl<'d> Reader<'d, '_> {
     fn declare_carriers(&mut self, model: &Model<'d>) {
         let scope = &model.scope;
         let of_model = Carrier::Body(model.canonical.unwrap_or(GROUND));
-        if !model.is_merged {
-            // A model may have the same prefix as the world that contains it.
-            self.carriers.entry(format!("{scope}__model__")).or_insert(of_model.clone());
-        }
+        self.carriers.insert(model.frame.clone(), of_model.clone());
         for link in named(model.node, "link") {
             let full = format!("{scope}{}", link.attribute("name").unwrap_or_default().trim());
             if let Some(body) = self.bodies.get(&full) {
@@ -360,28 +379,29 @@ impl<'d> Reader<'d, '_> {
         for node in children(model.node).filter(|n| ["frame", "joint"].contains(&n.tag_name().name())) {
             let name = node.attribute("name").unwrap_or_default().trim();
             let carrier = carrier_of(node);
-            let carrier = carrier
-                .map_or_else(|| of_model.clone(), |name| Carrier::Frame(scope.clone(), name.to_owned()));
+            let carrier =
+                carrier.map_or_else(|| of_model.clone(), |name| Carrier::Frame(model.full_name(name)));
             // A joint and a link may have the same name.
             self.carriers.entry(format!("{scope}{name}")).or_insert(carrier);
         }
     }
 
     /// Returns the body that carries a frame; its pose need not be known yet.
-    fn body_of(&self, scope: &str, name: &str) -> Option<usize> {
-        let (mut scope, mut name) = (scope, name);
+    fn body_of(&self, model: &Model<'_>, name: &str) -> Option<usize> {
+        let mut name = &model.full_name(name);
         // A longer path returns to a frame that it has passed.
         for _ in 0..=self.carriers.len() {
-            if name == "world" {
-                return Some(GROUND);
-            }
-            let own = self.carriers.get(&format!("{scope}{name}"));
-            match own.or_else(|| self.carriers.get(&format!("{scope}{name}::__model__")))? {
+            match of_frame(&self.carriers, name)? {
                 Carrier::Body(body) => return Some(*body),
-                Carrier::Frame(of, next) => (scope, name) = (of, next),
+                Carrier::Frame(next) => name = next,
             }
         }
         None
+    }
+
+    /// Returns a full name as the mechanism shows it.
+    fn shown<'a>(&self, full: &'a str) -> &'a str {
+        full.strip_prefix(&self.only).unwrap_or(full)
     }
 
     /// Creates a nested model.
@@ -403,8 +423,7 @@ impl<'d> Reader<'d, '_> {
         let is_static =
             outer.is_static || flag(node, "static") || include.is_some_and(|(_, i)| flag(i, "static"));
         // From outside, the names in a model have its name as a prefix.
-        let alone = depth == 0 && !self.several;
-        let scope = if alone || is_merged {
+        let scope = if is_merged {
             outer.scope.clone()
         } else {
             let own = (1..).map(|k| if k == 1 { name.clone() } else { format!("{name}_{k}") });
@@ -412,13 +431,21 @@ impl<'d> Reader<'d, '_> {
             // Models may have the same name.
             scopes.find(|scope| self.scopes.insert(scope.clone())).unwrap_or_default()
         };
+        if depth == 0 && !self.several {
+            self.only.clone_from(&scope);
+        }
+        // SDFormat replaces the frame of a merged model by one of the including model.
+        let frame = match is_merged {
+            true => format!("{scope}_merged__{name}{OWN_MODEL}"),
+            false => format!("{scope}{OWN_MODEL}"),
+        };
         Model {
             node,
             text,
             scope,
+            frame,
             include,
             is_static,
-            is_merged,
             inner: Vec::new(),
             canonical: None,
             place: home(),
@@ -464,11 +491,8 @@ impl<'d> Reader<'d, '_> {
         }
         self.models[k].place = place;
         let model = self.models[k].clone();
-        if !model.is_merged {
-            let body = model.canonical.unwrap_or(GROUND);
-            self.frames.insert(format!("{}__model__", model.scope), Frame { body, pose: place });
-        }
         let of_model = Frame { body: model.canonical.unwrap_or(GROUND), pose: place };
+        self.frames.insert(model.frame.clone(), of_model);
         let elements =
             children(model.node).filter(|n| ["link", "frame", "joint"].contains(&n.tag_name().name()));
         let mut waiting: Vec<UnplacedItem<'d>> =
@@ -493,7 +517,7 @@ impl<'d> Reader<'d, '_> {
                 UnplacedItem::Model(inner) => (self.models[inner].text, self.models[inner].node),
             };
             let held = child(node, "child").and_then(|c| c.text()).unwrap_or_default().trim();
-            if node.has_tag_name("joint") && self.frame(&model.scope, held).is_none() {
+            if node.has_tag_name("joint") && self.frame(&model, held).is_none() {
                 // The joint reports the error.
                 continue;
             }
@@ -511,7 +535,7 @@ impl<'d> Reader<'d, '_> {
         let by_include = inner.include.and_then(|(text, i)| Some((text, child(i, "pose")?)));
         let written = by_include.or_else(|| Some((inner.text, child(inner.node, "pose")?)));
         let base = match written.and_then(|(_, p)| relative_to(p)) {
-            Some(relative) => self.frame(&outer.scope, relative),
+            Some(relative) => self.frame(outer, relative),
             None => Some(of_outer),
         };
         let Some(base) = base else { return false };
@@ -521,8 +545,13 @@ impl<'d> Reader<'d, '_> {
         match placement_frame.filter(|f| !f.is_empty()) {
             None => self.place(k, pose),
             Some(frame) => {
+                // The frames of the first placement are removed: a pose that is read before the frame it is relative
+                // to would be relative to the old one.
+                let others = self.frames.clone();
                 self.place(k, home());
-                let Some(own) = self.frame(&inner.scope, frame) else { return false };
+                let own = self.frame(&inner, frame);
+                self.frames = others;
+                let Some(own) = own else { return false };
                 self.place(k, pose.compose(own.pose.inverse()));
             }
         }
@@ -538,12 +567,12 @@ impl<'d> Reader<'d, '_> {
         let carrier = carrier_of(node);
         // A pose relative to a named frame does not depend on the pose of the carrier.
         let base = match written.and_then(relative_to).or(carrier) {
-            Some(name) => self.frame(scope, name),
+            Some(name) => self.frame(model, name),
             None => Some(of_model),
         };
         let Some(base) = base else { return false };
         let on = match carrier {
-            Some(name) => self.body_of(scope, name),
+            Some(name) => self.body_of(model, name),
             None => Some(of_model.body),
         };
         let Some(on) = on else { return false };
@@ -576,13 +605,8 @@ impl<'d> Reader<'d, '_> {
         true
     }
 
-    fn frame(&self, scope: &str, name: &str) -> Option<Frame> {
-        if name == "world" {
-            return Some(Frame { body: GROUND, pose: home() });
-        }
-        let own = self.frames.get(&format!("{scope}{name}"));
-        // The name of a nested model refers to its frame.
-        own.or_else(|| self.frames.get(&format!("{scope}{name}::__model__"))).copied()
+    fn frame(&self, model: &Model<'_>, name: &str) -> Option<Frame> {
+        of_frame(&self.frames, &model.full_name(name)).copied()
     }
 
     /// Reads a pose: x y z roll pitch yaw, or with a quaternion.
@@ -640,11 +664,12 @@ impl<'d> Reader<'d, '_> {
         }
         let frames: Vec<(String, Frame)> = self.frames.iter().map(|(name, f)| (name.clone(), *f)).collect();
         for (name, Frame { body, pose }) in frames {
-            if name.contains("joint ") || name.ends_with("__model__") {
+            if name == WORLD || name.contains("joint ") || name.ends_with(OWN_MODEL) {
                 continue;
             }
             let bare = self.bare.contains(&name);
-            self.m.frame(&name, body, pose, bare);
+            let shown = self.shown(&name).to_owned();
+            self.m.frame(&shown, body, pose, bare);
         }
     }
 
@@ -663,7 +688,7 @@ impl<'d> Reader<'d, '_> {
     /// Fixes a link of a static model, and adds the shapes of the link.
     fn add_link(&mut self, link: Node<'d, 'd>, model: &Model<'d>) {
         let name = link.attribute("name").unwrap_or_default().trim();
-        let Some(Frame { body, pose }) = self.frame(&model.scope, name) else { return };
+        let Some(Frame { body, pose }) = self.frame(model, name) else { return };
         if model.is_static {
             let why = "its model is static".to_owned();
             let joint = Joint::new(&format!("{name}_static"), why, "fixed", [GROUND, body], pose.r);
@@ -671,12 +696,17 @@ impl<'d> Reader<'d, '_> {
         }
         for visual in named(link, "visual") {
             let written = child(visual, "pose");
-            let base = written.and_then(relative_to).and_then(|frame| self.frame(&model.scope, frame));
+            let base = written.and_then(relative_to).and_then(|frame| self.frame(model, frame));
             let base = base.map_or_else(home, |frame| pose.inverse().compose(frame.pose));
             let place = base.compose(written.map_or_else(home, |p| self.written_pose(model.text, p)));
             self.shapes.push(VisibleShape { text: model.text, visual, body, link: name.to_owned(), place });
         }
     }
+}
+
+/// Returns the value of a frame by its full name; the name of a model means its frame.
+fn of_frame<'a, T>(list: &'a BTreeMap<String, T>, full: &str) -> Option<&'a T> {
+    list.get(full).or_else(|| list.get(&format!("{full}::{OWN_MODEL}")))
 }
 
 /// Returns the name of the frame that carries a joint or a frame; `None` if it is that of the model.
@@ -705,7 +735,7 @@ fn add_shape(input: &mut Input<'_>, notes: &mut ImportLog, shape: VisibleShape<'
     match (shape.tag_name().name(), solid_of(shape)) {
         ("mesh", _) => {
             let path = child(shape, "uri").and_then(|u| u.text()).unwrap_or_default().trim();
-            let scale = numbers(shape, "scale").unwrap_or([1.0; 3]);
+            let scale = diagonal(numbers(shape, "scale").unwrap_or([1.0; 3]));
             input.mesh(body, place, scale, path, &link, xml::at(text, shape), notes);
         }
         ("empty", _) => notes.ignored("visual", at),

@@ -4,17 +4,19 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use hardpoint::space::{Pose, Vec3};
+use hardpoint::space::{Mat3, Pose, Vec3};
 
 use crate::mechanism::{GROUND, Mechanism, Mesh};
 use crate::report::{ImportLog, SourceSpan};
+use crate::turn::none;
 
 /// Maximum number of triangles of a body.
 const MOST: usize = 200_000;
 /// Number of sides of cylinders and balls.
 const SIDES: usize = 24;
 
-type Triangle = [Vec3; 3];
+/// Corners of a triangle.
+pub type Triangle = [Vec3; 3];
 
 /// Shapes of a mechanism by body, in the body frame and the unit of the mechanism.
 #[derive(Debug, Default)]
@@ -80,10 +82,10 @@ impl Shapes {
                 turned(&arc(1.0, 0.0)).into_iter().map(|t| t.map(scaled)).collect()
             }
         };
-        self.push(body, place, [1.0; 3], triangles.into_iter());
+        self.triangles(body, place, none(), triangles.into_iter());
     }
 
-    /// Adds a file of triangles at a pose in its body, with its coordinates scaled by `scale`.
+    /// Adds a file of triangles at a pose in its body, after a linear map of its coordinates.
     ///
     /// # Errors
     /// Returns the reason why the file cannot be read.
@@ -91,7 +93,7 @@ impl Shapes {
         &mut self,
         body: usize,
         place: Pose,
-        scale: [f64; 3],
+        linear: Mat3,
         name: &str,
         bytes: &[u8],
     ) -> Result<(), String> {
@@ -100,13 +102,20 @@ impl Shapes {
         } else {
             hardpoint_file::triangles(name, bytes)?.into_iter().map(|t| t.map(Vec3::from)).collect()
         };
-        self.push(body, place, scale, triangles.into_iter());
+        self.triangles(body, place, linear, triangles.into_iter());
         Ok(())
     }
 
-    fn push(&mut self, body: usize, place: Pose, scale: [f64; 3], triangles: impl Iterator<Item = Triangle>) {
+    /// Adds triangles at a pose in their body, after a linear map of their coordinates.
+    pub fn triangles(
+        &mut self,
+        body: usize,
+        place: Pose,
+        linear: Mat3,
+        triangles: impl Iterator<Item = Triangle>,
+    ) {
         let list = self.bodies.entry(body).or_default();
-        let put = |p: Vec3| place.point(Vec3::from([p.x * scale[0], p.y * scale[1], p.z * scale[2]]));
+        let put = |p: Vec3| place.point(linear * p);
         list.extend(triangles.take(MOST.saturating_sub(list.len())).map(|t| t.map(put)));
     }
 

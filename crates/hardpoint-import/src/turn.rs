@@ -14,6 +14,11 @@ pub fn none() -> Mat3 {
     Mat3 { cols: [X.into(), Y.into(), Z.into()] }
 }
 
+/// Diagonal matrix.
+pub fn diagonal([x, y, z]: [f64; 3]) -> Mat3 {
+    Mat3 { cols: [[x, 0.0, 0.0].into(), [0.0, y, 0.0].into(), [0.0, 0.0, z].into()] }
+}
+
 /// Identity pose.
 pub fn home() -> Pose {
     Pose { rot: none(), r: Vec3::from([0.0; 3]) }

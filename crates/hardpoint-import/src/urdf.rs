@@ -12,7 +12,7 @@ use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, GROUND, Mechanism};
 use crate::report::{ImportLog, SourceSpan};
 use crate::shapes::Solid;
-use crate::turn::{X, Y, home, roll_pitch_yaw};
+use crate::turn::{X, Y, diagonal, home, roll_pitch_yaw};
 use crate::xml::{Vocabulary, attribute, attribute_at, child, children, local, named};
 use crate::{Format, Input, robot, xml};
 
@@ -543,7 +543,7 @@ fn shapes(input: &mut Input<'_>, notes: &mut ImportLog, link: Node<'_, '_>, body
                     continue;
                 };
                 let path = shape.attribute("filename").unwrap_or_default();
-                input.mesh(body, place, scale, path, name, xml::at(0, shape), notes);
+                input.mesh(body, place, diagonal(scale), path, name, xml::at(0, shape), notes);
                 continue;
             }
             "box" => three("size").map(Solid::Box),

@@ -1,6 +1,7 @@
 //! Shared settings of MJCF (compiler, default classes, meshes), and attributes of elements with their defaults.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use hardpoint::space::{Mat3, Pose, Quat, Vec3};
 
@@ -76,14 +77,8 @@ impl<'d> Reader<'d, '_> {
                     self.notes.ignored(node.tag_name().name(), xml::at(text, node));
                     continue;
                 }
-                let class = node.attribute("class").map(str::to_owned);
-                let scale = self.numbers::<3>((text, node), "scale", class.as_deref()).unwrap_or([1.0; 3]);
-                let file = node.attribute("file").unwrap_or_default();
-                let stem =
-                    file.rsplit('/').next().and_then(|f| f.rsplit_once('.')).map_or(file, |(stem, _)| stem);
-                let name = node.attribute("name").unwrap_or(stem).to_owned();
-                let path = format!("{}{file}", self.compiler.mesh_folder);
-                self.meshes.insert(name, (path, scale));
+                let (name, mesh) = self.mesh((text, node));
+                self.meshes.insert(name, Rc::new(mesh));
             }
         }
     }

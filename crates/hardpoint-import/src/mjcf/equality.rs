@@ -1,8 +1,10 @@
 //! Equality constraints of MJCF, which close loops, couple joints and constrain free bodies.
 
+use std::collections::BTreeSet;
+
 use hardpoint::space::{Pose, Quat, Vec3};
 
-use super::{CLOSED, Element, PointConnection, Reader};
+use super::{CLOSED, Closure, Element, Reader};
 use crate::markers::{ElementSource, Marker, join};
 use crate::mechanism::{Coordinate, Drives, Force, ForceOn, GROUND, Joint, Law, Spring};
 use crate::report::SourceSpan;
@@ -71,11 +73,11 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
-    /// Reads a constraint between two bodies: at a point (`connect`), or of frames (`weld`).
+    /// Reads a constraint between two bodies: at a point (`connect`), or of frames (`weld`). Both are added after all
+    /// have been read, since their offsets are those of the source's design configuration.
     fn closure(&mut self, element: Element<'d>, kind: &str, name: &str) {
         let (text, node) = element;
         let at = xml::at(text, node);
-        let source = ElementSource { kind, name, at };
         let sites = ["site1", "site2"].map(|key| node.attribute(key));
         let ends = if let [Some(a), Some(b)] = sites {
             let found = [a, b].map(|s| self.sites.get(s).copied());
@@ -102,7 +104,7 @@ impl<'d> Reader<'d, '_> {
         let [Some(i), Some(j)] = ends else { return };
         let [mut i, mut j] = [i, j].map(|(body, pose)| Marker { body, pose });
         if kind == "connect" {
-            self.connections.push(PointConnection { name: name.to_owned(), at, ends: [i, j] });
+            self.connections.push(Closure { name: name.to_owned(), at, ends: [i, j] });
             return;
         }
         if !matches!(sites, [Some(_), Some(_)])
@@ -110,29 +112,75 @@ impl<'d> Reader<'d, '_> {
         {
             (i.pose, j.pose) = (first, second);
         }
-        self.place_free(&i, &mut j);
-        self.place_free(&j, &mut i);
-        robot::weld(&mut self.m, self.notes, source, "fixed", [i, j]);
+        self.welds.push(Closure { name: name.to_owned(), at, ends: [i, j] });
     }
 
-    /// Places a free body that only this weld constrains: its frame `own` is moved to the other one.
-    fn place_free(&mut self, other: &Marker, own: &mut Marker) {
-        let body = own.body;
-        let is_free = self.free.iter().any(|f| f.bodies[1] == body);
-        let is_held = self.m.joints.iter().any(|j| j.bodies.contains(&body))
-            || self.connections.iter().any(|connection| connection.ends.iter().any(|end| end.body == body));
-        let Some(nominal) = self.m.bodies[body].pose.filter(|_| is_free && !is_held) else { return };
-        // X_new = X_other (X^-1 X_own)^-1
-        let moved = other.pose.compose(own.pose.inverse()).compose(nominal);
-        let carried = |pose: Pose| moved.compose(nominal.inverse()).compose(pose);
-        self.m.bodies[body].pose = Some(moved);
-        for (_, pose) in self.bodies.values_mut().chain(self.sites.values_mut()).filter(|(b, _)| *b == body) {
-            *pose = carried(*pose);
+    /// Adds the welds. Free bodies are moved to where they hold them.
+    pub(super) fn join_welds(&mut self) {
+        self.place_free_bodies();
+        for Closure { name, at, ends } in std::mem::take(&mut self.welds) {
+            let source = ElementSource { kind: "weld", name: &name, at };
+            robot::weld(&mut self.m, self.notes, source, "fixed", ends);
         }
-        for free in self.free.iter_mut().filter(|f| f.bodies[1] == body) {
-            free.place = moved.r;
+    }
+
+    /// Moves free bodies to where welds hold them, from bodies that have their place to others.
+    fn place_free_bodies(&mut self) {
+        let is_free = |body: &usize| {
+            self.free.iter().any(|f| f.bodies[1] == *body)
+                && !self.m.joints.iter().any(|j| j.bodies.contains(body))
+        };
+        let mut free: BTreeSet<usize> = self.welds.iter().flat_map(|w| w.ends.map(|end| end.body)).collect();
+        free.retain(is_free);
+        let connected: BTreeSet<usize> =
+            self.connections.iter().flat_map(|c| c.ends.map(|end| end.body)).collect();
+        while !free.is_empty() {
+            let next = self.welds.iter().enumerate().find_map(|(k, weld)| {
+                match weld.ends.map(|end| free.contains(&end.body)) {
+                    [false, true] => Some((k, 1)),
+                    [true, false] => Some((k, 0)),
+                    [true, true] | [false, false] => None,
+                }
+            });
+            let Some((k, own)) = next else {
+                // Of bodies that are welded to each other only, one stays: one with a connection, if there is any.
+                let stays = free.intersection(&connected).chain(&free).next().copied();
+                free.retain(|body| Some(*body) != stays);
+                continue;
+            };
+            let (body, wanted) = (self.welds[k].ends[own].body, self.welds[k].ends[1 - own].pose);
+            self.move_body(body, [self.welds[k].ends[own].pose, wanted]);
+            // Both frames are the same, to the last digit.
+            self.welds[k].ends[own].pose = wanted;
+            free.remove(&body);
         }
-        own.pose = other.pose;
+    }
+
+    /// Moves a body without joints, and everything on it, from one pose of a frame on it to another.
+    fn move_body(&mut self, body: usize, [from, to]: [Pose; 2]) {
+        let moved = |pose: Pose| to.compose(from.inverse().compose(pose));
+        let moved_point = |r: Vec3| to.point(from.inverse().point(r));
+        let place = self.m.bodies[body].pose.as_mut().into_iter();
+        let frames = self.bodies.values_mut().chain(self.sites.values_mut());
+        let frames = frames.filter(|frame| frame.0 == body).map(|frame| &mut frame.1);
+        let closures = self.connections.iter_mut().chain(&mut self.welds).flat_map(|c| &mut c.ends);
+        let markers = closures.filter(|end| end.body == body).map(|end| &mut end.pose);
+        place.chain(frames).chain(markers).for_each(|pose| *pose = moved(*pose));
+        for free in self.free.iter_mut().filter(|free| free.bodies[1] == body) {
+            free.place = moved_point(free.place);
+        }
+        for Force { on, spring, .. } in &mut self.m.forces {
+            let ForceOn::Points(ends) = on else { continue };
+            let length = |ends: &[(usize, Vec3); 2]| (ends[1].1 - ends[0].1).norm();
+            let before = length(ends);
+            ends.iter_mut().filter(|end| end.0 == body).for_each(|end| end.1 = moved_point(end.1));
+            // The tension is that of the source at its lengths.
+            if spring.free.is_none() && spring.stiffness > 0.0 {
+                let tension = spring.preload.unwrap_or(0.0) + spring.stiffness * (length(ends) - before);
+                spring.preload = (tension != 0.0).then_some(tension);
+            }
+        }
+        self.move_masses(body, [from, to]);
     }
 
     /// Adds joints for connected points. Two bodies that are connected at two points rotate about the line through

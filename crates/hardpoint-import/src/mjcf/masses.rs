@@ -10,7 +10,7 @@ use crate::markers::ElementSource;
 use crate::mechanism::GROUND;
 use crate::report::SourceSpan;
 use crate::shapes::Solid;
-use crate::turn::home;
+use crate::turn::{diagonal, home};
 use crate::{robot, xml};
 
 /// Default gravity of MuJoCo, m/s^2.
@@ -243,6 +243,18 @@ impl<'d> Reader<'d, '_> {
         }
     }
 
+    /// Moves the masses of a body from one pose of a frame on it to another.
+    pub(super) fn move_masses(&mut self, body: usize, [from, to]: [Pose; 2]) {
+        let turn = to.rot * from.rot.transpose();
+        for mass in self.masses.explicit.iter_mut().filter(|mass| mass.body == body) {
+            mass.frame = to.compose(from.inverse().compose(mass.frame));
+        }
+        for geom in self.masses.geoms.iter_mut().filter(|geom| geom.body == body) {
+            geom.centre = to.point(from.inverse().point(geom.centre));
+            geom.inertia = turn * geom.inertia * turn.transpose();
+        }
+    }
+
     /// Adds the masses of all bodies, gravity and its compensation.
     pub(super) fn add_masses(&mut self) {
         let mut masses = std::mem::take(&mut self.masses);
@@ -368,10 +380,6 @@ fn mass_of_geoms(body: usize, name: String, geoms: &[GeomMass]) -> BodyMass {
         mass,
         inertia: robot::combined(parts),
     }
-}
-
-fn diagonal([x, y, z]: [f64; 3]) -> Mat3 {
-    Mat3 { cols: [[x, 0.0, 0.0].into(), [0.0, y, 0.0].into(), [0.0, 0.0, z].into()] }
 }
 
 /// Applies the settings of the compiler to an inertia matrix: the lower bound of its principal moments and, where one

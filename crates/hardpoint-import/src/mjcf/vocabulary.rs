@@ -251,6 +251,32 @@ pub(super) const SITE: Vocabulary = Vocabulary {
     read: &[],
     irrelevant: &[],
 };
+/// Known content of a mesh.
+pub(super) const MESH: Vocabulary = Vocabulary {
+    attributes: &[
+        "name",
+        "class",
+        "file",
+        "content_type",
+        "vertex",
+        "face",
+        "normal",
+        "texcoord",
+        "refpos",
+        "refquat",
+        "scale",
+        "smoothnormal",
+        "maxhullvert",
+        "inertia",
+        "octree",
+        "builtin",
+        "params",
+        "material",
+        "user",
+    ],
+    read: &["plugin"],
+    irrelevant: &[],
+};
 /// Known content of a tendon.
 pub(super) const TENDON: Vocabulary = Vocabulary {
     attributes: &[
@@ -305,5 +331,11 @@ pub(super) const EQUALITY: Vocabulary = Vocabulary {
     irrelevant: &[],
 };
 /// Known elements of default classes, with their content.
-pub(super) const DEFAULTS: [(&str, Vocabulary); 5] =
-    [("joint", JOINT), ("geom", GEOM), ("site", SITE), ("tendon", TENDON), ("equality", EQUALITY)];
+pub(super) const DEFAULTS: [(&str, Vocabulary); 6] = [
+    ("joint", JOINT),
+    ("geom", GEOM),
+    ("site", SITE),
+    ("mesh", MESH),
+    ("tendon", TENDON),
+    ("equality", EQUALITY),
+];

@@ -76,7 +76,7 @@ impl<'d> Reader<'d, '_> {
         let text = model.text;
         let element = child(joint, end);
         let name = element.and_then(|e| e.text()).unwrap_or_default().trim();
-        let frame = self.frame(&model.scope, name);
+        let frame = self.frame(model, name);
         if frame.is_none() {
             let at = element.map_or_else(|| xml::at(text, joint), |e| xml::at(text, e));
             let message = match name {
@@ -102,7 +102,7 @@ impl<'d> Reader<'d, '_> {
         let of_model = of_model.map_or(older, |t| ["1", "true"].contains(&t.trim()));
         let expressed = xyz.and_then(|x| x.attribute("expressed_in")).filter(|e| !e.is_empty());
         let rot = match expressed {
-            Some(name) => match self.frame(&model.scope, name) {
+            Some(name) => match self.frame(model, name) {
                 Some(frame) => frame.pose.rot,
                 None => {
                     let at = xyz.and_then(|x| xml::at(text, x));
@@ -146,7 +146,8 @@ impl<'d> Reader<'d, '_> {
         let ends = ["parent", "child"].map(|end| self.end(joint, model, end));
         let [Some(i), Some(j)] = ends else { return };
         let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
-        let source = ElementSource { kind: "joint", name: &full, at };
+        let shown = self.shown(&full).to_owned();
+        let source = ElementSource { kind: "joint", name: &shown, at };
         let kind = joint.attribute("type").unwrap_or_default().trim();
         let type_name = match kind {
             "revolute" | "continuous" => "revolute",
@@ -216,7 +217,7 @@ impl<'d> Reader<'d, '_> {
             }
         }
         let joined = MarkerJoint { number, kind: type_name, markers: [i, j] };
-        self.dynamics(joint, text, &full, only_coordinate(&joined));
+        self.dynamics(joint, text, &shown, only_coordinate(&joined));
         self.joints.insert(full, joined);
     }
 
@@ -243,6 +244,7 @@ impl<'d> Reader<'d, '_> {
         let (text, scope) = (model.text, &model.scope);
         let name = joint.attribute("name").unwrap_or_default().trim();
         let full = format!("{scope}{name}");
+        let shown = self.shown(&full).to_owned();
         let number = |reader: &mut Self, node: Node<'d, 'd>, key: &'static str| {
             if node.has_attribute(key) {
                 // Drake's notation.
@@ -287,9 +289,9 @@ impl<'d> Reader<'d, '_> {
             .trim()
             .to_owned();
         let [parent, driven] = ["parent", "child"].map(|end| self.end(joint, model, end));
-        let (Some(parent), Some(driven), Some(carrier)) = (parent, driven, self.frame(scope, &reference))
+        let (Some(parent), Some(driven), Some(carrier)) = (parent, driven, self.frame(model, &reference))
         else {
-            self.notes.refused("joint", &full, at, "the reference body of the gearbox does not exist");
+            self.notes.refused("joint", &shown, at, "the reference body of the gearbox does not exist");
             return;
         };
         let Some(frame) = self.frames.get(&format!("{scope}joint {name}")).map(|f| f.pose) else { return };
@@ -309,11 +311,11 @@ impl<'d> Reader<'d, '_> {
                 ];
                 let note = ElementSource { kind: "joint", name, at }.note(self.notes);
                 self.m.coupler(name, note, terms);
-                self.notes.taken("gearbox", &full, at);
+                self.notes.taken("gearbox", &shown, at);
             }
             _ => self.notes.refused(
                 "joint",
-                &full,
+                &shown,
                 at,
                 "a gearbox requires hinges of both bodies on the reference body, along its axes",
             ),
@@ -400,7 +402,7 @@ impl<'d> Reader<'d, '_> {
             });
             let [Some(i), Some(j)] = ends else { continue };
             let name = format!("{}ball_constraint_{}", model.scope, k + 1);
-            let source = ElementSource { kind: "ball_constraint", name: &name, at };
+            let source = ElementSource { kind: "ball_constraint", name: self.shown(&name), at };
             join(&mut self.m, self.notes, source, "spherical", [i, j]);
         }
         for node in named(model.node, "linear_bushing_rpy") {

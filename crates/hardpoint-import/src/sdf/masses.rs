@@ -7,7 +7,7 @@ use super::{Frame, Model, Reader, relative_to, solid_of};
 use crate::markers::ElementSource;
 use crate::mechanism::GROUND;
 use crate::robot;
-use crate::turn::home;
+use crate::turn::{diagonal, home};
 use crate::xml::{self, Vocabulary, child, children, exactly, named};
 
 /// Default gravity of SDFormat, m/s^2.
@@ -45,7 +45,7 @@ impl<'d> Reader<'d, '_> {
         for model in self.models.clone() {
             for link in named(model.node, "link") {
                 let name = link.attribute("name").unwrap_or_default().trim();
-                let Some(Frame { body, pose }) = self.frame(&model.scope, name) else { continue };
+                let Some(Frame { body, pose }) = self.frame(&model, name) else { continue };
                 self.unsupported_of_link(link, &model, name);
                 let has_gravity = child(link, "gravity").and_then(|g| g.text()).unwrap_or("1").trim();
                 if ["0", "false"].contains(&has_gravity) && body != GROUND {
@@ -148,7 +148,7 @@ impl<'d> Reader<'d, '_> {
     /// Returns the global pose of an element in a link.
     fn pose_in_link(&mut self, node: Node<'d, 'd>, model: &Model<'d>, link: Pose) -> Pose {
         let written = child(node, "pose");
-        let base = written.and_then(relative_to).and_then(|frame| self.frame(&model.scope, frame));
+        let base = written.and_then(relative_to).and_then(|frame| self.frame(model, frame));
         let base = base.map_or(link, |frame| frame.pose);
         base.compose(written.map_or_else(home, |p| self.written_pose(model.text, p)))
     }
@@ -181,8 +181,7 @@ impl<'d> Reader<'d, '_> {
             let (volume, per_mass, centre) = moments_of(collision)?;
             let mass = density * volume;
             let place = self.pose_in_link(collision, model, pose);
-            let mut matrix = home().rot;
-            matrix.cols.iter_mut().zip(per_mass).for_each(|(column, i)| *column = *column * (mass * i));
+            let matrix = diagonal(per_mass.map(|i| mass * i));
             let inertia = place.rot * matrix * place.rot.transpose();
             parts.push((mass, place.point([0.0, 0.0, centre].into()), inertia));
         }
@@ -193,14 +192,10 @@ impl<'d> Reader<'d, '_> {
         let mass = self.number(model, inertial, "mass").unwrap_or(sum);
         let scale = mass / sum;
         let centre = parts.iter().fold(Vec3::zero(), |c, (m, r, _)| c + *r * (m / sum));
-        let scaled = parts.iter().map(|(m, r, own)| (m * scale, *r - centre, *own * scaled_by(scale)));
+        let scaled = parts.iter().map(|(m, r, own)| (m * scale, *r - centre, *own * diagonal([scale; 3])));
         let inertia = robot::combined(scaled);
         Ok(MassProperties { mass, frame: Pose { rot: home().rot, r: centre }, inertia })
     }
-}
-
-fn scaled_by(factor: f64) -> Mat3 {
-    Mat3 { cols: home().rot.cols.map(|column| column * factor) }
 }
 
 /// Returns the volume of a collision shape, its moments of inertia about its centre per unit of mass, and the position

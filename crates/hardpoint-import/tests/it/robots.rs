@@ -316,6 +316,124 @@ fn sdf_frames_have_the_poses_of_gazebo() {
     assert!(imported.report.of(ElementOutcome::Refused).next().is_none(), "{}", imported.report);
 }
 
+/// Model of a base and a tool at y = 0.2 that a hinge connects.
+fn hinged(parent: &str, axis: &str) -> String {
+    format!(
+        r#"<link name="base"/><link name="tool"><pose>0 0.2 0 0 0 0</pose></link>
+        <joint name="j" type="revolute"><parent>{parent}</parent><child>tool</child><axis>{axis}</axis></joint>"#
+    )
+}
+
+fn names_of<'m>(file: &'m ModelFile, joint_name: &str) -> [&'m str; 2] {
+    joint(file, joint_name).bodies.map(|b| file.model.bodies[b.0].name.as_str())
+}
+
+#[test]
+fn the_model_frame_of_sdf_is_that_of_the_model_around_the_reference() {
+    let turned = "<pose>10 0 0 1.5707963267948966 0 0</pose>";
+    let axis = r#"<xyz expressed_in="__model__">0 0 1</xyz>"#;
+    let content = hinged("__model__", axis);
+    let foot = r#"<joint name="foot" type="fixed"><parent>world</parent><child>base</child></joint>"#;
+    // The only model of a file, in a world or not.
+    let model = format!(r#"<model name="arm">{turned}{content}{foot}</model>"#);
+    for text in [model.clone(), format!(r#"<world name="w">{model}</world>"#)] {
+        let (_, file) = read("m.sdf", &format!(r#"<sdf version="1.9">{text}</sdf>"#));
+        is_at(joint(&file, "j").frames[0].cols[2], [0.0, -1.0, 0.0]);
+        assert_eq!(names_of(&file, "j"), ["base", "tool"]);
+    }
+    // The frame of a merged model is one of the model that includes it, under another name.
+    let part = format!(r#"<sdf version="1.9"><model name="arm">{content}</model></sdf>"#);
+    let include = format!(r#"<include merge="true"><uri>part</uri>{turned}</include>"#);
+    let rod = r#"<link name="rod"><pose relative_to="_merged__arm__model__">0 0 1 0 0 0</pose></link>"#;
+    let held =
+        r#"<joint name="f" type="fixed"><parent>_merged__arm__model__</parent><child>rod</child></joint>"#;
+    let text = format!(r#"<sdf version="1.11"><model name="m">{include}{rod}{held}{foot}</model></sdf>"#);
+    let (_, file) = read_with("m.sdf", text.as_bytes(), &[("part/model.sdf", &part)]);
+    is_at(joint(&file, "j").frames[0].cols[2], [0.0, -1.0, 0.0]);
+    assert_eq!((names_of(&file, "j"), names_of(&file, "f")), (["base", "tool"], ["base", "rod"]));
+    is_at(file.model.bodies.iter().find(|b| b.name == "rod").unwrap().frame.r, [10.0, -1.0, 0.0]);
+    // Frames of the world are on ground.
+    let world = format!(
+        r#"<sdf version="1.10"><world name="w"><frame name="mount"><pose>1 0 2 0 0 0</pose></frame>
+        <model name="arm"><pose>1 0 2 0 0 0</pose>{}<frame name="mount" attached_to="tool"/></model>
+        <joint name="turn" type="revolute"><parent>mount</parent><child>arm::base</child><axis><xyz>0 0 1</xyz></axis></joint></world></sdf>"#,
+        hinged("base", "<xyz>0 0 1</xyz>")
+    );
+    let (_, file) = read("w.sdf", &world);
+    assert_eq!(names_of(&file, "turn"), ["ground", "arm::base"]);
+}
+
+#[test]
+fn frames_of_sdf_that_place_their_model_do_so_in_any_order() {
+    let joint = r#"<joint name="j" type="revolute"><pose relative_to="base">0.5 0 0 0 0 0</pose><parent>base</parent><child>tool</child>
+        <axis><xyz>0 0 1</xyz></axis></joint>"#;
+    let tool = r#"<link name="tool"><pose relative_to="j">0 0.2 0 0 0 0</pose></link>"#;
+    for content in [format!("{joint}{tool}"), format!("{tool}{joint}")] {
+        let text = format!(
+            r#"<sdf version="1.9"><model name="arm" placement_frame="grip"><pose>10 0 0 0 0 0</pose><link name="base"/>{content}
+            <frame name="grip" attached_to="base"><pose>0 0 1 0 0 0</pose></frame></model></sdf>"#
+        );
+        let (_, file) = read("m.sdf", &text);
+        is_at(place(&file, "j"), [10.5, 0.0, -1.0]);
+        is_at(file.model.bodies.iter().find(|b| b.name == "tool").unwrap().frame.r, [10.5, 0.2, -1.0]);
+    }
+}
+
+#[test]
+fn meshes_of_mjcf_may_be_in_the_text() {
+    let model = |mesh: &str| {
+        format!(
+            r#"<mujoco><compiler angle="radian"/><asset><mesh name="m" {mesh}/></asset><worldbody><body name="p" pos="0 0 1"><joint axis="0 1 1"/>
+            <geom type="mesh" mesh="m" pos="0.1 0.2 0.3" euler="0.3 0.2 0.1"/></body></worldbody></mujoco>"#
+        )
+    };
+    let corners = "0 0 0 1 0 0 0 1 0 0 0 1";
+    let tetrahedron = format!(r#"vertex="{corners}""#);
+    let inside = format!(r#"vertex="{corners} 0.1 0.1 0.1""#);
+    let open = format!(r#"vertex="{corners}" face="0 2 1 0 1 3 0 3 2""#);
+    let moved = format!(r#"vertex="{corners}" scale="0.1 0.1 0.2" refpos="0.1 0 0" refquat="0.7 0.7 0 0""#);
+    // MuJoCo 4.0.0, printed with eight digits
+    let plain = [
+        [0.1, 0.2, 0.3],
+        [1.075_170_33, 0.353_791_98, 0.140_654_93],
+        [0.002_156_59, 1.144_702_51, 0.612_991_82],
+        [0.298_669_34, -0.089_629_49, 1.236_293_35],
+    ];
+    let scaled = [
+        [0.090_248_30, 0.198_462_08, 0.301_593_45],
+        [0.187_765_33, 0.213_841_28, 0.285_658_94],
+        [0.050_514_43, 0.256_387_98, 0.114_334_78],
+        [0.080_463_95, 0.292_932_33, 0.332_892_63],
+    ];
+    for (mesh, points, triangles) in
+        [(&tetrahedron, plain, 4), (&inside, plain, 4), (&open, plain, 3), (&moved, scaled, 4)]
+    {
+        let (imported, file) = read("m.xml", &model(mesh));
+        assert_eq!(reported(&imported, ElementOutcome::Taken, "mesh").len(), 1, "{}", imported.report);
+        let number = file.model.bodies.iter().position(|b| b.name == "p").unwrap();
+        let shape = &file.drawing.bodies[&number];
+        assert_eq!(shape.triangles.len(), triangles, "{mesh}");
+        for wanted in points {
+            // STL has seven digits.
+            let nearest = |v: &Vec3| (*v - Vec3::from(wanted)).norm();
+            let off = shape.vertices.iter().map(nearest).fold(f64::INFINITY, f64::min);
+            assert!(off < 2e-7, "{mesh}: {wanted:?} is off by {off}: {:?}", shape.vertices);
+        }
+    }
+    let many: String = (0..101).map(|k| format!("{k} {} {} ", k * k, k * k * k)).collect();
+    for (mesh, why) in [
+        (r#"vertex="0 0 0 1 0 0 0 1 0""#.to_owned(), "at least four points"),
+        (r#"vertex="0 0 0 1 0 0 0 1 0 1 1 0""#.to_owned(), "in one plane"),
+        (format!(r#"vertex="{corners}" face="0 1 4""#), "numbers of vertices"),
+        (format!(r#"vertex="{many}""#), "list its triangles in `face`"),
+        (r#"builtin="sphere""#.to_owned(), "neither a file nor vertices"),
+    ] {
+        let (imported, _) = read("m.xml", &model(&mesh));
+        let found = reported(&imported, ElementOutcome::Refused, "mesh");
+        assert!(found.len() == 1 && found[0].contains(why) && found[0].contains("`m`"), "{found:?}");
+    }
+}
+
 #[test]
 fn joints_of_mjcf_in_frames_and_classes_and_includes_are_found() {
     let text = r#"<mujoco><compiler angle="radian"/><include file="parts/all.xml"/>

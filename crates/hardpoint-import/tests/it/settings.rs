@@ -187,6 +187,78 @@ fn settings_of_the_compiler_of_mujoco_change_masses() {
     assert_mass(mass_of(&imported, "a"), (2.0, [0.0; 3], [0.0; 6]), text);
 }
 
+/// Arm that turns about y at (0, 0, 1), a free body of 2 kg at x = 5, and further bodies.
+fn welded(load: &str, others: &str, equalities: &str) -> String {
+    format!(
+        r#"<mujoco><worldbody><site name="w"/><body name="arm" pos="0 0 1"><joint name="pivot" axis="0 1 0"/></body>
+        <body name="load" pos="5 0 1"><freejoint/>{load}<site name="s" pos="0 0 0.1"/></body>{others}</worldbody>
+        <tendon><spatial name="t" stiffness="100"><site site="s"/><site site="w"/></spatial></tendon>
+        <equality>{equalities}</equality></mujoco>"#
+    )
+}
+
+#[test]
+fn a_weld_moves_a_free_body_with_its_mass_and_its_tendons() {
+    let weld =
+        r#"<weld body1="arm" body2="load" relpose="0.3 0 0 0.7071067811865476 0.7071067811865476 0 0"/>"#;
+    let explicit = r#"<inertial pos="0 0 0" mass="2" diaginertia="0.1 0.2 0.25"/>"#;
+    // A box of 2 kg with the sides 0.2, 0.4 and 0.6 m: b^2 + c^2 by 6
+    let geoms = r#"<geom type="box" size="0.1 0.2 0.3" mass="2"/>"#;
+    let moments = |[b, c]: [f64; 2]| (b * b + c * c) / 6.0;
+    let [ix, iy, iz] = [moments([0.4, 0.6]), moments([0.6, 0.2]), moments([0.2, 0.4])];
+    for (load, inertia) in [(explicit, [0.1, 0.2, 0.25]), (geoms, [ix, iy, iz])] {
+        let imported = import("m.xml", &welded(load, "", weld));
+        assert!(imported.text.contains("load = { frame = { position = [0.3, 0.0, 1.0]"), "{}", imported.text);
+        // Turned by 90 degrees about x
+        let [xx, yy, zz] = inertia;
+        assert_mass(mass_of(&imported, "load"), (2.0, [0.3, 0.0, 1.0], [xx, zz, yy, 0.0, 0.0, 0.0]), load);
+        let table: toml_edit::DocumentMut = imported.text.parse().unwrap();
+        let tendon = table["forces"]["t"].as_table_like().unwrap();
+        let from = tendon.get("from").unwrap().as_table_like().unwrap();
+        let at = from.get("at").unwrap().as_array().unwrap_or_else(|| panic!("{}", imported.text));
+        let at: Vec<f64> = at.iter().map(|x| x.as_float().unwrap()).collect();
+        assert!([0.3, -0.1, 1.0].iter().zip(&at).all(|(x, y)| (x - y).abs() < SAME), "{at:?}");
+        // Its tension is zero at the length of the source, from (5, 0, 1.1) to the origin.
+        let tension = tendon.get("preload").unwrap().as_float().unwrap();
+        let wanted = 100.0 * (1.1_f64.sqrt() - 26.21_f64.sqrt());
+        assert!((tension - wanted).abs() < 1e-10, "{tension} instead of {wanted}");
+        let turned = Mat3::about([1.0, 0.0, 0.0].into(), PI / 2.0);
+        for [arm, load] in poses(&crate::model(&imported), ["arm", "load"]) {
+            let held = arm.compose(Pose { rot: turned, r: [0.3, 0.0, 0.0].into() });
+            assert!((held.r - load.r).norm() + held.rot.angle_to(load.rot) < ASSEMBLED, "{load:?}");
+        }
+    }
+}
+
+#[test]
+fn offsets_of_equalities_are_those_of_the_source_wherever_welds_place_bodies() {
+    let body = |name: &str, at: &str| format!(r#"<body name="{name}" pos="{at}"><freejoint/></body>"#);
+    let weld = r#"<weld body1="arm" body2="load" relpose="0.3 0 0 1 0 0 0"/>"#;
+    let next = r#"<weld body1="load" body2="next"/>"#;
+    let both = |[first, second]: [&str; 2]| [format!("{first}{second}"), format!("{second}{first}")];
+    // Without `relpose` the second body is 1 m above the first.
+    for equalities in both([weld, next]) {
+        let imported = import("m.xml", &welded("", &body("next", "5 0 2"), &equalities));
+        let file = crate::model(&imported);
+        let next = file.model.bodies.iter().find(|b| b.name == "next").unwrap();
+        assert!((next.frame.r - [0.3, 0.0, 2.0].into()).norm() < SAME, "{:?}", next.frame.r);
+        assert_eq!(file.model.named_joints().filter(|(_, j)| j.kind.name == "fixed").count(), 2);
+    }
+    // The anchor is (4.9, 0.2, 1), 0.6 m behind the tip and 0.2 m beside it.
+    let weld = r#"<weld body1="load" body2="arm" relpose="-0.3 0 0 1 0 0 0"/>"#;
+    let connect = r#"<connect body1="load" body2="tip" anchor="0.2 0.1 0"/>"#;
+    for equalities in both([weld, connect]) {
+        let text = welded("", &body("tip", "5.5 0 1"), &equalities);
+        let imported = import("m.xml", &text.replace(r#"pos="5 0 1""#, r#"pos="5 0 1" euler="0 0 90""#));
+        let solved = poses(&crate::model(&imported), ["load", "tip"]);
+        assert!((solved[0][0].r - [0.3, 0.0, 1.0].into()).norm() < ASSEMBLED, "{:?}", solved[0]);
+        for [load, tip] in solved {
+            let [a, b] = [load.point([0.2, 0.1, 0.0].into()), tip.point([-0.6, 0.2, 0.0].into())];
+            assert!((a - b).norm() < ASSEMBLED, "{a:?} {b:?}");
+        }
+    }
+}
+
 #[test]
 fn shells_of_mujoco_have_their_mass_at_their_surface() {
     // Values of MuJoCo 4.0 for a mass of 3 kg, and its masses for 100 kg/m^2.
